@@ -1,0 +1,17 @@
+#pragma once
+
+namespace tetwright {
+
+/// Elementary functions from + - * / and sqrt alone, so that they give the same bits on every machine and
+/// with every compiler (libm's differ in the last place). Relative error below 4e-15 on the ranges named.
+
+/// Arc tangent of any finite value or infinity, radians.
+double portable_atan(double x);
+/// Arc tangent of y / x for y >= 0 and any x, in [0, pi]; 0 for (0, 0).
+double portable_atan2_upper(double y, double x);
+/// Cube root of any finite value.
+double portable_cbrt(double x);
+/// Natural logarithm of a finite normal x > 0.
+double portable_log(double x);
+
+}  // namespace tetwright

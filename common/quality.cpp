@@ -1,0 +1,106 @@
+#include "common/quality.h"
+
+#include <numbers>
+
+#include "common/portable_math.h"
+#include "common/predicates.h"
+
+namespace tetwright {
+
+namespace {
+
+/// What the solid angles of a tet are made of: tan(omega_k / 2) = det / denominator[k].
+struct SolidAngleTerms {
+  double det;  ///< six times the volume
+  std::array<double, 4>
+      denominator;         ///< for each vertex; negative for an angle beyond a half space's 2 pi / 2
+  double longest_squared;  ///< of the six edges
+};
+
+SolidAngleTerms terms(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const Vec3 ab = b - a, ac = c - a, ad = d - a, bc = c - b, bd = d - b, cd = d - c;
+  const double ab2 = ab.squaredNorm(), ac2 = ac.squaredNorm(), ad2 = ad.squaredNorm();
+  const double bc2 = bc.squaredNorm(), bd2 = bd.squaredNorm(), cd2 = cd.squaredNorm();
+  const double lab = std::sqrt(ab2), lac = std::sqrt(ac2), lad = std::sqrt(ad2);
+  const double lbc = std::sqrt(bc2), lbd = std::sqrt(bd2), lcd = std::sqrt(cd2);
+  // The scalar products of two edges at a vertex, from the squared lengths: u.v = (u^2 + v^2 - (u-v)^2) / 2.
+  const auto corner = [](double lu, double lv, double lw, double u2, double v2, double w2, double uv2,
+                         double uw2, double vw2) {
+    return lu * lv * lw + 0.5 * ((u2 + v2 - uv2) * lw + (u2 + w2 - uw2) * lv + (v2 + w2 - vw2) * lu);
+  };
+  SolidAngleTerms t;
+  t.det = ab.cross(ac).dot(ad);
+  t.denominator = {corner(lab, lac, lad, ab2, ac2, ad2, bc2, bd2, cd2),
+                   corner(lab, lbc, lbd, ab2, bc2, bd2, ac2, ad2, cd2),
+                   corner(lac, lbc, lcd, ac2, bc2, cd2, ab2, ad2, bd2),
+                   corner(lad, lbd, lcd, ad2, bd2, cd2, ab2, ac2, bc2)};
+  t.longest_squared = std::max({ab2, ac2, ad2, bc2, bd2, cd2});
+  return t;
+}
+
+/// All four share the numerator, so the smallest angle has the largest denominator; it is always acute enough
+/// for the denominator to be positive (four angles of a tet sum to less than 2 pi).
+double smallest_angle(const SolidAngleTerms& t) {
+  const double largest =
+      std::max(std::max(t.denominator[0], t.denominator[1]), std::max(t.denominator[2], t.denominator[3]));
+  return 2 * portable_atan2_upper(t.det, largest);
+}
+
+}  // namespace
+
+std::array<double, 4> solid_angles(const std::array<Vec3, 4>& p) {
+  const SolidAngleTerms t = terms(p[0], p[1], p[2], p[3]);
+  if (!(t.det > 0)) return {0, 0, 0, 0};
+  std::array<double, 4> angles;
+  for (int k = 0; k < 4; ++k) angles[k] = 2 * portable_atan2_upper(t.det, t.denominator[k]);
+  return angles;
+}
+
+double min_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const SolidAngleTerms t = terms(a, b, c, d);
+  return t.det > 0 ? smallest_angle(t) : 0;
+}
+
+std::array<double, 6> dihedral_angles(const std::array<Vec3, 4>& p) {
+  std::array<Vec3, 4> normal;  // outward for a positive tet
+  for (int k = 0; k < 4; ++k) {
+    const auto& f = tet_faces[k];
+    normal[k] = (p[f[1]] - p[f[0]]).cross(p[f[2]] - p[f[0]]);
+  }
+  std::array<double, 6> angles;
+  for (int e = 0; e < 6; ++e) {
+    // The two faces at an edge lie opposite the two vertices that are not on it.
+    const auto& other = tet_edges[5 - e];
+    const Vec3 &n = normal[other[0]], &m = normal[other[1]];
+    // The angle inside is pi minus that between the outward normals.
+    const double across = n.cross(m).norm(), along = -n.dot(m);
+    angles[e] = across == 0 && along == 0 ? std::numeric_limits<double>::quiet_NaN()
+                                          : portable_atan2_upper(across, along) * (180 / std::numbers::pi);
+  }
+  return angles;
+}
+
+double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return orient3d_value(a, b, c, d) / 6;
+}
+
+TetQuality TetQuality::for_target(double total_volume, double target, double beta) {
+  TetQuality q;
+  q.ideal_volume = total_volume / target;
+  q.ideal_edge = portable_cbrt(q.ideal_volume);
+  q.beta = beta;
+  return q;
+}
+
+double TetQuality::operator()(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
+  const SolidAngleTerms t = terms(a, b, c, d);
+  if (!(t.det > 0)) return 0;
+  // The paper divides by 0.55, rounded down from the regular tet's angle, and clamps to 1.
+  const double angle = std::min(1.0, smallest_angle(t) / 0.55);
+  const double volume = std::min(1.0, t.det / (6 * ideal_volume));
+  const double limit = beta * ideal_edge;
+  const double edge = t.longest_squared > limit * limit ? limit / std::sqrt(t.longest_squared) : 1.0;
+  return portable_cbrt(angle * volume * edge);
+}
+
+}  // namespace tetwright

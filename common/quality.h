@@ -1,0 +1,43 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/types.h"
+
+namespace tetwright {
+
+/// Largest solid angle that the smallest one of a tet can have: that of the regular tet, 3 acos(1/3) - pi,
+/// steradians.
+inline constexpr double regular_solid_angle = 0.55128559843253081;
+
+/// The four solid angles of a tet in steradians, in the order of its vertices. A tet that is flat or negative
+/// has 0s. (Van Oosterom & Strackee 1983.)
+std::array<double, 4> solid_angles(const std::array<Vec3, 4>& tet);
+
+/// The smallest of solid_angles(), without computing the others.
+double min_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
+/// The six dihedral angles in degrees, in the order of tet_edges. Not a number where a face is degenerate.
+std::array<double, 6> dihedral_angles(const std::array<Vec3, 4>& tet);
+
+/// Signed volume, input units cubed.
+double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
+/// Quality(t) of Cutler, Dorsey & McMillan 2004, section 3: the geometric mean of three factors in [0, 1]
+/// that reward solid angles near the regular tet's, a volume of at least the ideal one and edges no longer
+/// than beta ideal edges.
+struct TetQuality {
+  double ideal_volume;  ///< volume of the model / target count
+  double ideal_edge;    ///< cube root of ideal_volume
+  double beta;          ///< the paper uses 5
+
+  /// `volume` > 0, `longest_edge` > 0: the model's volume is total_volume and `target` tets are wanted.
+  static TetQuality for_target(double total_volume, double target, double beta = 5);
+
+  /// In [0, 1]; 0 for a tet that is flat or negative.
+  double operator()(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const;
+};
+
+}  // namespace tetwright

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+
+namespace tetwright {
+
+/// SplitMix64 (Steele, Lea & Flood 2014): the same numbers from the same seed on every machine and compiler,
+/// which the standard library's distributions and shuffles do not promise.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+  /// An independent stream for each combination of the three.
+  Random(std::uint64_t seed, std::uint64_t stream, std::uint64_t substream)
+      : state_(mix(mix(mix(seed) ^ stream) ^ substream)) {}
+
+  std::uint64_t next() { return mix(state_ += 0x9e3779b97f4a7c15u); }
+  /// Uniform in [0, 1), a multiple of 2^-53.
+  double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
+  /// Uniform in [0, n), n > 0 (multiply-shift, Lemire 2019; its bias of n / 2^32 does not matter here).
+  std::uint32_t below(std::uint32_t n) {
+    return static_cast<std::uint32_t>((static_cast<std::uint64_t>(n) * (next() >> 32)) >> 32);
+  }
+  /// Fisher-Yates.
+  template <class T>
+  void shuffle(std::span<T> items) {
+    for (std::size_t i = items.size(); i > 1; --i)
+      std::swap(items[i - 1], items[below(static_cast<std::uint32_t>(i))]);
+  }
+
+ private:
+  static std::uint64_t mix(std::uint64_t z) {
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+  }
+  std::uint64_t state_;
+};
+
+}  // namespace tetwright

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+
+#include "common/types.h"
+
+namespace tetwright {
+
+/// What a simplified mesh is measured against and slides along: the interfaces of the original.
+///
+/// `mesher/` implements it by its signed distance fields, `simplify/` needs nothing else of them.
+/// A region is a material's tag, or nothing for outside. All functions may be called concurrently.
+class ReferenceSurface {
+ public:
+  using Region = std::optional<MaterialTag>;
+
+  virtual ~ReferenceSurface() = default;
+
+  /// Distance of `point` from the surface of `material`, negative inside it, in input units. Farther away
+  /// than the reference's band the value only has the right sign and is at least the band in size.
+  virtual double signed_distance(const Vec3& point, MaterialTag material) const = 0;
+
+  /// The point of the interface between two regions near `point`, or nothing where there is none within
+  /// `max_distance` (input units). It need not be the nearest one, and no farther than twice the nearest's
+  /// distance.
+  virtual std::optional<Vec3> project(const Vec3& point, Region first, Region second,
+                                      double max_distance) const = 0;
+};
+
+}  // namespace tetwright
