@@ -1,5 +1,8 @@
 #include "common/quality.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "common/portable_math.h"
@@ -45,6 +48,10 @@ double smallest_angle(const SolidAngleTerms& t) {
       std::max(std::max(t.denominator[0], t.denominator[1]), std::max(t.denominator[2], t.denominator[3]));
   return 2 * portable_atan2_upper(t.det, largest);
 }
+
+/// The rounded determinant of edges no longer than l is off by less than 40 l^3 2^-53 (differences, two
+/// products and two sums for each of three terms of size 2 l^3).
+bool surely_positive(double det, double longest_cubed) { return det > 40 * 0x1p-53 * longest_cubed; }
 
 }  // namespace
 
@@ -92,15 +99,26 @@ TetQuality TetQuality::for_target(double total_volume, double target, double bet
   return q;
 }
 
-double TetQuality::operator()(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
+double TetQuality::shape(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
   const SolidAngleTerms t = terms(a, b, c, d);
-  if (!(t.det > 0)) return 0;
+  if (!surely_positive(t.det, t.longest_squared * std::sqrt(t.longest_squared))) return 0;
+  return std::min(1.0, smallest_angle(t) / regular_solid_angle);
+}
+
+double TetQuality::cubed(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
+  const SolidAngleTerms t = terms(a, b, c, d);
+  const double longest = std::sqrt(t.longest_squared);
+  if (!surely_positive(t.det, t.longest_squared * longest)) return 0;
   // The paper divides by 0.55, rounded down from the regular tet's angle, and clamps to 1.
   const double angle = std::min(1.0, smallest_angle(t) / 0.55);
   const double volume = std::min(1.0, t.det / (6 * ideal_volume));
   const double limit = beta * ideal_edge;
-  const double edge = t.longest_squared > limit * limit ? limit / std::sqrt(t.longest_squared) : 1.0;
-  return portable_cbrt(angle * volume * edge);
+  const double edge = longest > limit ? limit / longest : 1.0;
+  return angle * volume * edge;
+}
+
+double TetQuality::operator()(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
+  return portable_cbrt(cubed(a, b, c, d));
 }
 
 }  // namespace tetwright

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "common/types.h"
 
@@ -36,7 +34,13 @@ struct TetQuality {
   /// `volume` > 0, `longest_edge` > 0: the model's volume is total_volume and `target` tets are wanted.
   static TetQuality for_target(double total_volume, double target, double beta = 5);
 
-  /// In [0, 1]; 0 for a tet that is flat or negative.
+  /// Quality(t)^3 in [0, 1], which orders tets as Quality(t) does without the cube root; 0 for a tet that is
+  /// negative or so flat that rounding may have decided its sign: more than 0 means positive by exact sign.
+  double cubed(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const;
+  /// Shape alone, whatever the size: the smallest solid angle over the regular tet's, in [0, 1]; 0 as for
+  /// cubed().
+  double shape(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const;
+  /// Quality(t) in [0, 1].
   double operator()(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const;
 };
 

@@ -1,0 +1,88 @@
+#include "simplify/block.h"
+
+#include <numeric>
+
+#include "common/parallel.h"
+
+namespace tetwright {
+
+namespace {
+
+/// How often an item that met a taken lock is tried again before it is counted as skipped.
+constexpr int most_retries = 8;
+
+}  // namespace
+
+void BlockRunner::reset_tasks() {
+  tasks_.clear();
+  for (unsigned i = 0; i < thread_count(); ++i) tasks_.push_back(std::make_unique<Task>(mesh_, grid_));
+}
+
+template <class Item, class Attempt>
+void BlockRunner::run(const std::vector<Item>& items, const Attempt& attempt,
+                      const std::function<bool()>& stop) {
+  const std::uint64_t block = block_++;
+  const std::size_t chunks = (items.size() + chunk_size_ - 1) / chunk_size_;
+  std::vector<std::uint32_t> order(chunks);
+  std::iota(order.begin(), order.end(), 0u);
+  Random(seed_, block, ~std::uint64_t{0}).shuffle(std::span(order));
+  parallel_chunks(chunks, [&](std::size_t k, unsigned worker) {
+    const std::uint32_t chunk = order[k];
+    Task& task = *tasks_[worker];
+    task.random = Random(seed_, block, chunk);
+    const std::size_t begin = chunk * chunk_size_, end = std::min(items.size(), begin + chunk_size_);
+    std::vector<Item> left(items.begin() + static_cast<std::ptrdiff_t>(begin),
+                           items.begin() + static_cast<std::ptrdiff_t>(end));
+    task.random.shuffle(std::span(left));
+    for (int round = 0; !left.empty(); ++round) {
+      std::size_t again = 0;
+      for (const Item& item : left) {
+        if (stop() || (progress_ && progress_->cancelled())) return;
+        const Outcome o = attempt(task, item);
+        task.release();
+        if (o != Outcome::lock_taken) continue;
+        ++task.lock_conflicts;
+        left[again++] = item;  // behind the reader: again never passes it
+      }
+      left.resize(again);
+      if (round == most_retries) {
+        task.skipped += left.size();
+        return;
+      }
+    }
+  });
+  if (progress_) progress_->throw_if_cancelled();
+}
+
+void BlockRunner::points(const std::vector<Index>& items, const std::function<Outcome(Task&, Index)>& attempt,
+                         const std::function<bool()>& stop) {
+  run(items, attempt, stop);
+}
+
+void BlockRunner::tets(const std::vector<ListedTet>& items,
+                       const std::function<Outcome(Task&, const ListedTet&)>& attempt,
+                       const std::function<bool()>& stop) {
+  run(items, attempt, stop);
+}
+
+BlockRunner::Totals BlockRunner::take_totals() {
+  Totals totals;
+  for (const auto& task : tasks_) {
+    totals.counts.add(task->counts);
+    totals.lock_conflicts += task->lock_conflicts;
+    totals.skipped += task->skipped;
+    task->counts = {};
+    task->lock_conflicts = 0;
+    task->skipped = 0;
+  }
+  return totals;
+}
+
+Outcome hold(Task& task, const ListedTet& item) {
+  for (Index p : item.points)
+    if (!task.points.try_lock(p)) return Outcome::lock_taken;
+  // Only now do the ids mean anything: equal, and all four points of the tet are held, so it stays as it is.
+  return task.mesh.load_points(item.tet) == item.points ? Outcome::done : Outcome::stale;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,191 @@
+#include "simplify/collapse.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simplify/link_condition.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Targets that are tried: the design's measured best; more cost time and hardly succeed.
+constexpr std::size_t most_targets = 4;
+
+/// How far a refusal got, for reporting the most telling one.
+int depth(Outcome o) {
+  switch (o) {
+    case Outcome::lock_taken:
+      return 7;
+    case Outcome::self_intersection:
+      return 6;
+    case Outcome::link_condition:
+      return 5;
+    case Outcome::quality:
+      return 4;
+    case Outcome::inverts:
+      return 3;
+    case Outcome::surface_error:
+      return 2;
+    case Outcome::material_rule:
+      return 1;
+    default:
+      return 0;
+  }
+}
+
+bool has(const Star::StarTet& t, std::size_t point) {
+  return t.link[0] == point || t.link[1] == point || t.link[2] == point;
+}
+
+/// Fills task.edit with the interface triangles before and after.
+void surface_edit(Task& task, std::size_t b) {
+  const Star& star = task.star;
+  task.edit.clear();
+  for (const Star::Sheet& s : star.sheets) {
+    const Triangle ids{star.centre, star.points[s.first], star.points[s.second]};
+    const Vec3 &p = star.positions[s.first], &q = star.positions[s.second];
+    task.edit.removed.push_back({ids, {star.centre_position, p, q}});
+    if (s.first != b && s.second != b)
+      task.edit.added.push_back({{star.points[b], ids[1], ids[2]}, {star.positions[b], p, q}});
+  }
+}
+
+/// Joins the two outer neighbours of a tet that vanishes, across its faces opposite the ends of the collapsed
+/// edge.
+void close_gap(EditableMesh& mesh, const TetRecord& gone, Index tet, Index a, Index b) {
+  const int slot_a = mesh.slot_of(tet, a), slot_b = mesh.slot_of(tet, b);
+  const Index beyond_a = gone.neighbours[slot_a], beyond_b = gone.neighbours[slot_b];
+  if (beyond_a != no_index) mesh.set_neighbour(beyond_a, mesh.face_towards(beyond_a, tet), beyond_b);
+  if (beyond_b != no_index) mesh.set_neighbour(beyond_b, mesh.face_towards(beyond_b, tet), beyond_a);
+  // Both keep the tet's two other points, and after the collapse both have b.
+  const Index keeper = beyond_b != no_index ? beyond_b : beyond_a;
+  for (int k = 0; k < 4; ++k)
+    if (k != slot_a) mesh.set_hint(gone.points[k], keeper);
+}
+
+void carry_out(Task& task, std::size_t b, const std::vector<float>& qualities) {
+  EditableMesh& mesh = task.mesh;
+  const Star& star = task.star;
+  const Index b_id = star.points[b];
+  std::int64_t gone = 0;
+  for (const Star::StarTet& t : star.tets) {
+    if (!has(t, b)) continue;
+    close_gap(mesh, mesh.tet(t.tet), t.tet, star.centre, b_id);
+    ++gone;
+  }
+  for (std::size_t i = 0; i < star.tets.size(); ++i) {
+    const Star::StarTet& t = star.tets[i];
+    if (has(t, b)) continue;
+    mesh.store_point(t.tet, t.slot, b_id);
+    mesh.set_quality(t.tet, qualities[i]);
+    // Every point of the star keeps a tet: hints to vanished ones are replaced by ones that stay.
+    for (Index p : mesh.tet(t.tet).points) mesh.set_hint(p, t.tet);
+  }
+  for (const Star::StarTet& t : star.tets) {
+    if (!has(t, b)) continue;
+    mesh.store_points(t.tet, {no_index, no_index, no_index, no_index});
+    task.slots.give_back(t.tet);
+  }
+  mesh.set_hint(star.centre, no_index);
+  mesh.count_tets(-gone);
+}
+
+}  // namespace
+
+Outcome collapse(Task& task, const BlockRules& rules) {
+  Star& star = task.star;
+  const int dimension = star.dimension();
+  if (dimension == 0) return Outcome::material_rule;
+  star.compute_gradients();
+
+  struct Target {
+    double weight;
+    std::uint16_t point;
+  };
+  thread_local std::vector<Target> targets;
+  targets.clear();
+  Outcome refusal = Outcome::material_rule;
+  for (std::size_t p = 0; p < star.points.size(); ++p) {
+    if (star.edge_dimension(p) != dimension) continue;
+    const Vec3 step = star.positions[p] - star.centre_position;
+    const double weight = step.norm() + (dimension == 3 ? 0 : star.surface_error(step, rules.gamma));
+    if (weight > rules.largest_error) {
+      refusal = Outcome::surface_error;
+      continue;
+    }
+    targets.push_back({weight, static_cast<std::uint16_t>(p)});
+  }
+  const std::size_t count = std::min(most_targets, targets.size());
+  std::partial_sort(targets.begin(), targets.begin() + static_cast<std::ptrdiff_t>(count), targets.end(),
+                    [](const Target& x, const Target& y) {
+                      return x.weight != y.weight ? x.weight < y.weight : x.point < y.point;
+                    });
+
+  thread_local std::vector<float> qualities;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t b = targets[i].point;
+    const Vec3& to = star.positions[b];
+    const auto refuse = [&](Outcome o) {
+      if (depth(o) > depth(refusal)) refusal = o;
+    };
+    // Signs first: they are cheap and refuse most.
+    bool inverts = false;
+    std::size_t left = 0;
+    for (const Star::StarTet& t : star.tets) {
+      if (has(t, b)) continue;
+      ++left;
+      const Vec3 &x = star.positions[t.link[0]], &y = star.positions[t.link[1]],
+                 &z = star.positions[t.link[2]];
+      if (!((x - to).dot((y - x).cross(z - x)) > 0)) {
+        inverts = true;
+        break;
+      }
+    }
+    if (inverts) {
+      refuse(Outcome::inverts);
+      continue;
+    }
+    if (left == 0) {  // a material would lose its last tets here
+      refuse(Outcome::link_condition);
+      continue;
+    }
+    // Annealing: an action that leaves a poorer tet passes with the given probability, one draw for each
+    // target.
+    const bool may_worsen = rules.accept_worse > 0 && task.random.uniform() < rules.accept_worse;
+    const float limit = may_worsen ? 0 : star.poorest;
+    qualities.resize(star.tets.size());
+    bool poor = false;
+    for (std::size_t k = 0; k < star.tets.size() && !poor; ++k) {
+      const Star::StarTet& t = star.tets[k];
+      if (has(t, b)) continue;
+      qualities[k] = rules.objective(to, star.positions[t.link[0]], star.positions[t.link[1]],
+                                     star.positions[t.link[2]]);
+      poor = !(qualities[k] > limit);
+    }
+    if (poor) {
+      refuse(Outcome::quality);
+      continue;
+    }
+    if (!link_condition(task.mesh, star, b, task.numbers)) {
+      refuse(Outcome::link_condition);
+      continue;
+    }
+    if (!star.sheets.empty()) {
+      surface_edit(task, b);
+      const Outcome o = task.grid.prepare(task.edit, task.grid_task, task.cells);
+      if (o != Outcome::done) {
+        task.cells.release();
+        if (o == Outcome::lock_taken) return o;
+        refuse(o);
+        continue;
+      }
+    }
+    carry_out(task, b, qualities);
+    if (!star.sheets.empty()) task.grid.commit(task.edit, task.grid_task);
+    return Outcome::done;
+  }
+  return refusal;
+}
+
+}  // namespace tetwright

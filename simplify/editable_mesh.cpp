@@ -1,0 +1,314 @@
+#include "simplify/editable_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "common/error.h"
+#include "common/parallel.h"
+#include "common/predicates.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::size_t grain = 8192;  ///< tets or points a parallel loop hands out at a time
+
+/// Slots that a task takes from the common reserve at once: few enough to waste little, enough to seldom
+/// meet.
+constexpr std::size_t slot_lot = 64;
+
+/// Face `f` of a tet, ids ascending.
+Triangle sorted_face(const Tet& t, int f) {
+  const auto& c = tet_faces[f];
+  Triangle s{t[c[0]], t[c[1]], t[c[2]]};
+  if (s[0] > s[1]) std::swap(s[0], s[1]);
+  if (s[1] > s[2]) std::swap(s[1], s[2]);
+  if (s[0] > s[1]) std::swap(s[0], s[1]);
+  return s;
+}
+
+/// True if the face's outward listing is an even permutation of its ascending one.
+bool even_face(const Tet& t, int f) {
+  const auto& c = tet_faces[f];
+  const Index a = t[c[0]], b = t[c[1]], d = t[c[2]];
+  return (a < b) + (b < d) + (d < a) == 2;
+}
+
+/// Spreads the low 21 bits so that two zero bits follow each (Morton order).
+std::uint64_t spread(std::uint64_t x) {
+  x &= 0x1fffff;
+  x = (x | x << 32) & 0x1f00000000ffffu;
+  x = (x | x << 16) & 0x1f0000ff0000ffu;
+  x = (x | x << 8) & 0x100f00f00f00f00fu;
+  x = (x | x << 4) & 0x10c30c30c30c30c3u;
+  x = (x | x << 2) & 0x1249249249249249u;
+  return x;
+}
+
+std::string place(const Vec3& p) {
+  return "(" + std::to_string(p.x()) + ", " + std::to_string(p.y()) + ", " + std::to_string(p.z()) + ")";
+}
+
+}  // namespace
+
+EditableMesh::EditableMesh(TetMesh&& mesh, const std::string& name) {
+  const std::size_t tets = mesh.tets.size();
+  // Faces are numbered 4 * tet + face in 32 bits.
+  if (tets >= no_index / 4)
+    throw InputError(name, 0, std::to_string(tets) + " tets are more than the 2^30 possible");
+  names_ = std::move(mesh.material_names);
+  positions_ = std::move(mesh.points);
+
+  double largest = 0;
+  for (const Vec3& p : positions_) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  if (!std::isfinite(largest)) throw InputError(name, 0, "a coordinate is not finite");
+  if (largest > 0) scale_ = std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1000, 1000));
+  for (Vec3& p : positions_) p *= scale_;
+
+  tags_ = mesh.materials;
+  std::sort(tags_.begin(), tags_.end());
+  tags_.erase(std::unique(tags_.begin(), tags_.end()), tags_.end());
+
+  tets_.resize(tets);
+  std::atomic<std::size_t> first_bad{tets};
+  parallel_for(0, tets, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Tet& t = mesh.tets[i];
+      const auto region = std::lower_bound(tags_.begin(), tags_.end(), mesh.materials[i]) - tags_.begin();
+      tets_[i] = {t, {no_index, no_index, no_index, no_index}, static_cast<Region>(region), 0};
+      if (orient3d(positions_[t[0]], positions_[t[1]], positions_[t[2]], positions_[t[3]]) > 0) continue;
+      std::size_t known = first_bad.load();
+      while (i < known && !first_bad.compare_exchange_weak(known, i)) {
+      }
+    }
+  });
+  if (const std::size_t bad = first_bad.load(); bad < tets)
+    throw InputError(name, 0,
+                     "tet " + std::to_string(bad) + " is flat, inverted or listed the other way round, at " +
+                         place(positions_[mesh.tets[bad][0]] / scale_) +
+                         "; `tetwright check` lists all of them");
+  mesh = TetMesh();
+  live_ = static_cast<std::int64_t>(tets);
+  next_spare_ = tets;
+  locks_.reset(positions_.size());
+  link_faces(name);
+  set_hints();
+}
+
+/// Faces are put into buckets by their smallest point and paired within each: 16 bytes a tet at peak, where a
+/// sort of all faces would take eight times as much.
+void EditableMesh::link_faces(const std::string& name) {
+  std::vector<Index> start(positions_.size() + 1, 0);
+  for (const TetRecord& t : tets_)
+    for (int f = 0; f < 4; ++f) ++start[sorted_face(t.points, f)[0] + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<Index> faces(tets_.size() * 4);
+  {
+    std::vector<Index> next(start.begin(), start.end() - 1);
+    for (std::size_t t = 0; t < tets_.size(); ++t)
+      for (int f = 0; f < 4; ++f)
+        faces[next[sorted_face(tets_[t].points, f)[0]]++] = static_cast<Index>(4 * t + f);
+  }
+  std::atomic<Index> bad{no_index};
+  parallel_for(0, positions_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    struct Entry {
+      Index middle, largest, face;
+    };
+    std::vector<Entry> bucket;
+    for (std::size_t p = begin; p < end; ++p) {
+      bucket.clear();
+      for (Index i = start[p]; i < start[p + 1]; ++i) {
+        const Triangle s = sorted_face(tets_[faces[i] / 4].points, faces[i] % 4);
+        bucket.push_back({s[1], s[2], faces[i]});
+      }
+      std::sort(bucket.begin(), bucket.end(), [](const Entry& a, const Entry& b) {
+        return std::array{a.middle, a.largest, a.face} < std::array{b.middle, b.largest, b.face};
+      });
+      for (std::size_t i = 0; i < bucket.size();) {
+        std::size_t j = i + 1;
+        while (j < bucket.size() && bucket[j].middle == bucket[i].middle &&
+               bucket[j].largest == bucket[i].largest)
+          ++j;
+        if (j - i == 2) {
+          const Index s = bucket[i].face, u = bucket[i + 1].face;
+          // Two positive tets on opposite sides of a face list it in opposite senses.
+          if (even_face(tets_[s / 4].points, s % 4) == even_face(tets_[u / 4].points, u % 4)) bad.store(s);
+          tets_[s / 4].neighbours[s % 4] = u / 4;
+          tets_[u / 4].neighbours[u % 4] = s / 4;
+        } else if (j - i > 2) {
+          bad.store(bucket[i].face);
+        }
+        i = j;
+      }
+    }
+  });
+  if (const Index face = bad.load(); face != no_index) {
+    const Triangle s = sorted_face(tets_[face / 4].points, face % 4);
+    throw InputError(name, 0,
+                     "the face of points " + std::to_string(s[0]) + ", " + std::to_string(s[1]) + ", " +
+                         std::to_string(s[2]) + " at " + place(positions_[s[0]] / scale_) +
+                         " has more than two tets, or two on one side; `tetwright check` lists all of them");
+  }
+}
+
+void EditableMesh::set_hints() {
+  hints_.assign(positions_.size(), no_index);
+  for (std::size_t t = tets_.size(); t-- > 0;)
+    if (tets_[t].points[0] != no_index)
+      for (Index p : tets_[t].points) hints_[p] = static_cast<Index>(t);
+}
+
+bool EditableMesh::SlotStock::reserve(std::size_t count) {
+  while (free_.size() < count) {
+    const std::size_t total = mesh_->tets_.size();
+    const std::size_t first = mesh_->next_spare_.fetch_add(slot_lot, std::memory_order_relaxed);
+    if (first >= total) {
+      mesh_->next_spare_.store(total, std::memory_order_relaxed);
+      return false;
+    }
+    // Backwards, so that slots are taken in ascending order.
+    for (std::size_t i = std::min(total, first + slot_lot); i-- > first;)
+      free_.push_back(static_cast<Index>(i));
+  }
+  return true;
+}
+
+Index EditableMesh::SlotStock::take() {
+  const Index slot = free_.back();
+  free_.pop_back();
+  return slot;
+}
+
+void EditableMesh::compact(std::size_t spare) {
+  // Points in Morton order of their place in the bounding box; those without a tet go.
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (std::size_t p = 0; p < positions_.size(); ++p)
+    if (hints_[p] != no_index) {
+      low = low.cwiseMin(positions_[p]);
+      high = high.cwiseMax(positions_[p]);
+    }
+  const double extent = std::max((high - low).maxCoeff(), std::numeric_limits<double>::min());
+  const double to_cell = 0x1p21 * (1 - 0x1p-21) / extent;
+  struct Key {
+    std::uint64_t morton;
+    Index point;
+  };
+  std::vector<Key> keys;
+  keys.reserve(positions_.size());
+  for (std::size_t p = 0; p < positions_.size(); ++p)
+    if (hints_[p] != no_index) {
+      const Vec3 cell = (positions_[p] - low) * to_cell;
+      const auto at = [&](int axis) { return spread(static_cast<std::uint64_t>(cell[axis])) << axis; };
+      keys.push_back({at(0) | at(1) | at(2), static_cast<Index>(p)});
+    }
+  parallel_sort(keys, [](const Key& a, const Key& b) {
+    return a.morton != b.morton ? a.morton < b.morton : a.point < b.point;
+  });
+  std::vector<Index> new_point(positions_.size(), no_index);
+  {
+    std::vector<Vec3> positions(keys.size());
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      new_point[keys[i].point] = static_cast<Index>(i);
+      positions[i] = positions_[keys[i].point];
+    }
+    positions_ = std::move(positions);
+  }
+  keys = {};
+
+  // Tets by their first point in the new order: a counting sort.
+  std::vector<Index> next(positions_.size() + 1, 0);
+  const auto first_point = [&](const TetRecord& t) {
+    return std::min(std::min(new_point[t.points[0]], new_point[t.points[1]]),
+                    std::min(new_point[t.points[2]], new_point[t.points[3]]));
+  };
+  std::size_t live = 0;
+  for (const TetRecord& t : tets_)
+    if (t.points[0] != no_index) {
+      ++next[first_point(t) + 1];
+      ++live;
+    }
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<Index> new_tet(tets_.size(), no_index);
+  for (std::size_t t = 0; t < tets_.size(); ++t)
+    if (tets_[t].points[0] != no_index) new_tet[t] = next[first_point(tets_[t])]++;
+
+  std::vector<TetRecord> tets(live + spare);
+  parallel_for(0, tets_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      if (new_tet[t] == no_index) continue;
+      TetRecord r = tets_[t];
+      for (Index& p : r.points) p = new_point[p];
+      for (Index& n : r.neighbours)
+        if (n != no_index) n = new_tet[n];
+      tets[new_tet[t]] = r;
+    }
+  });
+  for (std::size_t t = live; t < tets.size(); ++t)
+    tets[t] = {{no_index, no_index, no_index, no_index}, {no_index, no_index, no_index, no_index}, 0, 0};
+  tets_ = std::move(tets);
+  live_ = static_cast<std::int64_t>(live);
+  next_spare_ = live;
+  locks_.reset(positions_.size());
+  set_hints();
+}
+
+double EditableMesh::total_volume() const {
+  return parallel_sum(0, tets_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Tet& t = tets_[i].points;
+      if (t[0] != no_index)
+        sum += orient3d_value(positions_[t[0]], positions_[t[1]], positions_[t[2]], positions_[t[3]]) / 6;
+    }
+    return sum;
+  });
+}
+
+TetMesh EditableMesh::to_mesh() && {
+  compact(0);
+  TetMesh mesh;
+  mesh.points = std::move(positions_);
+  for (Vec3& p : mesh.points) p /= scale_;
+  mesh.tets.reserve(tets_.size());
+  mesh.materials.reserve(tets_.size());
+  for (const TetRecord& t : tets_) {
+    mesh.tets.push_back(t.points);
+    mesh.materials.push_back(tags_[t.region]);
+  }
+  mesh.material_names = std::move(names_);
+  tets_ = {};
+  hints_ = {};
+  return mesh;
+}
+
+bool EditableMesh::links_consistent() const {
+  std::size_t live = 0;
+  for (std::size_t t = 0; t < tets_.size(); ++t) {
+    const TetRecord& r = tets_[t];
+    if (r.points[0] == no_index) {
+      if (r.points != Tet{no_index, no_index, no_index, no_index}) return false;
+      continue;
+    }
+    ++live;
+    for (int f = 0; f < 4; ++f) {
+      if (hints_[r.points[f]] == no_index) return false;
+      const Index n = r.neighbours[f];
+      if (n == no_index) continue;
+      const TetRecord& o = tets_[n];
+      if (o.points[0] == no_index) return false;
+      const int back = face_towards(n, static_cast<Index>(t));
+      if (o.neighbours[back] != t || sorted_face(o.points, back) != sorted_face(r.points, f)) return false;
+      if (even_face(o.points, back) == even_face(r.points, f)) return false;
+    }
+  }
+  for (std::size_t p = 0; p < hints_.size(); ++p) {
+    if (hints_[p] == no_index) continue;
+    const Tet& t = tets_[hints_[p]].points;
+    if (std::find(t.begin(), t.end(), static_cast<Index>(p)) == t.end()) return false;
+  }
+  return live == live_tets();
+}
+
+}  // namespace tetwright

@@ -1,0 +1,157 @@
+#include "simplify/star.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/portable_math.h"
+
+namespace tetwright {
+
+std::uint32_t LocalNumbers::number(Index key, bool& added) {
+  std::size_t i = home(key);
+  for (; slots_[i].epoch == epoch_; i = (i + 1) & (slots_.size() - 1))
+    if (slots_[i].key == key) {
+      added = false;
+      return slots_[i].number;
+    }
+  added = true;
+  if (2 * (size_ + 1) > slots_.size()) {  // keep it at most half full
+    std::vector<Slot> old(2 * slots_.size());
+    old.swap(slots_);
+    for (const Slot& s : old)
+      if (s.epoch == epoch_) {
+        std::size_t j = home(s.key);
+        while (slots_[j].epoch == epoch_) j = (j + 1) & (slots_.size() - 1);
+        slots_[j] = s;
+      }
+    i = home(key);
+    while (slots_[i].epoch == epoch_) i = (i + 1) & (slots_.size() - 1);
+  }
+  slots_[i] = {key, size_, epoch_};
+  return size_++;
+}
+
+Outcome Star::gather(const EditableMesh& mesh, Index centre_point, HeldLocks& held) {
+  centre = centre_point;
+  tets.clear();
+  points.clear();
+  positions.clear();
+  sheets.clear();
+  sheet_count.clear();
+  gradients.clear();
+  point_numbers_.clear();
+  tet_numbers_.clear();
+  poorest = 1;
+
+  const Index first = mesh.hint(centre);
+  if (first == no_index) return Outcome::stale;
+  centre_position = mesh.position(centre);
+  bool added;
+  tet_numbers_.number(first, added);
+  tets.push_back({first, {}, 0, 0, 0});
+  for (std::size_t i = 0; i < tets.size(); ++i) {
+    StarTet& s = tets[i];
+    const TetRecord& t = mesh.tet(s.tet);
+    const int slot = mesh.slot_of(s.tet, centre);
+    s.slot = static_cast<std::uint8_t>(slot);
+    s.region = t.region;
+    s.quality = t.quality;
+    poorest = std::min(poorest, t.quality);
+    // (centre, face opposite it as seen from outside) is positive.
+    const auto& face = tet_faces[slot];
+    for (int k = 0; k < 3; ++k) {
+      const Index p = t.points[face[k]];
+      const std::uint32_t n = point_numbers_.number(p, added);
+      if (added) {
+        if (n >= most_points) return Outcome::too_large;
+        if (!held.holds(p) && !held.try_lock(p)) return Outcome::lock_taken;
+        points.push_back(p);
+        positions.push_back(mesh.position(p));
+        sheet_count.push_back(0);
+      }
+      s.link[k] = static_cast<std::uint16_t>(n);
+    }
+    const std::array<std::uint16_t, 3> link = s.link;
+    const Region region = s.region;
+    const Index tet = s.tet;
+    for (int k = 0; k < 3; ++k) {
+      const Index other = t.neighbours[face[k]];  // across the face opposite link[k]
+      const std::uint16_t a = link[(k + 1) % 3], b = link[(k + 2) % 3];
+      if (other != no_index) {
+        tet_numbers_.number(other, added);
+        if (added) tets.push_back({other, {}, 0, 0, 0});  // s is no longer valid
+        const Region across = mesh.tet(other).region;
+        if (across == region || other < tet) continue;  // an inner interface is met twice
+        sheets.push_back({a, b, region, across});
+      } else {
+        sheets.push_back({a, b, region, outside_region});
+      }
+      ++sheet_count[a];
+      ++sheet_count[b];
+    }
+  }
+  return Outcome::done;
+}
+
+int Star::dimension() const {
+  if (sheets.empty()) return 3;
+  // The sheets at the centre are the edges of a graph on the link's points; a dimension-2 edge of the centre
+  // is a node of degree 2. Walk from sheet to sheet across such nodes.
+  std::size_t ends[2] = {0, 0};
+  std::size_t end_count = 0;
+  for (std::size_t p = 0; p < points.size(); ++p)
+    if (sheet_count[p] != 0 && sheet_count[p] != 2) {
+      if (end_count == 2) return 0;
+      ends[end_count++] = p;
+    }
+  if (end_count == 1) return 0;
+  visited_.assign(sheets.size(), 0);
+  const auto walk = [&](std::size_t sheet, std::size_t from) {
+    // Follows the path of sheets to the next node that is not of degree 2, or round to where it began.
+    std::size_t at = from;
+    for (;;) {
+      visited_[sheet] = 1;
+      at = sheets[sheet].first == at ? sheets[sheet].second : sheets[sheet].first;
+      if (at == from || sheet_count[at] != 2) return at;
+      std::size_t next = sheets.size();
+      for (std::size_t k = 0; k < sheets.size(); ++k)
+        if (!visited_[k] && (sheets[k].first == at || sheets[k].second == at)) next = k;
+      if (next == sheets.size()) return at;
+      sheet = next;
+    }
+  };
+  if (end_count == 0) {
+    walk(0, sheets[0].first);
+    return std::all_of(visited_.begin(), visited_.end(), [](std::uint8_t v) { return v != 0; }) ? 2 : 0;
+  }
+  for (std::size_t k = 0; k < sheets.size(); ++k) {
+    if (visited_[k] || (sheets[k].first != ends[0] && sheets[k].second != ends[0])) continue;
+    if (walk(k, ends[0]) != ends[1]) return 0;
+  }
+  return std::all_of(visited_.begin(), visited_.end(), [](std::uint8_t v) { return v != 0; }) ? 1 : 0;
+}
+
+void Star::compute_gradients() {
+  gradients.clear();
+  if (sheets.empty()) return;
+  for (const StarTet& t : tets) {
+    const Vec3 &x = positions[t.link[0]], &y = positions[t.link[1]], &z = positions[t.link[2]];
+    // Volume of (c, x, y, z) is (x - c) . ((y - x) x (z - x)) / 6: linear in c.
+    const Vec3 change = (y - x).cross(z - x) * (-1.0 / 6);
+    auto g = std::find_if(gradients.begin(), gradients.end(),
+                          [&](const VolumeGradient& v) { return v.region == t.region; });
+    if (g == gradients.end()) {
+      gradients.push_back({t.region, change});
+    } else {
+      g->change += change;
+    }
+  }
+}
+
+double Star::surface_error(const Vec3& step, double gamma) const {
+  double sum = 0;
+  for (const VolumeGradient& g : gradients) sum += portable_cbrt(std::fabs(g.change.dot(step)));
+  return gamma * sum;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "simplify/editable_mesh.h"
+#include "simplify/outcome.h"
+
+namespace tetwright {
+
+/// Small hash table from mesh indices to local numbers, emptied in constant time. For one task.
+class LocalNumbers {
+ public:
+  LocalNumbers() { slots_.resize(initial_slots); }
+  void clear() {
+    ++epoch_;
+    size_ = 0;
+  }
+  /// The number of `key`; a key not seen since clear() gets the next one and `added` true.
+  std::uint32_t number(Index key, bool& added);
+  /// The number of `key`, or no_index.
+  std::uint32_t find(Index key) const {
+    for (std::size_t i = home(key);; i = (i + 1) & (slots_.size() - 1)) {
+      if (slots_[i].epoch != epoch_) return no_index;
+      if (slots_[i].key == key) return slots_[i].number;
+    }
+  }
+  std::uint32_t size() const { return size_; }
+
+ private:
+  static constexpr std::size_t initial_slots = 256;  // a power of two; stars hold 15 points and 24 tets
+  struct Slot {
+    Index key = 0;
+    std::uint32_t number = 0;
+    std::uint64_t epoch = 0;
+  };
+  std::size_t home(Index key) const { return (key * 0x9e3779b1u >> 7) & (slots_.size() - 1); }
+  std::vector<Slot> slots_;
+  std::uint64_t epoch_ = 1;
+  std::uint32_t size_ = 0;
+};
+
+/// The closed star of a point, all of whose points are held by the task: a local copy, so that the operations
+/// work on memory that is near, and the interface triangles at the point.
+struct Star {
+  /// Triangle of the star's surface: the tet is (centre, link[0], link[1], link[2]), positive.
+  struct StarTet {
+    Index tet;
+    std::array<std::uint16_t, 3> link;  ///< local numbers
+    std::uint8_t slot;                  ///< of the centre in the tet
+    Region region;
+    float quality;
+  };
+  /// An interface triangle (centre, first, second): a face between different regions, outside being one.
+  struct Sheet {
+    std::uint16_t first, second;  ///< local numbers
+    Region inside, across;
+  };
+  /// Points a star may have: more is not worth a task's time.
+  static constexpr std::size_t most_points = 2000;
+
+  Index centre;
+  Vec3 centre_position;
+  std::vector<StarTet> tets;
+  std::vector<Index> points;               ///< the link's, by local number
+  std::vector<Vec3> positions;             ///< of the link's points
+  std::vector<Sheet> sheets;               ///< each once
+  std::vector<std::uint16_t> sheet_count;  ///< for each link point: sheets at the edge from the centre to it
+  float poorest;                           ///< smallest quality of the tets
+
+  /// Locks the whole closed star of `centre`, which the task holds already, and copies it. done, lock_taken,
+  /// or too_large; `held` has all that was locked in any case.
+  Outcome gather(const EditableMesh& mesh, Index centre, HeldLocks& held);
+
+  /// Dimension of the edge from the centre to a link point: 3 within a material, 2 on an interface, 1 on a
+  /// junction curve.
+  int edge_dimension(std::size_t link_point) const {
+    const unsigned n = sheet_count[link_point];
+    return n == 0 ? 3 : n == 2 ? 2 : 1;
+  }
+  /// Dimension of the centre (README.md, Topology): 3, 2, 1, or 0 for all else.
+  int dimension() const;
+
+  /// Gradient of the volume of each region with respect to the centre's position: moving the centre by d
+  /// changes the volume of gradients[i].region by gradients[i].change . d exactly. Outside is left out;
+  /// without sheets it is empty.
+  struct VolumeGradient {
+    Region region;
+    Vec3 change;
+  };
+  std::vector<VolumeGradient> gradients;
+  void compute_gradients();
+  /// Error(op) of Cutler, Dorsey & McMillan 2004, section 3, for moving the centre by `step`:
+  /// gamma * sum over the materials of the cube root of |change of volume|.
+  double surface_error(const Vec3& step, double gamma) const;
+
+ private:
+  LocalNumbers point_numbers_, tet_numbers_;
+  mutable std::vector<std::uint8_t> visited_;  // scratch of dimension()
+};
+
+}  // namespace tetwright

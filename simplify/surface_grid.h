@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/triangle_intersection.h"
+#include "simplify/editable_mesh.h"
+#include "simplify/locks.h"
+#include "simplify/outcome.h"
+
+namespace tetwright {
+
+/// The boundary and interface triangles of an EditableMesh with their coordinates, in a hashed spatial grid
+/// whose cells carry try-locks: the explicit test against self-intersection, which positive tets alone do not
+/// prevent (two parts of a surface may pass through each other from outside).
+///
+/// A cell's list is read and written while its lock is held; a triangle's record is written while all cells
+/// that its bounding box touches are held, read while one is. The coordinates stand in the record, so that no
+/// point's position is read without its lock.
+class SurfaceGrid {
+ public:
+  /// What an operation takes away and puts in; kept by the task, so that its memory is reused.
+  struct Edit {
+    std::vector<MeshTriangle> removed, added;
+    void clear() {
+      removed.clear();
+      added.clear();
+    }
+  };
+
+  /// A task's free records, and its scratch.
+  struct Task {
+    std::vector<std::uint32_t> free_records;
+    std::vector<std::uint32_t> cells;            ///< that the edit touches, ascending
+    std::vector<std::uint32_t> removed_records;  ///< found by prepare()
+  };
+
+  /// All interface triangles of the mesh; while no task runs. `smallest_cell` (working coordinates) is the
+  /// size that triangles are about to grow to.
+  void build(const EditableMesh& mesh, double smallest_cell);
+
+  /// Locks every cell that the edit touches and tests each added triangle against those that stand and
+  /// against the other added ones. done: the cells stay held, and commit() may follow. lock_taken or
+  /// self_intersection: nothing was changed; `held` has what was locked. The task must hold all points of the
+  /// edit's triangles.
+  Outcome prepare(Edit& edit, Task& task, HeldLocks& held);
+  /// Carries out what prepare() allowed.
+  void commit(const Edit& edit, Task& task);
+
+  TryLocks& locks() { return locks_; }
+  std::size_t triangle_count() const;
+
+ private:
+  struct Cell3 {
+    std::int32_t x, y, z;
+    bool operator==(const Cell3&) const = default;
+  };
+  Cell3 cell_at(const Vec3& p) const;
+  std::uint32_t slot(const Cell3& c) const;
+  /// Calls f(cell) for each cell that the triangle's box touches.
+  template <class F>
+  void for_cells(const MeshTriangle& t, const F& f) const;
+  bool hits_standing(const MeshTriangle& t, const Task& task) const;
+
+  Vec3 origin_ = Vec3::Zero();
+  double to_cell_ = 1;
+  std::uint32_t mask_ = 0;
+  std::vector<std::vector<std::uint32_t>> cells_;  ///< records, by slot
+  std::vector<MeshTriangle> records_;              ///< ids ascending, points in the same order
+  TryLocks locks_;
+};
+
+}  // namespace tetwright
