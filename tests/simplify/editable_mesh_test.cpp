@@ -1,0 +1,93 @@
+#include "simplify/editable_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "common/error.h"
+#include "tests/simplify/meshes.h"
+
+namespace tetwright {
+namespace {
+
+/// The tets as sets of positions with their materials, in an order that renumbering does not change.
+std::vector<std::pair<std::array<std::array<double, 3>, 4>, MaterialTag>> contents(const TetMesh& mesh) {
+  std::vector<std::pair<std::array<std::array<double, 3>, 4>, MaterialTag>> out;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    std::array<std::array<double, 3>, 4> corners;
+    for (int k = 0; k < 4; ++k) {
+      const Vec3& p = mesh.points[mesh.tets[t][k]];
+      corners[k] = {p.x(), p.y(), p.z()};
+    }
+    std::sort(corners.begin(), corners.end());
+    out.push_back({corners, mesh.materials[t]});
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+TEST(EditableMesh, HandsBackWhatItTookBitForBit) {
+  TetMesh mesh = grid_mesh({4, 3, 5}, [](int x, int, int) { return std::optional<MaterialTag>(x < 2 ? -7 : 90); });
+  jitter(mesh, 3);
+  mesh.material_names[90] = "bone";
+  const auto before = contents(mesh);
+  EditableMesh editable(TetMesh(mesh), "mesh");
+  EXPECT_TRUE(editable.links_consistent());
+  EXPECT_EQ(editable.live_tets(), mesh.tets.size());
+  editable.compact(100);
+  EXPECT_TRUE(editable.links_consistent());
+  EXPECT_EQ(editable.tet_slots(), mesh.tets.size() + 100);
+  const TetMesh after = std::move(editable).to_mesh();
+  EXPECT_EQ(contents(after), before);
+  EXPECT_EQ(after.material_names.at(90), "bone");
+}
+
+TEST(EditableMesh, VolumeIsThatOfTheGrid) {
+  EditableMesh editable(grid_mesh(4), "mesh");
+  const double s = editable.scale();
+  EXPECT_DOUBLE_EQ(editable.total_volume() / (s * s * s), 64);
+}
+
+TEST(EditableMesh, CompactionDropsUnusedPoints) {
+  TetMesh mesh = grid_mesh(2);
+  mesh.points.emplace_back(100, 100, 100);
+  EditableMesh editable(TetMesh(mesh), "mesh");
+  EXPECT_EQ(std::move(editable).to_mesh().points.size(), 27u);
+}
+
+std::string refusal(TetMesh mesh) {
+  try {
+    EditableMesh editable(std::move(mesh), "some.mesh");
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(EditableMesh, RefusesWhatHasNoNeighbours) {
+  TetMesh inverted = grid_mesh(2);
+  std::swap(inverted.tets[7][0], inverted.tets[7][1]);
+  EXPECT_NE(refusal(inverted).find("some.mesh: tet 7 "), std::string::npos) << refusal(inverted);
+
+  TetMesh flat = grid_mesh(1);
+  flat.points[flat.tets[0][3]] = flat.points[flat.tets[0][2]];
+  EXPECT_NE(refusal(flat).find("tet "), std::string::npos);
+
+  TetMesh over_shared = grid_mesh(1);
+  over_shared.points.emplace_back(0.3, 0.4, 0.2);
+  Tet extra = over_shared.tets[0];
+  extra[0] = static_cast<Index>(over_shared.points.size() - 1);
+  over_shared.tets.push_back(extra);
+  over_shared.materials.push_back(1);
+  EXPECT_NE(refusal(over_shared), "");
+
+  // Two tets on the same side of a face.
+  TetMesh folded;
+  folded.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1, 0.1, 2}};
+  folded.tets = {{0, 1, 2, 3}, {0, 1, 2, 4}};
+  folded.materials = {1, 1};
+  EXPECT_NE(refusal(folded).find("one side"), std::string::npos) << refusal(folded);
+}
+
+}  // namespace
+}  // namespace tetwright

@@ -1,0 +1,125 @@
+#include "simplify/simplify.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "common/mesh_check.h"
+#include "common/parallel.h"
+#include "common/topology.h"
+#include "tests/simplify/meshes.h"
+
+namespace tetwright {
+namespace {
+
+using Tag = std::optional<MaterialTag>;
+
+bool same_bytes(const TetMesh& a, const TetMesh& b) {
+  return a.points.size() == b.points.size() && a.tets == b.tets && a.materials == b.materials &&
+         std::memcmp(a.points.data(), b.points.data(), a.points.size() * sizeof(Vec3)) == 0;
+}
+
+/// A ring of two materials with a cavity in one of them, 18 cubes wide: a handle, a cavity, an interface, junctions.
+TetMesh ring() {
+  TetMesh mesh = grid_mesh({18, 18, 6}, [](int x, int y, int z) -> Tag {
+    if (x >= 6 && x < 12 && y >= 6 && y < 12) return {};
+    if (x >= 2 && x < 4 && y >= 8 && y < 10 && z >= 2 && z < 4) return {};
+    return x < 9 ? 4 : 7;
+  });
+  jitter(mesh, 17);
+  return mesh;
+}
+
+void expect_guarantees(const TetMesh& before, const TetMesh& after, std::size_t target) {
+  for (const auto& finding : check_mesh(after)) EXPECT_EQ(finding.count, 0u) << finding.name;
+  EXPECT_EQ(topology_of(before), topology_of(after));
+  EXPECT_NEAR(static_cast<double>(after.tets.size()), static_cast<double>(target), 0.01 * static_cast<double>(target));
+}
+
+TEST(Simplify, ReachesTheCountAndKeepsTheTopology) {
+  const TetMesh mesh = ring();
+  SimplifyOptions options;
+  options.target_tets = 1500;
+  SimplifyReport report;
+  const TetMesh after = simplify(mesh, options, &report);
+  expect_guarantees(mesh, after, 1500);
+  EXPECT_FALSE(report.iterations.empty());
+  EXPECT_EQ(report.iterations.back().tets_after, after.tets.size());
+}
+
+// Each operation has a purpose; one that never succeeds in the optimised build has silently broken.
+TEST(Simplify, EveryOperationSucceedsAtLeastOnce) {
+  SimplifyOptions options;
+  options.target_tets = 1500;
+  SimplifyReport report;
+  simplify(ring(), options, &report);
+  OperationCounts counts;
+  for (const auto& it : report.iterations) counts.add(it.counts);
+  for (std::size_t o = 0; o < operation_count; ++o)
+    EXPECT_GT(counts.of(static_cast<Operation>(o), Outcome::done), 0u) << operation_names[o];
+}
+
+TEST(Simplify, OneThreadAndOneSeedGiveTheSameBytes) {
+  const ThreadLimit one(1);
+  SimplifyOptions options;
+  options.target_tets = 1200;
+  const TetMesh first = simplify(ring(), options);
+  EXPECT_TRUE(same_bytes(first, simplify(ring(), options)));
+  options.seed = 2;
+  EXPECT_FALSE(same_bytes(first, simplify(ring(), options)));
+}
+
+TEST(Simplify, AnyNumberOfThreadsGivesTheSameGuarantees) {
+  const TetMesh mesh = ring();
+  SimplifyOptions options;
+  options.target_tets = 1500;
+  options.chunk_size = 50;
+  for (unsigned threads : {2u, 5u}) {
+    const ThreadLimit limit(threads);
+    expect_guarantees(mesh, simplify(mesh, options), 1500);
+  }
+}
+
+TEST(Simplify, SizeAndPlaceDoNotMatter) {
+  const TetMesh mesh = grid_mesh(10);
+  SimplifyOptions options;
+  options.target_tets = 600;
+  const ThreadLimit one(1);
+  const TetMesh plain = simplify(mesh, options);
+  TetMesh scaled = mesh;
+  for (Vec3& p : scaled.points) p *= 0x1p-700;  // exact: the same connectivity
+  const TetMesh after = simplify(scaled, options);
+  EXPECT_EQ(after.tets, plain.tets);
+}
+
+TEST(Simplify, AMeshBelowTheTargetIsOnlyImproved) {
+  TetMesh mesh = grid_mesh(6);
+  jitter(mesh, 8, 0.7);
+  SimplifyOptions options;
+  options.target_tets = mesh.tets.size();
+  const TetMesh after = simplify(mesh, options);
+  expect_guarantees(mesh, after, mesh.tets.size());
+}
+
+TEST(Simplify, UnreachableTargetsEndWithTheSmallestMesh) {
+  SimplifyOptions options;
+  options.target_tets = 1;
+  const TetMesh mesh = ring();
+  const TetMesh after = simplify(mesh, options);
+  for (const auto& finding : check_mesh(after)) EXPECT_EQ(finding.count, 0u) << finding.name;
+  EXPECT_EQ(topology_of(mesh), topology_of(after));
+  EXPECT_LT(after.tets.size(), mesh.tets.size() / 5);
+}
+
+TEST(Simplify, CancelsAndRefuses) {
+  Progress progress;
+  progress.cancel();
+  SimplifyOptions options;
+  EXPECT_THROW(simplify(grid_mesh(4), options, nullptr, &progress), Interrupted);
+  options.target_tets = 0;
+  EXPECT_THROW(simplify(grid_mesh(4), options), UsageError);
+  EXPECT_THROW(simplify(TetMesh(), SimplifyOptions()), InputError);
+}
+
+}  // namespace
+}  // namespace tetwright

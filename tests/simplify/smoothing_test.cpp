@@ -1,0 +1,87 @@
+#include "simplify/smoothing.h"
+
+#include "tests/simplify/workbench.h"
+
+namespace tetwright {
+namespace {
+
+using Tag = std::optional<MaterialTag>;
+
+TEST(Smoothing, BringsADisplacedInnerPointBack) {
+  TetMesh mesh = grid_mesh(2);
+  for (Vec3& p : mesh.points)
+    if (p == Vec3(1, 1, 1)) p = Vec3(1.3, 1.25, 1.2);
+  Workbench w(mesh);
+  const float before = w.star(w.at(1.3, 1.25, 1.2)).poorest;
+  ASSERT_EQ(smooth(*w.task, w.rules), Outcome::done);
+  const float after = w.star(w.at(1, 1, 1)).poorest;  // the centroid of the cube's points
+  EXPECT_GT(after, before);
+  w.expect_sound();
+}
+
+TEST(Smoothing, SlidesOnTheBoundaryWithoutChangingTheVolume) {
+  for (auto* operation : {&smooth, &optimise}) {
+    TetMesh mesh = grid_mesh(4);
+    for (Vec3& p : mesh.points)
+      if (p == Vec3(2, 2, 4)) p = Vec3(2.4, 2.3, 4.25);
+    Workbench w(mesh);
+    const double volume = w.mesh.total_volume();
+    w.rules.objective.kind = Objective::Kind::shape;
+    const Index p = w.at(2.4, 2.3, 4.25);
+    for (const auto& t : w.star(p).tets) {
+      const Tet& v = w.mesh.tet(t.tet).points;
+      w.mesh.set_quality(t.tet, w.rules.objective(w.mesh.position(v[0]), w.mesh.position(v[1]),
+                                                  w.mesh.position(v[2]), w.mesh.position(v[3])));
+    }
+    const float before = w.star(p).poorest;
+    ASSERT_EQ(operation(*w.task, w.rules), Outcome::done);
+    EXPECT_GT(w.star(p).poorest, before);
+    EXPECT_NEAR(w.mesh.total_volume(), volume, 1e-14);
+    w.expect_sound();
+  }
+}
+
+TEST(Smoothing, OptimisingBeatsTheCentroid) {
+  TetMesh mesh = grid_mesh(3);
+  jitter(mesh, 21, 0.6);
+  int better = 0, compared = 0;
+  for (Index p = 0; p < mesh.points.size(); ++p) {
+    float reached[2];
+    int i = 0;
+    for (auto* operation : {&smooth, &optimise}) {
+      Workbench w(mesh);
+      w.star(p);
+      operation(*w.task, w.rules);
+      reached[i++] = w.star(p).poorest;
+      w.expect_sound();
+    }
+    better += reached[1] >= reached[0];
+    ++compared;
+  }
+  EXPECT_GT(better, compared * 3 / 4);
+}
+
+TEST(Smoothing, ACornerStays) {
+  Workbench w(grid_mesh({4, 4, 4}, [](int x, int y, int z) { return Tag(z < 2 ? 1 : x < 2 ? 2 : y < 2 ? 3 : 4); }));
+  w.star(w.at(2, 2, 2));
+  EXPECT_EQ(smooth(*w.task, w.rules), Outcome::material_rule);
+  EXPECT_EQ(optimise(*w.task, w.rules), Outcome::material_rule);
+}
+
+TEST(Smoothing, AJunctionPointStaysOnAStraightCurve) {
+  TetMesh mesh = grid_mesh({4, 4, 4}, [](int x, int, int) { return Tag(x < 2 ? 1 : 2); });
+  for (Vec3& p : mesh.points)
+    if (p == Vec3(2, 2, 0)) p = Vec3(2, 2.4, 0);
+  Workbench w(mesh);
+  const Index p = w.at(2, 2.4, 0);
+  w.star(p);
+  ASSERT_EQ(optimise(*w.task, w.rules), Outcome::done);
+  const Vec3 now = w.mesh.position(p) / w.mesh.scale();
+  EXPECT_NEAR(now.x(), 2, 1e-12);
+  EXPECT_NEAR(now.z(), 0, 1e-12);
+  EXPECT_LT(now.y(), 2.4);
+  w.expect_sound();
+}
+
+}  // namespace
+}  // namespace tetwright

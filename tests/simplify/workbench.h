@@ -1,0 +1,70 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "common/predicates.h"
+#include "simplify/task.h"
+#include "tests/simplify/meshes.h"
+
+namespace tetwright {
+
+/// One task on one mesh, for tests of single operations.
+struct Workbench {
+  explicit Workbench(const TetMesh& input) : mesh(TetMesh(input), "mesh") {
+    mesh.compact(64);
+    rules.objective.quality = TetQuality::for_target(mesh.total_volume(), 1);
+    rules.largest_error = 1e9;
+    for (Index t = 0; t < mesh.tet_slots(); ++t) {
+      const Tet& p = mesh.tet(t).points;
+      if (p[0] != no_index)
+        mesh.set_quality(t, rules.objective(mesh.position(p[0]), mesh.position(p[1]), mesh.position(p[2]),
+                                            mesh.position(p[3])));
+    }
+    grid.build(mesh, 0);
+    task = std::make_unique<Task>(mesh, grid);
+  }
+
+  /// The point at a place given in input units.
+  Index at(double x, double y, double z) const {
+    for (Index p = 0; p < mesh.point_slots(); ++p)
+      if (mesh.hint(p) != no_index && (mesh.position(p) / mesh.scale() - Vec3(x, y, z)).norm() < 1e-12) return p;
+    ADD_FAILURE() << "no point at " << x << ' ' << y << ' ' << z;
+    return 0;
+  }
+
+  /// The star of a point, held.
+  Star& star(Index p) {
+    task->release();
+    EXPECT_TRUE(task->points.try_lock(p));
+    EXPECT_EQ(task->star.gather(mesh, p, task->points), Outcome::done);
+    return task->star;
+  }
+
+  /// Everything given back, links sound, all tets positive, as many triangles in the grid as faces between regions.
+  void expect_sound() {
+    task->release();
+    EXPECT_TRUE(mesh.locks().all_free());
+    EXPECT_TRUE(grid.locks().all_free());
+    EXPECT_TRUE(mesh.links_consistent());
+    std::size_t triangles = 0;
+    for (Index t = 0; t < mesh.tet_slots(); ++t) {
+      const TetRecord& r = mesh.tet(t);
+      if (r.points[0] == no_index) continue;
+      EXPECT_EQ(orient3d(mesh.position(r.points[0]), mesh.position(r.points[1]), mesh.position(r.points[2]),
+                         mesh.position(r.points[3])),
+                1);
+      for (int f = 0; f < 4; ++f) {
+        const Index other = r.neighbours[f];
+        triangles += other == no_index || (t < other && mesh.tet(other).region != r.region);
+      }
+    }
+    EXPECT_EQ(grid.triangle_count(), triangles);
+  }
+
+  EditableMesh mesh;
+  SurfaceGrid grid;
+  BlockRules rules;
+  std::unique_ptr<Task> task;
+};
+
+}  // namespace tetwright

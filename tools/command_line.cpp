@@ -1,0 +1,148 @@
+#include "tools/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <iostream>
+
+#include "common/error.h"
+#include "common/samples.h"
+
+namespace tetwright {
+
+namespace {
+
+void add_common(CLI::App& app, CommandLine& c) {
+  app.add_option("--threads", c.threads, "Threads to use (default: all of the machine)")
+      ->check(CLI::Range(1u, 1024u));
+  app.add_option("--stats", c.stats, "Write what was done and reached to this .json file");
+  app.add_flag("--quiet", c.quiet, "Print nothing but errors");
+  app.add_flag("--no-progress", c.no_progress, "No progress bar");
+}
+
+void add_seed(CLI::App& app, CommandLine& c) {
+  app.add_option("--seed", c.seed, "Start of the random numbers; with one thread the same seed gives the same bytes")
+      ->capture_default_str();
+}
+
+void add_output(CLI::App& app, CommandLine& c, const char* formats) {
+  app.add_option("-o,--output", c.output, formats)->required();
+}
+
+void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) {
+  app.add_option("--resolution", c.resolution,
+                 std::string("Finest cells along the longest side (default: ") + default_resolution + ")")
+      ->check(CLI::Range(4, 4096));
+  app.add_option("--voxel-size", c.voxel_size, "Edge of the finest cells in input units, instead of --resolution")
+      ->check(CLI::PositiveNumber);
+  app.add_flag("--uniform", c.uniform, "Finest cells everywhere: a plain grid, no octree");
+  app.add_option("--adaptivity", c.adaptivity,
+                 "Largest misplacement of the surface by a coarser cell, in finest cells; 0: finest cells all along it")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+}
+
+void add_simplifying(CLI::App& app, CommandLine& c) {
+  app.add_option("--target-tets", c.target_tets, "Number of tets wanted")->required();
+  app.add_option("--min-solid-angle", c.min_solid_angle,
+                 "Tets with a smaller solid angle (steradians) are improved; if given and some are left, status 1")
+      ->check(CLI::Range(0.0, 0.5513))
+      ->capture_default_str();
+  app.add_option("--beta", c.beta, "Longest edge, in ideal edges, that quality does not penalise")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--gamma", c.gamma, "Weight of the surface's error; larger keeps more of it")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--max-iterations", c.max_iterations, "Block iterations at most")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+}
+
+std::string one_line(std::string text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+  for (char& ch : text)
+    if (ch == '\n') ch = ' ';
+  return text;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& n : names) out += (out.empty() ? "" : ", ") + n;
+  return out;
+}
+
+}  // namespace
+
+bool parse_command_line(int argc, char** argv, CommandLine& out) {
+  CLI::App app("Turns surface scans into tetrahedral meshes that a simulation can run on.", "tetwright");
+  app.set_version_flag("--version", TETWRIGHT_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "Exit status: 0 done, 1 written but short of what was asked (check: not valid), 2 wrong call, 3 bad input,\n"
+      "4 nothing to mesh, 5 could not be written or out of memory, 130 interrupted.");
+  constexpr const char* surfaces = "Closed surface: .ply .obj .stl .off";
+  constexpr const char* meshes = "Tet mesh: .vtu .msh .mesh";
+  constexpr const char* mesh_out = "Where the mesh goes: .vtu .msh .mesh";
+
+  CLI::App* prepare = app.add_subcommand("prepare", "Scan to simulation mesh, in one go");
+  prepare->add_option("INPUT", out.inputs, surfaces)->required();
+  add_output(*prepare, out, mesh_out);
+  add_simplifying(*prepare, out);
+  add_meshing(*prepare, out, "what the target needs");
+  add_common(*prepare, out);
+  add_seed(*prepare, out);
+
+  CLI::App* mesh = app.add_subcommand("mesh", "Scan to dense mesh");
+  mesh->add_option("INPUT", out.inputs, surfaces)->required();
+  add_output(*mesh, out, mesh_out);
+  add_meshing(*mesh, out, "128");
+  add_common(*mesh, out);
+  add_seed(*mesh, out);
+
+  CLI::App* simplify = app.add_subcommand("simplify", "Tet mesh to simulation mesh");
+  simplify->add_option("MESH", out.inputs, meshes)->required()->expected(1);
+  add_output(*simplify, out, mesh_out);
+  add_simplifying(*simplify, out);
+  add_common(*simplify, out);
+  add_seed(*simplify, out);
+
+  CLI::App* check = app.add_subcommand("check", "Validity, topology and quality of a tet mesh; status 1 if not valid");
+  check->add_option("MESH", out.inputs, meshes)->required()->expected(1);
+  check->add_option("--before", out.before, "Mesh whose topology this one must have");
+  check->add_flag("--json", out.json, "Print JSON");
+  add_common(*check, out);
+
+  CLI::App* sample = app.add_subcommand("sample", "Writes a built-in sample");
+  sample->add_option("NAME", out.inputs, "One of: " + joined(sample_names()))->required()->expected(1);
+  add_output(*sample, out, "Surfaces: .ply .obj .stl .off; tet meshes: .vtu .msh .mesh");
+  add_common(*sample, out);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    const auto chosen = app.get_subcommands();
+    std::cout << (chosen.empty() ? app.help() : chosen.front()->help());
+    return false;
+  } catch (const CLI::CallForVersion&) {
+    std::cout << "tetwright " << TETWRIGHT_VERSION << "\n";
+    return false;
+  } catch (const CLI::ParseError& e) {
+    throw UsageError(one_line(e.what()) + " (tetwright --help, or --help after a command, lists what there is)");
+  }
+  const CLI::App* chosen = app.get_subcommands().front();
+  out.command = chosen == prepare    ? Command::prepare
+                : chosen == mesh     ? Command::mesh
+                : chosen == simplify ? Command::simplify
+                : chosen == check    ? Command::check
+                                     : Command::sample;
+  if (out.command == Command::prepare || out.command == Command::simplify) {
+    out.min_solid_angle_given = chosen->count("--min-solid-angle") > 0;
+    if (out.target_tets == 0) throw UsageError("--target-tets 0 leaves no mesh; give 1 or more");
+  }
+  for (double value : {out.voxel_size, out.adaptivity, out.beta, out.gamma, out.min_solid_angle})
+    if (!std::isfinite(value)) throw UsageError("option values must be finite numbers");
+  if (out.resolution && out.voxel_size > 0) throw UsageError("give --resolution or --voxel-size, not both");
+  return true;
+}
+
+}  // namespace tetwright

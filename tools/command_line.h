@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tetwright {
+
+enum class Command { prepare, mesh, simplify, check, sample };
+
+/// What the command line said; defaults are those of --help.
+struct CommandLine {
+  Command command = Command::prepare;
+  std::vector<std::string> inputs;  ///< for sample: its name
+  std::string output;
+  std::string before;  ///< check: mesh whose topology must be the same
+  bool json = false;   ///< check
+
+  std::size_t target_tets = 0;
+  double min_solid_angle = 0.1;  ///< steradians
+  bool min_solid_angle_given = false;
+  double beta = 5, gamma = 10;
+  int max_iterations = 100;
+
+  int resolution = 0;     ///< 0: not given
+  double voxel_size = 0;  ///< input units; 0: not given
+  bool uniform = false;
+  double adaptivity = 0.05;  ///< finest cells
+
+  unsigned threads = 0;  ///< 0: all
+  std::uint64_t seed = 1;
+  std::string stats;
+  bool quiet = false;
+  bool no_progress = false;
+};
+
+/// Parses the arguments. Throws UsageError (one line that says what to do) when the call is wrong. Returns false when
+/// help or the version was asked for and printed.
+bool parse_command_line(int argc, char** argv, CommandLine& out);
+
+}  // namespace tetwright

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "common/progress.h"
+
+namespace tetwright {
+
+/// Draws the current stage and its share done on one line of stderr, at most ten times a second; draws nothing unless
+/// `visible`. The line is cleared when the bar dies.
+class ProgressBar : public Progress {
+ public:
+  explicit ProgressBar(bool visible) : visible_(visible) {}
+  ~ProgressBar() override { clear(); }
+  void begin_stage(std::string_view name) override;
+  void update(double fraction) override;
+  void clear();
+
+ private:
+  void draw(double fraction);
+  bool visible_;
+  bool drawn_ = false;
+  std::string stage_;
+  std::chrono::steady_clock::time_point last_{};
+};
+
+}  // namespace tetwright
