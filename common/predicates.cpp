@@ -85,17 +85,25 @@ Expansion plus(Expansion a, const Expansion& b) {
 
 int sign(const Expansion& e) { return e.empty() ? 0 : e.back() > 0 ? 1 : -1; }
 
-/// A power of two that brings the largest coordinate near 2^100: products neither overflow nor, short of
+/// The power of two that brings the largest coordinate near 2^100: products neither overflow nor, short of
 /// absurd ranges, underflow.
-double safe_scale(std::initializer_list<const Vec3*> points) {
+int safe_exponent(std::initializer_list<const Vec3*> points) {
   double largest = 0;
   for (const Vec3* p : points) largest = std::max(largest, p->cwiseAbs().maxCoeff());
-  return largest > 0 ? std::ldexp(1.0, 100 - std::ilogb(largest)) : 1.0;
+  return largest > 0 ? 100 - std::ilogb(largest) : 0;
+}
+
+/// Times 2^exponent, which itself may be beyond the largest double.
+Vec3 scaled(const Vec3& p, int exponent) {
+  return {std::ldexp(p.x(), exponent), std::ldexp(p.y(), exponent), std::ldexp(p.z(), exponent)};
 }
 
 int orient3d_exact(const Vec3& a0, const Vec3& b0, const Vec3& c0, const Vec3& d0) {
-  const double s = safe_scale({&a0, &b0, &c0, &d0});
-  const Vec3 a = a0 * s, b = b0 * s, c = c0 * s, d = d0 * s;
+  // Flat along an axis is common (boxes, lattices) and needs no arithmetic.
+  for (int k = 0; k < 3; ++k)
+    if (a0[k] == b0[k] && a0[k] == c0[k] && a0[k] == d0[k]) return 0;
+  const int s = safe_exponent({&a0, &b0, &c0, &d0});
+  const Vec3 a = scaled(a0, s), b = scaled(b0, s), c = scaled(c0, s), d = scaled(d0, s);
   const Expansion bx = difference(b.x(), a.x()), by = difference(b.y(), a.y()), bz = difference(b.z(), a.z());
   const Expansion cx = difference(c.x(), a.x()), cy = difference(c.y(), a.y()), cz = difference(c.z(), a.z());
   const Expansion dx = difference(d.x(), a.x()), dy = difference(d.y(), a.y()), dz = difference(d.z(), a.z());
@@ -106,8 +114,9 @@ int orient3d_exact(const Vec3& a0, const Vec3& b0, const Vec3& c0, const Vec3& d
 }
 
 int orient2d_exact(const Vec3& a0, const Vec3& b0, const Vec3& c0, int u, int v) {
-  const double s = safe_scale({&a0, &b0, &c0});
-  const Vec3 a = a0 * s, b = b0 * s, c = c0 * s;
+  if ((a0[u] == b0[u] && a0[u] == c0[u]) || (a0[v] == b0[v] && a0[v] == c0[v])) return 0;
+  const int s = safe_exponent({&a0, &b0, &c0});
+  const Vec3 a = scaled(a0, s), b = scaled(b0, s), c = scaled(c0, s);
   return sign(minus(product(difference(b[u], a[u]), difference(c[v], a[v])),
                     product(difference(b[v], a[v]), difference(c[u], a[u]))));
 }
