@@ -8,6 +8,7 @@
 #include "common/error.h"
 #include "common/parallel.h"
 #include "common/predicates.h"
+#include "simplify/local_numbers.h"
 
 namespace tetwright {
 
@@ -95,6 +96,7 @@ EditableMesh::EditableMesh(TetMesh&& mesh, const std::string& name) {
   locks_.reset(positions_.size());
   link_faces(name);
   set_hints();
+  check_stars(name);
 }
 
 /// Faces are put into buckets by their smallest point and paired within each: 16 bytes a tet at peak, where a
@@ -158,6 +160,36 @@ void EditableMesh::set_hints() {
   for (std::size_t t = tets_.size(); t-- > 0;)
     if (tets_[t].points[0] != no_index)
       for (Index p : tets_[t].points) hints_[p] = static_cast<Index>(t);
+}
+
+void EditableMesh::check_stars(const std::string& name) const {
+  std::vector<Index> tets_at(positions_.size(), 0);
+  for (const TetRecord& t : tets_)
+    for (Index p : t.points) ++tets_at[p];
+  std::atomic<Index> bad{no_index};
+  parallel_for(0, positions_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    LocalNumbers seen;
+    std::vector<Index> walk;
+    for (std::size_t p = begin; p < end; ++p) {
+      if (hints_[p] == no_index) continue;
+      seen.clear();
+      walk.assign(1, hints_[p]);
+      bool added;
+      seen.number(hints_[p], added);
+      for (std::size_t i = 0; i < walk.size(); ++i)
+        for (int k = 0; k < 4; ++k) {
+          const TetRecord& t = tets_[walk[i]];
+          if (t.points[k] == p || t.neighbours[k] == no_index) continue;
+          seen.number(t.neighbours[k], added);
+          if (added) walk.push_back(t.neighbours[k]);
+        }
+      if (walk.size() != tets_at[p]) bad.store(static_cast<Index>(p));
+    }
+  });
+  if (const Index p = bad.load(); p != no_index)
+    throw InputError(name, 0,
+                     "parts touch only in point " + std::to_string(p) + " at " + place(positions_[p] / scale_) +
+                         ", without a common face; `tetwright check` lists all such points");
 }
 
 bool EditableMesh::SlotStock::reserve(std::size_t count) {

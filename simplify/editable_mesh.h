@@ -129,6 +129,7 @@ class EditableMesh {
  private:
   void link_faces(const std::string& name);
   void set_hints();
+  void check_stars(const std::string& name) const;
 
   std::vector<TetRecord> tets_;
   std::vector<Vec3> positions_;

@@ -45,7 +45,7 @@ TEST(EditableMesh, HandsBackWhatItTookBitForBit) {
 TEST(EditableMesh, VolumeIsThatOfTheGrid) {
   EditableMesh editable(grid_mesh(4), "mesh");
   const double s = editable.scale();
-  EXPECT_DOUBLE_EQ(editable.total_volume() / (s * s * s), 64);
+  EXPECT_NEAR(editable.total_volume() / (s * s * s), 64, 1e-11);
 }
 
 TEST(EditableMesh, CompactionDropsUnusedPoints) {
@@ -80,6 +80,12 @@ TEST(EditableMesh, RefusesWhatHasNoNeighbours) {
   over_shared.tets.push_back(extra);
   over_shared.materials.push_back(1);
   EXPECT_NE(refusal(over_shared), "");
+
+  // Two cubes that touch along an edge only: no walk across faces leads from one to the other.
+  const TetMesh touching = grid_mesh({2, 2, 1}, [](int x, int y, int) {
+    return x == y ? std::optional<MaterialTag>(1) : std::optional<MaterialTag>();
+  });
+  EXPECT_NE(refusal(touching).find("touch"), std::string::npos) << refusal(touching);
 
   // Two tets on the same side of a face.
   TetMesh folded;

@@ -40,13 +40,15 @@ TEST(Star, FourMaterialsMeetInAPointOfDimensionZero) {
   EXPECT_EQ(w.star(w.at(2, 2, 3)).dimension(), 1);  // three of them along a curve
 }
 
-TEST(Star, TouchingCubesPinchTheirCommonEdgeAndPoint) {
-  // Two cubes that share only an edge: its points are no manifold's.
-  Workbench w(grid_mesh({2, 2, 2}, [](int x, int y, int z) -> Tag {
-    if (z == 1) return {};
-    return x == y ? Tag(1) : Tag();
-  }));
-  EXPECT_EQ(w.star(w.at(1, 1, 0)).dimension(), 0);
+TEST(Star, FourSheetsAlongACurveAreAJunction) {
+  Workbench w(grid_mesh({2, 2, 2}, [](int x, int y, int) { return Tag(x == y ? 1 : 2); }));
+  const Star& star = w.star(w.at(1, 1, 1));
+  EXPECT_EQ(star.dimension(), 1);
+}
+
+TEST(Star, FansThatTouchInAPointPinchIt) {
+  Workbench w(grid_mesh({2, 2, 2}, [](int x, int y, int z) { return Tag(x == y && y == z ? 1 : 2); }));
+  EXPECT_EQ(w.star(w.at(1, 1, 1)).dimension(), 0);
 }
 
 TEST(Star, GradientsAreExactForTheVolume) {
