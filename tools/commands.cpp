@@ -1,0 +1,295 @@
+#include "tools/commands.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+
+#include "common/formats/atomic_file.h"
+#include "common/formats/formats.h"
+#include "common/mesh_check.h"
+#include "common/parallel.h"
+#include "common/samples.h"
+#include "common/topology.h"
+#include "tools/progress_bar.h"
+#include "tools/report.h"
+#include "tools/stats_json.h"
+
+namespace tetwright {
+
+namespace {
+
+/// What an interrupt cancels.
+std::atomic<Progress*> running{nullptr};
+
+void on_interrupt(int) {
+  if (Progress* progress = running.load()) progress->cancel();
+}
+
+/// While it lives, SIGINT and SIGTERM cancel the work instead of ending the process.
+class InterruptHandler {
+ public:
+  explicit InterruptHandler(Progress& progress) {
+    running = &progress;
+    std::signal(SIGINT, on_interrupt);
+    std::signal(SIGTERM, on_interrupt);
+  }
+  ~InterruptHandler() {
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+    running = nullptr;
+  }
+};
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// One run of a command: what is common to those that make a mesh.
+class Run {
+ public:
+  explicit Run(const CommandLine& line)
+      : line_(line),
+        limit_(line.threads),
+        progress_(!line.quiet && !line.no_progress && isatty(STDERR_FILENO)),
+        handler_(progress_) {
+    check_output_path(line.output);
+    if (!line.stats.empty()) check_writable(line.stats);
+    report_.inputs = line.inputs;
+  }
+
+  void read_surfaces() {
+    const Stopwatch watch;
+    progress_.begin_stage("read");
+    for (const std::string& file : line_.inputs) {
+      MaterialSurface s;
+      s.name = std::filesystem::path(file).stem().string();
+      s.tag = static_cast<MaterialTag>(surfaces_.size() + 1);
+      s.surface = read_surface(file);
+      s.file = file;
+      report_.input_triangles += s.surface.triangles.size();
+      report_.input_points += s.surface.points.size();
+      surfaces_.push_back(std::move(s));
+    }
+    report_.seconds_read = watch.seconds();
+  }
+
+  void make_dense() {
+    const Stopwatch watch;
+    MesherOptions options;
+    options.voxel_size = line_.voxel_size;
+    options.uniform = line_.uniform;
+    options.adaptivity = line_.adaptivity;
+    if (line_.resolution) {
+      options.resolution = line_.resolution;
+    } else if (line_.voxel_size == 0 && line_.command == Command::prepare) {
+      options.resolution = resolution_for_target(surfaces_, line_.target_tets);
+    }
+    MeshedSurface dense = mesh_surfaces(surfaces_, options, &progress_);
+    mesh_ = std::move(dense.mesh);
+    report_.mesher = dense.report;
+    report_.seconds_mesh = watch.seconds();
+    surfaces_.clear();
+    report_.dense = mesh_statistics(mesh_, line_.min_solid_angle);
+  }
+
+  void read_mesh() {
+    const Stopwatch watch;
+    progress_.begin_stage("read");
+    ReadTetMesh read = read_tet_mesh(line_.inputs.front());
+    mesh_ = std::move(read.mesh);
+    report_.material_field = read.material_field;
+    report_.input_points = mesh_.points.size();
+    report_.seconds_read = watch.seconds();
+    if (line_.target_tets > mesh_.tets.size())
+      throw UsageError("--target-tets " + std::to_string(line_.target_tets) + " is above the " +
+                       std::to_string(mesh_.tets.size()) + " tets of " + line_.inputs.front() + "; give fewer");
+    report_.dense = mesh_statistics(mesh_, line_.min_solid_angle);
+  }
+
+  void simplify_mesh() {
+    SimplifyOptions options;
+    options.target_tets = line_.target_tets;
+    options.min_solid_angle = line_.min_solid_angle;
+    options.beta = line_.beta;
+    options.gamma = line_.gamma;
+    options.max_iterations = line_.max_iterations;
+    options.seed = line_.seed;
+    options.name = line_.inputs.front();
+    report_.simplify.emplace();
+    mesh_ = simplify(std::move(mesh_), options, &*report_.simplify, &progress_);
+  }
+
+  ExitStatus finish() {
+    report_.result = mesh_statistics(mesh_, line_.min_solid_angle);
+    if (report_.simplify) find_shortfall();
+    const Stopwatch watch;
+    progress_.throw_if_cancelled();
+    progress_.begin_stage("write");
+    write_tet_mesh(mesh_, line_.output);
+    report_.seconds_write = watch.seconds();
+    report_.seconds_total = total_.seconds();
+    if (!line_.stats.empty()) write_file_atomically(line_.stats, stats_json(line_, report_).dump(1) + "\n");
+    progress_.clear();
+    if (!line_.quiet) print_report(line_, report_);
+    for (const Shortfall& s : report_.shortfall)
+      std::fprintf(stderr, "tetwright: short of --%s: %g was asked, %g reached; held back by: %s\n",
+                   s.what == "target_tets" ? "target-tets" : "min-solid-angle", s.asked, s.reached,
+                   s.held_back_by.c_str());
+    return report_.shortfall.empty() ? ExitStatus::done : ExitStatus::short_of_request;
+  }
+
+ private:
+  /// The rule that refused most collapses in the last iterations that tried any.
+  std::string held_back_by() const {
+    OperationCounts counts;
+    const auto& iterations = report_.simplify->iterations;
+    for (auto it = iterations.rbegin(); it != iterations.rend(); ++it) {
+      counts.add(it->counts);
+      if (it->kind == "simplify") break;
+    }
+    std::size_t most = 0;
+    for (std::size_t r = 1; r < outcome_count; ++r)
+      if (counts.of(Operation::collapse, static_cast<Outcome>(r)) >
+          (most ? counts.of(Operation::collapse, static_cast<Outcome>(most)) : 0))
+        most = r;
+    return most ? std::string(outcome_names[most]) : "the dense mesh, which has no more tets";
+  }
+
+  void find_shortfall() {
+    const double target = static_cast<double>(line_.target_tets);
+    const double reached = static_cast<double>(report_.result->tets);
+    if (std::fabs(reached - target) > 0.01 * target)
+      report_.shortfall.push_back({"target_tets", target, reached,
+                                   reached < target ? "the dense mesh, which has too few tets; raise --resolution"
+                                                    : held_back_by()});
+    if (line_.min_solid_angle_given && report_.result->min_solid_angle < line_.min_solid_angle)
+      report_.shortfall.push_back(
+          {"min_solid_angle", line_.min_solid_angle, report_.result->min_solid_angle, held_back_by()});
+  }
+
+  const CommandLine& line_;
+  Stopwatch total_;
+  ThreadLimit limit_;
+  ProgressBar progress_;
+  InterruptHandler handler_;
+  RunReport report_;
+  std::vector<MaterialSurface> surfaces_;
+  TetMesh mesh_;
+};
+
+ExitStatus prepare(const CommandLine& line) {
+  Run run(line);
+  run.read_surfaces();
+  run.make_dense();
+  run.simplify_mesh();
+  return run.finish();
+}
+
+ExitStatus mesh(const CommandLine& line) {
+  Run run(line);
+  run.read_surfaces();
+  run.make_dense();
+  return run.finish();
+}
+
+ExitStatus simplify(const CommandLine& line) {
+  Run run(line);
+  run.read_mesh();
+  run.simplify_mesh();
+  return run.finish();
+}
+
+ExitStatus check(const CommandLine& line) {
+  const ThreadLimit limit(line.threads);
+  if (!line.stats.empty()) check_writable(line.stats);
+  const Stopwatch total;
+  RunReport run;
+  run.inputs = line.inputs;
+  const ReadTetMesh read = read_tet_mesh(line.inputs.front());
+  run.material_field = read.material_field;
+  run.input_points = read.mesh.points.size();
+  run.seconds_read = total.seconds();
+  const std::vector<Finding> findings = check_mesh(read.mesh);
+  bool valid = true;
+  // Without sound indices and coordinates there is nothing to measure.
+  bool measurable = true;
+  for (const Finding& f : findings) {
+    valid &= f.count == 0;
+    measurable &= f.count == 0 || !f.fatal;
+  }
+  std::vector<std::string> differences;
+  nlohmann::json json = {{"valid", valid}, {"findings", nlohmann::json::array()}};
+  for (const Finding& f : findings)
+    json["findings"].push_back({{"number", f.number}, {"name", f.name}, {"count", f.count}, {"places", f.places}});
+  if (measurable) {
+    run.result = mesh_statistics(read.mesh, line.min_solid_angle);
+    json["mesh"] = mesh_json(*run.result);
+    const TopologySignature topology = topology_of(read.mesh);
+    json["topology"] = lines_of(topology);
+    if (!line.before.empty()) differences = topology_differences(topology_of(read_tet_mesh(line.before).mesh), topology);
+  }
+  if (!line.before.empty()) json["topology_differences"] = differences;
+  const bool kept = differences.empty();
+  run.seconds_total = total.seconds();
+  if (!line.stats.empty()) write_file_atomically(line.stats, stats_json(line, run).dump(1) + "\n");
+  if (line.json) {
+    std::printf("%s\n", json.dump(1).c_str());
+  } else if (!line.quiet) {
+    for (const Finding& f : findings) {
+      if (f.count == 0) continue;
+      std::printf("finding %d %s: %zu", f.number, f.name.c_str(), f.count);
+      for (const std::string& place : f.places) std::printf("; %s", place.c_str());
+      std::printf("\n");
+    }
+    if (measurable) {
+      print_report(line, run);
+      for (const std::string& l : json["topology"]) std::printf("%s\n", l.c_str());
+    }
+    for (const std::string& d : differences) std::printf("topology differs: %s\n", d.c_str());
+    std::printf("%s\n", !valid ? "not valid" : kept ? "valid" : "valid, but of another topology");
+  }
+  return valid && kept ? ExitStatus::done : ExitStatus::short_of_request;
+}
+
+ExitStatus sample(const CommandLine& line) {
+  const ThreadLimit limit(line.threads);
+  const Stopwatch total;
+  write_sample(line.inputs.front(), line.output);
+  if (!line.stats.empty()) {
+    RunReport run;
+    run.seconds_total = total.seconds();
+    write_file_atomically(line.stats, stats_json(line, run).dump(1) + "\n");
+  }
+  return ExitStatus::done;
+}
+
+}  // namespace
+
+ExitStatus run_command(const CommandLine& line) {
+  switch (line.command) {
+    case Command::prepare:
+      return prepare(line);
+    case Command::mesh:
+      return mesh(line);
+    case Command::simplify:
+      return simplify(line);
+    case Command::check:
+      return check(line);
+    case Command::sample:
+      return sample(line);
+  }
+  return ExitStatus::usage;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,63 @@
+#include "tools/report.h"
+
+#include <cstdarg>
+#include <cstdio>
+#include <functional>
+
+namespace tetwright {
+
+namespace {
+
+std::string text(const char* format, ...) {
+  char buffer[64];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(buffer, sizeof buffer, format, arguments);
+  va_end(arguments);
+  return buffer;
+}
+
+double total_volume(const MeshStatistics& m) {
+  double sum = 0;
+  for (const auto& material : m.materials) sum += material.volume;
+  return sum;
+}
+
+}  // namespace
+
+void print_report(const CommandLine& line, const RunReport& run) {
+  const MeshStatistics* columns[2] = {run.dense ? &*run.dense : nullptr, run.result ? &*run.result : nullptr};
+  const char* heads[2] = {line.command == Command::simplify ? "before" : "dense", "result"};
+  if (line.command == Command::mesh) columns[0] = nullptr;  // the dense mesh is the result
+  const auto row = [&](const char* name, const std::function<std::string(const MeshStatistics&)>& value) {
+    std::printf("%-26s", name);
+    for (const MeshStatistics* m : columns)
+      if (m) std::printf("%16s", value(*m).c_str());
+    std::printf("\n");
+  };
+  std::printf("%-26s", "");
+  for (int i = 0; i < 2; ++i)
+    if (columns[i]) std::printf("%16s", heads[i]);
+  std::printf("\n");
+  row("tets", [](const MeshStatistics& m) { return text("%zu", m.tets); });
+  row("points", [](const MeshStatistics& m) { return text("%zu", m.points); });
+  row("materials", [](const MeshStatistics& m) { return text("%zu", m.materials.size()); });
+  row("volume", [](const MeshStatistics& m) { return text("%.6g", total_volume(m)); });
+  row("smallest solid angle, sr", [](const MeshStatistics& m) { return text("%.4f", m.min_solid_angle); });
+  row("mean solid angle, sr", [](const MeshStatistics& m) { return text("%.4f", m.mean_solid_angle); });
+  row(text("tets below %.3g sr, %%", line.min_solid_angle).c_str(),
+      [](const MeshStatistics& m) { return text("%.3f", m.percent_below); });
+  row("dihedral angles, degrees",
+      [](const MeshStatistics& m) { return text("%.1f - %.1f", m.min_dihedral, m.max_dihedral); });
+  std::printf("\n");
+  if (run.mesher)
+    std::printf("resolution %d (cells of %.4g), ", run.mesher->resolution, run.mesher->cell_size);
+  std::printf("%.2f s: read %.2f", run.seconds_total, run.seconds_read);
+  if (run.mesher) std::printf(", mesh %.2f", run.seconds_mesh);
+  if (run.simplify)
+    std::printf(", simplify %.2f, improve %.2f", run.simplify->seconds_build + run.simplify->seconds_simplify,
+                run.simplify->seconds_close);
+  std::printf(", write %.2f; peak memory %.0f MB\n", run.seconds_write, static_cast<double>(peak_bytes()) / 1e6);
+}
+
+}  // namespace tetwright

@@ -1,0 +1,116 @@
+#include "tools/stats_json.h"
+
+#include <sys/resource.h>
+
+#include "common/parallel.h"
+
+namespace tetwright {
+
+namespace {
+
+const char* name_of(Command command) {
+  switch (command) {
+    case Command::prepare:
+      return "prepare";
+    case Command::mesh:
+      return "mesh";
+    case Command::simplify:
+      return "simplify";
+    case Command::check:
+      return "check";
+    case Command::sample:
+      return "sample";
+  }
+  return "";
+}
+
+nlohmann::json iteration_json(const IterationReport& it) {
+  nlohmann::json operations = nlohmann::json::object(), rejections = nlohmann::json::object();
+  for (std::size_t o = 0; o < operation_count; ++o) {
+    const auto operation = static_cast<Operation>(o);
+    const std::string name(operation_names[o]);
+    operations[name] = {{"tried", it.counts.tried(operation)}, {"done", it.counts.of(operation, Outcome::done)}};
+    nlohmann::json reasons = nlohmann::json::object();
+    for (std::size_t r = 1; r < outcome_count; ++r)  // 0 is done
+      if (const auto n = it.counts.of(operation, static_cast<Outcome>(r))) reasons[std::string(outcome_names[r])] = n;
+    rejections[name] = reasons;
+  }
+  return {{"kind", it.kind},
+          {"tets_before", it.tets_before},
+          {"tets_after", it.tets_after},
+          {"cutoff", it.cutoff},
+          {"percent", it.percent},
+          {"largest_error", it.largest_error},
+          {"operations", operations},
+          {"rejections", rejections},
+          {"lock_conflicts", it.lock_conflicts},
+          {"skipped", it.skipped},
+          {"seconds", it.seconds}};
+}
+
+}  // namespace
+
+std::size_t peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
+}
+
+nlohmann::json mesh_json(const MeshStatistics& m) {
+  nlohmann::json materials = nlohmann::json::array();
+  for (const auto& material : m.materials)
+    materials.push_back(
+        {{"tag", material.tag}, {"name", material.name}, {"tets", material.tets}, {"volume", material.volume}});
+  return {{"tets", m.tets},
+          {"points", m.points},
+          {"materials", materials},
+          {"min_solid_angle", m.min_solid_angle},
+          {"mean_solid_angle", m.mean_solid_angle},
+          {"threshold", m.threshold},
+          {"percent_below_threshold", m.percent_below},
+          {"min_dihedral", m.min_dihedral},
+          {"max_dihedral", m.max_dihedral},
+          {"histogram", m.histogram}};
+}
+
+nlohmann::json stats_json(const CommandLine& line, const RunReport& run) {
+  nlohmann::json j;
+  j["version"] = TETWRIGHT_VERSION;
+  j["command"] = name_of(line.command);
+  j["threads"] = thread_count();
+  j["seed"] = line.seed;
+  j["input"] = {{"files", run.inputs}, {"triangles", run.input_triangles}, {"points", run.input_points}};
+  if (!run.material_field.empty()) j["input"]["material_field"] = run.material_field;
+  nlohmann::json seconds = {{"read", run.seconds_read}, {"write", run.seconds_write}, {"total", run.seconds_total}};
+  if (run.dense) j["dense"] = mesh_json(*run.dense);
+  if (run.mesher) {
+    const MesherReport& m = *run.mesher;
+    j["dense"]["cell_size"] = m.cell_size;
+    j["dense"]["resolution"] = m.resolution;
+    j["dense"]["cells"] = m.cells;
+    j["dense"]["lattice_tets"] = m.lattice_tets;
+    seconds["mesh"] = run.seconds_mesh;
+    seconds["sdf"] = m.seconds_sdf;
+    seconds["octree"] = m.seconds_octree;
+    seconds["lattice"] = m.seconds_lattice;
+    seconds["move"] = m.seconds_move;
+    seconds["cut"] = m.seconds_cut;
+  }
+  j["result"] = run.result ? mesh_json(*run.result) : nlohmann::json();
+  j["iterations"] = nlohmann::json::array();
+  if (run.simplify) {
+    seconds["build"] = run.simplify->seconds_build;
+    seconds["simplify"] = run.simplify->seconds_simplify;
+    seconds["close"] = run.simplify->seconds_close;
+    for (const IterationReport& it : run.simplify->iterations) j["iterations"].push_back(iteration_json(it));
+  }
+  j["seconds"] = seconds;
+  j["peak_bytes"] = peak_bytes();
+  j["shortfall"] = nlohmann::json::array();
+  for (const Shortfall& s : run.shortfall)
+    j["shortfall"].push_back(
+        {{"what", s.what}, {"asked", s.asked}, {"reached", s.reached}, {"held_back_by", s.held_back_by}});
+  return j;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/mesh_statistics.h"
+#include "mesher/mesher.h"
+#include "simplify/simplify.h"
+#include "tools/command_line.h"
+
+namespace tetwright {
+
+/// One thing that was asked for and not reached.
+struct Shortfall {
+  std::string what;  ///< "target_tets" or "min_solid_angle"
+  double asked = 0, reached = 0;
+  std::string held_back_by;  ///< the rule, from the rejection counts
+};
+
+/// All that one run has to tell; what a command does not do stays empty.
+struct RunReport {
+  std::vector<std::string> inputs;
+  std::size_t input_triangles = 0, input_points = 0;
+  std::string material_field;  ///< of a tet mesh: where its materials came from
+  std::optional<MesherReport> mesher;
+  std::optional<MeshStatistics> dense, result;
+  std::optional<SimplifyReport> simplify;
+  double seconds_read = 0, seconds_mesh = 0, seconds_write = 0, seconds_total = 0;
+  std::vector<Shortfall> shortfall;
+};
+
+/// Largest resident size of the process so far.
+std::size_t peak_bytes();
+
+/// The keys that data/stats.schema.json fixes.
+nlohmann::json stats_json(const CommandLine& line, const RunReport& run);
+nlohmann::json mesh_json(const MeshStatistics& mesh);
+
+}  // namespace tetwright
