@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+
+#include "common/types.h"
+
+namespace tetwright {
+
+/// Where the grid of finest cells lies. All of mesher/ works in *grid coordinates*: the unit is one finest
+/// cell, the signed distances' voxels and the octree's corners are at whole numbers, and the box of the octree
+/// is [0, cells[0]] x [0, cells[1]] x [0, cells[2]]. Only the finished mesh is brought back to input units.
+struct GridFrame {
+  Vec3 origin = Vec3::Zero();        ///< position of grid point (0, 0, 0), input units
+  double cell_size = 1;              ///< edge of a finest cell, input units
+  std::array<int, 3> cells{1, 1, 1};  ///< finest cells along each side of the box, a multiple of 2^root_level
+  int root_level = 0;                ///< the octree's largest cells have 2^root_level finest cells to an edge
+
+  Vec3 to_grid(const Vec3& input) const { return (input - origin) / cell_size; }
+  Vec3 to_input(const Vec3& grid) const { return origin + cell_size * grid; }
+};
+
+/// Finest cells between the surface's bounding box and the box of the octree. Points that may move and their
+/// stars reach two cells from the surface; the third keeps the box's own faces out of it.
+inline constexpr int frame_margin = 3;
+
+/// A frame whose box holds [low, high] (input units) with frame_margin cells to spare. With `uniform` the
+/// root cells are finest cells; otherwise the longest side has about four to eight root cells.
+/// `cell_size` > 0; the box has at most 2^18 cells to a side.
+GridFrame make_grid_frame(const Vec3& low, const Vec3& high, double cell_size, bool uniform);
+
+}  // namespace tetwright

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/types.h"
+
+namespace tetwright {
+
+/// The winding number of a closed surface at every point of the integer grid, exactly: the signed number of
+/// times the vertical line from below crosses the surface. Cavities wound inwards are outside (0), overlapping
+/// parts are inside (2 or more), whatever self-intersections the surface has.
+///
+/// Memory and time grow with the surface's shadow (N^2), not with the grid. Immutable after construction; all
+/// functions may be called concurrently.
+class GridWinding {
+ public:
+  /// From the node `first` of a row on, the winding number is `winding`, up to the next entry.
+  struct Crossing {
+    std::int32_t first;
+    std::int32_t winding;
+  };
+
+  /// `points` in grid coordinates; the grid has the nodes 0...cells[a] along each axis a.
+  GridWinding(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+              const std::array<int, 3>& cells);
+
+  /// The entries of the vertical row at (x, y), by ascending `first`; before the first one the winding number
+  /// is 0. Empty outside the grid.
+  std::span<const Crossing> row(int x, int y) const {
+    if (x < 0 || y < 0 || x >= nodes_x_ || y >= nodes_y_) return {};
+    const std::size_t r = static_cast<std::size_t>(y) * static_cast<std::size_t>(nodes_x_) +
+                          static_cast<std::size_t>(x);
+    return {crossings_.data() + starts_[r], crossings_.data() + starts_[r + 1]};
+  }
+
+  /// True where the winding number is positive.
+  bool inside(int x, int y, int z) const {
+    bool in = false;
+    for (const Crossing& c : row(x, y)) {
+      if (c.first > z) break;
+      in = c.winding > 0;
+    }
+    return in;
+  }
+
+ private:
+  int nodes_x_, nodes_y_;
+  std::vector<std::size_t> starts_;
+  std::vector<Crossing> crossings_;
+};
+
+}  // namespace tetwright

@@ -1,0 +1,203 @@
+#include "mesher/lattice.h"
+
+#include <algorithm>
+
+#include "common/predicates.h"
+#include "mesher/parallel_sort.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::size_t grain = 1024;  // leaves to a task, some microseconds each
+
+/// A place of the lattice in half finest cells.
+using HalfCells = std::array<int, 3>;
+
+/// What is needed of a leaf, in half finest cells.
+struct LeafBox {
+  HalfCells low;
+  int side;
+  int level;
+  HalfCells corner(int k) const {
+    return {low[0] + (k & 1 ? side : 0), low[1] + (k >> 1 & 1 ? side : 0), low[2] + (k >> 2 & 1 ? side : 0)};
+  }
+  HalfCells centre() const { return {low[0] + side / 2, low[1] + side / 2, low[2] + side / 2}; }
+};
+
+LeafBox leaf_box(const Octree& octree, std::size_t i) {
+  const Octree::Leaf leaf = octree.leaf(i);
+  HalfCells low = morton_decode(leaf.key);
+  for (int& c : low) c *= 2;
+  return {low, 2 << leaf.level, leaf.level};
+}
+
+/// Corner numbers (bits x, y, z) of the face of `axis` at `upper`, going round.
+std::array<int, 4> face_ring(int axis, bool upper) {
+  const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3, base = upper ? 1 << axis : 0;
+  return {base, base | u, base | u | v, base | v};
+}
+
+/// The centre of the face of `axis` at `upper`.
+HalfCells face_centre(const LeafBox& box, int axis, bool upper) {
+  HalfCells p = box.centre();
+  p[axis] = box.low[axis] + (upper ? box.side : 0);
+  return p;
+}
+
+/// True if the face of `axis` at `upper` is on the box.
+bool on_box(const Octree& octree, const LeafBox& box, int axis, bool upper) {
+  return upper ? box.low[axis] + box.side == 2 * octree.cells[axis] : box.low[axis] == 0;
+}
+
+HalfCells middle(const HalfCells& a, const HalfCells& b) {
+  return {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
+}
+
+/// Emits the tets that belong to one leaf after another.
+class TetEmitter {
+ public:
+  TetEmitter(const Octree& octree, const LatticePoints& points, const std::vector<float>* distances,
+             std::vector<Tet>& out)
+      : octree_(octree), points_(points), distances_(distances), out_(out) {}
+
+  void leaf(std::size_t i) {
+    box_ = leaf_box(octree_, i);
+    centre_ = find(box_.centre());
+    for (int k = 0; k < 8; ++k) corners_[k] = find(box_.corner(k));
+    for (int axis = 0; axis < 3; ++axis)
+      for (bool upper : {false, true}) face(axis, upper);
+  }
+
+ private:
+  Index find(const HalfCells& p) const { return points_.find(morton_encode(p)); }
+
+  void face(int axis, bool upper) {
+    if (on_box(octree_, box_, axis, upper)) {
+      around(axis, upper, find(face_centre(box_, axis, upper)));
+      return;
+    }
+    HalfCells beyond = box_.low;
+    beyond[axis] += upper ? box_.side : -box_.side;
+    const std::size_t j = octree_.find(morton_encode(beyond[0] / 2, beyond[1] / 2, beyond[2] / 2));
+    const LeafBox other = leaf_box(octree_, j);
+    if (other.level == box_.level) {
+      if (upper) around(axis, upper, find(other.centre()));
+    } else if (other.level > box_.level) {
+      against_bigger(axis, upper, other);
+    }  // a smaller neighbour emits the tets between
+  }
+
+  /// The tets between this leaf's centre, `apex` and each edge of the face.
+  void around(int axis, bool upper, Index apex) {
+    const std::array<int, 4> ring = face_ring(axis, upper);
+    for (std::size_t e = 0; e < 4; ++e) {
+      const int a = ring[e], b = ring[(e + 1) % 4];
+      // The edges of finest cells cannot have a midpoint.
+      const Index m = box_.level > 0 ? find(middle(box_.corner(a), box_.corner(b))) : no_index;
+      if (m == no_index) {
+        emit(centre_, apex, corners_[a], corners_[b]);
+      } else {
+        emit(centre_, apex, corners_[a], m);
+        emit(centre_, apex, m, corners_[b]);
+      }
+    }
+  }
+
+  void against_bigger(int axis, bool upper, const LeafBox& big) {
+    const HalfCells heart = face_centre(big, axis, !upper);
+    const Index big_centre = find(big.centre());
+    const std::array<int, 4> ring = face_ring(axis, upper);
+    for (std::size_t e = 0; e < 4; ++e) {
+      if (box_.corner(ring[e]) != heart) continue;
+      const Index f = corners_[ring[e]], far = corners_[ring[(e + 2) % 4]];
+      for (std::size_t side : {e + 1, e + 3}) {
+        const Index m = corners_[ring[side % 4]];
+        emit(centre_, f, m, far);
+        emit(big_centre, f, m, far);
+      }
+    }
+  }
+
+  void emit(Index a, Index b, Index c, Index d) {
+    if (distances_ && box_.level == 0) {
+      const std::vector<float>& phi = *distances_;
+      constexpr float far = field_band;
+      if (phi[a] >= far && phi[b] >= far && phi[c] >= far && phi[d] >= far) return;
+    }
+    // The coordinates are small halves of whole numbers: the value has no rounding error.
+    const auto& p = points_.positions;
+    if (orient3d_value(p[a], p[b], p[c], p[d]) < 0) std::swap(c, d);
+    out_.push_back({a, b, c, d});
+  }
+
+  const Octree& octree_;
+  const LatticePoints& points_;
+  const std::vector<float>* distances_;
+  std::vector<Tet>& out_;
+  LeafBox box_{};
+  Index centre_ = no_index;
+  std::array<Index, 8> corners_{};
+};
+
+}  // namespace
+
+Index LatticePoints::find(MortonKey key) const {
+  const auto it = std::lower_bound(keys.begin(), keys.end(), key);
+  return it != keys.end() && *it == key ? static_cast<Index>(it - keys.begin()) : no_index;
+}
+
+LatticePoints lattice_points(const Octree& octree) {
+  LatticePoints points;
+  // The lowest bit below the key tells centres from the rest; corners come from up to eight leaves.
+  std::vector<std::uint64_t> marked = parallel_collect<std::uint64_t>(
+      0, octree.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& out) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const LeafBox box = leaf_box(octree, i);
+          out.push_back(morton_encode(box.centre()) << 1 | 1);
+          for (int k = 0; k < 8; ++k) out.push_back(morton_encode(box.corner(k)) << 1);
+          for (int axis = 0; axis < 3; ++axis)
+            for (bool upper : {false, true})
+              if (on_box(octree, box, axis, upper))
+                out.push_back(morton_encode(face_centre(box, axis, upper)) << 1);
+        }
+      });
+  parallel_sort_unique(marked);
+  points.keys.resize(marked.size());
+  points.positions.resize(marked.size());
+  points.is_centre.resize(marked.size());
+  parallel_for(0, marked.size(), 8 * grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      points.keys[i] = marked[i] >> 1;
+      points.is_centre[i] = marked[i] & 1;
+      const HalfCells p = morton_decode(points.keys[i]);
+      points.positions[i] = 0.5 * Vec3(p[0], p[1], p[2]);
+    }
+  });
+  return points;
+}
+
+std::vector<float> lattice_distances(const LatticePoints& points, const MaterialField& field) {
+  std::vector<float> distances(points.size());
+  parallel_for(0, points.size(), 4 * grain, [&](std::size_t begin, std::size_t end) {
+    FieldSampler sampler(field);
+    for (std::size_t i = begin; i < end; ++i) {
+      const HalfCells p = morton_decode(points.keys[i]);
+      const bool at_node = !((p[0] | p[1] | p[2]) & 1);
+      distances[i] = static_cast<float>(at_node ? sampler.at_node(p[0] / 2, p[1] / 2, p[2] / 2)
+                                                : sampler.at(points.positions[i]));
+    }
+  });
+  return distances;
+}
+
+std::vector<Tet> lattice_tets(const Octree& octree, const LatticePoints& points,
+                              const std::vector<float>* distances) {
+  return parallel_collect<Tet>(0, octree.size(), grain,
+                               [&](std::size_t begin, std::size_t end, std::vector<Tet>& out) {
+                                 TetEmitter emitter(octree, points, distances, out);
+                                 for (std::size_t i = begin; i < end; ++i) emitter.leaf(i);
+                               });
+}
+
+}  // namespace tetwright

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/types.h"
+#include "mesher/material_field.h"
+#include "mesher/octree.h"
+
+namespace tetwright {
+
+/// The points of the body-centred lattice over an octree: the corners and the centre of every leaf, and the
+/// middle of every leaf face on the box. Sorted by Morton key, so that near points have near numbers.
+struct LatticePoints {
+  /// Morton keys of the points in half finest cells (centres of finest cells are at odd numbers), ascending.
+  std::vector<MortonKey> keys;
+  std::vector<Vec3> positions;          ///< grid coordinates
+  std::vector<std::uint8_t> is_centre;  ///< 1 for centres of leaves
+
+  std::size_t size() const { return keys.size(); }
+  /// The number of the point with this key, or no_index.
+  Index find(MortonKey key) const;
+};
+
+LatticePoints lattice_points(const Octree& octree);
+
+/// Signed distance of each lattice point, in finest cells, cut off at the band.
+std::vector<float> lattice_distances(const LatticePoints& points, const MaterialField& field);
+
+/// The tets of the body-centred lattice: positive, conforming without T-junctions, filling the box.
+///
+/// Two equal leaves that share a face: four tets around the segment between the centres, one for each edge of
+/// the face. A leaf against four smaller ones: each of the four small faces is cut along the diagonal through
+/// the big face's centre, and its triangles are coned to both centres. On the box: the face's middle in the
+/// place of the neighbour's centre. An edge with a hanging midpoint is split there. Every face between two
+/// pyramids is a triangle of a centre and an edge and every quadrilateral's diagonal depends on it alone, so
+/// neighbours agree. Equal leaves give dihedral angles of 60 and 90 degrees, all transitions 45 to 120.
+///
+/// With `distances` given, tets of finest cells that lie outside beyond the band are left out: none of their
+/// points can be moved or cut.
+std::vector<Tet> lattice_tets(const Octree& octree, const LatticePoints& points,
+                              const std::vector<float>* distances = nullptr);
+
+}  // namespace tetwright

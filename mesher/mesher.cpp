@@ -1,0 +1,217 @@
+#include "mesher/mesher.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "common/error.h"
+#include "common/parallel.h"
+#include "common/portable_math.h"
+#include "common/predicates.h"
+#include "mesher/cutting.h"
+#include "mesher/labelled_lattice.h"
+#include "mesher/lattice.h"
+#include "mesher/material_field.h"
+#include "mesher/octree.h"
+#include "mesher/point_mover.h"
+#include "mesher/surface_input.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr int smallest_resolution = 4;
+constexpr int largest_resolution = 4096;
+
+/// Dense tets of an adaptive mesh for each squared finest cell of surface, and for each cube of volume in a
+/// uniform one (a cell has twelve). Measured on scans.
+constexpr double tets_per_area = 14;
+constexpr double tets_per_volume_uniform = 12;
+/// Peak memory for each dense tet, the lattice outside included; measured, rounded up.
+constexpr double bytes_per_tet = 260;
+/// A uniform grid holds lattice points and leaves over its whole box.
+constexpr double bytes_per_cell_uniform = 420;
+
+/// Dense tets for each tet that is wanted in the end: fewer leave the simplifier no choice, more take time.
+constexpr double dense_per_target = 40;
+constexpr double most_dense_tets = 20e6;
+constexpr int smallest_target_resolution = 32;
+
+/// Coordinates must resolve a finest cell this finely, or rounding them could turn a thin tet over.
+constexpr double cell_share_of_rounding = 0x1p-20;
+
+std::string number_text(double v) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", v);
+  return text;
+}
+
+ClosedSurface close_only_surface(const std::vector<MaterialSurface>& surfaces) {
+  if (surfaces.size() != 1)
+    throw UsageError("one surface can be meshed at a time, not " + std::to_string(surfaces.size()));
+  return close_surface(surfaces[0].surface, surfaces[0].file);
+}
+
+double longest_side(const ClosedSurface& s) { return (s.high - s.low).maxCoeff(); }
+
+void check_options(const MesherOptions& options) {
+  if (options.voxel_size != 0 && !(options.voxel_size > 0 && std::isfinite(options.voxel_size)))
+    throw UsageError("the voxel size must be a positive number, not " + number_text(options.voxel_size));
+  if (options.voxel_size == 0 &&
+      (options.resolution < smallest_resolution || options.resolution > largest_resolution))
+    throw UsageError("the resolution must be from " + std::to_string(smallest_resolution) + " to " +
+                     std::to_string(largest_resolution) + ", not " + std::to_string(options.resolution));
+  if (!(options.adaptivity >= 0 && std::isfinite(options.adaptivity)))
+    throw UsageError("the adaptivity must be 0 or more finest cells, not " + number_text(options.adaptivity));
+}
+
+/// The finest cell's edge in input units.
+double cell_size(const ClosedSurface& s, const std::string& file, const MesherOptions& options) {
+  check_options(options);
+  const double longest = longest_side(s);
+  const double h = options.voxel_size > 0 ? options.voxel_size : longest / options.resolution;
+  if (longest > h * (largest_resolution + 0.5))
+    throw UsageError("a voxel size of " + number_text(h) + " gives " + number_text(longest / h) +
+                     " cells along the longest side; at most " + std::to_string(largest_resolution) +
+                     " are possible");
+  const double farthest = std::max(s.low.cwiseAbs().maxCoeff(), s.high.cwiseAbs().maxCoeff());
+  if (farthest * 0x1p-52 > h * cell_share_of_rounding)
+    throw InputError(file, 0,
+                     "with coordinates up to " + number_text(farthest) + " cells of " + number_text(h) +
+                         " cannot be told apart safely; move the surface nearer to the origin or take larger cells");
+  return h;
+}
+
+MesherEstimate estimate(const ClosedSurface& s, double h, const MesherOptions& options) {
+  MesherEstimate e;
+  if (options.uniform) {
+    const Vec3 box = (s.high - s.low) / h;
+    e.tets = static_cast<std::size_t>(tets_per_volume_uniform * std::max(0.0, s.volume) / (h * h * h));
+    e.bytes = static_cast<std::size_t>(bytes_per_tet * static_cast<double>(e.tets) +
+                                       bytes_per_cell_uniform * box.prod());
+  } else {
+    e.tets = static_cast<std::size_t>(tets_per_area * s.area / (h * h));
+    e.bytes = static_cast<std::size_t>(bytes_per_tet * static_cast<double>(e.tets));
+  }
+  return e;
+}
+
+void check_memory(const MesherEstimate& e) {
+  const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  if (static_cast<double>(e.bytes) > machine)
+    throw OutputError("the mesh would have about " + number_text(static_cast<double>(e.tets)) + " tets and take " +
+                      number_text(static_cast<double>(e.bytes) / (1 << 30)) + " GB, this machine has " +
+                      number_text(machine / (1 << 30)) + " GB; use a lower resolution");
+}
+
+/// Runs the stages, tells about them and takes their times.
+class Stages {
+ public:
+  explicit Stages(Progress* progress) : progress_(progress) {}
+  void begin(const char* name) {
+    if (progress_) {
+      progress_->throw_if_cancelled();
+      progress_->begin_stage(name);
+    }
+    start_ = std::chrono::steady_clock::now();
+  }
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  Progress* progress_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+TetMesh to_input_units(CutMesh cut, const GridFrame& frame, const MaterialSurface& material) {
+  TetMesh mesh;
+  mesh.points = std::move(cut.points);
+  parallel_for(0, mesh.points.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) mesh.points[i] = frame.to_input(mesh.points[i]);
+  });
+  mesh.tets = std::move(cut.tets);
+  mesh.materials.assign(mesh.tets.size(), material.tag);
+  if (!material.name.empty()) mesh.material_names[material.tag] = material.name;
+  // The promise is about the coordinates as handed out; the frame leaves room for their rounding.
+  parallel_for(0, mesh.tets.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Tet& t = mesh.tets[i];
+      TETWRIGHT_CHECK(orient3d(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) > 0);
+    }
+  });
+  return mesh;
+}
+
+}  // namespace
+
+MesherEstimate estimate_mesh(const std::vector<MaterialSurface>& surfaces, const MesherOptions& options) {
+  check_options(options);
+  const ClosedSurface surface = close_only_surface(surfaces);
+  return estimate(surface, cell_size(surface, surfaces[0].file, options), options);
+}
+
+MeshedSurface mesh_surfaces(const std::vector<MaterialSurface>& surfaces, const MesherOptions& options,
+                            Progress* progress) {
+  check_options(options);
+  MeshedSurface result;
+  MesherReport& report = result.report;
+  Stages stages(progress);
+
+  stages.begin("signed distances");
+  const ClosedSurface surface = close_only_surface(surfaces);
+  const MaterialSurface& material = surfaces[0];
+  const NothingToMeshError nothing(material.file +
+                                   ": the surface is smaller than a cell; use a higher resolution or a smaller "
+                                   "voxel size");
+  if (!(longest_side(surface) > 0)) throw nothing;
+  report.cell_size = cell_size(surface, material.file, options);
+  report.resolution = static_cast<int>(std::ceil(longest_side(surface) / report.cell_size - 0.5));
+  check_memory(estimate(surface, report.cell_size, options));
+  const GridFrame frame = make_grid_frame(surface.low, surface.high, report.cell_size, options.uniform);
+  const auto field = std::make_shared<const MaterialField>(
+      surface, MaterialField::Material{material.name, material.tag}, frame, progress);
+  report.seconds_sdf = stages.seconds();
+
+  stages.begin("octree");
+  const Octree octree = build_octree(*field, {options.uniform, options.adaptivity}, progress);
+  report.cells = octree.size();
+  report.seconds_octree = stages.seconds();
+
+  stages.begin("lattice");
+  LatticePoints points = lattice_points(octree);
+  std::vector<float> distances = lattice_distances(points, *field);
+  std::vector<Tet> tets = lattice_tets(octree, points, &distances);
+  LabelledLattice lattice = label_lattice(std::move(points), std::move(distances), std::move(tets));
+  report.lattice_tets = lattice.tets.size();
+  report.seconds_lattice = stages.seconds();
+
+  stages.begin("moving points");
+  move_points(lattice, *field, progress);
+  report.seconds_move = stages.seconds();
+
+  stages.begin("cutting");
+  CutMesh cut = cut_lattice(lattice);
+  if (cut.tets.empty()) throw nothing;
+  result.mesh = to_input_units(std::move(cut), frame, material);
+  report.seconds_cut = stages.seconds();
+
+  result.reference = field;
+  return result;
+}
+
+int resolution_for_target(const std::vector<MaterialSurface>& surfaces, std::size_t target_tets) {
+  if (target_tets == 0) throw UsageError("the target must be at least one tet");
+  const ClosedSurface surface = close_only_surface(surfaces);
+  const double longest = longest_side(surface);
+  if (!(surface.area > 0 && longest > 0)) return smallest_target_resolution;
+  const double dense = std::min(most_dense_tets, dense_per_target * static_cast<double>(target_tets));
+  const double resolution = longest * std::sqrt(dense / (tets_per_area * surface.area));
+  return static_cast<int>(std::clamp(std::ceil(resolution), static_cast<double>(smallest_target_resolution),
+                                     static_cast<double>(largest_resolution)));
+}
+
+}  // namespace tetwright

@@ -1,0 +1,157 @@
+#include "mesher/octree.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesher/parallel_sort.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Cells per task where a cell takes about a microsecond.
+constexpr std::size_t grain = 2048;
+
+/// The largest cells, as a level, that may hold an interface: their tests read every grid point of the cell,
+/// and their corners must mostly be within the narrow band.
+constexpr int coarsest_interface_level = 2;
+
+/// The parents (level l + 1) that must be split because the cell `key` of level l is: its own, and those of its
+/// neighbours across faces and edges, which then exist as cells of level l.
+void append_parents(MortonKey key, const std::array<int, 3>& size, std::vector<MortonKey>& out) {
+  const std::array<int, 3> p = morton_decode(key);
+  const auto parent_of = [&](const std::array<int, 3>& q) {
+    for (int a = 0; a < 3; ++a)
+      if (q[a] < 0 || q[a] >= size[a]) return;
+    out.push_back(morton_encode(q) >> 3);
+  };
+  // Only the neighbours on the outer side of the parent have another parent.
+  std::array<int, 3> outer;
+  for (int a = 0; a < 3; ++a) outer[a] = p[a] & 1 ? 1 : -1;
+  out.push_back(key >> 3);
+  for (int a = 0; a < 3; ++a) {
+    std::array<int, 3> q = p;
+    q[a] += outer[a];
+    parent_of(q);
+    const int b = (a + 1) % 3;
+    q[b] += outer[b];
+    parent_of(q);
+  }
+}
+
+/// True if trilinear interpolation between the eight corners of the cell puts the interface within `tolerance`
+/// of where the grid has it, and sees the same sides.
+bool interpolates(FieldSampler& sampler, MortonKey key, int level, double tolerance) {
+  const std::array<int, 3> low = morton_decode(key << 3 * level);
+  const int side = 1 << level;
+  double corner[8];
+  bool any_inside = false, any_outside = false;
+  for (int k = 0; k < 8; ++k) {
+    corner[k] = sampler.at_node(low[0] + (k & 1) * side, low[1] + (k >> 1 & 1) * side, low[2] + (k >> 2) * side);
+    if (beyond_band(corner[k])) return false;
+    (corner[k] < 0 ? any_inside : any_outside) = true;
+  }
+  if (!any_inside || !any_outside) return false;
+  for (int z = 0; z <= side; ++z)
+    for (int y = 0; y <= side; ++y)
+      for (int x = 0; x <= side; ++x) {
+        const double value = sampler.at_node(low[0] + x, low[1] + y, low[2] + z);
+        const double fx = static_cast<double>(x) / side, fy = static_cast<double>(y) / side,
+                     fz = static_cast<double>(z) / side;
+        const auto mix = [](double a, double b, double f) { return a + f * (b - a); };
+        const double coarse = mix(mix(mix(corner[0], corner[1], fx), mix(corner[2], corner[3], fx), fy),
+                                  mix(mix(corner[4], corner[5], fx), mix(corner[6], corner[7], fx), fy), fz);
+        // A distance has slope 1, so near the interface the difference of values is the misplacement.
+        if (std::min(std::abs(value), std::abs(coarse)) < 1 && std::abs(coarse - value) > tolerance) return false;
+        if ((value < 0) != (coarse < 0) && std::abs(coarse - value) > tolerance) return false;
+      }
+  return true;
+}
+
+}  // namespace
+
+std::size_t Octree::find(MortonKey finest_cell) const {
+  // The level bits are all ones at most, so this finds the last leaf that starts at or before the cell.
+  return static_cast<std::size_t>(std::upper_bound(packed.begin(), packed.end(), finest_cell << 5 | 31) -
+                                  packed.begin()) -
+         1;
+}
+
+Octree build_octree(const std::array<int, 3>& cells, int root_level, const SplitCells& split) {
+  std::vector<std::vector<MortonKey>> split_cells(static_cast<std::size_t>(root_level) + 1);
+  for (int level = 1; level <= root_level; ++level) {
+    std::vector<MortonKey>& now = split_cells[static_cast<std::size_t>(level)];
+    const std::vector<MortonKey>& below = split_cells[static_cast<std::size_t>(level - 1)];
+    const std::array<int, 3> size{cells[0] >> (level - 1), cells[1] >> (level - 1), cells[2] >> (level - 1)};
+    now = parallel_collect<MortonKey>(0, below.size(), grain,
+                                      [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+                                        for (std::size_t i = begin; i < end; ++i)
+                                          append_parents(below[i], size, out);
+                                      });
+    parallel_sort_unique(now);
+    const std::vector<MortonKey> asked = split(level, now);
+    if (asked.empty()) continue;
+    now.insert(now.end(), asked.begin(), asked.end());
+    parallel_sort_unique(now);
+  }
+
+  Octree octree{cells, root_level, {}};
+  const auto is_split = [&](int level, MortonKey key) {
+    const auto& list = split_cells[static_cast<std::size_t>(level)];
+    return level > 0 && std::binary_search(list.begin(), list.end(), key);
+  };
+  const auto pack = [](MortonKey key, int level) {
+    return key << (3 * level) << 5 | static_cast<std::uint64_t>(level);
+  };
+  const std::array<int, 3> roots{cells[0] >> root_level, cells[1] >> root_level, cells[2] >> root_level};
+  const auto layers = static_cast<std::size_t>(roots[2]);
+  octree.packed = parallel_collect<std::uint64_t>(
+      0, layers, 1, [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& out) {
+        for (int z = static_cast<int>(begin); z < static_cast<int>(end); ++z)
+          for (int y = 0; y < roots[1]; ++y)
+            for (int x = 0; x < roots[0]; ++x)
+              if (const MortonKey key = morton_encode(x, y, z); !is_split(root_level, key))
+                out.push_back(pack(key, root_level));
+      });
+  for (int level = root_level; level > 0; --level) {
+    const std::vector<MortonKey>& parents = split_cells[static_cast<std::size_t>(level)];
+    const std::vector<std::uint64_t> children = parallel_collect<std::uint64_t>(
+        0, parents.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& out) {
+          for (std::size_t i = begin; i < end; ++i)
+            for (MortonKey child = 0; child < 8; ++child)
+              if (const MortonKey key = parents[i] << 3 | child; !is_split(level - 1, key))
+                out.push_back(pack(key, level - 1));
+        });
+    octree.packed.insert(octree.packed.end(), children.begin(), children.end());
+  }
+  parallel_sort(octree.packed);
+  return octree;
+}
+
+Octree build_octree(const MaterialField& field, const OctreeOptions& options, Progress* progress) {
+  const GridFrame& frame = field.frame();
+  if (options.uniform)
+    return build_octree(frame.cells, 0, [](int, const std::vector<MortonKey>&) { return std::vector<MortonKey>(); });
+
+  // Cells of the level at hand that hold an interface.
+  std::vector<MortonKey> holding = field.interface_cells();
+  return build_octree(frame.cells, frame.root_level, [&](int level, const std::vector<MortonKey>& already) {
+    if (progress) {
+      progress->throw_if_cancelled();
+      progress->update(static_cast<double>(level) / (frame.root_level + 1));
+    }
+    for (MortonKey& key : holding) key >>= 3;
+    holding.erase(std::unique(holding.begin(), holding.end()), holding.end());
+    if (level > coarsest_interface_level || options.adaptivity <= 0) return holding;
+    return parallel_collect<MortonKey>(
+        0, holding.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+          FieldSampler sampler(field);
+          for (std::size_t i = begin; i < end; ++i)
+            if (!std::binary_search(already.begin(), already.end(), holding[i]) &&
+                !interpolates(sampler, holding[i], level, options.adaptivity))
+              out.push_back(holding[i]);
+        });
+  });
+}
+
+}  // namespace tetwright
