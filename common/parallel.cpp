@@ -1,15 +1,10 @@
 #include "common/parallel.h"
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/info.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/partitioner.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <algorithm>
 #include <atomic>
 #include <vector>
+
+#include "common/tbb_loop.h"
 
 namespace tetwright {
 
@@ -18,31 +13,36 @@ namespace {
 /// Threads that parallel work may use; 0 until a ThreadLimit says otherwise.
 std::atomic<unsigned> thread_limit{0};
 
-/// TBB's own hand-over between threads is invisible to the thread sanitizer when the library is not
-/// instrumented. Two atomics state what it guarantees: all before the loop happens before each body, each
-/// body before all after the loop. Two, and not acquired at a body's end, so that no order among the bodies
-/// is claimed that does not exist.
-class HandOver {
- public:
-  HandOver() { start_.fetch_add(1, std::memory_order_release); }
-  void body_begins() const { (void)start_.load(std::memory_order_acquire); }
-  void body_ends() { done_.fetch_add(1, std::memory_order_release); }
-  void join() const { (void)done_.load(std::memory_order_acquire); }
+/// TBB's own hand-over between threads is invisible to the thread sanitizer, since the library is not
+/// instrumented. Two atomics state what it guarantees: all before a loop happens before each body, each body
+/// before all after the loop. Two, and none acquired at a body's end, so that no order among the bodies is
+/// claimed that does not exist. Global, so that a body reads nothing of its caller's before it has acquired.
+std::atomic<unsigned> loop_started{0};
+std::atomic<unsigned> body_ended{0};
 
- private:
-  std::atomic<unsigned> start_{0};
-  std::atomic<unsigned> done_{0};
-};
+/// body(i) for each i in [0, count) on up to `threads` threads.
+void run_loop(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& body) {
+  loop_started.fetch_add(1, std::memory_order_release);
+  tbb_loop(
+      count, threads,
+      [](const void* context, std::size_t i) {
+        (void)loop_started.load(std::memory_order_acquire);
+        (*static_cast<const std::function<void(std::size_t)>*>(context))(i);
+        body_ended.fetch_add(1, std::memory_order_release);
+      },
+      &body);
+  (void)body_ended.load(std::memory_order_acquire);
+}
 
 }  // namespace
 
 struct ThreadLimit::Impl {
-  explicit Impl(unsigned threads) : control(tbb::global_control::max_allowed_parallelism, threads) {}
-  tbb::global_control control;
+  explicit Impl(unsigned threads) : tbb(threads) {}
+  TbbLimit tbb;
   unsigned before = 0;
 };
 
-unsigned hardware_threads() { return static_cast<unsigned>(std::max(1, tbb::info::default_concurrency())); }
+unsigned hardware_threads() { return tbb_concurrency(); }
 
 ThreadLimit::ThreadLimit(unsigned threads)
     : impl_(std::make_unique<Impl>(threads ? threads : hardware_threads())) {
@@ -60,21 +60,13 @@ void parallel_for(std::size_t begin, std::size_t end, std::size_t grain,
                   const std::function<void(std::size_t, std::size_t)>& body) {
   if (begin >= end) return;
   grain = std::max<std::size_t>(1, grain);
-  if (thread_count() == 1 || end - begin <= grain) {
-    for (std::size_t i = begin; i < end; i += grain) body(i, std::min(end, i + grain));
+  const std::size_t parts = (end - begin + grain - 1) / grain;
+  const auto part = [&](std::size_t i) { body(begin + i * grain, std::min(end, begin + (i + 1) * grain)); };
+  if (thread_count() == 1 || parts == 1) {
+    for (std::size_t i = 0; i < parts; ++i) part(i);
     return;
   }
-  HandOver hand_over;
-  tbb::task_arena arena(static_cast<int>(thread_count()));
-  arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, grain),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        hand_over.body_begins();
-                        body(range.begin(), range.end());
-                        hand_over.body_ends();
-                      });
-  });
-  hand_over.join();
+  run_loop(parts, thread_count(), part);
 }
 
 void parallel_chunks(std::size_t chunks, const std::function<void(std::size_t, unsigned)>& body) {
@@ -85,19 +77,10 @@ void parallel_chunks(std::size_t chunks, const std::function<void(std::size_t, u
   }
   // Relaxed: the counter only hands out numbers.
   std::atomic<std::size_t> next{0};
-  HandOver hand_over;
-  tbb::task_arena arena(static_cast<int>(workers));
-  arena.execute([&] {
-    tbb::parallel_for(
-        0u, workers,
-        [&](unsigned worker) {
-          hand_over.body_begins();
-          for (std::size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < chunks;) body(i, worker);
-          hand_over.body_ends();
-        },
-        tbb::simple_partitioner());
+  run_loop(workers, workers, [&](std::size_t worker) {
+    for (std::size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < chunks;)
+      body(i, static_cast<unsigned>(worker));
   });
-  hand_over.join();
 }
 
 double parallel_sum(std::size_t begin, std::size_t end, std::size_t grain,

@@ -16,9 +16,7 @@ constexpr std::size_t grain = 1 << 13;  // tets to a task, some ten nanoseconds 
 constexpr double smallest_share = 0.05;
 
 using EdgeKey = std::uint64_t;
-EdgeKey edge_key(Index a, Index b) {
-  return static_cast<EdgeKey>(std::min(a, b)) << 32 | std::max(a, b);
-}
+EdgeKey edge_key(Index a, Index b) { return static_cast<EdgeKey>(std::min(a, b)) << 32 | std::max(a, b); }
 
 bool is_cut(const LabelledLattice& lattice, const Tet& t) {
   bool in = false, out = false;
@@ -171,13 +169,15 @@ CutMesh cut_lattice(const LabelledLattice& lattice) {
           int inside = 0, outside = 0;
           for (int k = 0; k < 4; ++k) {
             if (cut.sides[k] == Side::inside && inside++ < 2) in[inside - 1] = static_cast<Index>(k);
-            if (cut.sides[k] == Side::outside && outside++ < 2) out_corners[outside - 1] = static_cast<Index>(k);
+            if (cut.sides[k] == Side::outside && outside++ < 2)
+              out_corners[outside - 1] = static_cast<Index>(k);
           }
           bool other = false;
           if (inside == 2 && outside == 2) {
             // Corners in the order of cut_inside(), so that the two diagonals are 02-13 and 03-12.
             if (cut.ranks[in[1]] < cut.ranks[in[0]]) std::swap(in[0], in[1]);
-            if (cut.ranks[out_corners[1]] < cut.ranks[out_corners[0]]) std::swap(out_corners[0], out_corners[1]);
+            if (cut.ranks[out_corners[1]] < cut.ranks[out_corners[0]])
+              std::swap(out_corners[0], out_corners[1]);
             const auto at = [&](int k, int l) -> const Vec3& {
               return cuts[cut_number(t[in[k]], t[out_corners[l]])];
             };

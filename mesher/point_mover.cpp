@@ -37,7 +37,8 @@ struct Target {
 
 class Mover {
  public:
-  Mover(LabelledLattice& lattice, const MaterialField& field) : lattice_(lattice), field_(field), stars_(lattice) {}
+  Mover(LabelledLattice& lattice, const MaterialField& field)
+      : lattice_(lattice), field_(field), stars_(lattice) {}
 
   MoveCounts run(Progress* progress) {
     find_candidates();
@@ -160,7 +161,8 @@ class Mover {
       const Vec3 place = from + gradient * ((value < 0 ? value + wanted : wanted - value) *
                                             (value < 0 ? -1 : 1) / (slope * slope) * slope);
       const double reached = sampler.at(place);
-      if ((reached < 0) != (lattice_.distances[p] < 0) || std::abs(reached) <= std::abs(value) || beyond_band(reached))
+      if ((reached < 0) != (lattice_.distances[p] < 0) || std::abs(reached) <= std::abs(value) ||
+          beyond_band(reached))
         continue;
       if (!star_holds(p, place)) continue;
       lattice_.positions[p] = place;

@@ -21,7 +21,8 @@ struct ListedTet {
 /// block, chunk).
 class BlockRunner {
  public:
-  BlockRunner(EditableMesh& mesh, SurfaceGrid& grid, std::uint64_t seed, std::size_t chunk_size, Progress* progress)
+  BlockRunner(EditableMesh& mesh, SurfaceGrid& grid, std::uint64_t seed, std::size_t chunk_size,
+              Progress* progress)
       : mesh_(mesh), grid_(grid), seed_(seed), chunk_size_(chunk_size), progress_(progress) {}
 
   /// Fresh tasks for thread_count() workers; to be called after every EditableMesh::compact, which takes back

@@ -188,7 +188,8 @@ void EditableMesh::check_stars(const std::string& name) const {
   });
   if (const Index p = bad.load(); p != no_index)
     throw InputError(name, 0,
-                     "parts touch only in point " + std::to_string(p) + " at " + place(positions_[p] / scale_) +
+                     "parts touch only in point " + std::to_string(p) + " at " +
+                         place(positions_[p] / scale_) +
                          ", without a common face; `tetwright check` lists all such points");
 }
 

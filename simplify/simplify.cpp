@@ -24,8 +24,8 @@ constexpr double percent_step = 10;      ///< the paper's: the share of poor tet
 constexpr double first_annealing = 0.3;  ///< probability at first of an action that leaves a poorer tet
 constexpr double swaps_below = 10;       ///< times the target: above it swaps and smoothing are wasted work
 constexpr int most_closing_rounds = 24;
-/// The loop stops this much above the target, and the closing may end as far below it: collapses are what removes the
-/// last slivers on flat boundaries. Together they keep the count well within 1 %.
+/// The loop stops this much above the target, and the closing may end as far below it: collapses are what
+/// removes the last slivers on flat boundaries. Together they keep the count well within 1 %.
 constexpr double closing_slack = 0.006;
 /// Iterations in a row that remove next to nothing before the loop gives up.
 constexpr int most_idle_iterations = 6;

@@ -18,8 +18,9 @@ struct SimplifyOptions {
   double gamma = 10;         ///< the paper's: weight of the volume error against the length of an edge
   int max_iterations = 100;  ///< of the block loop
   std::uint64_t seed = 1;
-  /// Points or tets that one task takes at a time: large enough to be random within, small enough to stay in a core's
-  /// cache (a star takes about 1.5 KB). Results depend on it, not on the number of threads; small ones provoke conflicts.
+  /// Points or tets that one task takes at a time: large enough to be random within, small enough to stay in
+  /// a core's cache (a star takes about 1.5 KB). Results depend on it, not on the number of threads; small
+  /// ones provoke conflicts.
   std::size_t chunk_size = 2000;
   std::string name = "mesh";  ///< what messages call the mesh
 };

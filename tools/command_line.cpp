@@ -20,7 +20,8 @@ void add_common(CLI::App& app, CommandLine& c) {
 }
 
 void add_seed(CLI::App& app, CommandLine& c) {
-  app.add_option("--seed", c.seed, "Start of the random numbers; with one thread the same seed gives the same bytes")
+  app.add_option("--seed", c.seed,
+                 "Start of the random numbers; with one thread the same seed gives the same bytes")
       ->capture_default_str();
 }
 
@@ -32,19 +33,22 @@ void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) 
   app.add_option("--resolution", c.resolution,
                  std::string("Finest cells along the longest side (default: ") + default_resolution + ")")
       ->check(CLI::Range(4, 4096));
-  app.add_option("--voxel-size", c.voxel_size, "Edge of the finest cells in input units, instead of --resolution")
+  app.add_option("--voxel-size", c.voxel_size,
+                 "Edge of the finest cells in input units, instead of --resolution")
       ->check(CLI::PositiveNumber);
   app.add_flag("--uniform", c.uniform, "Finest cells everywhere: a plain grid, no octree");
   app.add_option("--adaptivity", c.adaptivity,
-                 "Largest misplacement of the surface by a coarser cell, in finest cells; 0: finest cells all along it")
+                 "Largest misplacement of the surface by a coarser cell, in finest cells; 0: finest cells "
+                 "all along it")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
 }
 
 void add_simplifying(CLI::App& app, CommandLine& c) {
   app.add_option("--target-tets", c.target_tets, "Number of tets wanted")->required();
-  app.add_option("--min-solid-angle", c.min_solid_angle,
-                 "Tets with a smaller solid angle (steradians) are improved; if given and some are left, status 1")
+  app.add_option(
+         "--min-solid-angle", c.min_solid_angle,
+         "Tets with a smaller solid angle (steradians) are improved; if given and some are left, status 1")
       ->check(CLI::Range(0.0, 0.5513))
       ->capture_default_str();
   app.add_option("--beta", c.beta, "Longest edge, in ideal edges, that quality does not penalise")
@@ -78,7 +82,8 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
   app.set_version_flag("--version", TETWRIGHT_VERSION);
   app.require_subcommand(1);
   app.footer(
-      "Exit status: 0 done, 1 written but short of what was asked (check: not valid), 2 wrong call, 3 bad input,\n"
+      "Exit status: 0 done, 1 written but short of what was asked (check: not valid), 2 wrong call, 3 bad "
+      "input,\n"
       "4 nothing to mesh, 5 could not be written or out of memory, 130 interrupted.");
   constexpr const char* surfaces = "Closed surface: .ply .obj .stl .off";
   constexpr const char* meshes = "Tet mesh: .vtu .msh .mesh";
@@ -106,7 +111,8 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
   add_common(*simplify, out);
   add_seed(*simplify, out);
 
-  CLI::App* check = app.add_subcommand("check", "Validity, topology and quality of a tet mesh; status 1 if not valid");
+  CLI::App* check =
+      app.add_subcommand("check", "Validity, topology and quality of a tet mesh; status 1 if not valid");
   check->add_option("MESH", out.inputs, meshes)->required()->expected(1);
   check->add_option("--before", out.before, "Mesh whose topology this one must have");
   check->add_flag("--json", out.json, "Print JSON");
@@ -127,7 +133,8 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
     std::cout << "tetwright " << TETWRIGHT_VERSION << "\n";
     return false;
   } catch (const CLI::ParseError& e) {
-    throw UsageError(one_line(e.what()) + " (tetwright --help, or --help after a command, lists what there is)");
+    throw UsageError(one_line(e.what()) +
+                     " (tetwright --help, or --help after a command, lists what there is)");
   }
   const CLI::App* chosen = app.get_subcommands().front();
   out.command = chosen == prepare    ? Command::prepare

@@ -35,8 +35,8 @@ struct CommandLine {
   bool no_progress = false;
 };
 
-/// Parses the arguments. Throws UsageError (one line that says what to do) when the call is wrong. Returns false when
-/// help or the version was asked for and printed.
+/// Parses the arguments. Throws UsageError (one line that says what to do) when the call is wrong. Returns
+/// false when help or the version was asked for and printed.
 bool parse_command_line(int argc, char** argv, CommandLine& out);
 
 }  // namespace tetwright

@@ -113,7 +113,8 @@ class Run {
     report_.seconds_read = watch.seconds();
     if (line_.target_tets > mesh_.tets.size())
       throw UsageError("--target-tets " + std::to_string(line_.target_tets) + " is above the " +
-                       std::to_string(mesh_.tets.size()) + " tets of " + line_.inputs.front() + "; give fewer");
+                       std::to_string(mesh_.tets.size()) + " tets of " + line_.inputs.front() +
+                       "; give fewer");
     report_.dense = mesh_statistics(mesh_, line_.min_solid_angle);
   }
 
@@ -170,9 +171,9 @@ class Run {
     const double target = static_cast<double>(line_.target_tets);
     const double reached = static_cast<double>(report_.result->tets);
     if (std::fabs(reached - target) > 0.01 * target)
-      report_.shortfall.push_back({"target_tets", target, reached,
-                                   reached < target ? "the dense mesh, which has too few tets; raise --resolution"
-                                                    : held_back_by()});
+      report_.shortfall.push_back(
+          {"target_tets", target, reached,
+           reached < target ? "the dense mesh, which has too few tets; raise --resolution" : held_back_by()});
     if (line_.min_solid_angle_given && report_.result->min_solid_angle < line_.min_solid_angle)
       report_.shortfall.push_back(
           {"min_solid_angle", line_.min_solid_angle, report_.result->min_solid_angle, held_back_by()});
@@ -231,13 +232,15 @@ ExitStatus check(const CommandLine& line) {
   std::vector<std::string> differences;
   nlohmann::json json = {{"valid", valid}, {"findings", nlohmann::json::array()}};
   for (const Finding& f : findings)
-    json["findings"].push_back({{"number", f.number}, {"name", f.name}, {"count", f.count}, {"places", f.places}});
+    json["findings"].push_back(
+        {{"number", f.number}, {"name", f.name}, {"count", f.count}, {"places", f.places}});
   if (measurable) {
     run.result = mesh_statistics(read.mesh, line.min_solid_angle);
     json["mesh"] = mesh_json(*run.result);
     const TopologySignature topology = topology_of(read.mesh);
     json["topology"] = lines_of(topology);
-    if (!line.before.empty()) differences = topology_differences(topology_of(read_tet_mesh(line.before).mesh), topology);
+    if (!line.before.empty())
+      differences = topology_differences(topology_of(read_tet_mesh(line.before).mesh), topology);
   }
   if (!line.before.empty()) json["topology_differences"] = differences;
   const bool kept = differences.empty();

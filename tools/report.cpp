@@ -57,7 +57,8 @@ void print_report(const CommandLine& line, const RunReport& run) {
   if (run.simplify)
     std::printf(", simplify %.2f, improve %.2f", run.simplify->seconds_build + run.simplify->seconds_simplify,
                 run.simplify->seconds_close);
-  std::printf(", write %.2f; peak memory %.0f MB\n", run.seconds_write, static_cast<double>(peak_bytes()) / 1e6);
+  std::printf(", write %.2f; peak memory %.0f MB\n", run.seconds_write,
+              static_cast<double>(peak_bytes()) / 1e6);
 }
 
 }  // namespace tetwright

@@ -29,23 +29,18 @@ nlohmann::json iteration_json(const IterationReport& it) {
   for (std::size_t o = 0; o < operation_count; ++o) {
     const auto operation = static_cast<Operation>(o);
     const std::string name(operation_names[o]);
-    operations[name] = {{"tried", it.counts.tried(operation)}, {"done", it.counts.of(operation, Outcome::done)}};
+    operations[name] = {{"tried", it.counts.tried(operation)},
+                        {"done", it.counts.of(operation, Outcome::done)}};
     nlohmann::json reasons = nlohmann::json::object();
     for (std::size_t r = 1; r < outcome_count; ++r)  // 0 is done
-      if (const auto n = it.counts.of(operation, static_cast<Outcome>(r))) reasons[std::string(outcome_names[r])] = n;
+      if (const auto n = it.counts.of(operation, static_cast<Outcome>(r)))
+        reasons[std::string(outcome_names[r])] = n;
     rejections[name] = reasons;
   }
-  return {{"kind", it.kind},
-          {"tets_before", it.tets_before},
-          {"tets_after", it.tets_after},
-          {"cutoff", it.cutoff},
-          {"percent", it.percent},
-          {"largest_error", it.largest_error},
-          {"operations", operations},
-          {"rejections", rejections},
-          {"lock_conflicts", it.lock_conflicts},
-          {"skipped", it.skipped},
-          {"seconds", it.seconds}};
+  return {{"kind", it.kind},          {"tets_before", it.tets_before}, {"tets_after", it.tets_after},
+          {"cutoff", it.cutoff},      {"percent", it.percent},         {"largest_error", it.largest_error},
+          {"operations", operations}, {"rejections", rejections},      {"lock_conflicts", it.lock_conflicts},
+          {"skipped", it.skipped},    {"seconds", it.seconds}};
 }
 
 }  // namespace
@@ -59,8 +54,10 @@ std::size_t peak_bytes() {
 nlohmann::json mesh_json(const MeshStatistics& m) {
   nlohmann::json materials = nlohmann::json::array();
   for (const auto& material : m.materials)
-    materials.push_back(
-        {{"tag", material.tag}, {"name", material.name}, {"tets", material.tets}, {"volume", material.volume}});
+    materials.push_back({{"tag", material.tag},
+                         {"name", material.name},
+                         {"tets", material.tets},
+                         {"volume", material.volume}});
   return {{"tets", m.tets},
           {"points", m.points},
           {"materials", materials},
@@ -81,7 +78,8 @@ nlohmann::json stats_json(const CommandLine& line, const RunReport& run) {
   j["seed"] = line.seed;
   j["input"] = {{"files", run.inputs}, {"triangles", run.input_triangles}, {"points", run.input_points}};
   if (!run.material_field.empty()) j["input"]["material_field"] = run.material_field;
-  nlohmann::json seconds = {{"read", run.seconds_read}, {"write", run.seconds_write}, {"total", run.seconds_total}};
+  nlohmann::json seconds = {
+      {"read", run.seconds_read}, {"write", run.seconds_write}, {"total", run.seconds_total}};
   if (run.dense) j["dense"] = mesh_json(*run.dense);
   if (run.mesher) {
     const MesherReport& m = *run.mesher;

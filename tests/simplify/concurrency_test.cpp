@@ -1,5 +1,5 @@
-// What the thread sanitizer watches: eight threads on one mesh, with chunks so small that their stars meet all the time.
-// Built a second time with the locks taken out (test_without_locks), it must fail.
+// What the thread sanitizer watches: eight threads on one mesh, with chunks so small that their stars meet
+// all the time. Built a second time with the locks taken out (test_without_locks), it must fail.
 #include <gtest/gtest.h>
 
 #include "common/parallel.h"
@@ -14,9 +14,8 @@ TEST(Concurrency, EightThreadsMeetAndTheMeshStaysSound) {
   const ThreadLimit eight(8);
   std::uint64_t conflicts = 0;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    TetMesh mesh = grid_mesh({12, 12, 12}, [](int x, int y, int) {
-      return std::optional<MaterialTag>(x + y < 12 ? 1 : 2);
-    });
+    TetMesh mesh = grid_mesh(
+        {12, 12, 12}, [](int x, int y, int) { return std::optional<MaterialTag>(x + y < 12 ? 1 : 2); });
     jitter(mesh, seed);
     SimplifyOptions options;
     options.target_tets = 1500;

@@ -27,7 +27,8 @@ std::vector<std::pair<std::array<std::array<double, 3>, 4>, MaterialTag>> conten
 }
 
 TEST(EditableMesh, HandsBackWhatItTookBitForBit) {
-  TetMesh mesh = grid_mesh({4, 3, 5}, [](int x, int, int) { return std::optional<MaterialTag>(x < 2 ? -7 : 90); });
+  TetMesh mesh =
+      grid_mesh({4, 3, 5}, [](int x, int, int) { return std::optional<MaterialTag>(x < 2 ? -7 : 90); });
   jitter(mesh, 3);
   mesh.material_names[90] = "bone";
   const auto before = contents(mesh);

@@ -25,7 +25,8 @@ int inner_face(const Workbench& w, Index t) {
   return 0;
 }
 
-// Tall tets are poor together with a flat common face: three around the axis would be poorer; flat ones the other way.
+// Tall tets are poor together with a flat common face: three around the axis would be poorer; flat ones the
+// other way.
 TEST(Flip, TwoToThreeWhereItHelpsAndBack) {
   Workbench w(bipyramid(0.12));
   // Flat tets above and below: the flip's three share a short edge and are no better.
@@ -94,7 +95,9 @@ TEST(Flip, ManyInARow) {
       flips32 += o == Outcome::done;
     }
     w.task->release();
-    if (o == Outcome::done) ASSERT_TRUE(w.mesh.links_consistent());
+    if (o == Outcome::done) {
+      ASSERT_TRUE(w.mesh.links_consistent());
+    }
     // As if every tet were poor, so that flips go on in both directions.
     for (Index u = 0; u < w.mesh.tet_slots(); ++u) w.mesh.set_quality(u, 0);
   }

@@ -9,8 +9,9 @@
 
 namespace tetwright {
 
-/// n.x by n.y by n.z unit cubes of six tets each (Kuhn 1960: all around the diagonal, neighbours agree). `material`
-/// gets the cube's place and answers its tag, or nothing for no cube there. Points without a tet are left out.
+/// n.x by n.y by n.z unit cubes of six tets each (Kuhn 1960: all around the diagonal, neighbours agree).
+/// `material` gets the cube's place and answers its tag, or nothing for no cube there. Points without a tet
+/// are left out.
 inline TetMesh grid_mesh(std::array<int, 3> n,
                          const std::function<std::optional<MaterialTag>(int, int, int)>& material) {
   TetMesh mesh;

@@ -19,7 +19,8 @@ bool same_bytes(const TetMesh& a, const TetMesh& b) {
          std::memcmp(a.points.data(), b.points.data(), a.points.size() * sizeof(Vec3)) == 0;
 }
 
-/// A ring of two materials with a cavity in one of them, 18 cubes wide: a handle, a cavity, an interface, junctions.
+/// A ring of two materials with a cavity in one of them, 18 cubes wide: a handle, a cavity, an interface,
+/// junctions.
 TetMesh ring() {
   TetMesh mesh = grid_mesh({18, 18, 6}, [](int x, int y, int z) -> Tag {
     if (x >= 6 && x < 12 && y >= 6 && y < 12) return {};
@@ -33,7 +34,8 @@ TetMesh ring() {
 void expect_guarantees(const TetMesh& before, const TetMesh& after, std::size_t target) {
   for (const auto& finding : check_mesh(after)) EXPECT_EQ(finding.count, 0u) << finding.name;
   EXPECT_EQ(topology_of(before), topology_of(after));
-  EXPECT_NEAR(static_cast<double>(after.tets.size()), static_cast<double>(target), 0.01 * static_cast<double>(target));
+  EXPECT_NEAR(static_cast<double>(after.tets.size()), static_cast<double>(target),
+              0.01 * static_cast<double>(target));
 }
 
 TEST(Simplify, ReachesTheCountAndKeepsTheTopology) {

@@ -62,7 +62,9 @@ TEST(Smoothing, OptimisingBeatsTheCentroid) {
 }
 
 TEST(Smoothing, ACornerStays) {
-  Workbench w(grid_mesh({4, 4, 4}, [](int x, int y, int z) { return Tag(z < 2 ? 1 : x < 2 ? 2 : y < 2 ? 3 : 4); }));
+  Workbench w(grid_mesh({4, 4, 4}, [](int x, int y, int z) {
+    return Tag(z < 2 ? 1 : x < 2 ? 2 : y < 2 ? 3 : 4);
+  }));
   w.star(w.at(2, 2, 2));
   EXPECT_EQ(smooth(*w.task, w.rules), Outcome::material_rule);
   EXPECT_EQ(optimise(*w.task, w.rules), Outcome::material_rule);

@@ -35,7 +35,9 @@ TEST(Star, JunctionsOfTwoMaterials) {
 }
 
 TEST(Star, FourMaterialsMeetInAPointOfDimensionZero) {
-  Workbench w(grid_mesh({4, 4, 4}, [](int x, int y, int z) { return Tag(z < 2 ? 1 : x < 2 ? 2 : y < 2 ? 3 : 4); }));
+  Workbench w(grid_mesh({4, 4, 4}, [](int x, int y, int z) {
+    return Tag(z < 2 ? 1 : x < 2 ? 2 : y < 2 ? 3 : 4);
+  }));
   EXPECT_EQ(w.star(w.at(2, 2, 2)).dimension(), 0);
   EXPECT_EQ(w.star(w.at(2, 2, 3)).dimension(), 1);  // three of them along a curve
 }
@@ -67,7 +69,8 @@ TEST(Star, GradientsAreExactForTheVolume) {
       double before = 0, after = 0;
       for (const auto& t : star.tets) {
         if (t.region != g.region) continue;
-        const auto &x = star.positions[t.link[0]], &y = star.positions[t.link[1]], &z = star.positions[t.link[2]];
+        const auto &x = star.positions[t.link[0]], &y = star.positions[t.link[1]],
+                   &z = star.positions[t.link[2]];
         before += tet_volume(star.centre_position, x, y, z);
         after += tet_volume(star.centre_position + step, x, y, z);
       }

@@ -36,7 +36,8 @@ TEST(SurfaceGrid, ATriangleThatWouldCrossAnotherIsRefused) {
   edit.removed = {boundary_triangle(w)};
   // In its stead one that pierces the whole cube.
   const double s = w.mesh.scale();
-  edit.added = {{edit.removed[0].ids, {Vec3(-1, 2.1, 2.2) * s, Vec3(5, 2.1, 2.2) * s, Vec3(5, 2.6, 2.4) * s}}};
+  edit.added = {
+      {edit.removed[0].ids, {Vec3(-1, 2.1, 2.2) * s, Vec3(5, 2.1, 2.2) * s, Vec3(5, 2.6, 2.4) * s}}};
   HeldLocks held(w.grid.locks());
   SurfaceGrid::Task task;
   EXPECT_EQ(w.grid.prepare(edit, task, held), Outcome::self_intersection);
@@ -66,7 +67,8 @@ TEST(SurfaceGrid, AHarmlessTriangleReplacesAnother) {
   ASSERT_EQ(w.grid.prepare(back, task, held), Outcome::done);
   held.release();
   SurfaceGrid::Edit through;
-  through.added = {{{1000, 1001, 1002}, {Vec3(9.2, 9.2, 8) * s, Vec3(9.2, 9.2, 10) * s, Vec3(9.3, 9.2, 10) * s}}};
+  through.added = {
+      {{1000, 1001, 1002}, {Vec3(9.2, 9.2, 8) * s, Vec3(9.2, 9.2, 10) * s, Vec3(9.3, 9.2, 10) * s}}};
   EXPECT_EQ(w.grid.prepare(through, task, held), Outcome::self_intersection);
 }
 
@@ -74,8 +76,9 @@ TEST(SurfaceGrid, AddedTrianglesAreTestedAgainstEachOther) {
   Workbench w(grid_mesh(4));
   const double s = w.mesh.scale();
   SurfaceGrid::Edit edit;
-  edit.added = {{{1000, 1001, 1002}, {Vec3(9, 9, 9) * s, Vec3(10, 9, 9) * s, Vec3(9, 10, 9) * s}},
-                {{1003, 1004, 1005}, {Vec3(9.2, 9.2, 8) * s, Vec3(9.2, 9.2, 10) * s, Vec3(9.3, 9.2, 10) * s}}};
+  edit.added = {
+      {{1000, 1001, 1002}, {Vec3(9, 9, 9) * s, Vec3(10, 9, 9) * s, Vec3(9, 10, 9) * s}},
+      {{1003, 1004, 1005}, {Vec3(9.2, 9.2, 8) * s, Vec3(9.2, 9.2, 10) * s, Vec3(9.3, 9.2, 10) * s}}};
   HeldLocks held(w.grid.locks());
   SurfaceGrid::Task task;
   EXPECT_EQ(w.grid.prepare(edit, task, held), Outcome::self_intersection);

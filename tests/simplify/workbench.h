@@ -27,7 +27,8 @@ struct Workbench {
   /// The point at a place given in input units.
   Index at(double x, double y, double z) const {
     for (Index p = 0; p < mesh.point_slots(); ++p)
-      if (mesh.hint(p) != no_index && (mesh.position(p) / mesh.scale() - Vec3(x, y, z)).norm() < 1e-12) return p;
+      if (mesh.hint(p) != no_index && (mesh.position(p) / mesh.scale() - Vec3(x, y, z)).norm() < 1e-12)
+        return p;
     ADD_FAILURE() << "no point at " << x << ' ' << y << ' ' << z;
     return 0;
   }
@@ -40,7 +41,8 @@ struct Workbench {
     return task->star;
   }
 
-  /// Everything given back, links sound, all tets positive, as many triangles in the grid as faces between regions.
+  /// Everything given back, links sound, all tets positive, as many triangles in the grid as faces between
+  /// regions.
   void expect_sound() {
     task->release();
     EXPECT_TRUE(mesh.locks().all_free());
