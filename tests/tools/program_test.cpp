@@ -1,0 +1,204 @@
+// The program as its users meet it: commands, exit statuses, messages, files.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/program.h"
+
+namespace tetwright {
+namespace {
+
+/// One line on stderr that begins as all errors do and has all that is expected; the status; no file.
+void expect_refused(const std::string& arguments, int status, const std::vector<std::string>& said,
+                    const std::string& before = "") {
+  const Answer a = run(arguments, before);
+  EXPECT_EQ(a.status, status) << arguments << "\n" << a.err;
+  EXPECT_EQ(a.err.rfind("tetwright: ", 0), 0u) << a.err;
+  EXPECT_EQ(std::count(a.err.begin(), a.err.end(), '\n'), 1) << a.err;
+  for (const std::string& s : said) EXPECT_NE(a.err.find(s), std::string::npos) << a.err << "lacks: " << s;
+}
+
+const std::string tetrahedron_off = "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+
+TEST(Program, PreparesASurfaceEndToEnd) {
+  const TemporaryFolder f;
+  ASSERT_EQ(run("sample torus -o " + (f / "torus.ply")).status, 0);
+  const Answer a = run("prepare " + (f / "torus.ply") + " -o " + (f / "torus.vtu") + " --target-tets 2000 --stats " +
+                       (f / "stats.json"));
+  ASSERT_EQ(a.status, 0) << a.err;
+  EXPECT_EQ(a.err, "");
+  EXPECT_NE(a.out.find("smallest solid angle"), std::string::npos);
+  EXPECT_NE(a.out.find("resolution "), std::string::npos);  // it picked one, and says which
+  const Answer c = run("check " + (f / "torus.vtu") + " --json");
+  EXPECT_EQ(c.status, 0) << c.out;
+  const auto j = nlohmann::json::parse(c.out);
+  EXPECT_TRUE(j["valid"]);
+  EXPECT_NEAR(j["mesh"]["tets"].get<double>(), 2000, 20);
+  EXPECT_LT(j["mesh"]["percent_below_threshold"].get<double>(), 2);
+}
+
+TEST(Program, MeshThenSimplifyKeepsTheTopology) {
+  const TemporaryFolder f;
+  ASSERT_EQ(run("sample knot -o " + (f / "knot.stl")).status, 0);
+  ASSERT_EQ(run("mesh " + (f / "knot.stl") + " -o " + (f / "dense.mesh") + " --resolution 48").status, 0);
+  ASSERT_EQ(run("simplify " + (f / "dense.mesh") + " -o " + (f / "small.msh") + " --target-tets 3000").status, 0);
+  const Answer a = run("check " + (f / "small.msh") + " --before " + (f / "dense.mesh"));
+  EXPECT_EQ(a.status, 0) << a.out;
+  // A ball has another topology than a knotted ring.
+  ASSERT_EQ(run("sample sphere -o " + (f / "sphere.off")).status, 0);
+  ASSERT_EQ(run("mesh " + (f / "sphere.off") + " -o " + (f / "sphere.vtu") + " --resolution 16").status, 0);
+  EXPECT_EQ(run("check " + (f / "sphere.vtu") + " --before " + (f / "dense.mesh")).status, 1);
+}
+
+TEST(Program, OneThreadAndOneSeedGiveTheSameFile) {
+  const TemporaryFolder f;
+  ASSERT_EQ(run("sample torus -o " + (f / "torus.obj")).status, 0);
+  for (const char* name : {"a.mesh", "b.mesh"})
+    ASSERT_EQ(
+        run("prepare " + (f / "torus.obj") + " -o " + (f / name) + " --target-tets 1500 --threads 1 --seed 7").status,
+        0);
+  EXPECT_EQ(contents(f / "a.mesh"), contents(f / "b.mesh"));
+  // The dense mesh does not depend on the threads at all.
+  for (const char* threads : {"1", "2"})
+    ASSERT_EQ(run("mesh " + (f / "torus.obj") + " -o " + (f / threads) + ".mesh --resolution 40 --threads " + threads)
+                  .status,
+              0);
+  EXPECT_EQ(contents(f / "1.mesh"), contents(f / "2.mesh"));
+}
+
+TEST(Program, QuietSaysNothing) {
+  const TemporaryFolder f;
+  const Answer a = run("sample cube -o " + (f / "cube.off") + " --quiet");
+  EXPECT_EQ(a.status, 0);
+  EXPECT_EQ(a.out + a.err, "");
+  const Answer b = run("mesh " + (f / "cube.off") + " -o " + (f / "cube.vtu") + " --resolution 12 --quiet");
+  EXPECT_EQ(b.status, 0);
+  EXPECT_EQ(b.out + b.err, "");
+}
+
+TEST(Program, HelpAndVersion) {
+  for (const char* arguments : {"--help", "prepare --help", "mesh --help", "simplify --help", "check --help",
+                                "sample --help", "--version"}) {
+    const Answer a = run(arguments);
+    EXPECT_EQ(a.status, 0) << arguments;
+    EXPECT_NE(a.out.find("etwright"), std::string::npos) << arguments;
+    EXPECT_EQ(a.err, "");
+  }
+}
+
+TEST(Program, WrongCallsAreStatusTwo) {
+  const TemporaryFolder f;
+  put(f / "t.off", tetrahedron_off);
+  const std::string in = f / "t.off", out = f / "t.vtu";
+  expect_refused("", 2, {"subcommand"});
+  expect_refused("grow " + in, 2, {});
+  expect_refused("prepare " + in + " -o " + out, 2, {"--target-tets"});
+  expect_refused("prepare " + in + " -o " + out + " --target-tets 0", 2, {"0"});
+  expect_refused("prepare " + in + " -o " + out + " --target-tets many", 2, {"many"});
+  expect_refused("prepare " + in + " -o " + out + " --target-tets 100 --gama 3", 2, {"--gama"});
+  expect_refused("prepare " + in + " -o " + out + " --target-tets 100 --tolerance 1", 2, {"--tolerance"});
+  expect_refused("prepare " + in + " -o " + out + " --target-tets 100 --beta nan", 2, {});
+  expect_refused("prepare " + in + " -o " + out + " --target-tets 100 --threads 0", 2, {"--threads"});
+  expect_refused("mesh " + in + " -o " + out + " --resolution 2", 2, {"--resolution"});
+  expect_refused("mesh " + in + " -o " + out + " --resolution 20 --voxel-size 0.1", 2, {"--voxel-size"});
+  expect_refused("mesh " + in + " -o " + (f / "t.xyz"), 2, {"t.xyz", ".vtu"});
+  expect_refused("mesh " + (f / "t.foo") + " -o " + out, 2, {"t.foo"});
+  expect_refused("simplify " + in + " -o " + out + " --target-tets 10", 2, {"t.off"});
+  expect_refused("sample dodo -o " + out, 2, {"dodo", "sphere"});
+  expect_refused("sample sphere -o " + out, 2, {"sphere"});
+  EXPECT_EQ(f.entries(), 1u);
+}
+
+TEST(Program, BrokenInputsAreStatusThree) {
+  const TemporaryFolder f;
+  const auto refused = [&](const std::string& name, const std::string& text, const std::vector<std::string>& said) {
+    put(f / name, text);
+    std::vector<std::string> all = said;
+    all.push_back(name);
+    expect_refused("prepare " + (f / name) + " -o " + (f / "out.vtu") + " --target-tets 100", 3, all);
+    EXPECT_FALSE(std::filesystem::exists(f / "out.vtu"));
+  };
+  expect_refused("prepare " + (f / "missing.ply") + " -o " + (f / "out.vtu") + " --target-tets 100", 3,
+                 {"missing.ply"});
+  refused("empty.off", "", {});
+  refused("cut.off", tetrahedron_off.substr(0, tetrahedron_off.size() - 8), {});
+  refused("word.off", "OFF\n4 4 6\n0 0 zero\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n",
+          {"line 3", "zero"});
+  refused("range.off", "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 9\n3 0 3 2\n",
+          {"line 9", "9"});
+  refused("nan.off", "OFF\n4 4 6\n0 0 nan\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n", {"line 3"});
+  refused("none.off", "OFF\n4 0 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n", {});
+  refused("huge.ply",
+          "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\n"
+          "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n1234",
+          {"4000000000"});
+  refused("huge.off", "OFF\n4000000000 4000000000 0\n0 0 0\n", {});
+  refused("open.off", "OFF\n4 3 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n",
+          {"3 boundary edges", "(0, 0, "});
+  put(f / "empty.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices\n0\nTetrahedra\n0\nEnd\n");
+  expect_refused("simplify " + (f / "empty.mesh") + " -o " + (f / "out.vtu") + " --target-tets 10", 3, {"empty.mesh"});
+  expect_refused("check " + (f / "empty.mesh"), 3, {"empty.mesh"});
+}
+
+TEST(Program, ASurfaceSmallerThanACellIsStatusFour) {
+  const TemporaryFolder f;
+  put(f / "t.off", tetrahedron_off);
+  expect_refused("mesh " + (f / "t.off") + " -o " + (f / "out.vtu") + " --voxel-size 50", 4, {});
+  EXPECT_FALSE(std::filesystem::exists(f / "out.vtu"));
+}
+
+TEST(Program, WhatCannotBeWrittenIsStatusFive) {
+  const TemporaryFolder f;
+  ASSERT_EQ(run("sample sphere -o " + (f / "s.off")).status, 0);
+  const std::string mesh = "mesh " + (f / "s.off") + " --resolution 16 -o ";
+  expect_refused(mesh + (f / "no/such/folder.vtu"), 5, {"folder"});
+  // A limit of 16 blocks stands in for a full disk; what was there before must stay.
+  put(f / "old.vtu", "precious");
+  expect_refused(mesh + (f / "old.vtu"), 5, {"old.vtu"}, "ulimit -f 16;");
+  EXPECT_EQ(contents(f / "old.vtu"), "precious");
+  EXPECT_EQ(f.entries(), 2u);  // no temporary is left behind
+  // The folder is looked at before any work: a broken input is not even read.
+  put(f / "broken.off", "nothing");
+  expect_refused("mesh " + (f / "broken.off") + " -o " + (f / "no/out.vtu"), 5, {});
+}
+
+TEST(Program, AnExistingFileSurvivesABrokenInput) {
+  const TemporaryFolder f;
+  put(f / "old.vtu", "precious");
+  put(f / "broken.off", "OFF\n1 1 1\n");
+  expect_refused("mesh " + (f / "broken.off") + " -o " + (f / "old.vtu"), 3, {});
+  EXPECT_EQ(contents(f / "old.vtu"), "precious");
+}
+
+TEST(Program, ShortOfTheTargetIsStatusOneAndWritten) {
+  const TemporaryFolder f;
+  ASSERT_EQ(run("sample torus -o " + (f / "t.off")).status, 0);
+  ASSERT_EQ(run("mesh " + (f / "t.off") + " -o " + (f / "d.vtu") + " --resolution 24").status, 0);
+  const Answer a = run("simplify " + (f / "d.vtu") + " -o " + (f / "s.vtu") + " --target-tets 3 --stats " +
+                       (f / "s.json"));
+  EXPECT_EQ(a.status, 1) << a.err;
+  EXPECT_NE(a.err.find("held back by"), std::string::npos) << a.err;
+  EXPECT_EQ(run("check " + (f / "s.vtu") + " --before " + (f / "d.vtu")).status, 0);
+  EXPECT_EQ(nlohmann::json::parse(contents(f / "s.json"))["shortfall"][0]["what"], "target_tets");
+  // A target above what there is cannot be meant.
+  expect_refused("simplify " + (f / "d.vtu") + " -o " + (f / "x.vtu") + " --target-tets 100000000", 2, {"100000000"});
+  // An angle that was asked for and cannot be had.
+  EXPECT_EQ(run("simplify " + (f / "d.vtu") + " -o " + (f / "s.vtu") + " --target-tets 2000 --min-solid-angle 0.5")
+                .status,
+            1);
+}
+
+TEST(Program, CheckFindsWhatIsWrong) {
+  const TemporaryFolder f;
+  put(f / "bad.mesh",
+      "MeshVersionFormatted 2\nDimension 3\nVertices\n5\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n5 5 5 0\n"
+      "Tetrahedra\n1\n1 3 2 4 7\nEnd\n");
+  const Answer a = run("check " + (f / "bad.mesh"));
+  EXPECT_EQ(a.status, 1);
+  EXPECT_NE(a.out.find("inverted"), std::string::npos) << a.out;
+  EXPECT_NE(a.out.find("unused_points"), std::string::npos) << a.out;
+}
+
+}  // namespace
+}  // namespace tetwright
