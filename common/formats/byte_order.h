@@ -1,0 +1,22 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+
+namespace tetwright {
+
+/// A number from the bytes at `from`, which need not be aligned. `swap`: they are in the other byte order
+/// than this machine's.
+template <class Number>
+Number load(const char* from, bool swap) {
+  std::array<char, sizeof(Number)> bytes;
+  std::memcpy(bytes.data(), from, sizeof(Number));
+  if (swap) std::reverse(bytes.begin(), bytes.end());
+  return std::bit_cast<Number>(bytes);
+}
+
+inline constexpr bool little_endian_machine = std::endian::native == std::endian::little;
+
+}  // namespace tetwright

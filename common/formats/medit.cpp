@@ -1,0 +1,131 @@
+#include "common/formats/medit.h"
+
+#include <cmath>
+
+#include "common/error.h"
+#include "common/formats/number_text.h"
+#include "common/formats/text_scanner.h"
+
+namespace tetwright {
+
+namespace {
+
+/// A reference, which some programs write as a floating-point number.
+std::int64_t reference(TextScanner& in) {
+  const std::string_view word = in.word();
+  if (word.empty()) in.fail_cut_short("reference");
+  std::int64_t value = 0;
+  if (parse_number(word, value)) return value;
+  double number = 0;
+  if (!parse_number(word, number) || number != std::floor(number) || std::fabs(number) > 0x1p53)
+    in.fail("expected a whole number (reference), found " + in_quotes(word));
+  return static_cast<std::int64_t>(number);
+}
+
+class Reader {
+ public:
+  Reader(std::string_view bytes, const std::string& name) : in_(bytes, name, '#') {}
+
+  ReadTetMesh read() {
+    if (in_.at_end()) in_.fail("the file is empty");
+    if (const std::string_view word = in_.word(); word != "MeshVersionFormatted")
+      in_.fail("expected \"MeshVersionFormatted\" at the beginning, found " + in_quotes(word) +
+               "; only ASCII Medit meshes are supported");
+    (void)in_.integer("version");
+    bool ended = false;
+    for (std::string_view word; !ended && !(word = in_.word()).empty();) {
+      if (word == "Dimension") {
+        if (const std::int64_t dimension = in_.integer("dimension"); dimension != 3)
+          in_.fail("dimension " + std::to_string(dimension) + "; a mesh of tets has 3");
+      } else if (word == "Vertices") {
+        read_vertices();
+      } else if (word == "Tetrahedra") {
+        read_tets();
+      } else if (word == "End") {
+        ended = true;
+      }
+      // Anything else is a section of no concern, or its numbers.
+    }
+    check_indices();
+    return std::move(result_);
+  }
+
+ private:
+  void read_vertices() {
+    TetMesh& mesh = result_.mesh;
+    if (has_vertices_) in_.fail("a second section \"Vertices\"");
+    has_vertices_ = true;
+    const std::size_t n = in_.count("number of points", 8);
+    if (n >= no_index) in_.fail("more than " + std::to_string(no_index - 1) + " points; split the mesh");
+    mesh.points.resize(n);
+    for (Vec3& p : mesh.points) {
+      for (int k = 0; k < 3; ++k) p[k] = in_.coordinate();
+      (void)reference(in_);
+    }
+  }
+
+  void read_tets() {
+    TetMesh& mesh = result_.mesh;
+    if (!mesh.tets.empty()) in_.fail("a second section \"Tetrahedra\"");
+    const std::size_t n = in_.count("number of tets", 10);
+    mesh.tets.resize(n);
+    mesh.materials.resize(n);
+    for (std::size_t t = 0; t < n; ++t) {
+      for (Index& vertex : mesh.tets[t]) {
+        const std::int64_t index = in_.integer("index of a point");
+        if (index < 1 || index >= no_index || (has_vertices_ && index > std::ssize(mesh.points)))
+          in_.fail("tet " + std::to_string(t + 1) + " names point " + std::to_string(index) + " of " +
+                   std::to_string(mesh.points.size()) + " (counted from 1); export the file again");
+        vertex = static_cast<Index>(index - 1);
+      }
+      mesh.materials[t] = checked_material(reference(in_), in_.name(), in_.line());
+    }
+    result_.material_field = "medit:ref";
+  }
+
+  /// Tets may come before the points.
+  void check_indices() const {
+    const TetMesh& mesh = result_.mesh;
+    if (!has_vertices_) in_.fail("there is no section \"Vertices\" in it; the file is cut short");
+    if (mesh.tets.empty()) in_.fail("there are no tets in it; a tet mesh is needed, not a surface");
+    for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+      for (Index vertex : mesh.tets[t])
+        if (vertex >= mesh.points.size())
+          in_.fail("tet " + std::to_string(t + 1) + " names point " +
+                   std::to_string(std::uint64_t{vertex} + 1) + " of " + std::to_string(mesh.points.size()) +
+                   " (counted from 1); export the file again");
+  }
+
+  TextScanner in_;
+  ReadTetMesh result_;
+  bool has_vertices_ = false;
+};
+
+}  // namespace
+
+ReadTetMesh read_medit(std::string_view bytes, const std::string& name) { return Reader(bytes, name).read(); }
+
+std::string write_medit(const TetMesh& mesh) {
+  // Version 2: coordinates in double precision.
+  std::string out = "MeshVersionFormatted 2\n\nDimension 3\n\nVertices\n";
+  append_number(out, mesh.points.size());
+  out += '\n';
+  for (const Vec3& p : mesh.points) {
+    append_point(out, p);
+    out += " 0\n";
+  }
+  out += "\nTetrahedra\n";
+  append_number(out, mesh.tets.size());
+  out += '\n';
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    for (Index vertex : mesh.tets[t]) {
+      append_number(out, std::uint64_t{vertex} + 1);
+      out += ' ';
+    }
+    append_number(out, mesh.materials[t]);
+    out += '\n';
+  }
+  return out + "\nEnd\n";
+}
+
+}  // namespace tetwright

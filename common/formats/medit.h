@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "common/formats/read_tet_mesh_result.h"
+
+namespace tetwright {
+
+/// Reads the sections Vertices and Tetrahedra of a Medit ASCII mesh (.mesh); the reference of a tet is its
+/// material. Other sections are skipped. `name` stands in messages. Throws InputError with the line for
+/// anything that makes no sense.
+ReadTetMesh read_medit(std::string_view bytes, const std::string& name);
+
+/// The file's content; coordinates come back bit by bit. Names of materials have no place in the format.
+std::string write_medit(const TetMesh& mesh);
+
+}  // namespace tetwright

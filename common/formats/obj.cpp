@@ -1,0 +1,101 @@
+#include "common/formats/obj.h"
+
+#include <vector>
+
+#include "common/error.h"
+#include "common/formats/number_text.h"
+#include "common/formats/surface_builder.h"
+#include "common/formats/text_scanner.h"
+
+namespace tetwright {
+
+namespace {
+
+/// The next word of a statement; a backslash at the end of a line continues it on the next.
+std::string_view next_word(TextScanner& in) {
+  std::string_view word = in.word_on_line();
+  while (word == "\\") {
+    in.skip_line();
+    word = in.word_on_line();
+  }
+  return word;
+}
+
+/// The point of "7", "7/1", "7//3" or "-1/2/3", counted from 0.
+std::int64_t point_of(const TextScanner& in, std::string_view word, std::size_t points) {
+  std::int64_t index = 0;
+  if (!parse_number(word.substr(0, word.find('/')), index))
+    in.fail("expected a vertex of a face such as 7 or 7/1/3, found " + in_quotes(word));
+  if (index > 0 && index < no_index) return index - 1;
+  if (index < 0 && index >= -static_cast<std::int64_t>(points))
+    return static_cast<std::int64_t>(points) + index;
+  in.fail("a face names point " + std::to_string(index) + ", but " + std::to_string(points) +
+          " points have been read (OBJ counts from 1); export the file again");
+}
+
+}  // namespace
+
+TriangleMesh read_obj(std::string_view bytes, const std::string& name) {
+  TextScanner in(bytes, name, '#');
+  if (in.at_end()) in.fail("the file is empty");
+  SurfaceBuilder surface(name);
+  const auto place = [&] { return "line " + std::to_string(in.line()); };
+  std::vector<std::int64_t> polygon;
+  std::int64_t largest = -1;
+  std::size_t largest_line = 0;
+  while (!in.at_end()) {
+    const std::string_view keyword = in.word();
+    if (keyword == "v") {
+      Vec3 p;
+      for (int k = 0; k < 3; ++k) {
+        const std::string_view word = next_word(in);
+        if (word.empty()) in.fail("a point with fewer than three coordinates; the file may be cut short");
+        if (!parse_number(word, p[k])) in.fail("expected a coordinate, found " + in_quotes(word));
+      }
+      surface.add_point(p, place);
+    } else if (keyword == "f") {
+      polygon.clear();
+      for (std::string_view word; !(word = next_word(in)).empty();) {
+        polygon.push_back(point_of(in, word, surface.point_count()));
+        if (polygon.back() > largest) {
+          largest = polygon.back();
+          largest_line = in.line();
+        }
+      }
+      if (polygon.size() < 3)
+        in.fail("a face with " + std::to_string(polygon.size()) +
+                " vertices; three are needed, the file may be cut short");
+      surface.add_fan(polygon);
+    }
+    // A keyword's last word may be the backslash that continues the line.
+    for (std::string_view word; !(word = next_word(in)).empty();) {
+    }
+  }
+  // A face may come before its points.
+  if (largest >= static_cast<std::int64_t>(surface.point_count()))
+    throw InputError(name, largest_line,
+                     "a face names point " + std::to_string(largest + 1) + ", but there are " +
+                         std::to_string(surface.point_count()) +
+                         " points; the file is cut short or was exported wrongly");
+  return surface.finish();
+}
+
+std::string write_obj(const TriangleMesh& mesh) {
+  std::string out;
+  for (const Vec3& p : mesh.points) {
+    out += "v ";
+    append_point(out, p);
+    out += '\n';
+  }
+  for (const Triangle& t : mesh.triangles) {
+    out += 'f';
+    for (Index i : t) {
+      out += ' ';
+      append_number(out, std::uint64_t{i} + 1);
+    }
+    out += '\n';
+  }
+  return out;
+}
+
+}  // namespace tetwright

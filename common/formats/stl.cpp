@@ -1,0 +1,176 @@
+#include "common/formats/stl.h"
+
+#include <bit>
+#include <cctype>
+#include <cstdint>
+#include <vector>
+
+#include "common/error.h"
+#include "common/formats/byte_order.h"
+#include "common/formats/number_text.h"
+#include "common/formats/surface_builder.h"
+#include "common/formats/text_scanner.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::size_t header_size = 84;  ///< 80 bytes of anything and the number of triangles
+constexpr std::size_t record_size = 50;  ///< normal, three points, two bytes of attributes
+
+/// Gives equal points the same number: open addressing, at most half full.
+class PointMerger {
+ public:
+  PointMerger(SurfaceBuilder& surface, std::size_t expected)
+      : surface_(surface), table_(std::bit_ceil(expected * 2 + 16), no_index) {
+    points_.reserve(expected);
+  }
+
+  template <class Place>
+  std::int64_t add(Vec3 p, const Place& place) {
+    for (int k = 0; k < 3; ++k)
+      if (p[k] == 0) p[k] = 0;  // -0 is the same place
+    if (points_.size() * 2 >= table_.size()) grow();
+    std::size_t slot = hash(p) & (table_.size() - 1);
+    for (; table_[slot] != no_index; slot = (slot + 1) & (table_.size() - 1))
+      if (points_[table_[slot]] == p) return table_[slot];
+    surface_.add_point(p, place);
+    table_[slot] = static_cast<Index>(points_.size());
+    points_.push_back(p);
+    return table_[slot];
+  }
+
+ private:
+  static std::size_t hash(const Vec3& p) {
+    std::uint64_t h = 0;
+    for (int k = 0; k < 3; ++k) {
+      h = (h ^ std::bit_cast<std::uint64_t>(p[k])) * 0x9e3779b97f4a7c15u;
+      h ^= h >> 32;
+    }
+    return static_cast<std::size_t>(h);
+  }
+  void grow() {
+    table_.assign(table_.size() * 2, no_index);
+    for (Index i = 0; i < points_.size(); ++i) {
+      std::size_t slot = hash(points_[i]) & (table_.size() - 1);
+      while (table_[slot] != no_index) slot = (slot + 1) & (table_.size() - 1);
+      table_[slot] = i;
+    }
+  }
+
+  SurfaceBuilder& surface_;
+  std::vector<Vec3> points_;
+  std::vector<Index> table_;
+};
+
+TriangleMesh read_binary(std::string_view bytes, const std::string& name, std::size_t triangles) {
+  SurfaceBuilder surface(name);
+  surface.reserve(triangles / 2, triangles);
+  PointMerger merger(surface, triangles / 2);
+  for (std::size_t t = 0; t < triangles; ++t) {
+    const std::size_t begin = header_size + t * record_size + 12;
+    std::array<std::int64_t, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t at = begin + 12 * k;
+      Vec3 p;
+      for (std::size_t d = 0; d < 3; ++d)
+        p[d] = load<float>(bytes.data() + at + 4 * d, !little_endian_machine);
+      corners[k] = merger.add(p, [&] { return "byte " + std::to_string(at); });
+    }
+    surface.add_fan(corners);
+  }
+  return surface.finish();
+}
+
+/// `expected` in lower case.
+bool is_word(std::string_view word, std::string_view expected) {
+  return std::equal(word.begin(), word.end(), expected.begin(), expected.end(),
+                    [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+}
+
+void expect(TextScanner& in, std::string_view expected) {
+  const std::string_view word = in.word();
+  if (word.empty()) in.fail_cut_short(expected);
+  if (!is_word(word, expected)) in.fail("expected " + in_quotes(expected) + ", found " + in_quotes(word));
+}
+
+TriangleMesh read_ascii(std::string_view bytes, const std::string& name) {
+  TextScanner in(bytes, name);
+  SurfaceBuilder surface(name);
+  PointMerger merger(surface, 0);
+  while (!in.at_end()) {
+    expect(in, "solid");
+    in.skip_line();  // the solid's name, which may be anything
+    for (;;) {
+      const std::string_view word = in.word();
+      if (word.empty()) in.fail("the file ends without \"endsolid\"; it is cut short");
+      if (is_word(word, "endsolid")) {
+        in.skip_line();
+        break;
+      }
+      if (!is_word(word, "facet")) in.fail("expected \"facet\" or \"endsolid\", found " + in_quotes(word));
+      // The normal is not used, and some programs write "nan" there.
+      expect(in, "normal");
+      for (int k = 0; k < 3; ++k) (void)in.word();
+      expect(in, "outer");
+      expect(in, "loop");
+      std::array<std::int64_t, 3> corners;
+      for (std::int64_t& corner : corners) {
+        expect(in, "vertex");
+        const double x = in.coordinate(), y = in.coordinate(), z = in.coordinate();
+        corner = merger.add({x, y, z}, [&] { return "line " + std::to_string(in.line()); });
+      }
+      expect(in, "endloop");
+      expect(in, "endfacet");
+      surface.add_fan(corners);
+    }
+  }
+  return surface.finish();
+}
+
+}  // namespace
+
+TriangleMesh read_stl(std::string_view bytes, const std::string& name) {
+  if (bytes.empty()) throw InputError(name + ": the file is empty");
+  const bool says_solid = bytes.size() >= 5 && is_word(bytes.substr(0, 5), "solid");
+  if (bytes.size() < header_size) {
+    if (says_solid) return read_ascii(bytes, name);
+    throw InputError(name + ": only " + std::to_string(bytes.size()) +
+                     " bytes, too short for an STL file; it is cut short or not STL");
+  }
+  const std::size_t triangles = load<std::uint32_t>(bytes.data() + 80, !little_endian_machine);
+  const std::size_t expected = header_size + triangles * record_size;
+  // Both kinds may begin with "solid": a binary file has the size its header says, and text has no zero
+  // bytes.
+  const bool has_zeros = bytes.find('\0') != std::string_view::npos;
+  const bool is_text =
+      bytes.size() != expected && (says_solid || bytes.substr(0, 64).find("solid") < 64) && !has_zeros;
+  if (is_text) return read_ascii(bytes, name);
+  if (expected > bytes.size())
+    throw InputError(name + ": byte 80: " + std::to_string(triangles) + " triangles need " +
+                     std::to_string(expected) + " bytes, but the file has " + std::to_string(bytes.size()) +
+                     "; it is cut short or not STL");
+  return read_binary(bytes, name, triangles);
+}
+
+std::string write_stl(const TriangleMesh& mesh) {
+  std::string out = "solid tetwright\n";
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 &a = mesh.points[t[0]], &b = mesh.points[t[1]], &c = mesh.points[t[2]];
+    Vec3 normal = (b - a).cross(c - a);
+    const double length = normal.norm();
+    normal = length > 0 && std::isfinite(length) ? Vec3(normal / length) : Vec3(0, 0, 0);
+    out += "facet normal ";
+    append_point(out, normal);
+    out += "\n outer loop\n";
+    for (const Vec3* p : {&a, &b, &c}) {
+      out += "  vertex ";
+      append_point(out, *p);
+      out += '\n';
+    }
+    out += " endloop\nendfacet\n";
+  }
+  return out + "endsolid tetwright\n";
+}
+
+}  // namespace tetwright

@@ -1,0 +1,254 @@
+#include "common/formats/vtu.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "common/error.h"
+#include "common/formats/byte_order.h"
+#include "common/formats/number_text.h"
+#include "common/formats/text_scanner.h"
+#include "common/formats/vtu_data.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::int64_t tet_type = 10;
+constexpr const char* names_field = "material_names";
+
+class Reader {
+ public:
+  Reader(std::string_view bytes, const std::string& name)
+      : data_(bytes, name), name_(name), file_size_(bytes.size()) {}
+
+  ReadTetMesh read() {
+    const std::string_view type = data_.root().attribute("type").as_string();
+    const pugi::xml_node grid = data_.root().child("UnstructuredGrid");
+    if (type != "UnstructuredGrid" || !grid)
+      data_.fail(data_.root(), "a file of type UnstructuredGrid is needed, this one is " + in_quotes(type));
+    const pugi::xml_node piece = grid.child("Piece");
+    if (!piece) data_.fail(grid, "there is no Piece in it");
+    if (piece.next_sibling("Piece")) data_.fail(grid, "more than one Piece; merge them into one first");
+    points_ = piece_count(piece, "NumberOfPoints");
+    cells_ = piece_count(piece, "NumberOfCells");
+    if (points_ >= no_index)
+      data_.fail(piece, "more than " + std::to_string(no_index - 1) + " points; split the mesh");
+    read_points(piece);
+    read_cells(piece);
+    read_materials(piece);
+    read_names(grid);
+    return std::move(result_);
+  }
+
+ private:
+  std::size_t piece_count(pugi::xml_node piece, const char* attribute) const {
+    const std::string_view text = piece.attribute(attribute).as_string();
+    std::int64_t n = 0;
+    if (!parse_number(text, n) || n < 0)
+      data_.fail(piece, std::string(attribute) + " is " + in_quotes(text) + ", not a number");
+    return static_cast<std::size_t>(n);
+  }
+
+  pugi::xml_node array(pugi::xml_node parent, const char* name) const {
+    const pugi::xml_node node = parent.find_child_by_attribute("DataArray", "Name", name);
+    if (!node) data_.fail(parent, std::string("there is no DataArray \"") + name + "\" in it");
+    return node;
+  }
+
+  void expect_size(pugi::xml_node node, std::size_t size, std::size_t expected) const {
+    if (size != expected)
+      data_.fail(node, std::to_string(size) + " values, but " + std::to_string(expected) + " were expected");
+  }
+
+  void read_points(pugi::xml_node piece) {
+    const pugi::xml_node node = piece.child("Points").child("DataArray");
+    if (!node) data_.fail(piece, "there are no Points in it");
+    const std::vector<double> numbers = data_.numbers(node, 3 * points_);
+    expect_size(node, numbers.size(), 3 * points_);
+    std::vector<Vec3>& points = result_.mesh.points;
+    points.resize(points_);
+    for (std::size_t i = 0; i < points_; ++i) {
+      points[i] = Vec3(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]);
+      if (!points[i].allFinite())
+        data_.fail(node, "a coordinate of point " + std::to_string(i) +
+                             " (counted from 0) is not finite; remove or repair it");
+    }
+  }
+
+  void read_cells(pugi::xml_node piece) {
+    const pugi::xml_node cells = piece.child("Cells");
+    if (!cells) data_.fail(piece, "there are no Cells in it");
+    const pugi::xml_node types_node = array(cells, "types"), offsets_node = array(cells, "offsets"),
+                         connectivity_node = array(cells, "connectivity");
+    const std::vector<std::int64_t> types = data_.integers(types_node, cells_);
+    expect_size(types_node, types.size(), cells_);
+    const std::vector<std::int64_t> offsets = data_.integers(offsets_node, cells_);
+    expect_size(offsets_node, offsets.size(), cells_);
+    const std::vector<std::int64_t> connectivity = data_.integers(
+        connectivity_node,
+        offsets.empty() ? 0 : static_cast<std::size_t>(std::max<std::int64_t>(0, offsets.back())));
+    std::int64_t begin = 0;
+    for (std::size_t c = 0; c < cells_; ++c) {
+      const std::int64_t end = offsets[c];
+      if (end < begin || end > std::ssize(connectivity))
+        data_.fail(offsets_node, "cell " + std::to_string(c) + " ends at " + std::to_string(end) + " of " +
+                                     std::to_string(connectivity.size()) + "; the file is damaged");
+      if (types[c] == tet_type) {
+        if (end - begin != 4)
+          data_.fail(offsets_node, "cell " + std::to_string(c) + " is a tet of " +
+                                       std::to_string(end - begin) + " points; the file is damaged");
+        Tet tet;
+        for (std::size_t k = 0; k < 4; ++k) {
+          const std::int64_t index = connectivity[static_cast<std::size_t>(begin) + k];
+          if (index < 0 || index >= std::ssize(result_.mesh.points))
+            data_.fail(connectivity_node, "cell " + std::to_string(c) + " names point " +
+                                              std::to_string(index) + " of " + std::to_string(points_) +
+                                              "; export the file again");
+          tet[k] = static_cast<Index>(index);
+        }
+        result_.mesh.tets.push_back(tet);
+        tet_to_cell_.push_back(c);
+      }
+      begin = end;
+    }
+    if (tet_to_cell_.empty())
+      data_.fail(cells, "there are no linear tets (type 10) among its " + std::to_string(cells_) +
+                            " cells; a tet mesh is needed");
+  }
+
+  /// The cell field that tells the material; null if there is none.
+  static pugi::xml_node material_field(pugi::xml_node cell_data) {
+    for (const char* name : {"material", "medit:ref", "gmsh:physical", "MaterialID", "attribute"})
+      if (const pugi::xml_node node = cell_data.find_child_by_attribute("DataArray", "Name", name))
+        return node;
+    pugi::xml_node only;
+    for (const pugi::xml_node node : cell_data.children("DataArray")) {
+      const std::string_view type = node.attribute("type").as_string();
+      if (!type.starts_with("Int") && !type.starts_with("UInt")) continue;
+      if (node.attribute("NumberOfComponents").as_int(1) > 1) continue;
+      if (only) return {};
+      only = node;
+    }
+    return only;
+  }
+
+  void read_materials(pugi::xml_node piece) {
+    std::vector<MaterialTag>& materials = result_.mesh.materials;
+    materials.assign(tet_to_cell_.size(), 1);
+    const pugi::xml_node node = material_field(piece.child("CellData"));
+    if (!node) return;
+    const std::vector<std::int64_t> values = data_.integers(node, cells_);
+    expect_size(node, values.size(), cells_);
+    for (std::size_t t = 0; t < materials.size(); ++t)
+      materials[t] = checked_material(values[tet_to_cell_[t]], name_, 0);
+    result_.material_field = node.attribute("Name").as_string();
+  }
+
+  void read_names(pugi::xml_node grid) {
+    const pugi::xml_node node =
+        grid.child("FieldData").find_child_by_attribute("DataArray", "Name", names_field);
+    if (!node) return;
+    std::string text;
+    // Compressed text may be longer than the file, but hardly names.
+    for (std::int64_t c : data_.integers(node, file_size_)) text += static_cast<char>(c);
+    TextScanner lines(text, name_);
+    while (lines.left() > 0) {
+      const std::string_view line = lines.rest_of_line();
+      const std::size_t tab = line.find('\t');
+      std::int64_t tag = 0;
+      if (tab == std::string_view::npos || !parse_number(line.substr(0, tab), tag))
+        data_.fail(node, "expected a tag, a tab and a name, found " + in_quotes(line));
+      result_.mesh.material_names[checked_material(tag, name_, 0)] = std::string(line.substr(tab + 1));
+    }
+  }
+
+  VtuData data_;
+  std::string name_;
+  std::size_t file_size_;
+  std::size_t points_ = 0, cells_ = 0;
+  std::vector<std::size_t> tet_to_cell_;
+  ReadTetMesh result_;
+};
+
+/// The numbers as little-endian bytes.
+template <class Number>
+class Bytes {
+ public:
+  explicit Bytes(std::size_t n) { bytes_.reserve(n * sizeof(Number)); }
+  void add(Number value) {
+    auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(value);
+    if (!little_endian_machine) std::reverse(raw.begin(), raw.end());
+    bytes_.append(raw.data(), raw.size());
+  }
+  const std::string& get() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+void append_array(std::string& out, const char* type, const char* name, const char* more,
+                  const std::string& bytes) {
+  out +=
+      std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\" " + more + "format=\"binary\">\n";
+  out += encode_vtu_array(bytes);
+  out += "\n</DataArray>\n";
+}
+
+}  // namespace
+
+ReadTetMesh read_vtu(std::string_view bytes, const std::string& name) { return Reader(bytes, name).read(); }
+
+std::string write_vtu(const TetMesh& mesh) {
+  std::string out =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+      "byte_order=\"LittleEndian\" "
+      "header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
+  if (!mesh.material_names.empty()) {
+    // As numbers, since VTK's own string arrays are unknown to other readers.
+    Bytes<std::uint8_t> text(0);
+    for (const auto& [tag, name] : mesh.material_names) {
+      std::string line;
+      append_number(line, tag);
+      line += '\t';
+      for (char c : name) line += static_cast<unsigned char>(c) < ' ' ? '_' : c;
+      line += '\n';
+      for (char c : line) text.add(static_cast<std::uint8_t>(c));
+    }
+    out += "<FieldData>\n";
+    append_array(out, "UInt8", names_field,
+                 ("NumberOfTuples=\"" + std::to_string(text.get().size()) + "\" ").c_str(), text.get());
+    out += "</FieldData>\n";
+  }
+  out += "<Piece NumberOfPoints=\"" + std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" +
+         std::to_string(mesh.tets.size()) + "\">\n<Points>\n";
+  {
+    Bytes<double> points(3 * mesh.points.size());
+    for (const Vec3& p : mesh.points)
+      for (int k = 0; k < 3; ++k) points.add(p[k]);
+    append_array(out, "Float64", "Points", "NumberOfComponents=\"3\" ", points.get());
+  }
+  out += "</Points>\n<Cells>\n";
+  {
+    Bytes<std::int64_t> connectivity(4 * mesh.tets.size());
+    for (const Tet& tet : mesh.tets)
+      for (Index vertex : tet) connectivity.add(vertex);
+    append_array(out, "Int64", "connectivity", "", connectivity.get());
+  }
+  {
+    Bytes<std::int64_t> offsets(mesh.tets.size());
+    for (std::size_t t = 1; t <= mesh.tets.size(); ++t) offsets.add(static_cast<std::int64_t>(4 * t));
+    append_array(out, "Int64", "offsets", "", offsets.get());
+  }
+  append_array(out, "UInt8", "types", "", std::string(mesh.tets.size(), static_cast<char>(tet_type)));
+  out += "</Cells>\n<CellData Scalars=\"material\">\n";
+  {
+    Bytes<std::int32_t> materials(mesh.tets.size());
+    for (MaterialTag tag : mesh.materials) materials.add(tag);
+    append_array(out, "Int32", "material", "", materials.get());
+  }
+  return out + "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+}
+
+}  // namespace tetwright

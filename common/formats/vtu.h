@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "common/formats/read_tet_mesh_result.h"
+
+namespace tetwright {
+
+/// Reads the linear tets (type 10) of a VTK XML unstructured grid: data inline or appended, ASCII, base64 or
+/// raw, compressed by zlib or not, in either byte order; other cells are skipped. Which cell field gives the
+/// material: see ReadTetMesh. Names of materials are read where write_vtu() puts them. `name` stands in
+/// messages. Throws InputError with the byte offset for anything that makes no sense.
+ReadTetMesh read_vtu(std::string_view bytes, const std::string& name);
+
+/// The file's content: zlib-compressed, points as Float64, the integer cell field "material"; names as the
+/// field "material_names", UTF-8 bytes of lines "tag<TAB>name". A control character in a name becomes an
+/// underscore.
+std::string write_vtu(const TetMesh& mesh);
+
+}  // namespace tetwright

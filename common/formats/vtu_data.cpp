@@ -1,0 +1,265 @@
+#include "common/formats/vtu_data.h"
+
+#include <zlib.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <type_traits>
+
+#include "common/error.h"
+#include "common/formats/base64.h"
+#include "common/formats/byte_order.h"
+#include "common/formats/text_scanner.h"
+#include "common/parallel.h"
+
+namespace tetwright {
+
+namespace {
+
+/// zlib makes at least one byte of 1032.
+constexpr std::uint64_t largest_ratio = 1032;
+
+/// The same interface as Base64Reader, for bytes as they are.
+class RawReader {
+ public:
+  explicit RawReader(std::string_view bytes) : bytes_(bytes) {}
+  std::size_t read(char* to, std::size_t n) {
+    n = std::min(n, bytes_.size());
+    std::memcpy(to, bytes_.data(), n);
+    bytes_.remove_prefix(n);
+    return n;
+  }
+  std::size_t most_left() const { return bytes_.size(); }
+
+ private:
+  std::string_view bytes_;
+};
+
+std::string cut_short() {
+  return "the data of an array ends too early or is not base64; the file is cut short";
+}
+
+}  // namespace
+
+VtuData::VtuData(std::string_view bytes, std::string name)
+    : name_(std::move(name)), file_size_(bytes.size()) {
+  if (bytes.empty()) fail("the file is empty");
+  // Appended data may be raw bytes, which are no XML: the parser gets what is before them.
+  std::string_view xml = bytes;
+  bool cut = false;
+  if (const std::size_t element = bytes.find("<AppendedData"); element != std::string_view::npos) {
+    const std::size_t close = bytes.find('>', element);
+    const std::size_t mark = close == std::string_view::npos ? close : bytes.find('_', close);
+    if (mark == std::string_view::npos)
+      fail("the appended data has no underscore at its beginning; cut short");
+    xml = bytes.substr(0, element);
+    const std::string_view tag = bytes.substr(element, close - element);
+    appended_raw_ =
+        tag.find("\"raw\"") != std::string_view::npos || tag.find("'raw'") != std::string_view::npos;
+    appended_ = bytes.substr(mark + 1);
+    cut = true;
+  }
+  const pugi::xml_parse_result result = document_.load_buffer(
+      xml.data(), xml.size(), pugi::parse_minimal | pugi::parse_escapes, pugi::encoding_utf8);
+  // Where the appended data was cut off the elements around it stay open, which the parser reports at the
+  // end.
+  if (!result && !(cut && result.status == pugi::status_end_element_mismatch))
+    fail("byte " + std::to_string(result.offset) + ": not XML: " + result.description() +
+         "; the file is damaged or cut short");
+  root_ = document_.child("VTKFile");
+  if (!root_) fail("there is no element VTKFile in it; is this a VTK XML file?");
+  const std::string_view order = root_.attribute("byte_order").as_string("LittleEndian");
+  if (order != "LittleEndian" && order != "BigEndian") fail(root_, "unknown byte order " + in_quotes(order));
+  swap_ = (order == "LittleEndian") != little_endian_machine;
+  const std::string_view header = root_.attribute("header_type").as_string("UInt32");
+  if (header != "UInt32" && header != "UInt64") fail(root_, "unknown header type " + in_quotes(header));
+  wide_header_ = header == "UInt64";
+  const std::string_view compressor = root_.attribute("compressor").as_string();
+  compressed_ = !compressor.empty();
+  if (compressed_ && compressor != "vtkZLibDataCompressor")
+    fail(root_,
+         "compressor " + in_quotes(compressor) + " is not supported; save it with zlib or uncompressed");
+}
+
+void VtuData::fail(const std::string& message) const { throw InputError(name_ + ": " + message); }
+
+void VtuData::fail(pugi::xml_node node, const std::string& message) const {
+  const std::string_view array = node.attribute("Name").as_string();
+  fail("byte " + std::to_string(std::max<std::ptrdiff_t>(0, node.offset_debug())) + ": " + node.name() +
+       (array.empty() ? "" : " " + in_quotes(array)) + ": " + message);
+}
+
+template <class Source>
+std::string VtuData::decode_from(Source source, pugi::xml_node array, std::size_t most_bytes) const {
+  const auto read_size = [&] {
+    char bytes[8];
+    const std::size_t n = wide_header_ ? 8 : 4;
+    if (source.read(bytes, n) != n) fail(array, cut_short());
+    return wide_header_ ? load<std::uint64_t>(bytes, swap_) : load<std::uint32_t>(bytes, swap_);
+  };
+  const auto check_size = [&](std::uint64_t size, std::uint64_t available) {
+    if (size > available)
+      fail(array, "its header promises " + std::to_string(size) + " bytes, but the file holds " +
+                      std::to_string(available) + " at most; it is cut short or damaged");
+    if (size > most_bytes)
+      fail(array, std::to_string(size) + " bytes, but " + std::to_string(most_bytes) + " were expected");
+  };
+  std::string out;
+  if (!compressed_) {
+    const std::uint64_t size = read_size();
+    check_size(size, source.most_left());
+    out.resize(static_cast<std::size_t>(size));
+    if (source.read(out.data(), out.size()) != out.size()) fail(array, cut_short());
+    return out;
+  }
+  const std::uint64_t blocks = read_size();
+  if (blocks == 0) return out;
+  const std::uint64_t block_size = read_size(), last = read_size(), left = source.most_left();
+  if (blocks > left / 4) fail(array, cut_short());
+  std::vector<std::uint64_t> packed_sizes(static_cast<std::size_t>(blocks));
+  std::uint64_t packed_total = 0;
+  for (std::uint64_t& packed : packed_sizes) {
+    packed = read_size();
+    if (packed > left) fail(array, cut_short());
+    packed_total += packed;
+  }
+  if (packed_total > left) fail(array, cut_short());
+  // Compared before they are multiplied, so that nothing overflows.
+  const std::uint64_t possible = packed_total * largest_ratio;
+  check_size(last, possible);
+  // A single block may well be smaller than the block size.
+  if (blocks > 1 || last == 0) check_size(block_size, possible);
+  if (block_size > 0 && blocks - 1 > possible / block_size) check_size(UINT64_MAX, possible);
+  const std::uint64_t size = last > 0 ? (blocks - 1) * block_size + last : blocks * block_size;
+  check_size(size, possible);
+  out.resize(static_cast<std::size_t>(size));
+  std::string packed;
+  std::size_t done = 0;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    if (packed_sizes[b] > source.most_left()) fail(array, cut_short());
+    packed.resize(static_cast<std::size_t>(packed_sizes[b]));
+    if (source.read(packed.data(), packed.size()) != packed.size()) fail(array, cut_short());
+    const auto expected = static_cast<std::size_t>(b + 1 == blocks && last > 0 ? last : block_size);
+    uLongf unpacked = expected;
+    if (uncompress(reinterpret_cast<Bytef*>(out.data() + done), &unpacked,
+                   reinterpret_cast<const Bytef*>(packed.data()), packed.size()) != Z_OK ||
+        unpacked != expected)
+      fail(array, "block " + std::to_string(b) + " of its compressed data is damaged");
+    done += expected;
+  }
+  return out;
+}
+
+std::string VtuData::decode(pugi::xml_node array, std::size_t most_bytes) const {
+  const std::string_view format = array.attribute("format").as_string();
+  if (format == "binary") return decode_from(Base64Reader(array.child_value()), array, most_bytes);
+  if (format != "appended") fail(array, "unknown format " + in_quotes(format));
+  const std::string_view text = array.attribute("offset").as_string();
+  std::int64_t offset = 0;
+  if (!parse_number(text, offset) || offset < 0 || static_cast<std::uint64_t>(offset) > appended_.size())
+    fail(array, "its offset " + in_quotes(text) + " is outside the appended data (" +
+                    std::to_string(appended_.size()) + " bytes); the file is cut short");
+  const std::string_view data = appended_.substr(static_cast<std::size_t>(offset));
+  return appended_raw_ ? decode_from(RawReader(data), array, most_bytes)
+                       : decode_from(Base64Reader(data), array, most_bytes);
+}
+
+template <class Value>
+std::vector<Value> VtuData::values(pugi::xml_node array, std::size_t most) const {
+  std::vector<Value> out;
+  if (std::string_view(array.attribute("format").as_string("ascii")) == "ascii") {
+    TextScanner in(array.child_value(), name_);
+    for (std::string_view word; !(word = in.word()).empty();) {
+      Value value{};
+      if (!parse_number(word, value)) fail(array, "expected a number, found " + in_quotes(word));
+      if (out.size() == most) fail(array, "more than the " + std::to_string(most) + " values expected");
+      out.push_back(value);
+    }
+    return out;
+  }
+  const auto convert = [&]<class Stored>(Stored) {
+    const std::string bytes = decode(array, most > SIZE_MAX / 8 ? SIZE_MAX : most * sizeof(Stored));
+    if (bytes.size() % sizeof(Stored) != 0) fail(array, "its size is no multiple of that of its numbers");
+    out.resize(bytes.size() / sizeof(Stored));
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const auto stored = load<Stored>(bytes.data() + i * sizeof(Stored), swap_);
+      if constexpr (std::is_integral_v<Value> && std::is_floating_point_v<Stored>) {
+        if (!(stored == std::floor(stored) && std::fabs(stored) < 0x1p53))
+          fail(array, "expected whole numbers, found " + std::to_string(stored));
+      } else if constexpr (std::is_integral_v<Value> && std::is_same_v<Stored, std::uint64_t>) {
+        if (stored > static_cast<std::uint64_t>(INT64_MAX)) fail(array, "a value beyond 2^63");
+      }
+      out[i] = static_cast<Value>(stored);
+    }
+  };
+  const std::string_view type = array.attribute("type").as_string();
+  if (type == "Float64")
+    convert(double{});
+  else if (type == "Float32")
+    convert(float{});
+  else if (type == "Int8")
+    convert(std::int8_t{});
+  else if (type == "UInt8")
+    convert(std::uint8_t{});
+  else if (type == "Int16")
+    convert(std::int16_t{});
+  else if (type == "UInt16")
+    convert(std::uint16_t{});
+  else if (type == "Int32")
+    convert(std::int32_t{});
+  else if (type == "UInt32")
+    convert(std::uint32_t{});
+  else if (type == "Int64")
+    convert(std::int64_t{});
+  else if (type == "UInt64")
+    convert(std::uint64_t{});
+  else
+    fail(array, "unknown type " + in_quotes(type));
+  return out;
+}
+
+std::vector<double> VtuData::numbers(pugi::xml_node array, std::size_t most) const {
+  return values<double>(array, most);
+}
+
+std::vector<std::int64_t> VtuData::integers(pugi::xml_node array, std::size_t most) const {
+  return values<std::int64_t>(array, most);
+}
+
+std::string encode_vtu_array(std::string_view bytes) {
+  constexpr std::size_t block_size = std::size_t{1} << 18;
+  // A good deal faster than zlib's default of 6, and a few percent larger.
+  constexpr int level = 4;
+  const std::size_t blocks = (bytes.size() + block_size - 1) / block_size;
+  std::vector<std::string> packed(blocks);
+  parallel_chunks(blocks, [&](std::size_t b, unsigned) {
+    const std::string_view block = bytes.substr(b * block_size, block_size);
+    uLongf size = compressBound(block.size());
+    packed[b].resize(size);
+    TETWRIGHT_CHECK(compress2(reinterpret_cast<Bytef*>(packed[b].data()), &size,
+                              reinterpret_cast<const Bytef*>(block.data()), block.size(), level) == Z_OK);
+    packed[b].resize(size);
+  });
+  std::string header, data;
+  const auto append_size = [&](std::size_t size) {
+    auto raw = std::bit_cast<std::array<char, 4>>(static_cast<std::uint32_t>(size));
+    if (!little_endian_machine) std::reverse(raw.begin(), raw.end());
+    header.append(raw.data(), raw.size());
+  };
+  append_size(blocks);
+  if (blocks > 0) {
+    append_size(block_size);
+    append_size(bytes.size() % block_size);  // 0: the last one is full
+    for (const std::string& p : packed) {
+      append_size(p.size());
+      data += p;
+    }
+  }
+  std::string out;
+  append_base64(out, header);
+  append_base64(out, data);
+  return out;
+}
+
+}  // namespace tetwright

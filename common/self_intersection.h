@@ -1,0 +1,18 @@
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "common/types.h"
+
+namespace tetwright {
+
+/// All pairs of triangles that meet elsewhere than in the vertices and edges they share, by the rules of
+/// triangle_intersection.h; the smaller number first, in ascending order. Ids must be below the number of
+/// points, coordinates finite. O(n log n + pairs of boxes that overlap), parallel; the result does not depend
+/// on the threads.
+std::vector<std::pair<Index, Index>> self_intersections(std::span<const Vec3> points,
+                                                        std::span<const Triangle> triangles);
+
+}  // namespace tetwright

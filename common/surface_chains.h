@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "common/types.h"
+
+namespace tetwright {
+
+/// An edge of a set of triangles.
+struct SurfaceEdge {
+  std::array<Index, 2> ids;  ///< ascending
+  std::uint32_t count;       ///< triangles at it
+};
+
+/// How a set of triangles hangs together, by ids alone.
+struct SurfaceChains {
+  std::vector<SurfaceEdge> edges;  ///< in lexicographic order
+  std::size_t points = 0;          ///< vertices in use
+  std::size_t components = 0;      ///< of triangles chained by shared edges
+  std::vector<Index>
+      touching_points;  ///< ascending; points at which fans of triangles touch that share no edge there
+  std::size_t surplus_fans = 0;  ///< fans around points beyond one for each point
+
+  /// Euler characteristic: points - edges + triangles.
+  std::ptrdiff_t euler(std::size_t triangles) const {
+    return static_cast<std::ptrdiff_t>(points) - static_cast<std::ptrdiff_t>(edges.size()) +
+           static_cast<std::ptrdiff_t>(triangles);
+  }
+};
+
+/// O(n log n); memory about 100 bytes for each triangle.
+SurfaceChains surface_chains(std::span<const Triangle> triangles);
+
+}  // namespace tetwright
