@@ -33,6 +33,7 @@ class StarMap {
   /// For the points that `near_points` of the lattice lists.
   explicit StarMap(const LabelledLattice& lattice);
 
+  bool lists(Index point) const { return slots_[point] != no_index; }
   /// The numbers of the tets around a listed point.
   const Index* begin(Index point) const { return tets_.data() + starts_[slots_[point]]; }
   const Index* end(Index point) const { return tets_.data() + starts_[slots_[point] + 1]; }

@@ -39,6 +39,23 @@ void append_parents(MortonKey key, const std::array<int, 3>& size, std::vector<M
   }
 }
 
+bool contains(const std::vector<MortonKey>& ascending, MortonKey key) {
+  return std::binary_search(ascending.begin(), ascending.end(), key);
+}
+
+/// True if one of the cells across the faces of a cell is among `split`. All keys are of one level, whose grid
+/// has `size` cells.
+bool has_split_neighbour(MortonKey key, const std::array<int, 3>& size, const std::vector<MortonKey>& split) {
+  const std::array<int, 3> p = morton_decode(key);
+  for (std::size_t a = 0; a < 3; ++a)
+    for (int step : {-1, 1}) {
+      std::array<int, 3> q = p;
+      q[a] += step;
+      if (q[a] >= 0 && q[a] < size[a] && contains(split, morton_encode(q))) return true;
+    }
+  return false;
+}
+
 /// True if trilinear interpolation between the eight corners of the cell puts the interface within `tolerance`
 /// of where the grid has it, and sees the same sides.
 bool interpolates(FieldSampler& sampler, MortonKey key, int level, double tolerance) {
@@ -97,8 +114,7 @@ Octree build_octree(const std::array<int, 3>& cells, int root_level, const Split
 
   Octree octree{cells, root_level, {}};
   const auto is_split = [&](int level, MortonKey key) {
-    const auto& list = split_cells[static_cast<std::size_t>(level)];
-    return level > 0 && std::binary_search(list.begin(), list.end(), key);
+    return level > 0 && contains(split_cells[static_cast<std::size_t>(level)], key);
   };
   const auto pack = [](MortonKey key, int level) {
     return key << (3 * level) << 5 | static_cast<std::uint64_t>(level);
@@ -143,14 +159,23 @@ Octree build_octree(const MaterialField& field, const OctreeOptions& options, Pr
     for (MortonKey& key : holding) key >>= 3;
     holding.erase(std::unique(holding.begin(), holding.end()), holding.end());
     if (level > coarsest_interface_level || options.adaptivity <= 0) return holding;
-    return parallel_collect<MortonKey>(
+    const std::vector<MortonKey> failed = parallel_collect<MortonKey>(
         0, holding.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
           FieldSampler sampler(field);
           for (std::size_t i = begin; i < end; ++i)
-            if (!std::binary_search(already.begin(), already.end(), holding[i]) &&
-                !interpolates(sampler, holding[i], level, options.adaptivity))
+            if (contains(already, holding[i]) || !interpolates(sampler, holding[i], level, options.adaptivity))
               out.push_back(holding[i]);
         });
+    const std::array<int, 3> size{frame.cells[0] >> level, frame.cells[1] >> level, frame.cells[2] >> level};
+    // Where cells of two sizes meet at the interface, the cut tets are poorer: coarse cells stay in the inside
+    // of a patch only, which leaves out single ones.
+    std::vector<MortonKey> split = parallel_collect<MortonKey>(
+        0, holding.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+          for (std::size_t i = begin; i < end; ++i)
+            if (has_split_neighbour(holding[i], size, failed)) out.push_back(holding[i]);
+        });
+    split.insert(split.end(), failed.begin(), failed.end());
+    return split;
   });
 }
 
