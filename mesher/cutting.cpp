@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/quality.h"
 #include "mesher/parallel_sort.h"
 
 namespace tetwright {
@@ -13,10 +14,12 @@ constexpr std::size_t grain = 1 << 13;  // tets to a task, some ten nanoseconds 
 
 /// Cuts stay this share of the edge off its ends, for the sake of the shape of the pieces. Only points that
 /// could not be moved have cuts that near.
-constexpr double smallest_share = 0.05;
+constexpr double smallest_share = 0.25;
 
 using EdgeKey = std::uint64_t;
-EdgeKey edge_key(Index a, Index b) { return static_cast<EdgeKey>(std::min(a, b)) << 32 | std::max(a, b); }
+EdgeKey edge_key(Index a, Index b) {
+  return static_cast<EdgeKey>(std::min(a, b)) << 32 | std::max(a, b);
+}
 
 bool is_cut(const LabelledLattice& lattice, const Tet& t) {
   bool in = false, out = false;
@@ -80,7 +83,60 @@ CutMesh compact(const std::vector<Vec3>& positions, const std::vector<Vec3>& cut
   return mesh;
 }
 
+CutCase cut_case(const LabelledLattice& lattice, const Tet& t) {
+  CutCase cut;
+  for (int k = 0; k < 4; ++k) {
+    cut.sides[k] = lattice.sides[t[k]];
+    cut.ranks[k] = 0;
+    for (int l = 0; l < 4; ++l) {
+      // Farthest from the interface first: the longest edge is the one to be cut short.
+      const float a = std::abs(lattice.distances[t[l]]), b = std::abs(lattice.distances[t[k]]);
+      cut.ranks[k] += a > b || (a == b && t[l] < t[k]);
+    }
+  }
+  return cut;
+}
+
+/// cut_inside() with the shorter diagonal; `point_of(a, b)` is the cut between two corners.
+template <class PointOf>
+int cut_inside(const CutCase& cut, std::array<Piece, 3>& pieces, PointOf&& point_of) {
+  std::array<int, 2> in{}, out{};
+  int inside = 0, outside = 0;
+  for (int k = 0; k < 4; ++k) {
+    if (cut.sides[k] == Side::inside && inside++ < 2) in[inside - 1] = k;
+    if (cut.sides[k] == Side::outside && outside++ < 2) out[outside - 1] = k;
+  }
+  if (inside != 2 || outside != 2) return cut_inside(cut, false, pieces);
+  // Corners in the order of cut_inside(), so that the two diagonals are 02-13 and 03-12.
+  if (cut.ranks[in[1]] < cut.ranks[in[0]]) std::swap(in[0], in[1]);
+  if (cut.ranks[out[1]] < cut.ranks[out[0]]) std::swap(out[0], out[1]);
+  const double one = (point_of(in[0], out[0]) - point_of(in[1], out[1])).squaredNorm();
+  const double other = (point_of(in[0], out[1]) - point_of(in[1], out[0])).squaredNorm();
+  return cut_inside(cut, other < one, pieces);
+}
+
 }  // namespace
+
+double worst_inside_angle(const LabelledLattice& lattice, const Tet& t) {
+  constexpr double none = 4 * regular_solid_angle;
+  const auto angle = [](const std::array<Vec3, 4>& p) { return min_solid_angle(p[0], p[1], p[2], p[3]); };
+  if (is_inside(lattice, t))
+    return angle({lattice.positions[t[0]], lattice.positions[t[1]], lattice.positions[t[2]], lattice.positions[t[3]]});
+  if (!is_cut(lattice, t)) return none;
+  std::array<Piece, 3> pieces;
+  const auto point_of = [&](int a, int b) { return cut_point(lattice, edge_key(t[a], t[b])); };
+  const int n = cut_inside(cut_case(lattice, t), pieces, point_of);
+  double worst = none;
+  for (int p = 0; p < n; ++p) {
+    std::array<Vec3, 4> x;
+    for (int k = 0; k < 4; ++k) {
+      const auto [from, to] = pieces[p][k];
+      x[k] = from == to ? lattice.positions[t[from]] : point_of(from, to);
+    }
+    worst = std::min(worst, angle(x));
+  }
+  return worst;
+}
 
 int cut_inside(const CutCase& cut, bool other_diagonal, std::array<Piece, 3>& pieces) {
   // The corners in the order inside (by rank), on, outside, and whether that turned the tet over.
@@ -155,35 +211,9 @@ CutMesh cut_lattice(const LabelledLattice& lattice) {
           const Tet& t = lattice.tets[i];
           if (is_inside(lattice, t)) out.push_back(t);
           if (!is_cut(lattice, t)) continue;
-          CutCase cut;
-          for (int k = 0; k < 4; ++k) {
-            cut.sides[k] = lattice.sides[t[k]];
-            cut.ranks[k] = 0;
-            for (int l = 0; l < 4; ++l) {
-              // Farthest from the interface first: the longest edge is the one to be cut short.
-              const float a = std::abs(lattice.distances[t[l]]), b = std::abs(lattice.distances[t[k]]);
-              cut.ranks[k] += a > b || (a == b && t[l] < t[k]);
-            }
-          }
-          std::array<Index, 2> in{}, out_corners{};
-          int inside = 0, outside = 0;
-          for (int k = 0; k < 4; ++k) {
-            if (cut.sides[k] == Side::inside && inside++ < 2) in[inside - 1] = static_cast<Index>(k);
-            if (cut.sides[k] == Side::outside && outside++ < 2)
-              out_corners[outside - 1] = static_cast<Index>(k);
-          }
-          bool other = false;
-          if (inside == 2 && outside == 2) {
-            // Corners in the order of cut_inside(), so that the two diagonals are 02-13 and 03-12.
-            if (cut.ranks[in[1]] < cut.ranks[in[0]]) std::swap(in[0], in[1]);
-            if (cut.ranks[out_corners[1]] < cut.ranks[out_corners[0]])
-              std::swap(out_corners[0], out_corners[1]);
-            const auto at = [&](int k, int l) -> const Vec3& {
-              return cuts[cut_number(t[in[k]], t[out_corners[l]])];
-            };
-            other = (at(0, 1) - at(1, 0)).squaredNorm() < (at(0, 0) - at(1, 1)).squaredNorm();
-          }
-          const int n = cut_inside(cut, other, pieces);
+          const int n = cut_inside(cut_case(lattice, t), pieces, [&](int a, int b) -> const Vec3& {
+            return cuts[cut_number(t[a], t[b])];
+          });
           for (int p = 0; p < n; ++p) {
             Tet piece;
             for (int k = 0; k < 4; ++k) {

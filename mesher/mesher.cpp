@@ -79,10 +79,9 @@ double cell_size(const ClosedSurface& s, const std::string& file, const MesherOp
                      " are possible");
   const double farthest = std::max(s.low.cwiseAbs().maxCoeff(), s.high.cwiseAbs().maxCoeff());
   if (farthest * 0x1p-52 > h * cell_share_of_rounding)
-    throw InputError(
-        file, 0,
-        "with coordinates up to " + number_text(farthest) + " cells of " + number_text(h) +
-            " cannot be told apart safely; move the surface nearer to the origin or take larger cells");
+    throw InputError(file, 0,
+                     "with coordinates up to " + number_text(farthest) + " cells of " + number_text(h) +
+                         " cannot be told apart safely; move the surface nearer to the origin or take larger cells");
   return h;
 }
 
@@ -101,13 +100,11 @@ MesherEstimate estimate(const ClosedSurface& s, double h, const MesherOptions& o
 }
 
 void check_memory(const MesherEstimate& e) {
-  const double machine =
-      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
   if (static_cast<double>(e.bytes) > machine)
-    throw OutputError("the mesh would have about " + number_text(static_cast<double>(e.tets)) +
-                      " tets and take " + number_text(static_cast<double>(e.bytes) / (1 << 30)) +
-                      " GB, this machine has " + number_text(machine / (1 << 30)) +
-                      " GB; use a lower resolution");
+    throw OutputError("the mesh would have about " + number_text(static_cast<double>(e.tets)) + " tets and take " +
+                      number_text(static_cast<double>(e.bytes) / (1 << 30)) + " GB, this machine has " +
+                      number_text(machine / (1 << 30)) + " GB; use a lower resolution");
 }
 
 /// Runs the stages, tells about them and takes their times.
@@ -143,8 +140,7 @@ TetMesh to_input_units(CutMesh cut, const GridFrame& frame, const MaterialSurfac
   parallel_for(0, mesh.tets.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Tet& t = mesh.tets[i];
-      TETWRIGHT_CHECK(orient3d(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) >
-                      0);
+      TETWRIGHT_CHECK(orient3d(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) > 0);
     }
   });
   return mesh;
@@ -168,10 +164,9 @@ MeshedSurface mesh_surfaces(const std::vector<MaterialSurface>& surfaces, const 
   stages.begin("signed distances");
   const ClosedSurface surface = close_only_surface(surfaces);
   const MaterialSurface& material = surfaces[0];
-  const NothingToMeshError nothing(
-      material.file +
-      ": the surface is smaller than a cell; use a higher resolution or a smaller "
-      "voxel size");
+  const NothingToMeshError nothing(material.file +
+                                   ": the surface is smaller than a cell; use a higher resolution or a smaller "
+                                   "voxel size");
   if (!(longest_side(surface) > 0)) throw nothing;
   report.cell_size = cell_size(surface, material.file, options);
   report.resolution = static_cast<int>(std::ceil(longest_side(surface) / report.cell_size - 0.5));

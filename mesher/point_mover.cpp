@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "common/quality.h"
 #include "mesher/arrangement.h"
+#include "mesher/cutting.h"
 #include "mesher/parallel_sort.h"
 
 namespace tetwright {
@@ -37,8 +39,7 @@ struct Target {
 
 class Mover {
  public:
-  Mover(LabelledLattice& lattice, const MaterialField& field)
-      : lattice_(lattice), field_(field), stars_(lattice) {}
+  Mover(LabelledLattice& lattice, const MaterialField& field) : lattice_(lattice), field_(field), stars_(lattice) {}
 
   MoveCounts run(Progress* progress) {
     find_candidates();
@@ -57,15 +58,20 @@ class Mover {
         refused.push_back(i);
     }
     // Neighbours that moved since may have made room.
+    FieldSampler sampler(field_);
     std::vector<std::size_t> left;
     for (std::size_t i : refused) {
-      if (move(i))
+      if (move(i) || slide(i, sampler))
         ++counts.moved;
       else
         left.push_back(i);
     }
-    FieldSampler sampler(field_);
     for (std::size_t i : left) counts.pushed += push_away(i, sampler);
+    // A second sweep still finds something, a third hardly.
+    for (int sweep = 0; sweep < 2; ++sweep) {
+      if (progress) progress->throw_if_cancelled();
+      mend_poor_stars(sampler);
+    }
     return counts;
   }
 
@@ -140,36 +146,126 @@ class Mover {
     const Vec3* place = star_holds(p, target.projected) ? &target.projected
                         : star_holds(p, target.on_edge) ? &target.on_edge
                                                         : nullptr;
-    if (!place || !may_move_onto_interface(lattice_, stars_, p)) return false;
-    lattice_.positions[p] = *place;
+    return place && put(p, *place);
+  }
+
+  /// Onto the interface at `place`, if that keeps the arrangement.
+  bool put(Index p, const Vec3& place) {
+    if (!may_move_onto_interface(lattice_, stars_, p)) return false;
+    lattice_.positions[p] = place;
     lattice_.sides[p] = Side::on;
     return true;
   }
 
-  /// A refused point makes thin tets where it is; farther from the interface they are thicker.
-  bool push_away(std::size_t i, FieldSampler& sampler) {
+  /// The mean of the corners of a star's tets, the point itself left out.
+  Vec3 middle_of_star(Index p) const {
+    Vec3 sum = Vec3::Zero();
+    double count = 0;
+    for (const Index* t = stars_.begin(p); t != stars_.end(p); ++t)
+      for (Index q : lattice_.tets[*t])
+        if (q != p) {
+          sum += lattice_.positions[q];
+          ++count;
+        }
+    return sum / count;
+  }
+
+  /// Tries places of the interface nearer to the middle of the star, where its tets are less thin.
+  bool slide(std::size_t i, FieldSampler& sampler) {
     const Index p = candidates_[i].point;
-    const Vec3 from = lattice_.positions[p];
-    Vec3 gradient;
-    const double value = sampler.at(from, gradient);
-    const double slope = gradient.norm();
-    if (!(slope > 0)) return false;
-    // As far as a cut must be, or half as far.
-    for (double share : {near_long, near_long / 2}) {
-      const double wanted = share * targets_[i].room;
-      if (wanted <= std::abs(value)) continue;
-      const Vec3 place = from + gradient * ((value < 0 ? value + wanted : wanted - value) *
-                                            (value < 0 ? -1 : 1) / (slope * slope) * slope);
-      const double reached = sampler.at(place);
-      if ((reached < 0) != (lattice_.distances[p] < 0) || std::abs(reached) <= std::abs(value) ||
-          beyond_band(reached))
-        continue;
-      if (!star_holds(p, place)) continue;
-      lattice_.positions[p] = place;
-      lattice_.distances[p] = static_cast<float>(reached);
-      return true;
+    const Vec3 middle = middle_of_star(p);
+    for (double share : {0.5, 1.0}) {
+      Vec3 place = lattice_.positions[p] + share * (middle - lattice_.positions[p]);
+      if (sampler.project(place) && (place - lattice_.positions[p]).norm() <= targets_[i].room &&
+          star_holds(p, place))
+        return put(p, place);
     }
     return false;
+  }
+
+  double worst_piece(Index p) const {
+    double worst = 4;
+    for (const Index* t = stars_.begin(p); t != stars_.end(p); ++t)
+      worst = std::min(worst, worst_inside_angle(lattice_, lattice_.tets[*t]));
+    return worst;
+  }
+
+  /// Puts a point where the worst piece of its star is best, of where it is and some places. The point keeps
+  /// its side, and the lattice its angles.
+  bool take_best(Index p, std::span<const Vec3> places, FieldSampler& sampler) {
+    const bool on = lattice_.sides[p] == Side::on;
+    Vec3 best_place = lattice_.positions[p];
+    const Vec3 from = best_place;
+    float best_distance = lattice_.distances[p];
+    double best = worst_piece(p);
+    for (const Vec3& place : places) {
+      const double reached = on ? best_distance : sampler.at(place);
+      if ((reached < 0) != (best_distance < 0) || beyond_band(reached) || !star_holds(p, place)) continue;
+      lattice_.positions[p] = place;
+      lattice_.distances[p] = static_cast<float>(reached);
+      if (const double worst = worst_piece(p); worst > best) {
+        best = worst;
+        best_place = place;
+        best_distance = lattice_.distances[p];
+      }
+    }
+    lattice_.positions[p] = best_place;
+    lattice_.distances[p] = best_distance;
+    return best_place != from;
+  }
+
+  /// A refused point makes thin pieces where it is; farther from the interface they are thicker.
+  bool push_away(std::size_t i, FieldSampler& sampler) {
+    const Index p = candidates_[i].point;
+    Vec3 gradient;
+    const double value = sampler.at(lattice_.positions[p], gradient);
+    const double slope = gradient.norm();
+    if (!(slope > 0)) return false;
+    std::vector<Vec3> places;
+    for (double share : {0.15, 0.25, 0.35, 0.5})
+      if (const double step = share * targets_[i].room - std::abs(value); step > 0)
+        places.push_back(lattice_.positions[p] + gradient * ((value < 0 ? -step : step) / slope));
+    return take_best(p, places, sampler);
+  }
+
+  /// Points of stars with a piece that is still poor: those on the interface slide along it, the others step
+  /// about.
+  void mend_poor_stars(FieldSampler& sampler) {
+    const std::vector<Index> poor = parallel_collect<Index>(
+        0, lattice_.tets.size(), 1 << 12, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+          for (std::size_t i = begin; i < end; ++i)
+            if (is_near(lattice_.tets[i]) && worst_inside_angle(lattice_, lattice_.tets[i]) < smallest_angle)
+              out.push_back(static_cast<Index>(i));
+        });
+    std::vector<Index> points;
+    for (Index t : poor)
+      for (Index v : lattice_.tets[t])
+        if (stars_.lists(v)) points.push_back(v);
+    parallel_sort_unique(points);
+    std::vector<Vec3> places;
+    for (Index p : points) {
+      const Vec3 from = lattice_.positions[p], to_middle = middle_of_star(p) - from;
+      places.clear();
+      if (lattice_.sides[p] == Side::on) {
+        for (double share : {0.25, 0.5, 1.0}) {
+          Vec3 place = from + share * to_middle;
+          if (sampler.project(place)) places.push_back(place);
+        }
+      } else {
+        Vec3 gradient;
+        const double value = sampler.at(from, gradient);
+        // Shares of the distance itself keep to the side without knowing how large the cells are.
+        for (double share : {-0.4, -0.2, 0.3, 0.6})
+          places.push_back(from + gradient * (share * value / std::max(1e-3, gradient.squaredNorm())));
+        places.push_back(from + 0.5 * to_middle);
+      }
+      take_best(p, places, sampler);
+    }
+  }
+
+  /// True for tets with a point at the interface: only these can be poor.
+  bool is_near(const Tet& t) const {
+    return stars_.lists(t[0]) || stars_.lists(t[1]) || stars_.lists(t[2]) || stars_.lists(t[3]);
   }
 
   LabelledLattice& lattice_;

@@ -109,7 +109,10 @@ int Star::dimension() const {
 
 void Star::compute_gradients() {
   gradients.clear();
+  areas_.clear();
   if (sheets.empty()) return;
+  for (const Sheet& s : sheets)
+    areas_.push_back((positions[s.first] - centre_position).cross(positions[s.second] - centre_position) * (1.0 / 6));
   for (const StarTet& t : tets) {
     const Vec3 &x = positions[t.link[0]], &y = positions[t.link[1]], &z = positions[t.link[2]];
     // Volume of (c, x, y, z) is (x - c) . ((y - x) x (z - x)) / 6: linear in c.
@@ -124,9 +127,16 @@ void Star::compute_gradients() {
   }
 }
 
-double Star::surface_error(const Vec3& step, double gamma) const {
+double Star::surface_error(const Vec3& step, double gamma) {
+  // A moving centre makes each sheet sweep a tet of volume |area vector . step| / 3.
+  swept_.assign(gradients.size(), 0);
+  for (std::size_t k = 0; k < sheets.size(); ++k) {
+    const double swept = std::fabs(areas_[k].dot(step));
+    for (std::size_t i = 0; i < gradients.size(); ++i)
+      if (gradients[i].region == sheets[k].inside || gradients[i].region == sheets[k].across) swept_[i] += swept;
+  }
   double sum = 0;
-  for (const VolumeGradient& g : gradients) sum += portable_cbrt(std::fabs(g.change.dot(step)));
+  for (double swept : swept_) sum += portable_cbrt(swept);
   return gamma * sum;
 }
 
