@@ -13,8 +13,8 @@ namespace {
 constexpr std::size_t most_targets = 4;
 
 /// What annealing must leave of the poorest Quality^3. Below it (0: anything positive) the loop ends with 5-10 % of
-/// tets under 0.1 sr instead of 1-2 %, above 0.3 it stalls above the target.
-constexpr float annealing_floor = 0.2f;
+/// tets under 0.1 sr instead of 2-3 %; larger ones need a larger E to reach the target, which costs surface and volume.
+constexpr float annealing_floor = 0.1f;
 
 /// How far a refusal got, for reporting the most telling one.
 int depth(Outcome o) {

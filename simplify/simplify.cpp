@@ -21,7 +21,7 @@ constexpr double first_error_edges = 4;  ///< E at first, in ideal edges
 constexpr double error_growth = 1.3;     ///< E's factor after an iteration that removed too little
 constexpr double least_removed = 0.15;   ///< of the tets: less than that is too little
 constexpr double percent_step = 10;      ///< the paper's: the share of poor tets grows by this each iteration
-constexpr double first_annealing = 0.25; ///< probability at first of an action that leaves a poorer tet
+constexpr double first_annealing = 0.3;  ///< probability at first of an action that leaves a poorer tet
 constexpr double swaps_below = 10;       ///< times the target: above it swaps and smoothing are wasted work
 constexpr int most_closing_rounds = 24;
 /// The loop stops this much above the target, and the closing may end as far below it: collapses are what
