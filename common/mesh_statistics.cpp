@@ -56,7 +56,8 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
     for (std::size_t t = p * part_size; t < last; ++t) {
       const Tet& v = mesh.tets[t];
       const std::array<Vec3, 4> x{mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]};
-      const double volume = tet_volume(x[0], x[1], x[2], x[3]);
+      // Six times, so that whole numbers add up without rounding.
+      const double volume = orient3d_value(x[0], x[1], x[2], x[3]);
       const double angle =
           orient3d(x[0], x[1], x[2], x[3]) > 0 ? min_solid_angle(x[0], x[1], x[2], x[3]) : 0.0;
       if (!material || tag != mesh.materials[t]) {
@@ -74,7 +75,7 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
         if (dihedral > part.max_dihedral) part.max_dihedral = dihedral;
       }
       angles[t] = static_cast<float>(angle);
-      volumes[t] = static_cast<float>(volume);
+      volumes[t] = static_cast<float>(volume / 6);
     }
   });
 
@@ -90,7 +91,11 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
     all.min_dihedral = std::min(all.min_dihedral, part.min_dihedral);
     all.max_dihedral = std::max(all.max_dihedral, part.max_dihedral);
   }
-  for (const auto& [tag, material] : out.materials) out.volume += material.volume;
+  for (auto& [tag, material] : out.materials) {
+    out.volume += material.volume;
+    material.volume /= 6;
+  }
+  out.volume /= 6;
   const auto n = static_cast<double>(out.tets);
   out.min_solid_angle = all.min_angle;
   out.mean_solid_angle = all.sum_angle / n;

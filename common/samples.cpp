@@ -99,7 +99,7 @@ TriangleMesh knot() {
     };
     const Vec3 binormal = unit(first.cross(second));
     const Vec3 normal = unit(binormal.cross(first));
-    return Vec3(at + 0.4 * (around.cosine * normal + around.sine * binormal));
+    return Vec3(at + 0.4 * (around.cosine * normal - around.sine * binormal));
   });
 }
 
