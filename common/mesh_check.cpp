@@ -246,8 +246,8 @@ std::vector<MeshFinding> check_mesh(const TetMesh& mesh, const MeshCheckOptions&
   return checker.findings();
 }
 
-std::vector<MeshFinding> check_mesh(const TetMesh& mesh, const std::vector<MeshFace>& faces,
-                                    const MeshCheckOptions& options) {
+std::vector<MeshFinding> check_mesh(const TetMesh& mesh, const MeshCheckOptions& options,
+                                    const std::vector<MeshFace>& faces) {
   Checker checker(mesh, options);
   if (!checker.check_arrays()) return checker.findings();
   checker.check_tets();

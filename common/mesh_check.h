@@ -44,8 +44,8 @@ struct MeshCheckOptions {
 /// About 2 s and 300 bytes of memory for each tet of a million.
 std::vector<MeshFinding> check_mesh(const TetMesh& mesh, const MeshCheckOptions& options = {});
 /// The same, with faces that mesh_faces() made of this mesh, whose indices must be in range.
-std::vector<MeshFinding> check_mesh(const TetMesh& mesh, const std::vector<MeshFace>& faces,
-                                    const MeshCheckOptions& options = {});
+std::vector<MeshFinding> check_mesh(const TetMesh& mesh, const MeshCheckOptions& options,
+                                    const std::vector<MeshFace>& faces);
 
 /// "inverted: 3, the first at tet 7 (1 2 2 5)"
 std::string mesh_finding_line(const MeshFinding& finding);

@@ -1,0 +1,120 @@
+#include "common/mesh_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "common/parallel.h"
+#include "common/predicates.h"
+#include "common/quality.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Fixed, so that sums are rounded the same way for any number of threads.
+constexpr std::size_t part_size = 1 << 14;
+
+struct PartStatistics {
+  std::map<MaterialTag, MaterialStatistics> materials;
+  double min_angle = std::numeric_limits<double>::infinity();
+  double sum_angle = 0;
+  std::size_t below = 0;
+  double min_dihedral = std::numeric_limits<double>::infinity();
+  double max_dihedral = -std::numeric_limits<double>::infinity();
+};
+
+std::size_t angle_bin(double angle) {
+  return std::min(QualityHistogram::angle_bins - 1,
+                  static_cast<std::size_t>(angle / QualityHistogram::angle_step));
+}
+
+/// Lower ends of the bins behind the first, as shares of the mean. Half steps are sqrt(2), no logarithm.
+std::array<double, QualityHistogram::volume_bins - 1> volume_limits() {
+  std::array<double, QualityHistogram::volume_bins - 1> limits;
+  for (std::size_t i = 0; i < limits.size(); ++i)
+    limits[i] = std::ldexp(QualityHistogram::smallest_relative_volume * ((i + 1) % 2 ? std::sqrt(2.0) : 1.0),
+                           static_cast<int>((i + 1) / 2));
+  return limits;
+}
+
+}  // namespace
+
+MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
+  MeshStatistics out;
+  out.tets = mesh.tets.size();
+  out.points = mesh.points.size();
+  if (mesh.tets.empty()) return out;
+
+  std::vector<float> angles(mesh.tets.size()), volumes(mesh.tets.size());
+  std::vector<PartStatistics> parts((mesh.tets.size() + part_size - 1) / part_size);
+  parallel_chunks(parts.size(), [&](std::size_t p, unsigned) {
+    PartStatistics& part = parts[p];
+    MaterialStatistics* material = nullptr;
+    MaterialTag tag = 0;
+    const std::size_t last = std::min(mesh.tets.size(), (p + 1) * part_size);
+    for (std::size_t t = p * part_size; t < last; ++t) {
+      const Tet& v = mesh.tets[t];
+      const std::array<Vec3, 4> x{mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]};
+      // Six times, so that whole numbers add up without rounding.
+      const double volume = orient3d_value(x[0], x[1], x[2], x[3]);
+      const double angle =
+          orient3d(x[0], x[1], x[2], x[3]) > 0 ? min_solid_angle(x[0], x[1], x[2], x[3]) : 0.0;
+      if (!material || tag != mesh.materials[t]) {
+        tag = mesh.materials[t];
+        material = &part.materials[tag];
+      }
+      ++material->tets;
+      material->volume += volume;
+      part.min_angle = std::min(part.min_angle, angle);
+      part.sum_angle += angle;
+      part.below += angle < threshold;
+      for (double dihedral : dihedral_angles(x)) {
+        // Not a number where a face is degenerate: both comparisons are false.
+        if (dihedral < part.min_dihedral) part.min_dihedral = dihedral;
+        if (dihedral > part.max_dihedral) part.max_dihedral = dihedral;
+      }
+      angles[t] = static_cast<float>(angle);
+      volumes[t] = static_cast<float>(volume / 6);
+    }
+  });
+
+  PartStatistics all;
+  for (const PartStatistics& part : parts) {
+    for (const auto& [tag, material] : part.materials) {
+      out.materials[tag].tets += material.tets;
+      out.materials[tag].volume += material.volume;
+    }
+    all.min_angle = std::min(all.min_angle, part.min_angle);
+    all.sum_angle += part.sum_angle;
+    all.below += part.below;
+    all.min_dihedral = std::min(all.min_dihedral, part.min_dihedral);
+    all.max_dihedral = std::max(all.max_dihedral, part.max_dihedral);
+  }
+  for (auto& [tag, material] : out.materials) {
+    out.volume += material.volume;
+    material.volume /= 6;
+  }
+  out.volume /= 6;
+  const auto n = static_cast<double>(out.tets);
+  out.min_solid_angle = all.min_angle;
+  out.mean_solid_angle = all.sum_angle / n;
+  out.below_count = all.below;
+  out.below_percent = 100 * static_cast<double>(all.below) / n;
+  if (all.min_dihedral <= all.max_dihedral) {
+    out.min_dihedral = all.min_dihedral;
+    out.max_dihedral = all.max_dihedral;
+  }
+
+  const auto limits = volume_limits();
+  const double mean = out.volume / n;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const double relative = mean > 0 ? static_cast<double>(volumes[t]) / mean : 0.0;
+    const auto bin =
+        static_cast<std::size_t>(std::upper_bound(limits.begin(), limits.end(), relative) - limits.begin());
+    ++out.histogram.counts[angle_bin(static_cast<double>(angles[t]))][bin];
+  }
+  return out;
+}
+
+}  // namespace tetwright

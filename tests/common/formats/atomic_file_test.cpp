@@ -1,0 +1,104 @@
+#include "common/formats/atomic_file.h"
+
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "tests/common/formats/expect_error.h"
+#include "tests/common/formats/temporary_folder.h"
+
+namespace tetwright {
+namespace {
+
+using AtomicFile = TemporaryFolder;
+
+TEST_F(AtomicFile, NewAndReplaced) {
+  write_file_atomically(path("a"), "first");
+  EXPECT_EQ(get(path("a")), "first");
+  chmod(path("a").c_str(), 0640);
+  write_file_atomically(path("a"), std::string("sec\0nd", 6));
+  EXPECT_EQ(get(path("a")), std::string("sec\0nd", 6));
+  struct stat status;
+  ASSERT_EQ(stat(path("a").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0640u);
+  EXPECT_EQ(files(), 1u);
+  EXPECT_EQ(read_whole_file(path("a")), std::string("sec\0nd", 6));
+}
+
+TEST_F(AtomicFile, ALinkStaysAndItsTargetIsReplaced) {
+  namespace fs = std::filesystem;
+  fs::create_directory(path("sub"));
+  put(path("sub/target"), "old");
+  fs::create_symlink("sub/target", path("link"));
+  fs::create_symlink(path("link"), path("link to link"));
+  write_file_atomically(path("link to link"), "new");
+  EXPECT_TRUE(fs::is_symlink(path("link")));
+  EXPECT_EQ(get(path("sub/target")), "new");
+  fs::create_symlink("sub/fresh", path("dangling"));
+  write_file_atomically(path("dangling"), "fresh");
+  EXPECT_TRUE(fs::is_symlink(path("dangling")));
+  EXPECT_EQ(get(path("sub/fresh")), "fresh");
+  fs::create_symlink("round", path("round"));
+  EXPECT_NE(error_of<OutputError>([&] { check_output_file(path("round")); }).find("link"), std::string::npos);
+}
+
+TEST_F(AtomicFile, ImpossibleTargets) {
+  std::filesystem::create_directory(path("folder"));
+  put(path("file"), "");
+  EXPECT_NE(error_of<OutputError>([&] { check_output_file(path("folder")); }).find("folder"),
+            std::string::npos);
+  EXPECT_NE(error_of<OutputError>([&] { check_output_file(path("none/a")); }).find("No such file"),
+            std::string::npos);
+  EXPECT_NE(error_of<OutputError>([&] { check_output_file(path("file/a")); }).find("file"),
+            std::string::npos);
+  EXPECT_NE(error_of<OutputError>([&] { check_output_file("/dev/null"); }).find("not a regular file"),
+            std::string::npos);
+  if (geteuid() != 0) {  // root may write everywhere
+    chmod(path("folder").c_str(), 0555);
+    EXPECT_NE(error_of<OutputError>([&] { check_output_file(path("folder/a")); }).find("not writable"),
+              std::string::npos);
+    chmod(path("folder").c_str(), 0755);
+  }
+}
+
+TEST_F(AtomicFile, OverTheFileSizeLimitNothingIsLeft) {
+  put(path("a"), "old");
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit small{1000, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const std::string message =
+      error_of<OutputError>([&] { write_file_atomically(path("a"), std::string(5000, 'x')); });
+  const std::string fresh =
+      error_of<OutputError>([&] { write_file_atomically(path("b"), std::string(5000, 'x')); });
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_NE(message.find("too large"), std::string::npos) << message;
+  EXPECT_NE(fresh.find("too large"), std::string::npos) << fresh;
+  EXPECT_EQ(get(path("a")), "old");
+  EXPECT_EQ(files(), 1u);
+  struct sigaction now = {};
+  sigaction(SIGXFSZ, nullptr, &now);
+  EXPECT_EQ(now.sa_handler, SIG_DFL);
+}
+
+TEST_F(AtomicFile, ADiskThatIsFull) {
+  // Every write to /dev/full fails so; as a target it is refused before that.
+  EXPECT_NE(error_of<OutputError>([&] { write_file_atomically("/dev/full", "x"); }).find("regular"),
+            std::string::npos);
+}
+
+TEST_F(AtomicFile, UnreadableInput) {
+  EXPECT_NE(error_of<InputError>([&] { (void)read_whole_file(path("none")); }).find("No such file"),
+            std::string::npos);
+  EXPECT_NE(error_of<InputError>([&] { (void)read_whole_file(folder_.string()); }).find("folder"),
+            std::string::npos);
+  EXPECT_NE(error_of<InputError>([&] { (void)read_whole_file("/dev/zero"); }).find("regular"),
+            std::string::npos);
+  put(path("empty"), "");
+  EXPECT_EQ(read_whole_file(path("empty")), "");
+}
+
+}  // namespace
+}  // namespace tetwright

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "common/error.h"
+
+namespace tetwright {
+
+/// The message of the error of type E that `call` must throw; empty, and a failure, if it doesn't.
+template <class E, class Call>
+std::string error_of(const Call& call) {
+  try {
+    call();
+  } catch (const E& error) {
+    const std::string message = error.what();
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    for (char c : message) EXPECT_TRUE(c >= ' ' && c <= '~') << message;
+    return message;
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return {};
+}
+
+/// Expects that reading `text` as file "f" is an InputError with both texts in its message.
+template <class Read>
+void expect_input_error(const Read& read, std::string_view text, const std::string& first,
+                        const std::string& second = "") {
+  const std::string message = error_of<InputError>([&] { (void)read(text, "f"); });
+  EXPECT_EQ(message.substr(0, 3), "f: ") << message;
+  EXPECT_NE(message.find(first), std::string::npos) << message;
+  EXPECT_NE(message.find(second), std::string::npos) << message;
+}
+
+}  // namespace tetwright

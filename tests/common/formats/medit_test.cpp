@@ -1,0 +1,50 @@
+#include "common/formats/medit.h"
+
+#include "tests/common/formats/expect_error.h"
+#include "tests/common/formats/tricky_meshes.h"
+
+namespace tetwright {
+namespace {
+
+const std::string head = "MeshVersionFormatted 2\nDimension\n3\n";
+const std::string vertices = "Vertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 7\n0 0 1 0\n";
+
+TEST(Medit, RoundTripKeepsEveryBit) {
+  const TetMesh mesh = tricky_tets();
+  const ReadTetMesh back = read_medit(write_medit(mesh), "f");
+  EXPECT_TRUE(same_bits(back.mesh.points, mesh.points));
+  EXPECT_EQ(back.mesh.tets, mesh.tets);
+  EXPECT_EQ(back.mesh.materials, mesh.materials);
+  EXPECT_EQ(back.material_field, "medit:ref");
+}
+
+TEST(Medit, OtherSectionsAndCommentsAreSkippedInAnyOrder) {
+  const ReadTetMesh r =
+      read_medit(head + "# a comment\nTriangles\n1\n1 2 3 4\nTetrahedra 1\n1 2 3 4 -5\nRidges\n1\n1\n" +
+                     vertices + "RequiredVertices\n1\n1\nEnd\n",
+                 "f");
+  EXPECT_EQ(r.mesh.tets, (std::vector<Tet>{{0, 1, 2, 3}}));
+  EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{-5}));
+}
+
+TEST(Medit, BadInput) {
+  expect_input_error(read_medit, "", "empty");
+  expect_input_error(read_medit, "MFEM mesh v1.0", "\"MFEM\"");
+  expect_input_error(read_medit, "MeshVersionFormatted 2\nDimension 2\n", "line 2", "dimension 2");
+  expect_input_error(read_medit, head + vertices, "no tets");
+  expect_input_error(read_medit, head + "Tetrahedra\n1\n1 2 3 4 1\n", "Vertices");
+  expect_input_error(read_medit, head + "Vertices\n4000000000\n0 0 0 0\n", "line 5", "4000000000");
+  expect_input_error(read_medit, head + vertices + "Tetrahedra\n4000000000\n1 2 3 4 1\n", "line 11",
+                     "4000000000");
+  expect_input_error(read_medit, head + vertices + "Tetrahedra\n1\n1 2 3 5 1\n", "line 12", "point 5");
+  expect_input_error(read_medit, head + vertices + "Tetrahedra\n1\n1 2 3 0 1\n", "line 12", "point 0");
+  expect_input_error(read_medit, head + "Tetrahedra\n1\n1 2 3 5 1\n" + vertices, "tet 1", "point 5");
+  expect_input_error(read_medit, head + vertices + "Tetrahedra\n1\n1 2 3 4 5000000000\n", "line 12",
+                     "32 bits");
+  expect_input_error(read_medit, head + vertices + "Tetrahedra\n1\n1 2 3 4 x\n", "line 12", "\"x\"");
+  expect_input_error(read_medit, head + vertices + "Tetrahedra\n1\n1 2 3    \n\n\n\n", "cut short");
+  expect_input_error(read_medit, head + "Vertices\n2\n0 0 0 0\n1 NaN 0 0\n", "line 7", "not finite");
+}
+
+}  // namespace
+}  // namespace tetwright

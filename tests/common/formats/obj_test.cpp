@@ -1,0 +1,55 @@
+#include "common/formats/obj.h"
+
+#include "tests/common/formats/expect_error.h"
+#include "tests/common/formats/tricky_meshes.h"
+
+namespace tetwright {
+namespace {
+
+const std::string points = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+TEST(Obj, RoundTripKeepsEveryBit) {
+  const TriangleMesh mesh = tricky_surface();
+  const TriangleMesh back = read_obj(write_obj(mesh), "f");
+  EXPECT_TRUE(same_bits(back.points, mesh.points));
+  EXPECT_EQ(back.triangles, mesh.triangles);
+}
+
+TEST(Obj, AllFormsOfFaces) {
+  const TriangleMesh mesh = read_obj("# Blender\nmtllib a.mtl\no Thing\n" + points +
+                                         "vt 0 0\nvn 0 0 1\ns off\nusemtl Red\nf 1 2 3\nf 1/1 2/1 3/1\n"
+                                         "f 1//1 2//1 3//1\nf 1/1/1 2/1/1 3/1/1\nf -4 -3 -2\nf 1 2 3 4\n",
+                                     "f");
+  const std::vector<Triangle> expected{{0, 1, 2}, {0, 1, 2}, {0, 1, 2}, {0, 1, 2},
+                                       {0, 1, 2}, {0, 1, 2}, {0, 2, 3}};
+  EXPECT_EQ(mesh.triangles, expected);
+}
+
+TEST(Obj, ColoursContinuedLinesAndOtherLineEnds) {
+  const TriangleMesh mesh =
+      read_obj("v 0 0 0 1 0.5 0\r\nv 1 0 0 1\rv 0 \\\r\n 1 0\nf 1 \\\n2 3\ng a b\nl 1 2\n", "f");
+  EXPECT_EQ(mesh.points[2], Vec3(0, 1, 0));
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}}));
+}
+
+TEST(Obj, FacesMayComeBeforeTheirPoints) {
+  EXPECT_EQ(read_obj("f 1 2 3\n" + points, "f").triangles.size(), 1u);
+}
+
+TEST(Obj, BadInput) {
+  expect_input_error(read_obj, "", "empty");
+  expect_input_error(read_obj, points, "no triangles");
+  expect_input_error(read_obj, points + "f 1 2 5\n", "line 5", "point 5");
+  expect_input_error(read_obj, points + "f 1 2 0\n", "line 5", "counts from 1");
+  expect_input_error(read_obj, points + "f 1 2 -5\n", "line 5", "point -5");
+  expect_input_error(read_obj, points + "f 1 2 x/3\n", "line 5", "\"x/3\"");
+  expect_input_error(read_obj, points + "f 1 2 99999999999999999999\n", "line 5", "99999");
+  expect_input_error(read_obj, points + "f 1 2 4294967295\n", "line 5", "4294967295");
+  expect_input_error(read_obj, points + "f 1 2\n", "line 5", "2 vertices");
+  expect_input_error(read_obj, "v 0 0\n", "line 1", "fewer than three");
+  expect_input_error(read_obj, "v 0 0 zero\n", "line 1", "\"zero\"");
+  expect_input_error(read_obj, "v 0 0 0\nv 0 inf 0\n", "line 2", "not finite");
+}
+
+}  // namespace
+}  // namespace tetwright

@@ -1,0 +1,255 @@
+#include "common/formats/vtu.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "common/formats/base64.h"
+#include "tests/common/formats/expect_error.h"
+#include "tests/common/formats/tricky_meshes.h"
+
+namespace tetwright {
+namespace {
+
+// Builds one tet (and a triangle before it) in every encoding that VTK knows.
+struct Encoding {
+  std::string format = "binary";  ///< ascii, binary, base64 or raw (the last two appended)
+  bool compressed = false;
+  bool wide = false;
+  bool big = false;
+};
+
+struct Array {
+  std::string type, name, more, ascii, bytes;
+};
+
+template <class Number>
+Array array(const std::string& type, const std::string& name, const std::vector<Number>& values, bool big,
+            const std::string& more = "") {
+  Array a{type, name, more, "", ""};
+  for (Number v : values) {
+    a.ascii += std::to_string(v) + " ";
+    std::string bytes(reinterpret_cast<const char*>(&v), sizeof(v));
+    if (big) std::reverse(bytes.begin(), bytes.end());
+    a.bytes += bytes;
+  }
+  return a;
+}
+
+std::string encoded(const std::string& bytes, const Encoding& e) {
+  const auto size = [&](std::uint64_t n) {
+    std::string s(reinterpret_cast<const char*>(&n), e.wide ? 8 : 4);
+    if (e.big) std::reverse(s.begin(), s.end());
+    return s;
+  };
+  std::string header, data;
+  if (e.compressed) {
+    constexpr std::size_t block = 16;  // several blocks, the last one partial
+    std::string sizes;
+    std::size_t blocks = 0;
+    for (std::size_t at = 0; at < bytes.size(); at += block, ++blocks) {
+      std::string packed(100, '\0');
+      uLongf n = packed.size();
+      compress(reinterpret_cast<Bytef*>(packed.data()), &n, reinterpret_cast<const Bytef*>(bytes.data() + at),
+               std::min(block, bytes.size() - at));
+      sizes += size(n);
+      data += packed.substr(0, n);
+    }
+    header = size(blocks) + size(block) + size(bytes.size() % block) + sizes;
+  } else {
+    header = size(bytes.size());
+    data = bytes;
+  }
+  if (e.format == "raw") return header + data;
+  std::string out;
+  if (e.compressed) {
+    append_base64(out, header);
+    append_base64(out, data);
+  } else {
+    append_base64(out, header + data);
+  }
+  return out;
+}
+
+std::string file(const Encoding& e, const std::vector<Array>& points, const std::vector<Array>& cells,
+                 const std::vector<Array>& cell_data) {
+  std::string out =
+      std::string(
+          "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"") +
+      (e.big ? "Big" : "Little") + "Endian\"" + (e.wide ? " header_type=\"UInt64\"" : "") +
+      (e.compressed ? " compressor=\"vtkZLibDataCompressor\"" : "") +
+      ">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"4\" NumberOfCells=\"2\">\n";
+  std::string appended;
+  const auto add = [&](const std::string& element, const std::vector<Array>& arrays) {
+    out += "<" + element + ">\n";
+    for (const Array& a : arrays) {
+      out += "<DataArray type=\"" + a.type + "\" Name=\"" + a.name + "\" " + a.more + " format=\"";
+      if (e.format == "ascii") {
+        out += "ascii\">\n" + a.ascii + "\n</DataArray>\n";
+      } else if (e.format == "binary") {
+        out += "binary\">\n  " + encoded(a.bytes, e) + "\n</DataArray>\n";
+      } else {
+        out += "appended\" offset=\"" + std::to_string(appended.size()) + "\"/>\n";
+        appended += encoded(a.bytes, e);
+      }
+    }
+    out += "</" + element + ">\n";
+  };
+  add("PointData", {});
+  add("CellData", cell_data);
+  add("Points", points);
+  add("Cells", cells);
+  out += "</Piece>\n</UnstructuredGrid>\n";
+  if (e.format == "base64" || e.format == "raw")
+    out += "<AppendedData encoding=\"" + e.format + "\">\n _" + appended + "\n</AppendedData>\n";
+  return out + "</VTKFile>\n";
+}
+
+std::vector<Array> some_points(bool big, const std::vector<float>& more = {}) {
+  std::vector<float> xyz{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  xyz.insert(xyz.end(), more.begin(), more.end());
+  return {array<float>("Float32", "Points", xyz, big, "NumberOfComponents=\"3\"")};
+}
+std::vector<Array> some_cells(bool big, std::int64_t last_point = 3, std::int32_t last_offset = 7) {
+  return {array<std::int64_t>("Int64", "connectivity", {0, 1, 2, 0, 1, 2, last_point}, big),
+          array<std::int32_t>("Int32", "offsets", {3, last_offset}, big),
+          array<std::uint8_t>("UInt8", "types", {5, 10}, big)};
+}
+Array field(const std::string& name, std::int32_t value, bool big = false) {
+  return array<std::int32_t>("Int32", name, {99, value}, big);
+}
+
+const Encoding ascii{.format = "ascii"};
+std::string ascii_file(const std::vector<Array>& cell_data) {
+  return file(ascii, some_points(false), some_cells(false), cell_data);
+}
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+TEST(Vtu, RoundTripKeepsEveryBitAndTheNames) {
+  const TetMesh mesh = tricky_tets();
+  const ReadTetMesh back = read_vtu(write_vtu(mesh), "f");
+  EXPECT_TRUE(same_bits(back.mesh.points, mesh.points));
+  EXPECT_EQ(back.mesh.tets, mesh.tets);
+  EXPECT_EQ(back.mesh.materials, mesh.materials);
+  EXPECT_EQ(back.mesh.material_names, mesh.material_names);
+  EXPECT_EQ(back.material_field, "material");
+}
+
+TEST(Vtu, LargeEnoughForSeveralBlocks) {
+  TetMesh mesh;
+  for (int i = 0; i < 40000; ++i) mesh.points.push_back(Vec3(i, 0.1 * i, 1.0 / (i + 1)));
+  for (Index i = 0; i + 3 < 40000; ++i) {
+    mesh.tets.push_back({i, i + 1, i + 2, i + 3});
+    mesh.materials.push_back(static_cast<MaterialTag>(i % 5));
+  }
+  const TetMesh back = read_vtu(write_vtu(mesh), "f").mesh;
+  EXPECT_TRUE(same_bits(back.points, mesh.points));
+  EXPECT_EQ(back.tets, mesh.tets);
+  EXPECT_EQ(back.materials, mesh.materials);
+}
+
+TEST(Vtu, EveryEncoding) {
+  for (const char* format : {"ascii", "binary", "base64", "raw"})
+    for (bool compressed : {false, true})
+      for (bool wide : {false, true})
+        for (bool big : {false, true}) {
+          const Encoding e{format, compressed, wide, big};
+          const ReadTetMesh r =
+              read_vtu(file(e, some_points(big), some_cells(big), {field("MaterialID", -7, big)}), "f");
+          EXPECT_EQ(r.mesh.points[3], Vec3(0, 0, 1));
+          EXPECT_EQ(r.mesh.tets, (std::vector<Tet>{{0, 1, 2, 3}})) << format;
+          EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{-7}));
+          EXPECT_EQ(r.material_field, "MaterialID");
+        }
+}
+
+TEST(Vtu, WhichFieldIsTheMaterial) {
+  const Array real = array<float>("Float32", "stress", {1, 2}, false);
+  const auto read = [](const std::vector<Array>& fields) { return read_vtu(ascii_file(fields), "f"); };
+  EXPECT_EQ(read({field("attribute", 2), field("material", 3)}).mesh.materials[0], 3);
+  EXPECT_EQ(read({field("gmsh:physical", 2), field("medit:ref", 4), real}).material_field, "medit:ref");
+  EXPECT_EQ(read({real, field("region", 5)}).material_field, "region");
+  EXPECT_EQ(read({real, field("region", 5)}).mesh.materials[0], 5);
+  EXPECT_EQ(read({field("one", 5), field("two", 6)}).material_field, "");
+  EXPECT_EQ(read({field("one", 5), field("two", 6)}).mesh.materials[0], 1);
+  EXPECT_EQ(read({}).mesh.materials[0], 1);
+  // ParaView turns integers into floats in places; whole numbers are taken.
+  EXPECT_EQ(read_vtu(file({}, some_points(false), some_cells(false),
+                          {array<double>("Float64", "material", {1, 6}, false)}),
+                     "f")
+                .mesh.materials[0],
+            6);
+}
+
+TEST(Vtu, BadInput) {
+  const std::string good = ascii_file({field("material", 1)});
+  expect_input_error(read_vtu, "", "empty");
+  expect_input_error(read_vtu, "no xml", "not XML");
+  expect_input_error(read_vtu, "<html></html>", "VTKFile");
+  expect_input_error(read_vtu, "<VTKFile", "byte", "not XML");
+  expect_input_error(read_vtu, replaced(good, "\"UnstructuredGrid\"", "\"PolyData\""), "\"PolyData\"",
+                     "UnstructuredGrid");
+  expect_input_error(read_vtu, replaced(good, "byte_order", "compressor=\"vtkLZ4DataCompressor\" byte_order"),
+                     "LZ4", "zlib");
+  expect_input_error(read_vtu, replaced(good, "NumberOfPoints=\"4\"", "NumberOfPoints=\"4000000000\""),
+                     "12000000000");
+  expect_input_error(read_vtu, replaced(good, "NumberOfPoints=\"4\"", "NumberOfPoints=\"5000000000\""),
+                     "split");
+  expect_input_error(read_vtu, replaced(good, "NumberOfCells=\"2\"", "NumberOfCells=\"4000000000\""),
+                     "4000000000");
+  expect_input_error(read_vtu, replaced(good, "NumberOfCells=\"2\"", "NumberOfCells=\"x\""), "\"x\"");
+  expect_input_error(read_vtu, replaced(good, "1.000000", "nan"), "byte", "not finite");
+  expect_input_error(read_vtu, replaced(good, "1.000000", "one"), "\"one\"", "\"Points\"");
+  expect_input_error(read_vtu, replaced(good, "Name=\"types\"", "Name=\"kinds\""), "\"types\"");
+  expect_input_error(read_vtu, file(ascii, some_points(false), some_cells(false, 4), {}), "point 4",
+                     "connectivity");
+  expect_input_error(read_vtu, file(ascii, some_points(false), some_cells(false, -1), {}), "point -1",
+                     "connectivity");
+  expect_input_error(read_vtu, file(ascii, some_points(false), some_cells(false, 3, 6), {}),
+                     "more than the 6");
+  expect_input_error(read_vtu, file(ascii, some_points(false), some_cells(false, 3, 2), {}), "connectivity");
+  expect_input_error(read_vtu, file(ascii, some_points(false, {1, 2, 3}), some_cells(false), {}),
+                     "12 values");
+  expect_input_error(read_vtu, replaced(good, "5 10", "5 5"), "no linear tets");
+  expect_input_error(read_vtu, ascii_file({array<std::int64_t>("Int64", "material", {0, 1LL << 40}, false)}),
+                     "32 bits");
+  expect_input_error(read_vtu,
+                     file({}, some_points(false), some_cells(false),
+                          {array<double>("Float64", "material", {1, 6.5}, false)}),
+                     "6.5");
+}
+
+TEST(Vtu, BinaryCutShortOrDamaged) {
+  for (const char* format : {"binary", "base64", "raw"})
+    for (bool compressed : {false, true}) {
+      const Encoding e{.format = format, .compressed = compressed};
+      const std::string good = file(e, some_points(false), some_cells(false), {field("material", 1)});
+      const std::string end = format == std::string("binary") ? "</Piece>" : "</AppendedData>";
+      const std::size_t whole = good.find(end) - (format == std::string("binary") ? 30 : 1);
+      for (std::size_t n = 0; n < whole; n += 3)
+        (void)error_of<InputError>([&] { (void)read_vtu(good.substr(0, n), "f"); });
+      // Sizes that promise everything.
+      std::string promise = good;
+      const std::size_t data =
+          format == std::string("binary") ? promise.find("\">\n  ") + 5 : promise.find(" _") + 2;
+      promise.replace(data, 8, format == std::string("raw") ? std::string(8, '\xff') : "////////");
+      (void)error_of<InputError>([&] { (void)read_vtu(promise, "f"); });
+    }
+}
+
+TEST(Vtu, MoreThanOnePieceIsRefused) {
+  const std::string good = ascii_file({});
+  const std::size_t begin = good.find("<Piece"), end = good.find("</UnstructuredGrid>");
+  expect_input_error(
+      read_vtu,
+      replaced(good, "</UnstructuredGrid>", good.substr(begin, end - begin) + "</UnstructuredGrid>"),
+      "merge");
+}
+
+}  // namespace
+}  // namespace tetwright

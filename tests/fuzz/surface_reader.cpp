@@ -1,0 +1,26 @@
+// Any bytes must give a surface whose indices are in range, or an InputError; a surface must come back from
+// what the writer makes of it.
+#include <cstdint>
+
+#include FORMAT_HEADER
+#include "common/error.h"
+#include "tests/fuzz/names.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace tetwright;
+  try {
+    const TriangleMesh mesh = READ_FORMAT({reinterpret_cast<const char*>(data), size}, "fuzz");
+    TETWRIGHT_CHECK(!mesh.triangles.empty());
+    for (const Vec3& p : mesh.points) TETWRIGHT_CHECK(p.allFinite());
+    for (const Triangle& t : mesh.triangles)
+      for (Index v : t) TETWRIGHT_CHECK(v < mesh.points.size());
+    const TriangleMesh back = READ_FORMAT(WRITE_FORMAT(mesh), "fuzz");
+    TETWRIGHT_CHECK(back.triangles.size() == mesh.triangles.size());
+    // By position: STL keeps no numbers and no unused points.
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k)
+        TETWRIGHT_CHECK(back.points[back.triangles[t][k]] == mesh.points[mesh.triangles[t][k]]);
+  } catch (const InputError&) {
+  }
+  return 0;
+}
