@@ -93,7 +93,8 @@ bool may_move_onto_interface(const LabelledLattice& lattice, const StarMap& star
     const bool same_origin = lattice.first_side(u) == side;
     if (same_origin && !(around_edge & own)) return false;
     // Triangles of the point, u and w, all on the interface then. Two tets hold each, and their tips are the
-    // common neighbours of u and w in the link (others than those two are rare and only make us more careful).
+    // common neighbours of u and w in the link (others than those two are rare and only make us more
+    // careful).
     for (std::uint64_t more = around_edge & on; more; more &= more - 1) {
       const int j = std::countr_zero(more);
       const std::uint64_t tips = around_edge & link.neighbours[j];

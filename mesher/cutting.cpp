@@ -17,9 +17,7 @@ constexpr std::size_t grain = 1 << 13;  // tets to a task, some ten nanoseconds 
 constexpr double smallest_share = 0.25;
 
 using EdgeKey = std::uint64_t;
-EdgeKey edge_key(Index a, Index b) {
-  return static_cast<EdgeKey>(std::min(a, b)) << 32 | std::max(a, b);
-}
+EdgeKey edge_key(Index a, Index b) { return static_cast<EdgeKey>(std::min(a, b)) << 32 | std::max(a, b); }
 
 bool is_cut(const LabelledLattice& lattice, const Tet& t) {
   bool in = false, out = false;
@@ -121,7 +119,8 @@ double worst_inside_angle(const LabelledLattice& lattice, const Tet& t) {
   constexpr double none = 4 * regular_solid_angle;
   const auto angle = [](const std::array<Vec3, 4>& p) { return min_solid_angle(p[0], p[1], p[2], p[3]); };
   if (is_inside(lattice, t))
-    return angle({lattice.positions[t[0]], lattice.positions[t[1]], lattice.positions[t[2]], lattice.positions[t[3]]});
+    return angle(
+        {lattice.positions[t[0]], lattice.positions[t[1]], lattice.positions[t[2]], lattice.positions[t[3]]});
   if (!is_cut(lattice, t)) return none;
   std::array<Piece, 3> pieces;
   const auto point_of = [&](int a, int b) { return cut_point(lattice, edge_key(t[a], t[b])); };
@@ -211,9 +210,8 @@ CutMesh cut_lattice(const LabelledLattice& lattice) {
           const Tet& t = lattice.tets[i];
           if (is_inside(lattice, t)) out.push_back(t);
           if (!is_cut(lattice, t)) continue;
-          const int n = cut_inside(cut_case(lattice, t), pieces, [&](int a, int b) -> const Vec3& {
-            return cuts[cut_number(t[a], t[b])];
-          });
+          const int n = cut_inside(cut_case(lattice, t), pieces,
+                                   [&](int a, int b) -> const Vec3& { return cuts[cut_number(t[a], t[b])]; });
           for (int p = 0; p < n; ++p) {
             Tet piece;
             for (int k = 0; k < 4; ++k) {

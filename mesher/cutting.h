@@ -26,18 +26,18 @@ struct PieceVertex {
 };
 using Piece = std::array<PieceVertex, 4>;
 
-/// The inside of a cut tet as at most three tets, all with the orientation of the whole. Where two corners are
-/// inside and two outside, one quadrilateral lies within the tet; `other_diagonal` says which way it is cut.
-/// Writes to `pieces` and returns their number.
+/// The inside of a cut tet as at most three tets, all with the orientation of the whole. Where two corners
+/// are inside and two outside, one quadrilateral lies within the tet; `other_diagonal` says which way it is
+/// cut. Writes to `pieces` and returns their number.
 int cut_inside(const CutCase& cut, bool other_diagonal, std::array<Piece, 3>& pieces);
 
-/// The smallest solid angle (steradians) among the pieces that a tet of the lattice leaves inside; larger than
-/// any tet's if it leaves none.
+/// The smallest solid angle (steradians) among the pieces that a tet of the lattice leaves inside; larger
+/// than any tet's if it leaves none.
 double worst_inside_angle(const LabelledLattice& lattice, const Tet& tet);
 
-/// The part of the lattice inside the interface: tets inside are kept, tets with points of both sides are cut.
-/// A cut is made once per edge, by linear interpolation of the distances, and kept off the ends. Tets stay in
-/// the order of the lattice, points are numbered in the order of their first use.
+/// The part of the lattice inside the interface: tets inside are kept, tets with points of both sides are
+/// cut. A cut is made once per edge, by linear interpolation of the distances, and kept off the ends. Tets
+/// stay in the order of the lattice, points are numbered in the order of their first use.
 CutMesh cut_lattice(const LabelledLattice& lattice);
 
 }  // namespace tetwright

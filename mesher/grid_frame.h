@@ -7,13 +7,14 @@
 namespace tetwright {
 
 /// Where the grid of finest cells lies. All of mesher/ works in *grid coordinates*: the unit is one finest
-/// cell, the signed distances' voxels and the octree's corners are at whole numbers, and the box of the octree
-/// is [0, cells[0]] x [0, cells[1]] x [0, cells[2]]. Only the finished mesh is brought back to input units.
+/// cell, the signed distances' voxels and the octree's corners are at whole numbers, and the box of the
+/// octree is [0, cells[0]] x [0, cells[1]] x [0, cells[2]]. Only the finished mesh is brought back to input
+/// units.
 struct GridFrame {
-  Vec3 origin = Vec3::Zero();        ///< position of grid point (0, 0, 0), input units
-  double cell_size = 1;              ///< edge of a finest cell, input units
+  Vec3 origin = Vec3::Zero();         ///< position of grid point (0, 0, 0), input units
+  double cell_size = 1;               ///< edge of a finest cell, input units
   std::array<int, 3> cells{1, 1, 1};  ///< finest cells along each side of the box, a multiple of 2^root_level
-  int root_level = 0;                ///< the octree's largest cells have 2^root_level finest cells to an edge
+  int root_level = 0;  ///< the octree's largest cells have 2^root_level finest cells to an edge
 
   Vec3 to_grid(const Vec3& input) const { return (input - origin) / cell_size; }
   Vec3 to_input(const Vec3& grid) const { return origin + cell_size * grid; }

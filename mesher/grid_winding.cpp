@@ -43,8 +43,8 @@ Range shadow_at(const std::array<Vec3, 3>& p, double x) {
   return range;
 }
 
-/// The lowest node of the row at (x, y) that is on or above the triangle. The plane gives a guess, exact signs
-/// the answer.
+/// The lowest node of the row at (x, y) that is on or above the triangle. The plane gives a guess, exact
+/// signs the answer.
 int first_node_above(const std::array<Vec3, 3>& p, int crossing, int x, int y) {
   const Vec3 normal = (p[1] - p[0]).cross(p[2] - p[0]);
   const double low = std::min({p[0].z(), p[1].z(), p[2].z()});
@@ -71,7 +71,8 @@ GridWinding::GridWinding(const std::vector<Vec3>& points, const std::vector<Tria
   std::vector<RowCrossing> found = parallel_collect<RowCrossing>(
       0, triangles.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<RowCrossing>& out) {
         for (std::size_t t = begin; t < end; ++t) {
-          const std::array<Vec3, 3> p{points[triangles[t][0]], points[triangles[t][1]], points[triangles[t][2]]};
+          const std::array<Vec3, 3> p{points[triangles[t][0]], points[triangles[t][1]],
+                                      points[triangles[t][2]]};
           const double left = std::min({p[0].x(), p[1].x(), p[2].x()});
           const double right = std::max({p[0].x(), p[1].x(), p[2].x()});
           for (int x = std::max(0, static_cast<int>(std::ceil(left)));
@@ -100,7 +101,8 @@ GridWinding::GridWinding(const std::vector<Vec3>& points, const std::vector<Tria
   parallel_for(0, rows, grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
       const std::span<Crossing> row{crossings_.data() + starts_[r], crossings_.data() + starts_[r + 1]};
-      std::sort(row.begin(), row.end(), [](const Crossing& a, const Crossing& b) { return a.first < b.first; });
+      std::sort(row.begin(), row.end(),
+                [](const Crossing& a, const Crossing& b) { return a.first < b.first; });
       std::int32_t winding = 0;
       for (Crossing& c : row) c.winding = winding += c.winding;
     }

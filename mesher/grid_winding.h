@@ -10,8 +10,8 @@
 namespace tetwright {
 
 /// The winding number of a closed surface at every point of the integer grid, exactly: the signed number of
-/// times the vertical line from below crosses the surface. Cavities wound inwards are outside (0), overlapping
-/// parts are inside (2 or more), whatever self-intersections the surface has.
+/// times the vertical line from below crosses the surface. Cavities wound inwards are outside (0),
+/// overlapping parts are inside (2 or more), whatever self-intersections the surface has.
 ///
 /// Memory and time grow with the surface's shadow (N^2), not with the grid. Immutable after construction; all
 /// functions may be called concurrently.
@@ -31,8 +31,8 @@ class GridWinding {
   /// is 0. Empty outside the grid.
   std::span<const Crossing> row(int x, int y) const {
     if (x < 0 || y < 0 || x >= nodes_x_ || y >= nodes_y_) return {};
-    const std::size_t r = static_cast<std::size_t>(y) * static_cast<std::size_t>(nodes_x_) +
-                          static_cast<std::size_t>(x);
+    const std::size_t r =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(nodes_x_) + static_cast<std::size_t>(x);
     return {crossings_.data() + starts_[r], crossings_.data() + starts_[r + 1]};
   }
 

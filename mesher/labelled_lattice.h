@@ -13,12 +13,13 @@ enum class Side : std::int8_t { inside = -1, on = 0, outside = 1 };
 
 /// The tets of the lattice that matter, with the side of every point: what is moved, then cut.
 struct LabelledLattice {
-  std::vector<Vec3> positions;          ///< grid coordinates
-  std::vector<float> distances;         ///< finest cells, negative inside; of a point on the interface: as it was
-  std::vector<std::uint8_t> is_centre;  ///< 1 for centres of leaves: long edges join alike points, short ones unlike
+  std::vector<Vec3> positions;   ///< grid coordinates
+  std::vector<float> distances;  ///< finest cells, negative inside; of a point on the interface: as it was
+  std::vector<std::uint8_t>
+      is_centre;  ///< 1 for centres of leaves: long edges join alike points, short ones unlike
   std::vector<Side> sides;
-  std::vector<Tet> tets;                ///< positive
-  std::vector<Index> near_points;       ///< ascending: the points of tets with both sides
+  std::vector<Tet> tets;           ///< positive
+  std::vector<Index> near_points;  ///< ascending: the points of tets with both sides
 
   /// The side a point had before it was moved onto the interface.
   Side first_side(Index p) const { return distances[p] < 0 ? Side::inside : Side::outside; }

@@ -75,9 +75,7 @@ struct MaterialField::Impl {
   std::unique_ptr<GridWinding> winding;
 
   /// Where no leaf is, the interface is beyond the band.
-  double far_value(int x, int y, int z) const {
-    return winding->inside(x, y, z) ? -field_band : field_band;
-  }
+  double far_value(int x, int y, int z) const { return winding->inside(x, y, z) ? -field_band : field_band; }
 };
 
 MaterialField::MaterialField(const ClosedSurface& surface, const Material& material, const GridFrame& frame,
@@ -94,8 +92,9 @@ MaterialField::MaterialField(const ClosedSurface& surface, const Material& mater
   Interrupter interrupter{progress};
   const MeshAdapter adapter{points, surface.triangles};
   impl_->grid = openvdb::tools::meshToVolume<Grid>(
-      interrupter, adapter, *openvdb::math::Transform::createLinearTransform(1.0), static_cast<float>(field_band),
-      static_cast<float>(field_band), openvdb::tools::UNSIGNED_DISTANCE_FIELD);
+      interrupter, adapter, *openvdb::math::Transform::createLinearTransform(1.0),
+      static_cast<float>(field_band), static_cast<float>(field_band),
+      openvdb::tools::UNSIGNED_DISTANCE_FIELD);
   // An interrupted conversion hands back whatever it has so far.
   if (progress) progress->throw_if_cancelled();
 
@@ -122,16 +121,18 @@ std::vector<MortonKey> MaterialField::interface_cells() const {
           unsigned rows[n][n] = {};
           for (int neighbour = 0; neighbour < 8; ++neighbour) {
             const int dx = neighbour & 1, dy = neighbour >> 1 & 1, dz = neighbour >> 2;
-            const Leaf* leaf = neighbour == 0
-                                   ? leaves[i]
-                                   : tree.probeConstLeaf(o.offsetBy(dx * leaf_side, dy * leaf_side, dz * leaf_side));
+            const Leaf* leaf =
+                neighbour == 0
+                    ? leaves[i]
+                    : tree.probeConstLeaf(o.offsetBy(dx * leaf_side, dy * leaf_side, dz * leaf_side));
             if (!leaf) continue;
             const float* values = leaf->buffer().data();
             for (int x = 0; x < (dx ? 1 : leaf_side); ++x)
               for (int y = 0; y < (dy ? 1 : leaf_side); ++y)
                 for (int z = 0; z < (dz ? 1 : leaf_side); ++z)
                   rows[dx * leaf_side + x][dy * leaf_side + y] |=
-                      static_cast<unsigned>(values[(x * leaf_side + y) * leaf_side + z] < 0) << (dz * leaf_side + z);
+                      static_cast<unsigned>(values[(x * leaf_side + y) * leaf_side + z] < 0)
+                      << (dz * leaf_side + z);
           }
           for (int x = 0; x < leaf_side; ++x)
             for (int y = 0; y < leaf_side; ++y) {
@@ -169,8 +170,7 @@ struct FieldSampler::Impl {
     const Leaf* leaf = accessor.probeConstLeaf(corner);
     if (leaf && (c.x() & last) != last && (c.y() & last) != last && (c.z() & last) != last) {
       const float* at = leaf->buffer().data() + Leaf::coordToOffset(corner);
-      for (int k = 0; k < 8; ++k)
-        v[k] = at[((k >> 2) * leaf_side + (k >> 1 & 1)) * leaf_side + (k & 1)];
+      for (int k = 0; k < 8; ++k) v[k] = at[((k >> 2) * leaf_side + (k >> 1 & 1)) * leaf_side + (k & 1)];
     } else {
       for (int k = 0; k < 8; ++k) v[k] = node(c.x() + (k >> 2), c.y() + (k >> 1 & 1), c.z() + (k & 1));
     }
@@ -210,8 +210,8 @@ double FieldSampler::at(const Vec3& point, Vec3& gradient) {
 
 bool FieldSampler::project(Vec3& point) {
   constexpr int steps = 8;
-  constexpr double close_enough = 1e-3;     // finest cells; far below what the voxels resolve
-  constexpr double smallest_slope = 0.1;    // squared; below, the point is near a ridge of the distance
+  constexpr double close_enough = 1e-3;   // finest cells; far below what the voxels resolve
+  constexpr double smallest_slope = 0.1;  // squared; below, the point is near a ridge of the distance
   Vec3 gradient;
   for (int step = 0; step < steps; ++step) {
     const double value = at(point, gradient);

@@ -13,8 +13,8 @@
 
 namespace tetwright {
 
-/// Half-width of the signed distances' narrow band, in finest cells. Cut lattice edges around finest cells are
-/// at most 2.6 cells long, so both of their ends have true distances.
+/// Half-width of the signed distances' narrow band, in finest cells. Cut lattice edges around finest cells
+/// are at most 2.6 cells long, so both of their ends have true distances.
 inline constexpr int field_band = 3;
 
 /// The signed distances of one material on the grid, an OpenVDB volume, plus its name and tag.

@@ -13,10 +13,11 @@
 namespace tetwright {
 
 struct MesherOptions {
-  int resolution = 128;      ///< finest cells along the longest side, 4 to 4096; ignored if voxel_size is given
-  double voxel_size = 0;     ///< edge of a finest cell, input units; 0: by resolution
-  bool uniform = false;      ///< finest cells everywhere instead of an octree
-  double adaptivity = 0.05;  ///< how far a coarser cell may misplace the interface, finest cells; 0: never coarser
+  int resolution = 128;   ///< finest cells along the longest side, 4 to 4096; ignored if voxel_size is given
+  double voxel_size = 0;  ///< edge of a finest cell, input units; 0: by resolution
+  bool uniform = false;   ///< finest cells everywhere instead of an octree
+  double adaptivity =
+      0.05;  ///< how far a coarser cell may misplace the interface, finest cells; 0: never coarser
 };
 
 /// One closed surface and the material it encloses.

@@ -5,8 +5,9 @@
 
 namespace tetwright {
 
-/// Morton keys: the bits of three coordinates interleaved, x in the lowest place. Cells of a cube of 2^k cells
-/// that are sorted by key are in the order of a depth-first walk of its octree. Coordinates in [0, 2^21).
+/// Morton keys: the bits of three coordinates interleaved, x in the lowest place. Cells of a cube of 2^k
+/// cells that are sorted by key are in the order of a depth-first walk of its octree. Coordinates in [0,
+/// 2^21).
 using MortonKey = std::uint64_t;
 
 namespace detail {

@@ -16,8 +16,8 @@ constexpr std::size_t grain = 2048;
 /// and their corners must mostly be within the narrow band.
 constexpr int coarsest_interface_level = 2;
 
-/// The parents (level l + 1) that must be split because the cell `key` of level l is: its own, and those of its
-/// neighbours across faces and edges, which then exist as cells of level l.
+/// The parents (level l + 1) that must be split because the cell `key` of level l is: its own, and those of
+/// its neighbours across faces and edges, which then exist as cells of level l.
 void append_parents(MortonKey key, const std::array<int, 3>& size, std::vector<MortonKey>& out) {
   const std::array<int, 3> p = morton_decode(key);
   const auto parent_of = [&](const std::array<int, 3>& q) {
@@ -43,8 +43,8 @@ bool contains(const std::vector<MortonKey>& ascending, MortonKey key) {
   return std::binary_search(ascending.begin(), ascending.end(), key);
 }
 
-/// True if one of the cells across the faces of a cell is among `split`. All keys are of one level, whose grid
-/// has `size` cells.
+/// True if one of the cells across the faces of a cell is among `split`. All keys are of one level, whose
+/// grid has `size` cells.
 bool has_split_neighbour(MortonKey key, const std::array<int, 3>& size, const std::vector<MortonKey>& split) {
   const std::array<int, 3> p = morton_decode(key);
   for (std::size_t a = 0; a < 3; ++a)
@@ -56,15 +56,16 @@ bool has_split_neighbour(MortonKey key, const std::array<int, 3>& size, const st
   return false;
 }
 
-/// True if trilinear interpolation between the eight corners of the cell puts the interface within `tolerance`
-/// of where the grid has it, and sees the same sides.
+/// True if trilinear interpolation between the eight corners of the cell puts the interface within
+/// `tolerance` of where the grid has it, and sees the same sides.
 bool interpolates(FieldSampler& sampler, MortonKey key, int level, double tolerance) {
   const std::array<int, 3> low = morton_decode(key << 3 * level);
   const int side = 1 << level;
   double corner[8];
   bool any_inside = false, any_outside = false;
   for (int k = 0; k < 8; ++k) {
-    corner[k] = sampler.at_node(low[0] + (k & 1) * side, low[1] + (k >> 1 & 1) * side, low[2] + (k >> 2) * side);
+    corner[k] =
+        sampler.at_node(low[0] + (k & 1) * side, low[1] + (k >> 1 & 1) * side, low[2] + (k >> 2) * side);
     if (beyond_band(corner[k])) return false;
     (corner[k] < 0 ? any_inside : any_outside) = true;
   }
@@ -79,7 +80,8 @@ bool interpolates(FieldSampler& sampler, MortonKey key, int level, double tolera
         const double coarse = mix(mix(mix(corner[0], corner[1], fx), mix(corner[2], corner[3], fx), fy),
                                   mix(mix(corner[4], corner[5], fx), mix(corner[6], corner[7], fx), fy), fz);
         // A distance has slope 1, so near the interface the difference of values is the misplacement.
-        if (std::min(std::abs(value), std::abs(coarse)) < 1 && std::abs(coarse - value) > tolerance) return false;
+        if (std::min(std::abs(value), std::abs(coarse)) < 1 && std::abs(coarse - value) > tolerance)
+          return false;
         if ((value < 0) != (coarse < 0) && std::abs(coarse - value) > tolerance) return false;
       }
   return true;
@@ -147,7 +149,8 @@ Octree build_octree(const std::array<int, 3>& cells, int root_level, const Split
 Octree build_octree(const MaterialField& field, const OctreeOptions& options, Progress* progress) {
   const GridFrame& frame = field.frame();
   if (options.uniform)
-    return build_octree(frame.cells, 0, [](int, const std::vector<MortonKey>&) { return std::vector<MortonKey>(); });
+    return build_octree(frame.cells, 0,
+                        [](int, const std::vector<MortonKey>&) { return std::vector<MortonKey>(); });
 
   // Cells of the level at hand that hold an interface.
   std::vector<MortonKey> holding = field.interface_cells();
@@ -163,12 +166,13 @@ Octree build_octree(const MaterialField& field, const OctreeOptions& options, Pr
         0, holding.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
           FieldSampler sampler(field);
           for (std::size_t i = begin; i < end; ++i)
-            if (contains(already, holding[i]) || !interpolates(sampler, holding[i], level, options.adaptivity))
+            if (contains(already, holding[i]) ||
+                !interpolates(sampler, holding[i], level, options.adaptivity))
               out.push_back(holding[i]);
         });
     const std::array<int, 3> size{frame.cells[0] >> level, frame.cells[1] >> level, frame.cells[2] >> level};
-    // Where cells of two sizes meet at the interface, the cut tets are poorer: coarse cells stay in the inside
-    // of a patch only, which leaves out single ones.
+    // Where cells of two sizes meet at the interface, the cut tets are poorer: coarse cells stay in the
+    // inside of a patch only, which leaves out single ones.
     std::vector<MortonKey> split = parallel_collect<MortonKey>(
         0, holding.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
           for (std::size_t i = begin; i < end; ++i)

@@ -11,18 +11,18 @@
 
 namespace tetwright {
 
-/// A linear octree over the box of a frame: its leaves, sorted. A leaf of level l is a cube of 2^l finest cells
-/// to an edge. Leaves that share a face or an edge differ by at most one level; across corners they may differ
-/// by more.
+/// A linear octree over the box of a frame: its leaves, sorted. A leaf of level l is a cube of 2^l finest
+/// cells to an edge. Leaves that share a face or an edge differ by at most one level; across corners they may
+/// differ by more.
 struct Octree {
   struct Leaf {
     MortonKey key;  ///< of the lower corner, in finest cells
     int level;
   };
 
-  std::array<int, 3> cells;              ///< the box, in finest cells; see GridFrame
-  int root_level;                        ///< level of the largest leaves there can be
-  std::vector<std::uint64_t> packed;     ///< key << 5 | level, ascending
+  std::array<int, 3> cells;           ///< the box, in finest cells; see GridFrame
+  int root_level;                     ///< level of the largest leaves there can be
+  std::vector<std::uint64_t> packed;  ///< key << 5 | level, ascending
 
   std::size_t size() const { return packed.size(); }
   Leaf leaf(std::size_t i) const { return {packed[i] >> 5, static_cast<int>(packed[i] & 31)}; }

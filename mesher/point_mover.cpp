@@ -39,7 +39,8 @@ struct Target {
 
 class Mover {
  public:
-  Mover(LabelledLattice& lattice, const MaterialField& field) : lattice_(lattice), field_(field), stars_(lattice) {}
+  Mover(LabelledLattice& lattice, const MaterialField& field)
+      : lattice_(lattice), field_(field), stars_(lattice) {}
 
   MoveCounts run(Progress* progress) {
     find_candidates();

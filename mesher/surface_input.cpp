@@ -28,7 +28,8 @@ std::vector<Index> first_equal_point(const std::vector<Vec3>& points) {
     std::uint64_t hash = 0;
     // Adding 0 makes +0 of -0, which compare equal.
     for (int a = 0; a < 3; ++a)
-      hash = (hash ^ std::bit_cast<std::uint64_t>(points[i][a] + 0.0)) * 0x9e3779b97f4a7c15u, hash ^= hash >> 29;
+      hash = (hash ^ std::bit_cast<std::uint64_t>(points[i][a] + 0.0)) * 0x9e3779b97f4a7c15u,
+      hash ^= hash >> 29;
     std::size_t slot = hash & (slots - 1);
     while (table[slot] != no_index && points[table[slot]] != points[i]) slot = (slot + 1) & (slots - 1);
     if (table[slot] == no_index) table[slot] = i;
@@ -45,9 +46,9 @@ Triangle canonical(Triangle t) {
 
 /// One side of a triangle; sides that join the same two points stand together when sorted.
 struct Side {
-  std::uint64_t edge;      ///< smaller point << 32 | larger point
+  std::uint64_t edge;  ///< smaller point << 32 | larger point
   std::uint32_t triangle;
-  std::uint32_t forward;   ///< 1 when the triangle runs from the smaller to the larger point
+  std::uint32_t forward;  ///< 1 when the triangle runs from the smaller to the larger point
   auto operator<=>(const Side&) const = default;
 };
 
@@ -86,7 +87,8 @@ bool balanced(const std::vector<Side>& sides) {
   return all;
 }
 
-void check_no_holes(const std::vector<Side>& sides, const std::vector<Vec3>& points, const std::string& file) {
+void check_no_holes(const std::vector<Side>& sides, const std::vector<Vec3>& points,
+                    const std::string& file) {
   std::size_t open = 0;
   std::uint64_t first_edge = 0;
   for_each_edge(sides, [&](std::size_t i, std::size_t j) {
@@ -94,9 +96,10 @@ void check_no_holes(const std::vector<Side>& sides, const std::vector<Vec3>& poi
   });
   if (open == 0) return;
   const Vec3 middle = 0.5 * (points[first_edge >> 32] + points[first_edge & 0xffffffffu]);
-  throw InputError(file, 0, "the surface is not closed: " + std::to_string(open) +
-                                (open == 1 ? " boundary edge" : " boundary edges") + ", the first at " +
-                                place(middle) + "; close its holes first");
+  throw InputError(file, 0,
+                   "the surface is not closed: " + std::to_string(open) +
+                       (open == 1 ? " boundary edge" : " boundary edges") + ", the first at " +
+                       place(middle) + "; close its holes first");
 }
 
 /// Turns triangles over so that neighbours across edges of exactly two triangles are wound alike, going out
@@ -188,7 +191,8 @@ bool contains(const ClosedSurface& s, const Component& part, const Vec3& point) 
   if ((point.array() < part.low.array()).any() || (point.array() > part.high.array()).any()) return false;
   int winding = 0;
   for (std::uint32_t t : part.triangles) {
-    const Vec3 &a = s.points[s.triangles[t][0]], &b = s.points[s.triangles[t][1]], &c = s.points[s.triangles[t][2]];
+    const Vec3 &a = s.points[s.triangles[t][0]], &b = s.points[s.triangles[t][1]],
+               &c = s.points[s.triangles[t][2]];
     if (std::max({a.x(), b.x(), c.x()}) < point.x() || std::min({a.x(), b.x(), c.x()}) > point.x() ||
         std::max({a.y(), b.y(), c.y()}) < point.y() || std::min({a.y(), b.y(), c.y()}) > point.y())
       continue;
@@ -231,8 +235,9 @@ ClosedSurface close_surface(const TriangleMesh& surface, const std::string& file
     Triangle u;
     for (std::size_t k = 0; k < 3; ++k) {
       if (t[k] >= surface.points.size())
-        throw InputError(file, 0, "a triangle names point " + std::to_string(t[k]) + " of " +
-                                      std::to_string(surface.points.size()));
+        throw InputError(file, 0,
+                         "a triangle names point " + std::to_string(t[k]) + " of " +
+                             std::to_string(surface.points.size()));
       u[k] = first[t[k]];
     }
     if (u[0] != u[1] && u[1] != u[2] && u[2] != u[0]) s.triangles.push_back(canonical(u));

@@ -19,8 +19,8 @@ struct ClosedSurface {
 };
 
 /// Makes a closed surface of what a file says: exactly equal points become one, triangles with fewer than
-/// three different points and repeated triangles go away, triangles are wound alike where the file does not do
-/// it, and components that are inside out (a negative volume and in no other component) are turned over
+/// three different points and repeated triangles go away, triangles are wound alike where the file does not
+/// do it, and components that are inside out (a negative volume and in no other component) are turned over
 /// together with what they contain.
 ///
 /// Throws InputError that begins with `file`: no triangles, coordinates that are not finite, indices out of

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+
+#include "common/tet_mesh.h"
+#include "common/triangle_mesh.h"
+#include "common/types.h"
+#include "mesher/cutting.h"
+
+namespace tetwright {
+
+/// Sphere by three or more subdivisions of an octahedron: 8 * 4^subdivisions triangles, wound outwards.
+TriangleMesh make_sphere(double radius, const Vec3& centre = Vec3::Zero(), int subdivisions = 4);
+/// Torus around the z axis, wound outwards.
+TriangleMesh make_torus(double ring_radius, double tube_radius, int around = 48, int across = 24);
+/// Axis-aligned box of twelve triangles, wound outwards.
+TriangleMesh make_box(const Vec3& low, const Vec3& high);
+/// The same surface wound the other way.
+TriangleMesh turned_over(TriangleMesh mesh);
+/// Both in one; points are not merged.
+TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
+
+/// Volume enclosed by a closed surface.
+double enclosed_volume(const TriangleMesh& mesh);
+double volume(const std::vector<Vec3>& points, const std::vector<Tet>& tets);
+
+/// What is wrong with a dense mesh, in words; empty if every promise of mesher/README.md holds. Checks exact
+/// signs, faces in one or two tets, the boundary closed and manifold at edges and points, one connected star
+/// at each point, no unused point.
+std::string broken_promise(const std::vector<Vec3>& points, const std::vector<Tet>& tets);
+
+struct Topology {
+  int components = 0;  ///< of the solid
+  int boundary_components = 0;
+  int euler = 0;  ///< of the solid
+  int boundary_euler = 0;
+};
+Topology topology(const std::vector<Vec3>& points, const std::vector<Tet>& tets);
+
+}  // namespace tetwright
