@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -13,6 +14,7 @@
 #include "common/formats/formats.h"
 #include "common/mesh_check.h"
 #include "common/parallel.h"
+#include "common/mesh_statistics.h"
 #include "common/samples.h"
 #include "common/topology.h"
 #include "tools/progress_bar.h"
@@ -64,7 +66,7 @@ class Run {
         progress_(!line.quiet && !line.no_progress && isatty(STDERR_FILENO)),
         handler_(progress_) {
     check_output_path(line.output);
-    if (!line.stats.empty()) check_writable(line.stats);
+    if (!line.stats.empty()) check_output_file(line.stats);
     report_.inputs = line.inputs;
   }
 
@@ -133,6 +135,7 @@ class Run {
 
   ExitStatus finish() {
     report_.result = mesh_statistics(mesh_, line_.min_solid_angle);
+    report_.material_names = mesh_.material_names;
     if (report_.simplify) find_shortfall();
     const Stopwatch watch;
     progress_.throw_if_cancelled();
@@ -213,7 +216,7 @@ ExitStatus simplify(const CommandLine& line) {
 
 ExitStatus check(const CommandLine& line) {
   const ThreadLimit limit(line.threads);
-  if (!line.stats.empty()) check_writable(line.stats);
+  if (!line.stats.empty()) check_output_file(line.stats);
   const Stopwatch total;
   RunReport run;
   run.inputs = line.inputs;
@@ -221,26 +224,25 @@ ExitStatus check(const CommandLine& line) {
   run.material_field = read.material_field;
   run.input_points = read.mesh.points.size();
   run.seconds_read = total.seconds();
-  const std::vector<Finding> findings = check_mesh(read.mesh);
-  bool valid = true;
+  const std::vector<MeshFinding> findings = check_mesh(read.mesh);
+  const bool valid = findings.empty();
   // Without sound indices and coordinates there is nothing to measure.
-  bool measurable = true;
-  for (const Finding& f : findings) {
-    valid &= f.count == 0;
-    measurable &= f.count == 0 || !f.fatal;
-  }
+  const bool measurable = valid || findings.front().fault > MeshFault::coordinates_not_finite;
   std::vector<std::string> differences;
   nlohmann::json json = {{"valid", valid}, {"findings", nlohmann::json::array()}};
-  for (const Finding& f : findings)
-    json["findings"].push_back(
-        {{"number", f.number}, {"name", f.name}, {"count", f.count}, {"places", f.places}});
+  for (const MeshFinding& f : findings)
+    json["findings"].push_back({{"number", static_cast<int>(f.fault)},
+                                {"name", mesh_fault_name(f.fault)},
+                                {"count", f.count},
+                                {"places", f.places}});
   if (measurable) {
     run.result = mesh_statistics(read.mesh, line.min_solid_angle);
-    json["mesh"] = mesh_json(*run.result);
-    const TopologySignature topology = topology_of(read.mesh);
-    json["topology"] = lines_of(topology);
+    run.material_names = read.mesh.material_names;
+    json["mesh"] = mesh_json(*run.result, run.material_names, line.min_solid_angle);
+    const Topology signature = topology(read.mesh);
+    json["topology"] = topology_lines(signature);
     if (!line.before.empty())
-      differences = topology_differences(topology_of(read_tet_mesh(line.before).mesh), topology);
+      differences = topology_differences(topology(read_tet_mesh(line.before).mesh), signature);
   }
   if (!line.before.empty()) json["topology_differences"] = differences;
   const bool kept = differences.empty();
@@ -249,12 +251,8 @@ ExitStatus check(const CommandLine& line) {
   if (line.json) {
     std::printf("%s\n", json.dump(1).c_str());
   } else if (!line.quiet) {
-    for (const Finding& f : findings) {
-      if (f.count == 0) continue;
-      std::printf("finding %d %s: %zu", f.number, f.name.c_str(), f.count);
-      for (const std::string& place : f.places) std::printf("; %s", place.c_str());
-      std::printf("\n");
-    }
+    for (const MeshFinding& f : findings)
+      std::printf("finding %d, %s\n", static_cast<int>(f.fault), mesh_finding_line(f).c_str());
     if (measurable) {
       print_report(line, run);
       for (const std::string& l : json["topology"]) std::printf("%s\n", l.c_str());

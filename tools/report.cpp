@@ -17,12 +17,6 @@ std::string text(const char* format, ...) {
   return buffer;
 }
 
-double total_volume(const MeshStatistics& m) {
-  double sum = 0;
-  for (const auto& material : m.materials) sum += material.volume;
-  return sum;
-}
-
 }  // namespace
 
 void print_report(const CommandLine& line, const RunReport& run) {
@@ -42,11 +36,11 @@ void print_report(const CommandLine& line, const RunReport& run) {
   row("tets", [](const MeshStatistics& m) { return text("%zu", m.tets); });
   row("points", [](const MeshStatistics& m) { return text("%zu", m.points); });
   row("materials", [](const MeshStatistics& m) { return text("%zu", m.materials.size()); });
-  row("volume", [](const MeshStatistics& m) { return text("%.6g", total_volume(m)); });
+  row("volume", [](const MeshStatistics& m) { return text("%.6g", m.volume); });
   row("smallest solid angle, sr", [](const MeshStatistics& m) { return text("%.4f", m.min_solid_angle); });
   row("mean solid angle, sr", [](const MeshStatistics& m) { return text("%.4f", m.mean_solid_angle); });
   row(text("tets below %.3g sr, %%", line.min_solid_angle).c_str(),
-      [](const MeshStatistics& m) { return text("%.3f", m.percent_below); });
+      [](const MeshStatistics& m) { return text("%.3f", m.below_percent); });
   row("dihedral angles, degrees",
       [](const MeshStatistics& m) { return text("%.1f - %.1f", m.min_dihedral, m.max_dihedral); });
   std::printf("\n");

@@ -51,23 +51,26 @@ std::size_t peak_bytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
 }
 
-nlohmann::json mesh_json(const MeshStatistics& m) {
+nlohmann::json mesh_json(const MeshStatistics& m, const std::map<MaterialTag, std::string>& names, double threshold) {
   nlohmann::json materials = nlohmann::json::array();
-  for (const auto& material : m.materials)
-    materials.push_back({{"tag", material.tag},
-                         {"name", material.name},
+  for (const auto& [tag, material] : m.materials) {
+    const auto name = names.find(tag);
+    materials.push_back({{"tag", tag},
+                         {"name", name == names.end() ? "" : name->second},
                          {"tets", material.tets},
                          {"volume", material.volume}});
+  }
   return {{"tets", m.tets},
           {"points", m.points},
           {"materials", materials},
+          {"volume", m.volume},
           {"min_solid_angle", m.min_solid_angle},
           {"mean_solid_angle", m.mean_solid_angle},
-          {"threshold", m.threshold},
-          {"percent_below_threshold", m.percent_below},
+          {"threshold", threshold},
+          {"percent_below_threshold", m.below_percent},
           {"min_dihedral", m.min_dihedral},
           {"max_dihedral", m.max_dihedral},
-          {"histogram", m.histogram}};
+          {"histogram", m.histogram.counts}};
 }
 
 nlohmann::json stats_json(const CommandLine& line, const RunReport& run) {
@@ -80,7 +83,7 @@ nlohmann::json stats_json(const CommandLine& line, const RunReport& run) {
   if (!run.material_field.empty()) j["input"]["material_field"] = run.material_field;
   nlohmann::json seconds = {
       {"read", run.seconds_read}, {"write", run.seconds_write}, {"total", run.seconds_total}};
-  if (run.dense) j["dense"] = mesh_json(*run.dense);
+  if (run.dense) j["dense"] = mesh_json(*run.dense, run.material_names, line.min_solid_angle);
   if (run.mesher) {
     const MesherReport& m = *run.mesher;
     j["dense"]["cell_size"] = m.cell_size;
@@ -94,7 +97,7 @@ nlohmann::json stats_json(const CommandLine& line, const RunReport& run) {
     seconds["move"] = m.seconds_move;
     seconds["cut"] = m.seconds_cut;
   }
-  j["result"] = run.result ? mesh_json(*run.result) : nlohmann::json();
+  j["result"] = run.result ? mesh_json(*run.result, run.material_names, line.min_solid_angle) : nlohmann::json();
   j["iterations"] = nlohmann::json::array();
   if (run.simplify) {
     seconds["build"] = run.simplify->seconds_build;

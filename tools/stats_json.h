@@ -26,6 +26,7 @@ struct RunReport {
   std::string material_field;  ///< of a tet mesh: where its materials came from
   std::optional<MesherReport> mesher;
   std::optional<MeshStatistics> dense, result;
+  std::map<MaterialTag, std::string> material_names;
   std::optional<SimplifyReport> simplify;
   double seconds_read = 0, seconds_mesh = 0, seconds_write = 0, seconds_total = 0;
   std::vector<Shortfall> shortfall;
@@ -36,6 +37,7 @@ std::size_t peak_bytes();
 
 /// The keys that data/stats.schema.json fixes.
 nlohmann::json stats_json(const CommandLine& line, const RunReport& run);
-nlohmann::json mesh_json(const MeshStatistics& mesh);
+/// `names` of materials that have one; `threshold` is what the statistics were made with, steradians.
+nlohmann::json mesh_json(const MeshStatistics& mesh, const std::map<MaterialTag, std::string>& names, double threshold);
 
 }  // namespace tetwright

@@ -1,13 +1,13 @@
 // What the README shows for C++, as a program of another project.
 #include <cstdio>
+#include <variant>
 
-#include "common/formats/formats.h"
 #include "common/samples.h"
 #include "mesher/mesher.h"
 #include "simplify/simplify.h"
 
 int main() {
-  tetwright::MaterialSurface body{"body", 1, tetwright::sample_surface("torus"), "torus"};
+  tetwright::MaterialSurface body{"body", 1, std::get<tetwright::TriangleMesh>(tetwright::make_sample("torus")), "torus"};
   tetwright::MesherOptions meshing;
   meshing.resolution = 40;
   const auto dense = tetwright::mesh_surfaces({body}, meshing, nullptr);
