@@ -126,8 +126,7 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    const auto chosen = app.get_subcommands();
-    std::cout << (chosen.empty() ? app.help() : chosen.front()->help());
+    std::cout << app.help();  // of the command, where one was named
     return false;
   } catch (const CLI::CallForVersion&) {
     std::cout << "tetwright " << TETWRIGHT_VERSION << "\n";

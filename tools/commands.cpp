@@ -228,7 +228,7 @@ ExitStatus check(const CommandLine& line) {
   const bool valid = findings.empty();
   // Without sound indices and coordinates there is nothing to measure.
   const bool measurable = valid || findings.front().fault > MeshFault::coordinates_not_finite;
-  std::vector<std::string> differences;
+  std::vector<std::string> topology_text, differences;
   nlohmann::json json = {{"valid", valid}, {"findings", nlohmann::json::array()}};
   for (const MeshFinding& f : findings)
     json["findings"].push_back({{"number", static_cast<int>(f.fault)},
@@ -240,7 +240,8 @@ ExitStatus check(const CommandLine& line) {
     run.material_names = read.mesh.material_names;
     json["mesh"] = mesh_json(*run.result, run.material_names, line.min_solid_angle);
     const Topology signature = topology(read.mesh);
-    json["topology"] = topology_lines(signature);
+    topology_text = topology_lines(signature);
+    json["topology"] = topology_text;
     if (!line.before.empty())
       differences = topology_differences(topology(read_tet_mesh(line.before).mesh), signature);
   }
@@ -255,7 +256,7 @@ ExitStatus check(const CommandLine& line) {
       std::printf("finding %d, %s\n", static_cast<int>(f.fault), mesh_finding_line(f).c_str());
     if (measurable) {
       print_report(line, run);
-      for (const std::string& l : json["topology"]) std::printf("%s\n", l.c_str());
+      for (const std::string& l : topology_text) std::printf("%s\n", l.c_str());
     }
     for (const std::string& d : differences) std::printf("topology differs: %s\n", d.c_str());
     std::printf("%s\n", !valid ? "not valid" : kept ? "valid" : "valid, but of another topology");

@@ -96,7 +96,7 @@ TEST(Simplify, SizeAndPlaceDoNotMatter) {
 
 TEST(Simplify, AMeshBelowTheTargetIsOnlyImproved) {
   TetMesh mesh = grid_mesh(6);
-  jitter(mesh, 8, 0.7);
+  jitter(mesh, 8, 0.4);
   SimplifyOptions options;
   options.target_tets = mesh.tets.size();
   const TetMesh after = simplify(mesh, options);

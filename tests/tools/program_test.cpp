@@ -106,7 +106,7 @@ TEST(Program, WrongCallsAreStatusTwo) {
   expect_refused("mesh " + (f / "t.foo") + " -o " + out, 2, {"t.foo"});
   expect_refused("simplify " + in + " -o " + out + " --target-tets 10", 2, {"t.off"});
   expect_refused("sample dodo -o " + out, 2, {"dodo", "sphere"});
-  expect_refused("sample sphere -o " + out, 2, {"sphere"});
+  expect_refused("sample sphere -o " + out, 2, {"t.vtu", ".ply"});
   EXPECT_EQ(f.entries(), 1u);
 }
 
