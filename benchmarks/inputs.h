@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "common/formats/formats.h"
+#include "common/samples.h"
+#include "mesher/mesher.h"
+
+namespace tetwright {
+
+/// The Stanford bunny of Debian's glmark2-data where it is installed, else the built-in knot.
+inline std::vector<MaterialSurface> benchmark_surface() {
+  const std::string bunny = "/usr/share/glmark2/models/bunny.obj";
+  MaterialSurface s{"body", 1, {}, "knot"};
+  if (std::filesystem::exists(bunny)) {
+    s.surface = read_surface(bunny);
+    s.file = bunny;
+  } else {
+    s.surface = std::get<TriangleMesh>(make_sample("knot"));
+  }
+  return {s};
+}
+
+/// Its dense mesh at a resolution, made once.
+inline const TetMesh& benchmark_mesh(int resolution) {
+  static std::map<int, TetMesh> meshes;
+  const auto known = meshes.find(resolution);
+  if (known != meshes.end()) return known->second;
+  MesherOptions options;
+  options.resolution = resolution;
+  return meshes[resolution] = mesh_surfaces(benchmark_surface(), options, nullptr).mesh;
+}
+
+}  // namespace tetwright
