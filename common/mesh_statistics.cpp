@@ -46,7 +46,7 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
   out.points = mesh.points.size();
   if (mesh.tets.empty()) return out;
 
-  std::vector<float> angles(mesh.tets.size()), volumes(mesh.tets.size());
+  std::vector<double> angles(mesh.tets.size()), volumes(mesh.tets.size());
   std::vector<PartStatistics> parts((mesh.tets.size() + part_size - 1) / part_size);
   parallel_chunks(parts.size(), [&](std::size_t p, unsigned) {
     PartStatistics& part = parts[p];
@@ -58,8 +58,9 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
       const std::array<Vec3, 4> x{mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]};
       // Six times, so that whole numbers add up without rounding.
       const double volume = orient3d_value(x[0], x[1], x[2], x[3]);
-      const double angle =
-          orient3d(x[0], x[1], x[2], x[3]) > 0 ? min_solid_angle(x[0], x[1], x[2], x[3]) : 0.0;
+      double angle = orient3d(x[0], x[1], x[2], x[3]) > 0 ? min_solid_angle(x[0], x[1], x[2], x[3]) : 0.0;
+      // Coordinates beyond 1e100 overflow: such a tet is of no use either.
+      if (!std::isfinite(angle)) angle = 0;
       if (!material || tag != mesh.materials[t]) {
         tag = mesh.materials[t];
         material = &part.materials[tag];
@@ -74,8 +75,8 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
         if (dihedral < part.min_dihedral) part.min_dihedral = dihedral;
         if (dihedral > part.max_dihedral) part.max_dihedral = dihedral;
       }
-      angles[t] = static_cast<float>(angle);
-      volumes[t] = static_cast<float>(volume / 6);
+      angles[t] = angle;
+      volumes[t] = volume / 6;
     }
   });
 
@@ -109,10 +110,10 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
   const auto limits = volume_limits();
   const double mean = out.volume / n;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    const double relative = mean > 0 ? static_cast<double>(volumes[t]) / mean : 0.0;
+    const double relative = mean > 0 ? volumes[t] / mean : 0.0;
     const auto bin =
         static_cast<std::size_t>(std::upper_bound(limits.begin(), limits.end(), relative) - limits.begin());
-    ++out.histogram.counts[angle_bin(static_cast<double>(angles[t]))][bin];
+    ++out.histogram.counts[angle_bin(angles[t])][bin];
   }
   return out;
 }

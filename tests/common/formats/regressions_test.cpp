@@ -1,11 +1,14 @@
-// Reads every file of data/regressions/, findings of the fuzzers among them: each is read or refused with an
-// InputError, never a crash.
+// Reads every file of data/regressions/, findings of the fuzzers among them: each is read and checked, or
+// refused with an InputError, never a crash.
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "common/error.h"
 #include "common/formats/formats.h"
+#include "common/mesh_check.h"
+#include "common/mesh_statistics.h"
+#include "common/topology.h"
 
 namespace tetwright {
 namespace {
@@ -21,8 +24,13 @@ TEST(Regressions, EveryFileIsReadOrRefused) {
     try {
       if (kind == FileKind::surface)
         EXPECT_FALSE(read_surface(path).triangles.empty());
-      else
-        EXPECT_FALSE(read_tet_mesh(path).mesh.tets.empty());
+      else {
+        const TetMesh mesh = read_tet_mesh(path).mesh;
+        EXPECT_FALSE(mesh.tets.empty());
+        (void)check_mesh(mesh);
+        EXPECT_EQ(mesh_statistics(mesh).tets, mesh.tets.size());
+        EXPECT_EQ(topology(mesh), topology(mesh));
+      }
     } catch (const InputError&) {
     }
   }
