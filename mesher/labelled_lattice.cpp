@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
 #include "mesher/parallel_sort.h"
 
@@ -48,6 +49,36 @@ LabelledLattice label_lattice(LatticePoints points, std::vector<float> distances
         }
       });
   return lattice;
+}
+
+std::size_t remove_specks(LabelledLattice& lattice) {
+  std::size_t count = 0;
+  // One side after the other, so that two specks side by side don't just change places.
+  for (Side side : {Side::outside, Side::inside}) {
+    std::vector<std::uint8_t> has_company(lattice.positions.size(), 0);
+    parallel_for(0, lattice.tets.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Tet& t = lattice.tets[i];
+        int members = 0;
+        for (Index v : t) members += lattice.sides[v] == side;
+        if (members < 2) continue;
+        // Relaxed: as in label_lattice().
+        for (Index v : t)
+          if (lattice.sides[v] == side)
+            std::atomic_ref<std::uint8_t>(has_company[v]).store(1, std::memory_order_relaxed);
+      }
+    });
+    for (Index p : lattice.near_points) {
+      if (lattice.sides[p] != side || has_company[p]) continue;
+      // Never 0: an outside point at distance 0 would stay outside by its sign.
+      constexpr float smallest = 1e-6f;
+      const float size = std::max(std::abs(lattice.distances[p]), smallest);
+      lattice.distances[p] = side == Side::inside ? size : -size;
+      lattice.sides[p] = lattice.first_side(p);
+      ++count;
+    }
+  }
+  return count;
 }
 
 StarMap::StarMap(const LabelledLattice& lattice) {

@@ -28,6 +28,11 @@ struct LabelledLattice {
 /// Takes the points and tets over and drops tets outside that have no point next to the interface.
 LabelledLattice label_lattice(LatticePoints points, std::vector<float> distances, std::vector<Tet> tets);
 
+/// Gives single points that have no neighbour on their own side the side of all their neighbours, cavities
+/// first, and returns how many there were. Such specks are smaller than a cell: they come from cracks and
+/// self-intersections that the grid hits by chance, and would each become a component or a cavity.
+std::size_t remove_specks(LabelledLattice& lattice);
+
 /// For some points the tets they belong to.
 class StarMap {
  public:

@@ -195,6 +195,7 @@ MeshedSurface mesh_surfaces(const std::vector<MaterialSurface>& surfaces, const 
   std::vector<Tet> tets = lattice_tets(octree, points, &distances);
   LabelledLattice lattice = label_lattice(std::move(points), std::move(distances), std::move(tets));
   report.lattice_tets = lattice.tets.size();
+  report.specks = remove_specks(lattice);
   report.seconds_lattice = stages.seconds();
 
   stages.begin("moving points");

@@ -33,6 +33,7 @@ struct MesherReport {
   int resolution = 0;            ///< finest cells along the surface's longest side
   std::size_t cells = 0;         ///< leaves of the octree
   std::size_t lattice_tets = 0;  ///< before cutting, without those far outside
+  std::size_t specks = 0;        ///< parts and cavities of a single lattice point, left out
   double seconds_sdf = 0, seconds_octree = 0, seconds_lattice = 0, seconds_move = 0, seconds_cut = 0;
 };
 
