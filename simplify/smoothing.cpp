@@ -51,8 +51,8 @@ void surface_edit(Task& task, const Vec3& to) {
 
 /// Whether the centre may stand at `to`: fills `qualities` and answers done, or why not. `limit` is what the
 /// poorest tet must exceed.
-Outcome rate(Star& star, const BlockRules& rules, const Vec3& to, float limit,
-             std::vector<float>& qualities, float& poorest) {
+Outcome rate(Star& star, const BlockRules& rules, const Vec3& to, float limit, std::vector<float>& qualities,
+             float& poorest) {
   if (!star.sheets.empty() &&
       star.surface_error(to - star.centre_position, rules.gamma) > rules.largest_error)
     return Outcome::surface_error;

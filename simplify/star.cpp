@@ -112,7 +112,8 @@ void Star::compute_gradients() {
   areas_.clear();
   if (sheets.empty()) return;
   for (const Sheet& s : sheets)
-    areas_.push_back((positions[s.first] - centre_position).cross(positions[s.second] - centre_position) * (1.0 / 6));
+    areas_.push_back((positions[s.first] - centre_position).cross(positions[s.second] - centre_position) *
+                     (1.0 / 6));
   for (const StarTet& t : tets) {
     const Vec3 &x = positions[t.link[0]], &y = positions[t.link[1]], &z = positions[t.link[2]];
     // Volume of (c, x, y, z) is (x - c) . ((y - x) x (z - x)) / 6: linear in c.
@@ -133,7 +134,8 @@ double Star::surface_error(const Vec3& step, double gamma) {
   for (std::size_t k = 0; k < sheets.size(); ++k) {
     const double swept = std::fabs(areas_[k].dot(step));
     for (std::size_t i = 0; i < gradients.size(); ++i)
-      if (gradients[i].region == sheets[k].inside || gradients[i].region == sheets[k].across) swept_[i] += swept;
+      if (gradients[i].region == sheets[k].inside || gradients[i].region == sheets[k].across)
+        swept_[i] += swept;
   }
   double sum = 0;
   for (double swept : swept_) sum += portable_cbrt(swept);

@@ -60,16 +60,16 @@ struct Star {
   std::vector<VolumeGradient> gradients;
   void compute_gradients();
   /// Error(op) of Cutler, Dorsey & McMillan 2004, section 3, for moving the centre by `step`:
-  /// gamma * sum over the materials of the cube root of the change of volume. What one sheet gains and another loses
-  /// is added up here instead of cancelling, as it does in the paper: otherwise a saddle or an edge may be cut off for
-  /// nothing.
+  /// gamma * sum over the materials of the cube root of the change of volume. What one sheet gains and
+  /// another loses is added up here instead of cancelling, as it does in the paper: otherwise a saddle or an
+  /// edge may be cut off for nothing.
   double surface_error(const Vec3& step, double gamma);
 
  private:
   LocalNumbers point_numbers_, tet_numbers_;
   mutable std::vector<std::uint8_t> visited_;  // scratch of dimension()
-  std::vector<Vec3> areas_;                     // a third of each sheet's area vector
-  std::vector<double> swept_;                   // scratch of surface_error()
+  std::vector<Vec3> areas_;                    // a third of each sheet's area vector
+  std::vector<double> swept_;                  // scratch of surface_error()
 };
 
 }  // namespace tetwright

@@ -51,7 +51,8 @@ std::size_t peak_bytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
 }
 
-nlohmann::json mesh_json(const MeshStatistics& m, const std::map<MaterialTag, std::string>& names, double threshold) {
+nlohmann::json mesh_json(const MeshStatistics& m, const std::map<MaterialTag, std::string>& names,
+                         double threshold) {
   nlohmann::json materials = nlohmann::json::array();
   for (const auto& [tag, material] : m.materials) {
     const auto name = names.find(tag);
@@ -97,7 +98,8 @@ nlohmann::json stats_json(const CommandLine& line, const RunReport& run) {
     seconds["move"] = m.seconds_move;
     seconds["cut"] = m.seconds_cut;
   }
-  j["result"] = run.result ? mesh_json(*run.result, run.material_names, line.min_solid_angle) : nlohmann::json();
+  j["result"] =
+      run.result ? mesh_json(*run.result, run.material_names, line.min_solid_angle) : nlohmann::json();
   j["iterations"] = nlohmann::json::array();
   if (run.simplify) {
     seconds["build"] = run.simplify->seconds_build;

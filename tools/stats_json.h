@@ -38,6 +38,7 @@ std::size_t peak_bytes();
 /// The keys that data/stats.schema.json fixes.
 nlohmann::json stats_json(const CommandLine& line, const RunReport& run);
 /// `names` of materials that have one; `threshold` is what the statistics were made with, steradians.
-nlohmann::json mesh_json(const MeshStatistics& mesh, const std::map<MaterialTag, std::string>& names, double threshold);
+nlohmann::json mesh_json(const MeshStatistics& mesh, const std::map<MaterialTag, std::string>& names,
+                         double threshold);
 
 }  // namespace tetwright

@@ -11,8 +11,8 @@ namespace {
 
 void per_tet(benchmark::State& state, const TetMesh& mesh) {
   state.counters["tets"] = static_cast<double>(mesh.tets.size());
-  state.counters["tets/s"] =
-      benchmark::Counter(static_cast<double>(mesh.tets.size()), benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["tets/s"] = benchmark::Counter(static_cast<double>(mesh.tets.size()),
+                                                benchmark::Counter::kIsIterationInvariantRate);
 }
 
 void check(benchmark::State& state) {
@@ -27,14 +27,24 @@ void signature(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(topology(mesh));
   per_tet(state, mesh);
 }
-BENCHMARK(signature)->Name("topology")->ArgName("cells")->Arg(64)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(signature)
+    ->Name("topology")
+    ->ArgName("cells")
+    ->Arg(64)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 void statistics(benchmark::State& state) {
   const TetMesh& mesh = benchmark_mesh(static_cast<int>(state.range(0)));
   for (auto _ : state) benchmark::DoNotOptimize(mesh_statistics(mesh));
   per_tet(state, mesh);
 }
-BENCHMARK(statistics)->Name("mesh_statistics")->ArgName("cells")->Arg(64)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(statistics)
+    ->Name("mesh_statistics")
+    ->ArgName("cells")
+    ->Arg(64)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 }  // namespace
 }  // namespace tetwright

@@ -33,7 +33,9 @@ inline std::string contents(const std::string& file) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-inline void put(const std::string& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+inline void put(const std::string& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
 
 /// What a run of the program answered.
 struct Answer {
@@ -44,8 +46,8 @@ struct Answer {
 /// Runs `tetwright ARGUMENTS` in a shell, after `before` (for example a limit).
 inline Answer run(const std::string& arguments, const std::string& before = "") {
   const TemporaryFolder folder;
-  const std::string command = before + " exec " TETWRIGHT_PROGRAM " " + arguments + " >" + (folder / "out") + " 2>" +
-                              (folder / "err") + " </dev/null";
+  const std::string command = before + " exec " TETWRIGHT_PROGRAM " " + arguments + " >" + (folder / "out") +
+                              " 2>" + (folder / "err") + " </dev/null";
   const int code = std::system(command.c_str());
   return {WIFEXITED(code) ? WEXITSTATUS(code) : 1000 + WTERMSIG(code), contents(folder / "out"),
           contents(folder / "err")};

@@ -19,13 +19,14 @@ void expect_refused(const std::string& arguments, int status, const std::vector<
   for (const std::string& s : said) EXPECT_NE(a.err.find(s), std::string::npos) << a.err << "lacks: " << s;
 }
 
-const std::string tetrahedron_off = "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+const std::string tetrahedron_off =
+    "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
 
 TEST(Program, PreparesASurfaceEndToEnd) {
   const TemporaryFolder f;
   ASSERT_EQ(run("sample torus -o " + (f / "torus.ply")).status, 0);
-  const Answer a = run("prepare " + (f / "torus.ply") + " -o " + (f / "torus.vtu") + " --target-tets 2000 --stats " +
-                       (f / "stats.json"));
+  const Answer a = run("prepare " + (f / "torus.ply") + " -o " + (f / "torus.vtu") +
+                       " --target-tets 2000 --stats " + (f / "stats.json"));
   ASSERT_EQ(a.status, 0) << a.err;
   EXPECT_EQ(a.err, "");
   EXPECT_NE(a.out.find("smallest solid angle"), std::string::npos);
@@ -42,7 +43,8 @@ TEST(Program, MeshThenSimplifyKeepsTheTopology) {
   const TemporaryFolder f;
   ASSERT_EQ(run("sample knot -o " + (f / "knot.stl")).status, 0);
   ASSERT_EQ(run("mesh " + (f / "knot.stl") + " -o " + (f / "dense.mesh") + " --resolution 48").status, 0);
-  ASSERT_EQ(run("simplify " + (f / "dense.mesh") + " -o " + (f / "small.msh") + " --target-tets 3000").status, 0);
+  ASSERT_EQ(run("simplify " + (f / "dense.mesh") + " -o " + (f / "small.msh") + " --target-tets 3000").status,
+            0);
   const Answer a = run("check " + (f / "small.msh") + " --before " + (f / "dense.mesh"));
   EXPECT_EQ(a.status, 0) << a.out;
   // A ball has another topology than a knotted ring.
@@ -56,12 +58,14 @@ TEST(Program, OneThreadAndOneSeedGiveTheSameFile) {
   ASSERT_EQ(run("sample torus -o " + (f / "torus.obj")).status, 0);
   for (const char* name : {"a.mesh", "b.mesh"})
     ASSERT_EQ(
-        run("prepare " + (f / "torus.obj") + " -o " + (f / name) + " --target-tets 1500 --threads 1 --seed 7").status,
+        run("prepare " + (f / "torus.obj") + " -o " + (f / name) + " --target-tets 1500 --threads 1 --seed 7")
+            .status,
         0);
   EXPECT_EQ(contents(f / "a.mesh"), contents(f / "b.mesh"));
   // The dense mesh does not depend on the threads at all.
   for (const char* threads : {"1", "2"})
-    ASSERT_EQ(run("mesh " + (f / "torus.obj") + " -o " + (f / threads) + ".mesh --resolution 40 --threads " + threads)
+    ASSERT_EQ(run("mesh " + (f / "torus.obj") + " -o " + (f / threads) + ".mesh --resolution 40 --threads " +
+                  threads)
                   .status,
               0);
   EXPECT_EQ(contents(f / "1.mesh"), contents(f / "2.mesh"));
@@ -112,7 +116,8 @@ TEST(Program, WrongCallsAreStatusTwo) {
 
 TEST(Program, BrokenInputsAreStatusThree) {
   const TemporaryFolder f;
-  const auto refused = [&](const std::string& name, const std::string& text, const std::vector<std::string>& said) {
+  const auto refused = [&](const std::string& name, const std::string& text,
+                           const std::vector<std::string>& said) {
     put(f / name, text);
     std::vector<std::string> all = said;
     all.push_back(name);
@@ -127,17 +132,20 @@ TEST(Program, BrokenInputsAreStatusThree) {
           {"line 3", "zero"});
   refused("range.off", "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 9\n3 0 3 2\n",
           {"line 9", "9"});
-  refused("nan.off", "OFF\n4 4 6\n0 0 nan\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n", {"line 3"});
+  refused("nan.off", "OFF\n4 4 6\n0 0 nan\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n",
+          {"line 3"});
   refused("none.off", "OFF\n4 0 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n", {});
-  refused("huge.ply",
-          "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\n"
-          "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n1234",
-          {"4000000000"});
+  refused(
+      "huge.ply",
+      "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n1234",
+      {"4000000000"});
   refused("huge.off", "OFF\n4000000000 4000000000 0\n0 0 0\n", {});
   refused("open.off", "OFF\n4 3 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n",
           {"3 boundary edges", "(0, 0, "});
   put(f / "empty.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices\n0\nTetrahedra\n0\nEnd\n");
-  expect_refused("simplify " + (f / "empty.mesh") + " -o " + (f / "out.vtu") + " --target-tets 10", 3, {"empty.mesh"});
+  expect_refused("simplify " + (f / "empty.mesh") + " -o " + (f / "out.vtu") + " --target-tets 10", 3,
+                 {"empty.mesh"});
   expect_refused("check " + (f / "empty.mesh"), 3, {"empty.mesh"});
 }
 
@@ -182,11 +190,13 @@ TEST(Program, ShortOfTheTargetIsStatusOneAndWritten) {
   EXPECT_EQ(run("check " + (f / "s.vtu") + " --before " + (f / "d.vtu")).status, 0);
   EXPECT_EQ(nlohmann::json::parse(contents(f / "s.json"))["shortfall"][0]["what"], "target_tets");
   // A target above what there is cannot be meant.
-  expect_refused("simplify " + (f / "d.vtu") + " -o " + (f / "x.vtu") + " --target-tets 100000000", 2, {"100000000"});
+  expect_refused("simplify " + (f / "d.vtu") + " -o " + (f / "x.vtu") + " --target-tets 100000000", 2,
+                 {"100000000"});
   // An angle that was asked for and cannot be had.
-  EXPECT_EQ(run("simplify " + (f / "d.vtu") + " -o " + (f / "s.vtu") + " --target-tets 2000 --min-solid-angle 0.5")
-                .status,
-            1);
+  EXPECT_EQ(
+      run("simplify " + (f / "d.vtu") + " -o " + (f / "s.vtu") + " --target-tets 2000 --min-solid-angle 0.5")
+          .status,
+      1);
 }
 
 TEST(Program, CheckFindsWhatIsWrong) {

@@ -7,7 +7,8 @@
 #include "simplify/simplify.h"
 
 int main() {
-  tetwright::MaterialSurface body{"body", 1, std::get<tetwright::TriangleMesh>(tetwright::make_sample("torus")), "torus"};
+  tetwright::MaterialSurface body{
+      "body", 1, std::get<tetwright::TriangleMesh>(tetwright::make_sample("torus")), "torus"};
   tetwright::MesherOptions meshing;
   meshing.resolution = 40;
   const auto dense = tetwright::mesh_surfaces({body}, meshing, nullptr);

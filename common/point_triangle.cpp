@@ -1,0 +1,31 @@
+#include "common/point_triangle.h"
+
+#include <algorithm>
+
+namespace tetwright {
+
+namespace {
+
+double squared_distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 ab = b - a;
+  const double length2 = ab.squaredNorm();
+  const double t = length2 > 0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0;
+  return (p - (a + t * ab)).squaredNorm();
+}
+
+}  // namespace
+
+double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  // Barycentric coordinates of the foot on the plane.
+  const double d00 = ab.dot(ab), d01 = ab.dot(ac), d11 = ac.dot(ac), d20 = ap.dot(ab), d21 = ap.dot(ac);
+  const double denominator = d00 * d11 - d01 * d01;
+  if (denominator > 0) {
+    const double v = (d11 * d20 - d01 * d21) / denominator, w = (d00 * d21 - d01 * d20) / denominator;
+    if (v >= 0 && w >= 0 && v + w <= 1) return (ap - v * ab - w * ac).squaredNorm();
+  }
+  return std::min({squared_distance_to_segment(p, a, b), squared_distance_to_segment(p, b, c),
+                   squared_distance_to_segment(p, c, a)});
+}
+
+}  // namespace tetwright
