@@ -40,7 +40,8 @@ Counts count_simplices(const TetMesh& mesh, const Ranks& ranks, bool edges) {
   // A bucket for each smaller vertex, filled by counting; within it the other vertex and the material.
   struct Entry {
     Index other, rank;
-    auto operator<=>(const Entry&) const = default;
+    bool operator==(const Entry&) const = default;
+    bool operator<(const Entry& e) const { return other != e.other ? other < e.other : rank < e.rank; }
   };
   const std::size_t n = mesh.points.size();
   std::vector<std::size_t> begin(n + 2, 0);
@@ -226,9 +227,19 @@ Topology topology(const TetMesh& mesh, const std::vector<MeshFace>& faces) {
   return out;
 }
 
+namespace {
+
+std::string joined(std::initializer_list<std::string_view> texts) {
+  std::string out;
+  for (std::string_view text : texts) out += text;
+  return out;
+}
+
+}  // namespace
+
 std::vector<std::string> topology_lines(const Topology& topology) {
   std::vector<std::string> out;
-  for (const auto& [name, text] : parts(topology)) out.push_back(name + ": " + text);
+  for (const auto& [name, text] : parts(topology)) out.push_back(joined({name, ": ", text}));
   return out;
 }
 
@@ -241,9 +252,10 @@ std::vector<std::string> topology_differences(const Topology& before, const Topo
   std::vector<std::string> out;
   for (const auto& [name, text] : before_parts)
     if (const std::string now = find(after_parts, name); now != text)
-      out.push_back(name + ": before " + text + "; after " + now);
+      out.push_back(joined({name, ": before ", text, "; after ", now}));
   for (const auto& [name, text] : after_parts)
-    if (find(before_parts, name) == "missing") out.push_back(name + ": before missing; after " + text);
+    if (find(before_parts, name) == "missing")
+      out.push_back(joined({name, ": before missing; after ", text}));
   return out;
 }
 

@@ -49,8 +49,8 @@ struct Topology {
   bool operator==(const Topology&) const = default;
 };
 
-/// Ids must be below the number of points, and each tet must have a material. Takes about 1 s for a million
-/// tets and 300 bytes of memory for each.
+/// Ids must be below the number of points, and each tet must have a material. Takes about 0.3 s for a million
+/// tets and 120 bytes of memory for each.
 Topology topology(const TetMesh& mesh);
 /// The same, with faces that mesh_faces() made of this mesh.
 Topology topology(const TetMesh& mesh, const std::vector<MeshFace>& faces);

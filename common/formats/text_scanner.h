@@ -23,7 +23,10 @@ class TextScanner {
  public:
   /// `comment`: the character that hides the rest of its line; 0 for none.
   TextScanner(std::string_view bytes, std::string name, char comment = 0)
-      : bytes_(bytes), name_(std::move(name)), comment_(comment) {}
+      : bytes_(bytes), name_(std::move(name)), comment_(comment) {
+    // The byte order mark that some editors put before UTF-8.
+    if (bytes_.starts_with("\xef\xbb\xbf")) position_ = 3;
+  }
 
   /// The next word, on whatever line; empty at the end.
   std::string_view word();

@@ -190,6 +190,7 @@ std::vector<Value> VtuData::values(pugi::xml_node array, std::size_t most) const
       } else if constexpr (std::is_integral_v<Value> && std::is_same_v<Stored, std::uint64_t>) {
         if (stored > static_cast<std::uint64_t>(INT64_MAX)) fail(array, "a value beyond 2^63");
       }
+      // NOLINTNEXTLINE(bugprone-signed-char-misuse): an Int8 is a number here, not a character.
       out[i] = static_cast<Value>(stored);
     }
   };

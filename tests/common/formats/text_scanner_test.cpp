@@ -24,6 +24,11 @@ TEST(TextScanner, WordsAndLines) {
   EXPECT_TRUE(in.at_end());
 }
 
+TEST(TextScanner, AByteOrderMarkIsSkipped) {
+  TextScanner in("\xef\xbb\xbfply\n", "f");
+  EXPECT_EQ(in.word(), "ply");
+}
+
 TEST(TextScanner, Numbers) {
   double x = 0;
   EXPECT_TRUE(parse_number("+1.5e1", x));
