@@ -1,10 +1,8 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <memory>
-#include <vector>
 
 namespace tetwright {
 
@@ -42,25 +40,5 @@ void parallel_chunks(std::size_t chunks, const std::function<void(std::size_t, u
 /// added in order, so that the rounding is the same for any number of threads.
 double parallel_sum(std::size_t begin, std::size_t end, std::size_t grain,
                     const std::function<double(std::size_t, std::size_t)>& body);
-
-/// Sorts by a total order (no two items equal), so that the result is the same for any number of threads:
-/// parts are sorted concurrently, then merged in pairs.
-template <class T, class Less>
-void parallel_sort(std::vector<T>& items, const Less& less) {
-  constexpr std::size_t smallest_part = 16384;  // below it a thread's start costs more than it saves
-  std::size_t parts = 1;
-  while (parts < thread_count() && items.size() / (2 * parts) >= smallest_part) parts *= 2;
-  const auto at = [&](std::size_t part) {
-    return items.begin() + static_cast<std::ptrdiff_t>(items.size() * part / parts);
-  };
-  parallel_for(0, parts, 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) std::sort(at(i), at(i + 1), less);
-  });
-  for (std::size_t width = 1; width < parts; width *= 2)
-    parallel_for(0, parts / (2 * width), 1, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i)
-        std::inplace_merge(at(2 * i * width), at((2 * i + 1) * width), at((2 * i + 2) * width), less);
-    });
-}
 
 }  // namespace tetwright

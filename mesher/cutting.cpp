@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/parallel_sort.h"
 #include "common/quality.h"
-#include "mesher/parallel_sort.h"
 
 namespace tetwright {
 

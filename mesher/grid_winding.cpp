@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesher/parallel_sort.h"
+#include "common/parallel_sort.h"
 #include "mesher/ray_crossing.h"
 
 namespace tetwright {

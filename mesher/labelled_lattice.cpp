@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "mesher/parallel_sort.h"
+#include "common/parallel_sort.h"
 
 namespace tetwright {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "common/parallel_sort.h"
 #include "common/predicates.h"
-#include "mesher/parallel_sort.h"
 
 namespace tetwright {
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <mutex>
 
+#include "common/parallel_sort.h"
 #include "mesher/grid_winding.h"
-#include "mesher/parallel_sort.h"
 
 namespace tetwright {
 

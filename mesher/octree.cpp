@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesher/parallel_sort.h"
+#include "common/parallel_sort.h"
 
 namespace tetwright {
 

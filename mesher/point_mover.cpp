@@ -4,10 +4,10 @@
 #include <cmath>
 #include <span>
 
+#include "common/parallel_sort.h"
 #include "common/quality.h"
 #include "mesher/arrangement.h"
 #include "mesher/cutting.h"
-#include "mesher/parallel_sort.h"
 
 namespace tetwright {
 

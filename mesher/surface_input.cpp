@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "common/error.h"
-#include "mesher/parallel_sort.h"
+#include "common/parallel_sort.h"
 #include "mesher/ray_crossing.h"
 
 namespace tetwright {

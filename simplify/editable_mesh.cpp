@@ -7,6 +7,7 @@
 
 #include "common/error.h"
 #include "common/parallel.h"
+#include "common/parallel_sort.h"
 #include "common/predicates.h"
 #include "simplify/local_numbers.h"
 

@@ -2,10 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+#include <vector>
 
 #include "common/random.h"
 
@@ -62,20 +63,6 @@ TEST(Parallel, SumHasTheSameBitsForAnyNumberOfThreads) {
     });
     if (threads == 1) first = sum;
     EXPECT_EQ(sum, first);
-  }
-}
-
-TEST(Parallel, SortIsTheSameForAnyNumberOfThreads) {
-  Random random(5);
-  std::vector<std::uint64_t> items(100000);
-  for (auto& i : items) i = random.next();
-  std::vector<std::uint64_t> expected = items;
-  std::sort(expected.begin(), expected.end());
-  for (unsigned threads : {1u, 2u, 3u, 8u}) {
-    const ThreadLimit limit(threads);
-    std::vector<std::uint64_t> sorted = items;
-    parallel_sort(sorted, std::less<>());
-    EXPECT_EQ(sorted, expected);
   }
 }
 

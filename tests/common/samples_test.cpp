@@ -5,12 +5,12 @@
 #include "common/mesh_check.h"
 #include "common/surface_chains.h"
 #include "tests/common/formats/expect_error.h"
-#include "tests/common/formats/temporary_folder.h"
+#include "tests/common/formats/file_test.h"
 
 namespace tetwright {
 namespace {
 
-using Samples = TemporaryFolder;
+using Samples = FileTest;
 
 double volume(const TriangleMesh& mesh) {
   double v = 0;

@@ -53,6 +53,8 @@ struct Shape {
   std::array<int, 3> size;
   Tag (*material)(int, int, int);
 };
+void PrintTo(const Shape& shape, std::ostream* out) { *out << shape.name; }
+
 const Shape shapes[] = {
     {"ring",
      {6, 6, 2},

@@ -7,12 +7,12 @@
 #include <csignal>
 
 #include "tests/common/formats/expect_error.h"
-#include "tests/common/formats/temporary_folder.h"
+#include "tests/common/formats/file_test.h"
 
 namespace tetwright {
 namespace {
 
-using AtomicFile = TemporaryFolder;
+using AtomicFile = FileTest;
 
 TEST_F(AtomicFile, NewAndReplaced) {
   write_file_atomically(path("a"), "first");
@@ -92,7 +92,7 @@ TEST_F(AtomicFile, ADiskThatIsFull) {
 TEST_F(AtomicFile, UnreadableInput) {
   EXPECT_NE(error_of<InputError>([&] { (void)read_whole_file(path("none")); }).find("No such file"),
             std::string::npos);
-  EXPECT_NE(error_of<InputError>([&] { (void)read_whole_file(folder_.string()); }).find("folder"),
+  EXPECT_NE(error_of<InputError>([&] { (void)read_whole_file(path("")); }).find("folder"),
             std::string::npos);
   EXPECT_NE(error_of<InputError>([&] { (void)read_whole_file("/dev/zero"); }).find("regular"),
             std::string::npos);

@@ -1,13 +1,13 @@
 #include "common/formats/formats.h"
 
 #include "tests/common/formats/expect_error.h"
-#include "tests/common/formats/temporary_folder.h"
+#include "tests/common/formats/file_test.h"
 #include "tests/common/formats/tricky_meshes.h"
 
 namespace tetwright {
 namespace {
 
-using Formats = TemporaryFolder;
+using Formats = FileTest;
 
 TEST_F(Formats, KindsByExtension) {
   EXPECT_EQ(file_kind("a/b.PLY"), FileKind::surface);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -9,10 +10,10 @@
 
 namespace tetwright {
 
-/// Sorts by `<`, which must be a total order in which equal items cannot be told apart: then the result does
-/// not depend on the number of threads. Needs memory for a second copy.
-template <class T>
-void parallel_sort(std::vector<T>& items) {
+/// Sorts by `less`, which must be a total order in which equal items cannot be told apart: then the result
+/// does not depend on the number of threads. Needs memory for a second copy.
+template <class T, class Less = std::less<>>
+void parallel_sort(std::vector<T>& items, const Less& less = {}) {
   constexpr std::size_t smallest_chunk = 1 << 13;  // below this a task costs more than it saves
   std::size_t chunk = std::max(smallest_chunk, items.size() / (4 * thread_count()) + 1);
   const auto bound = [&](std::size_t i) {
@@ -20,7 +21,7 @@ void parallel_sort(std::vector<T>& items) {
   };
   const std::size_t chunks = (items.size() + chunk - 1) / chunk;
   parallel_for(0, chunks, 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t c = first; c < last; ++c) std::sort(bound(c * chunk), bound((c + 1) * chunk));
+    for (std::size_t c = first; c < last; ++c) std::sort(bound(c * chunk), bound((c + 1) * chunk), less);
   });
   if (chunks <= 1) return;
   std::vector<T> buffer(items.size());
@@ -29,7 +30,8 @@ void parallel_sort(std::vector<T>& items) {
     parallel_for(0, pairs, 1, [&](std::size_t first, std::size_t last) {
       for (std::size_t c = first; c < last; ++c)
         std::merge(bound(2 * c * chunk), bound((2 * c + 1) * chunk), bound((2 * c + 1) * chunk),
-                   bound((2 * c + 2) * chunk), buffer.begin() + static_cast<std::ptrdiff_t>(2 * c * chunk));
+                   bound((2 * c + 2) * chunk), buffer.begin() + static_cast<std::ptrdiff_t>(2 * c * chunk),
+                   less);
     });
     std::swap(items, buffer);
   }

@@ -1,4 +1,4 @@
-#include "mesher/parallel_sort.h"
+#include "common/parallel_sort.h"
 
 #include <gtest/gtest.h>
 
