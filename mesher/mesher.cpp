@@ -24,6 +24,9 @@ namespace {
 
 constexpr int smallest_resolution = 4;
 constexpr int largest_resolution = 4096;
+/// Cubes of input coordinates, as areas and volumes need them, must neither overflow nor vanish; single
+/// precision fields hold 1e38.
+constexpr double largest_coordinate = 1e50;
 
 /// Dense tets of an adaptive mesh for each squared finest cell of surface: they tend to the first number
 /// where the solid is thick, and half of it fill one that is as thick as the second, in finest cells of
@@ -83,6 +86,11 @@ double cell_size(const ClosedSurface& s, const std::string& file, const MesherOp
                      " cells along the longest side; at most " + std::to_string(largest_resolution) +
                      " are possible");
   const double farthest = std::max(s.low.cwiseAbs().maxCoeff(), s.high.cwiseAbs().maxCoeff());
+  if (farthest > largest_coordinate || longest < 1 / largest_coordinate)
+    throw InputError(
+        file, 0,
+        "a size of " + number_text(longest) + " with coordinates up to " + number_text(farthest) +
+            " is beyond what can be measured safely; scale the surface to between 1e-50 and 1e50");
   if (farthest * 0x1p-52 > h * cell_share_of_rounding)
     throw InputError(
         file, 0,

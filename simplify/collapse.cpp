@@ -27,7 +27,7 @@ constexpr double distance_weight = 50;
 /// How far a refusal got, for reporting the most telling one.
 int depth(Outcome o) {
   switch (o) {
-    case Outcome::lock_taken:
+    case Outcome::count:
       return 7;
     case Outcome::self_intersection:
       return 6;
@@ -90,11 +90,9 @@ void carry_out(Task& task, std::size_t b, const std::vector<float>& qualities) {
   EditableMesh& mesh = task.mesh;
   const Star& star = task.star;
   const Index b_id = star.points[b];
-  std::int64_t gone = 0;
   for (const Star::StarTet& t : star.tets) {
     if (!has(t, b)) continue;
     close_gap(mesh, mesh.tet(t.tet), t.tet, star.centre, b_id);
-    ++gone;
   }
   for (std::size_t i = 0; i < star.tets.size(); ++i) {
     const Star::StarTet& t = star.tets[i];
@@ -110,7 +108,6 @@ void carry_out(Task& task, std::size_t b, const std::vector<float>& qualities) {
     task.slots.give_back(t.tet);
   }
   mesh.set_hint(star.centre, no_index);
-  mesh.count_tets(-gone);
 }
 
 }  // namespace
@@ -168,7 +165,7 @@ Outcome collapse(Task& task, const BlockRules& rules) {
       refuse(Outcome::inverts);
       continue;
     }
-    if (left == 0) {  // a material would lose its last tets here
+    if (left == 0) {  // nothing would be left of the star
       refuse(Outcome::link_condition);
       continue;
     }
@@ -207,6 +204,12 @@ Outcome collapse(Task& task, const BlockRules& rules) {
         refuse(o);
         continue;
       }
+    }
+    // Last of all, since what is taken off the count here is not put back.
+    if (!task.mesh.count_down(star.tets.size() - left, rules.fewest_tets)) {
+      task.cells.release();
+      refuse(Outcome::count);
+      continue;
     }
     carry_out(task, b, qualities);
     if (!star.sheets.empty()) task.grid.commit(task.edit, task.grid_task);

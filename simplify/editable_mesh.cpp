@@ -49,6 +49,13 @@ std::uint64_t spread(std::uint64_t x) {
   return x;
 }
 
+/// The first place in the file is named, whichever thread finds it.
+void lower(std::atomic<Index>& smallest, Index value) {
+  Index known = smallest.load();
+  while (value < known && !smallest.compare_exchange_weak(known, value)) {
+  }
+}
+
 std::string place(const Vec3& p) {
   return "(" + std::to_string(p.x()) + ", " + std::to_string(p.y()) + ", " + std::to_string(p.z()) + ")";
 }
@@ -74,19 +81,17 @@ EditableMesh::EditableMesh(TetMesh&& mesh, const std::string& name) {
   tags_.erase(std::unique(tags_.begin(), tags_.end()), tags_.end());
 
   tets_.resize(tets);
-  std::atomic<std::size_t> first_bad{tets};
+  std::atomic<Index> first_bad{no_index};
   parallel_for(0, tets, grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Tet& t = mesh.tets[i];
       const auto region = std::lower_bound(tags_.begin(), tags_.end(), mesh.materials[i]) - tags_.begin();
       tets_[i] = {t, {no_index, no_index, no_index, no_index}, static_cast<Region>(region), 0};
       if (orient3d(positions_[t[0]], positions_[t[1]], positions_[t[2]], positions_[t[3]]) > 0) continue;
-      std::size_t known = first_bad.load();
-      while (i < known && !first_bad.compare_exchange_weak(known, i)) {
-      }
+      lower(first_bad, static_cast<Index>(i));
     }
   });
-  if (const std::size_t bad = first_bad.load(); bad < tets)
+  if (const Index bad = first_bad.load(); bad != no_index)
     throw InputError(name, 0,
                      "tet " + std::to_string(bad) + " is flat, inverted or listed the other way round, at " +
                          place(positions_[mesh.tets[bad][0]] / scale_) +
@@ -137,11 +142,11 @@ void EditableMesh::link_faces(const std::string& name) {
         if (j - i == 2) {
           const Index s = bucket[i].face, u = bucket[i + 1].face;
           // Two positive tets on opposite sides of a face list it in opposite senses.
-          if (even_face(tets_[s / 4].points, s % 4) == even_face(tets_[u / 4].points, u % 4)) bad.store(s);
+          if (even_face(tets_[s / 4].points, s % 4) == even_face(tets_[u / 4].points, u % 4)) lower(bad, s);
           tets_[s / 4].neighbours[s % 4] = u / 4;
           tets_[u / 4].neighbours[u % 4] = s / 4;
         } else if (j - i > 2) {
-          bad.store(bucket[i].face);
+          lower(bad, bucket[i].face);
         }
         i = j;
       }
@@ -184,7 +189,7 @@ void EditableMesh::check_stars(const std::string& name) const {
           seen.number(t.neighbours[k], added);
           if (added) walk.push_back(t.neighbours[k]);
         }
-      if (walk.size() != tets_at[p]) bad.store(static_cast<Index>(p));
+      if (walk.size() != tets_at[p]) lower(bad, static_cast<Index>(p));
     }
   });
   if (const Index p = bad.load(); p != no_index)

@@ -115,6 +115,17 @@ class EditableMesh {
     std::vector<Index> free_;
   };
   void count_tets(std::int64_t change) { live_.fetch_add(change, std::memory_order_relaxed); }
+  /// Takes `gone` tets off the count unless fewer than `fewest` would be left: then false, and nothing
+  /// changed.
+  bool count_down(std::size_t gone, std::size_t fewest) {
+    std::int64_t now = live_.load(std::memory_order_relaxed);
+    do {
+      if (now < static_cast<std::int64_t>(fewest + gone)) return false;
+      // Relaxed: the number carries no other data.
+    } while (
+        !live_.compare_exchange_weak(now, now - static_cast<std::int64_t>(gone), std::memory_order_relaxed));
+    return true;
+  }
 
   // Only while no task runs.
 

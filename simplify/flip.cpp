@@ -176,6 +176,7 @@ Outcome flip32(Task& task, const BlockRules& rules, Index tet, int edge) {
   }
   if (any_in_star(mesh, apex, task.numbers, [&](const Tet& t) { return contains(t, p) && contains(t, q); }))
     return Outcome::link_condition;
+  if (!mesh.count_down(1, rules.fewest_tets)) return Outcome::count;
 
   thread_local std::vector<OuterFace> outer;
   outer.clear();
@@ -195,7 +196,6 @@ Outcome flip32(Task& task, const BlockRules& rules, Index tet, int edge) {
   link_new(mesh, slots.data(), tets.data(), 2, outer);
   mesh.store_points(third, {no_index, no_index, no_index, no_index});
   task.slots.give_back(third);
-  mesh.count_tets(-1);
   return Outcome::done;
 }
 

@@ -22,13 +22,15 @@ enum class Outcome : std::uint8_t {
   link_condition,     ///< the topology would change
   self_intersection,  ///< a boundary or interface triangle would meet another
   no_room,            ///< the reserve of tets is used up
+  count,              ///< fewer tets than wanted would be left
   too_large,          ///< the star holds more points than a task handles
 };
-inline constexpr std::size_t outcome_count = 12;
+inline constexpr std::size_t outcome_count = 13;
 
 inline constexpr std::array<std::string_view, outcome_count> outcome_names{
-    "done",    "lock_taken", "stale",          "no_candidate",      "material_rule", "surface_error",
-    "inverts", "quality",    "link_condition", "self_intersection", "no_room",       "too_large"};
+    "done",          "lock_taken", "stale",    "no_candidate",   "material_rule",
+    "surface_error", "inverts",    "quality",  "link_condition", "self_intersection",
+    "no_room",       "count",      "too_large"};
 
 /// The kinds of operation that are counted.
 enum class Operation : std::uint8_t { collapse, flip23, flip32, smooth, optimise };

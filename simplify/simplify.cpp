@@ -28,7 +28,11 @@ constexpr int most_closing_rounds = 24;
 /// removes the last slivers on flat boundaries. Together they keep the count well within 1 %.
 constexpr double closing_slack = 0.006;
 /// Iterations in a row that remove next to nothing before the loop gives up.
-constexpr int most_idle_iterations = 6;
+constexpr int most_idle_iterations = 3;
+constexpr double idle_below = 0.003;  ///< of the tets
+/// E stops growing here, in working coordinates, of which the farthest is below 2, for gamma 10: beyond it
+/// nothing is refused any more.
+constexpr double largest_useful_error = 200;
 /// The mesh is squeezed and renumbered when fewer than this share of its slots are alive.
 constexpr double squeeze_below = 0.7;
 
@@ -50,11 +54,13 @@ class Simplifier {
   TetMesh run() {
     const auto start = std::chrono::steady_clock::now();
     begin_stage("simplify");
-    volume_ = mesh_.total_volume();
     first_count_ = mesh_.live_tets();
-    rules_.objective.quality =
-        TetQuality::for_target(volume_, static_cast<double>(options_.target_tets), options_.beta);
+    rules_.objective.quality = TetQuality::for_target(
+        mesh_.total_volume(), static_cast<double>(options_.target_tets), options_.beta);
     rules_.gamma = options_.gamma;
+    // Rounded up: for small targets the slack is less than one tet.
+    rules_.fewest_tets = static_cast<std::size_t>(
+        std::ceil(static_cast<double>(std::min(options_.target_tets, first_count_)) * (1 - closing_slack)));
     squeeze();
     const double build = seconds_since(start);
     loop();
@@ -139,10 +145,8 @@ class Simplifier {
         [&](Task& task, Index p) {
           if (!task.points.try_lock(p)) return Outcome::lock_taken;
           Outcome o = task.star.gather(mesh_, p, task.points);
-          if (o == Outcome::done) {
-            o = collapse(task, rules_);
-            task.counts.add(Operation::collapse, o);
-          }
+          if (o == Outcome::done) o = collapse(task, rules_);
+          task.counts.add(Operation::collapse, o);
           return o;
         },
         [&] { return mesh_.live_tets() <= loop_target(); });
@@ -150,9 +154,7 @@ class Simplifier {
 
   /// Swaps and smoothing of what is still poor.
   void swap_and_smooth_block(float limit) {
-    const double target = static_cast<double>(options_.target_tets);
-    const auto low = static_cast<std::size_t>(target * (1 - closing_slack));
-    const auto high = static_cast<std::size_t>(target * (1 + closing_slack));
+    const auto most = std::max(loop_target(), first_count_ <= options_.target_tets ? first_count_ : 0);
     const bool closing = rules_.objective.kind == Objective::Kind::shape;
     runner_.tets(
         poor_tets(limit),
@@ -161,40 +163,34 @@ class Simplifier {
           // The tet may have been improved by a neighbour's operation since it was listed.
           if (mesh_.tet(item.tet).quality > limit) return Outcome::stale;
           const std::size_t count = mesh_.live_tets();
-          for (int f = 0; f < 4 && !(closing && count >= high); ++f) {
+          for (int f = 0; f < 4 && !(closing && count >= most); ++f) {
             const Outcome o = flip23(task, rules_, item.tet, f);
             task.counts.add(Operation::flip23, o);
             if (o == Outcome::done || o == Outcome::lock_taken) return o;
           }
-          for (int e = 0; e < 6 && !(closing && count <= low); ++e) {
+          for (int e = 0; e < 6; ++e) {
             const Outcome o = flip32(task, rules_, item.tet, e);
             task.counts.add(Operation::flip32, o);
             if (o == Outcome::done || o == Outcome::lock_taken) return o;
           }
           for (Index p : item.points) {
             Outcome o = task.star.gather(mesh_, p, task.points);
-            if (o == Outcome::done) {
-              o = smooth(task, rules_);
-              task.counts.add(Operation::smooth, o);
-            }
+            if (o == Outcome::done) o = smooth(task, rules_);
+            task.counts.add(Operation::smooth, o);
             if (o == Outcome::done || o == Outcome::lock_taken) return o;
           }
           if (!closing) return Outcome::no_candidate;
           for (Index p : item.points) {
             Outcome o = task.star.gather(mesh_, p, task.points);
-            if (o == Outcome::done) {
-              o = optimise(task, rules_);
-              task.counts.add(Operation::optimise, o);
-            }
+            if (o == Outcome::done) o = optimise(task, rules_);
+            task.counts.add(Operation::optimise, o);
             if (o == Outcome::done || o == Outcome::lock_taken) return o;
           }
           for (Index p : item.points) {
-            if (mesh_.live_tets() <= low) break;
+            if (mesh_.live_tets() <= rules_.fewest_tets) break;
             Outcome o = task.star.gather(mesh_, p, task.points);
-            if (o == Outcome::done) {
-              o = collapse(task, rules_);
-              task.counts.add(Operation::collapse, o);
-            }
+            if (o == Outcome::done) o = collapse(task, rules_);
+            task.counts.add(Operation::collapse, o);
             if (o == Outcome::done || o == Outcome::lock_taken) return o;
           }
           return Outcome::no_candidate;
@@ -213,6 +209,7 @@ class Simplifier {
     const double ideal_edge = rules_.objective.quality.ideal_edge;
     const double log_first = portable_log(std::max(static_cast<double>(first_count_) / target, 1 + 1e-9));
     double percent = percent_step;
+    const double largest_error = largest_useful_error * std::max(1.0, options_.gamma / 10);
     rules_.largest_error = first_error_edges * ideal_edge;
     int idle = 0;
     for (int i = 0; i < options_.max_iterations && mesh_.live_tets() > loop_target(); ++i) {
@@ -230,12 +227,19 @@ class Simplifier {
       it.cutoff = portable_cbrt(limit);
       collapse_block(limit);
       const std::size_t collapsed = mesh_.live_tets();
-      if (collapsed > loop_target() && static_cast<double>(collapsed) < swaps_below * target)
+      const double removed = 1 - static_cast<double>(collapsed) / static_cast<double>(it.tets_before);
+      // Where collapses stall, other connectivity and places may let them go on.
+      if (collapsed > loop_target() && (static_cast<double>(collapsed) < swaps_below * target ||
+                                        (removed < least_removed && percent >= 100)))
         swap_and_smooth_block(limit);
       finish(it, start);
-      const double removed = 1 - static_cast<double>(collapsed) / static_cast<double>(it.tets_before);
-      if (removed < least_removed) rules_.largest_error *= error_growth;
-      idle = removed < 0.001 && percent >= 100 ? idle + 1 : 0;
+      // A larger E helps as long as E is what refuses.
+      const bool error_refuses = rules_.largest_error < largest_error &&
+                                 10 * it.counts.of(Operation::collapse, Outcome::surface_error) >
+                                     it.counts.tried(Operation::collapse);
+      if (removed < least_removed)
+        rules_.largest_error = std::min(largest_error, error_growth * rules_.largest_error);
+      idle = removed < idle_below && percent >= 100 && !error_refuses ? idle + 1 : 0;
       if (idle == most_idle_iterations) break;
       percent = std::min(100.0, percent + percent_step);
       if (progress_) progress_->update(1 - log_now / log_first);
@@ -284,7 +288,6 @@ class Simplifier {
   SurfaceGrid grid_;
   BlockRunner runner_;
   BlockRules rules_;
-  double volume_ = 0;
   std::size_t first_count_ = 0;
 };
 

@@ -43,10 +43,10 @@ struct SimplifyReport {
   double seconds_build = 0, seconds_simplify = 0, seconds_close = 0;
 };
 
-/// Simplifies a valid mesh to about `target_tets` (within 1 % where the topology allows) and improves its
-/// shapes: block iteration of Cutler, Dorsey & McMillan 2004 with a tuned schedule (README.md), then closing
-/// rounds at that count. Every material, component, handle, cavity and interface survives; the boundary does
-/// not come to intersect itself; all tets stay positive by exact sign.
+/// Simplifies a valid mesh to about `target_tets` (within 1 % where topology and shapes allow) and improves
+/// its shapes: block iteration of Cutler, Dorsey & McMillan 2004 with a tuned schedule (README.md), then
+/// closing rounds at that count. Every material, component, handle, cavity and interface survives; the
+/// boundary does not come to intersect itself; all tets stay positive by exact sign.
 ///
 /// Uses thread_count() threads; with one thread the same input and seed give the same bytes. A mesh that has
 /// fewer tets than the target is only improved. Throws InputError if the mesh has flat, inverted or

@@ -175,11 +175,14 @@ void SurfaceGrid::commit(const Edit& edit, Task& task) {
   }
 }
 
-std::size_t SurfaceGrid::triangle_count() const {
+std::vector<MeshTriangle> SurfaceGrid::triangles() const {
   std::vector<std::uint32_t> seen;
   for (const auto& list : cells_) seen.insert(seen.end(), list.begin(), list.end());
   std::sort(seen.begin(), seen.end());
-  return static_cast<std::size_t>(std::unique(seen.begin(), seen.end()) - seen.begin());
+  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+  std::vector<MeshTriangle> out;
+  for (std::uint32_t i : seen) out.push_back(records_[i]);
+  return out;
 }
 
 }  // namespace tetwright

@@ -48,7 +48,8 @@ class SurfaceGrid {
   void commit(const Edit& edit, Task& task);
 
   TryLocks& locks() { return locks_; }
-  std::size_t triangle_count() const;
+  /// All that stand, ids ascending within each; while no task runs, for tests.
+  std::vector<MeshTriangle> triangles() const;
 
  private:
   struct Cell3 {

@@ -29,9 +29,10 @@ struct Objective {
 /// What all operations of a block go by.
 struct BlockRules {
   Objective objective;
-  double largest_error = 0;  ///< E, working coordinates
-  double gamma = 10;         ///< weight of the volume error
-  double accept_worse = 0;   ///< annealing: probability of an action that leaves a poorer tet than before
+  double largest_error = 0;     ///< E, working coordinates
+  double gamma = 10;            ///< weight of the volume error
+  std::size_t fewest_tets = 0;  ///< that an operation may leave
+  double accept_worse = 0;      ///< annealing: probability of an action that leaves a poorer tet than before
 };
 
 /// One task's own things: what it holds, what it reuses, what it counted.

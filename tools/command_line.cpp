@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <iostream>
 
 #include "common/error.h"
@@ -11,8 +12,32 @@ namespace tetwright {
 
 namespace {
 
+/// Digits only: the parser's own conversion lets a minus wrap round and clamps what is too large.
+const CLI::Validator whole_number(
+    [](std::string& text) {
+      const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+      return digits && text.size() <= 18 ? std::string()
+                                         : "'" + text + "' is not a whole number from 0 to 10^18";
+    },
+    "");
+
+/// A finite number above `low`, or at least `low` where `or_equal`.
+CLI::Validator number_from(double low, bool or_equal) {
+  return {[low, or_equal](std::string& text) {
+            char* end = nullptr;
+            const double value = std::strtod(text.c_str(), &end);
+            const bool good =
+                !text.empty() && *end == 0 && std::isfinite(value) && (or_equal ? value >= low : value > low);
+            return good ? std::string()
+                        : "'" + text + "' is not a number " + (or_equal ? "of at least " : "above ") +
+                              (low == 0 ? "0" : std::to_string(low));
+          },
+          ""};
+}
+
 void add_common(CLI::App& app, CommandLine& c) {
   app.add_option("--threads", c.threads, "Threads to use (default: all of the machine)")
+      ->check(whole_number)
       ->check(CLI::Range(1u, 1024u));
   app.add_option("--stats", c.stats, "Write what was done and reached to this .json file");
   app.add_flag("--quiet", c.quiet, "Print nothing but errors");
@@ -22,6 +47,7 @@ void add_common(CLI::App& app, CommandLine& c) {
 void add_seed(CLI::App& app, CommandLine& c) {
   app.add_option("--seed", c.seed,
                  "Start of the random numbers; with one thread the same seed gives the same bytes")
+      ->check(whole_number)
       ->capture_default_str();
 }
 
@@ -32,32 +58,34 @@ void add_output(CLI::App& app, CommandLine& c, const char* formats) {
 void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) {
   app.add_option("--resolution", c.resolution,
                  std::string("Finest cells along the longest side (default: ") + default_resolution + ")")
+      ->check(whole_number)
       ->check(CLI::Range(4, 4096));
   app.add_option("--voxel-size", c.voxel_size,
                  "Edge of the finest cells in input units, instead of --resolution")
-      ->check(CLI::PositiveNumber);
+      ->check(number_from(0, false));
   app.add_flag("--uniform", c.uniform, "Finest cells everywhere: a plain grid, no octree");
   app.add_option("--adaptivity", c.adaptivity,
                  "Largest misplacement of the surface by a coarser cell, in finest cells; 0: finest cells "
                  "all along it")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_from(0, true))
       ->capture_default_str();
 }
 
 void add_simplifying(CLI::App& app, CommandLine& c) {
-  app.add_option("--target-tets", c.target_tets, "Number of tets wanted")->required();
+  app.add_option("--target-tets", c.target_tets, "Number of tets wanted")->required()->check(whole_number);
   app.add_option(
          "--min-solid-angle", c.min_solid_angle,
          "Tets with a smaller solid angle (steradians) are improved; if given and some are left, status 1")
       ->check(CLI::Range(0.0, 0.5513))
       ->capture_default_str();
   app.add_option("--beta", c.beta, "Longest edge, in ideal edges, that quality does not penalise")
-      ->check(CLI::PositiveNumber)
+      ->check(number_from(0, false))
       ->capture_default_str();
   app.add_option("--gamma", c.gamma, "Weight of the surface's error; larger keeps more of it")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_from(0, true))
       ->capture_default_str();
   app.add_option("--max-iterations", c.max_iterations, "Block iterations at most")
+      ->check(whole_number)
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
 }
@@ -145,8 +173,6 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
     out.min_solid_angle_given = chosen->count("--min-solid-angle") > 0;
     if (out.target_tets == 0) throw UsageError("--target-tets 0 leaves no mesh; give 1 or more");
   }
-  for (double value : {out.voxel_size, out.adaptivity, out.beta, out.gamma, out.min_solid_angle})
-    if (!std::isfinite(value)) throw UsageError("option values must be finite numbers");
   if (out.resolution && out.voxel_size > 0) throw UsageError("give --resolution or --voxel-size, not both");
   return true;
 }

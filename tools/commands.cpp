@@ -25,6 +25,24 @@ namespace tetwright {
 
 namespace {
 
+/// --stats must not take the place of a mesh: it is a .json file, and none of the others.
+void check_stats_path(const CommandLine& line) {
+  if (line.stats.empty()) return;
+  namespace fs = std::filesystem;
+  if (fs::path(line.stats).extension() != ".json")
+    throw UsageError("--stats " + line.stats + ": the statistics are JSON; give a name that ends in .json");
+  std::vector<std::string> others =
+      line.command == Command::sample ? std::vector<std::string>() : line.inputs;
+  others.push_back(line.output);
+  others.push_back(line.before);
+  std::error_code ignored;
+  for (const std::string& other : others)
+    if (!other.empty() && (other == line.stats || fs::equivalent(other, line.stats, ignored)))
+      throw UsageError("--stats " + line.stats +
+                       " is also the name of another file of this call; give it its own");
+  check_output_file(line.stats);
+}
+
 /// What an interrupt cancels.
 std::atomic<Progress*> running{nullptr};
 
@@ -32,13 +50,17 @@ void on_interrupt(int) {
   if (Progress* progress = running.load()) progress->cancel();
 }
 
-/// While it lives, SIGINT and SIGTERM cancel the work instead of ending the process.
+/// While it lives, the first SIGINT or SIGTERM cancels the work, between two of its steps or while it waits
+/// for input; a second one ends the process.
 class InterruptHandler {
  public:
   explicit InterruptHandler(Progress& progress) {
     running = &progress;
-    std::signal(SIGINT, on_interrupt);
-    std::signal(SIGTERM, on_interrupt);
+    struct sigaction action {};
+    action.sa_handler = on_interrupt;
+    action.sa_flags = SA_RESETHAND;  // and no SA_RESTART: a read that waits ends with EINTR
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
   }
   ~InterruptHandler() {
     std::signal(SIGINT, SIG_DFL);
@@ -66,7 +88,7 @@ class Run {
         progress_(!line.quiet && !line.no_progress && isatty(STDERR_FILENO)),
         handler_(progress_) {
     check_output_path(line.output);
-    if (!line.stats.empty()) check_output_file(line.stats);
+    check_stats_path(line);
     report_.inputs = line.inputs;
   }
 
@@ -154,32 +176,30 @@ class Run {
   }
 
  private:
-  /// The rule that refused most collapses in the last iterations that tried any.
-  std::string held_back_by() const {
+  /// The rule that refused most collapses in the last iteration of a kind.
+  std::string held_back_by(const std::string& kind) const {
     OperationCounts counts;
-    const auto& iterations = report_.simplify->iterations;
-    for (auto it = iterations.rbegin(); it != iterations.rend(); ++it) {
-      counts.add(it->counts);
-      if (it->kind == "simplify") break;
-    }
+    for (const IterationReport& it : report_.simplify->iterations)
+      if (it.kind == kind) counts = it.counts;
     std::size_t most = 0;
     for (std::size_t r = 1; r < outcome_count; ++r)
       if (counts.of(Operation::collapse, static_cast<Outcome>(r)) >
           (most ? counts.of(Operation::collapse, static_cast<Outcome>(most)) : 0))
         most = r;
-    return most ? std::string(outcome_names[most]) : "the dense mesh, which has no more tets";
+    return most ? std::string(outcome_names[most]) : "nothing: no operation was left to try";
   }
 
   void find_shortfall() {
     const double target = static_cast<double>(line_.target_tets);
     const double reached = static_cast<double>(report_.result->tets);
     if (std::fabs(reached - target) > 0.01 * target)
-      report_.shortfall.push_back(
-          {"target_tets", target, reached,
-           reached < target ? "the dense mesh, which has too few tets; raise --resolution" : held_back_by()});
+      report_.shortfall.push_back({"target_tets", target, reached,
+                                   static_cast<double>(report_.dense->tets) < target
+                                       ? "the dense mesh, which has too few tets; raise --resolution"
+                                       : held_back_by("simplify")});
     if (line_.min_solid_angle_given && report_.result->min_solid_angle < line_.min_solid_angle)
       report_.shortfall.push_back(
-          {"min_solid_angle", line_.min_solid_angle, report_.result->min_solid_angle, held_back_by()});
+          {"min_solid_angle", line_.min_solid_angle, report_.result->min_solid_angle, held_back_by("close")});
   }
 
   const CommandLine& line_;
@@ -216,7 +236,7 @@ ExitStatus simplify(const CommandLine& line) {
 
 ExitStatus check(const CommandLine& line) {
   const ThreadLimit limit(line.threads);
-  if (!line.stats.empty()) check_output_file(line.stats);
+  check_stats_path(line);
   const Stopwatch total;
   RunReport run;
   run.inputs = line.inputs;
@@ -267,6 +287,8 @@ ExitStatus check(const CommandLine& line) {
 ExitStatus sample(const CommandLine& line) {
   const ThreadLimit limit(line.threads);
   const Stopwatch total;
+  check_output_path(line.output, sample_kind(line.inputs.front()));
+  check_stats_path(line);
   write_sample(line.inputs.front(), line.output);
   if (!line.stats.empty()) {
     RunReport run;

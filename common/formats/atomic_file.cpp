@@ -156,6 +156,7 @@ void write_file_atomically(const std::string& path, std::string_view bytes) {
 
 std::string read_whole_file(const std::string& path) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0 && errno == EINTR) throw Interrupted();
   if (file < 0) throw InputError("cannot read " + path + ": " + std::strerror(errno));
   struct Closer {
     int file;
@@ -174,7 +175,8 @@ std::string read_whole_file(const std::string& path) {
   for (;;) {
     if (used == bytes.size()) bytes.resize(bytes.size() * 2 + 4096);
     const ssize_t n = read(file, bytes.data() + used, std::min(bytes.size() - used, piece_size));
-    if (n < 0 && errno == EINTR) continue;
+    if (n < 0 && errno == EINTR)
+      throw Interrupted();  // the only signals with a handler are those that cancel
     if (n < 0) throw InputError("cannot read " + path + ": " + std::strerror(errno));
     if (n == 0) break;
     used += static_cast<std::size_t>(n);

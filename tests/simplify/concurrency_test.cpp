@@ -2,8 +2,9 @@
 // all the time. Built a second time with the locks taken out (test_without_locks), it must fail.
 #include <gtest/gtest.h>
 
+#include "common/mesh_check.h"
 #include "common/parallel.h"
-#include "common/predicates.h"
+#include "common/topology.h"
 #include "simplify/simplify.h"
 #include "tests/simplify/meshes.h"
 
@@ -17,6 +18,7 @@ TEST(Concurrency, EightThreadsMeetAndTheMeshStaysSound) {
     TetMesh mesh = grid_mesh(
         {12, 12, 12}, [](int x, int y, int) { return std::optional<MaterialTag>(x + y < 12 ? 1 : 2); });
     jitter(mesh, seed);
+    const Topology before = topology(mesh);
     SimplifyOptions options;
     options.target_tets = 1500;
     options.seed = seed;
@@ -24,8 +26,8 @@ TEST(Concurrency, EightThreadsMeetAndTheMeshStaysSound) {
     SimplifyReport report;
     const TetMesh after = simplify(mesh, options, &report);
     EXPECT_NEAR(static_cast<double>(after.tets.size()), 1500, 15);
-    for (const Tet& t : after.tets)
-      ASSERT_EQ(orient3d(after.points[t[0]], after.points[t[1]], after.points[t[2]], after.points[t[3]]), 1);
+    for (const MeshFinding& f : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(f);
+    for (const std::string& d : topology_differences(before, topology(after))) ADD_FAILURE() << d;
     for (const auto& it : report.iterations) conflicts += it.lock_conflicts;
   }
   EXPECT_GT(conflicts, 0u);

@@ -9,7 +9,7 @@ using Tag = std::optional<MaterialTag>;
 
 TEST(SurfaceGrid, ListsBoundaryAndInterfaces) {
   Workbench w(grid_mesh({4, 4, 4}, [](int x, int, int) { return Tag(x < 2 ? 1 : 2); }));
-  EXPECT_EQ(w.grid.triangle_count(), 2u * 16 * 6 + 2u * 16);
+  EXPECT_EQ(w.grid.triangles().size(), 2u * 16 * 6 + 2u * 16);
 }
 
 /// A triangle of the grid at the edge of nothing: three points of the boundary, ids as in the mesh.
@@ -59,7 +59,7 @@ TEST(SurfaceGrid, AHarmlessTriangleReplacesAnother) {
   w.grid.commit(edit, task);
   held.release();
   EXPECT_TRUE(w.grid.locks().all_free());
-  EXPECT_EQ(w.grid.triangle_count(), 2u * 16 * 6);
+  EXPECT_EQ(w.grid.triangles().size(), 2u * 16 * 6);
   // The new one stands now: it can be found and taken away again, and one through it is refused.
   SurfaceGrid::Edit back;
   back.removed = {after};

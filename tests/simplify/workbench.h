@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <memory>
+
 #include "common/predicates.h"
 #include "simplify/task.h"
 #include "tests/simplify/meshes.h"
@@ -48,7 +51,7 @@ struct Workbench {
     EXPECT_TRUE(mesh.locks().all_free());
     EXPECT_TRUE(grid.locks().all_free());
     EXPECT_TRUE(mesh.links_consistent());
-    std::size_t triangles = 0;
+    std::vector<Triangle> interfaces;
     for (Index t = 0; t < mesh.tet_slots(); ++t) {
       const TetRecord& r = mesh.tet(t);
       if (r.points[0] == no_index) continue;
@@ -57,10 +60,20 @@ struct Workbench {
                 1);
       for (int f = 0; f < 4; ++f) {
         const Index other = r.neighbours[f];
-        triangles += other == no_index || (t < other && mesh.tet(other).region != r.region);
+        if (other != no_index && (other < t || mesh.tet(other).region == r.region)) continue;
+        Triangle ids{r.points[tet_faces[f][0]], r.points[tet_faces[f][1]], r.points[tet_faces[f][2]]};
+        std::sort(ids.begin(), ids.end());
+        interfaces.push_back(ids);
       }
     }
-    EXPECT_EQ(grid.triangle_count(), triangles);
+    std::vector<Triangle> listed;
+    for (const MeshTriangle& t : grid.triangles()) {
+      listed.push_back(t.ids);
+      for (int k = 0; k < 3; ++k) EXPECT_EQ(t.points[k], mesh.position(t.ids[k]));
+    }
+    std::sort(interfaces.begin(), interfaces.end());
+    std::sort(listed.begin(), listed.end());
+    EXPECT_EQ(listed, interfaces);
   }
 
   EditableMesh mesh;

@@ -109,9 +109,55 @@ TEST(Program, WrongCallsAreStatusTwo) {
   expect_refused("mesh " + in + " -o " + (f / "t.xyz"), 2, {"t.xyz", ".vtu"});
   expect_refused("mesh " + (f / "t.foo") + " -o " + out, 2, {"t.foo"});
   expect_refused("simplify " + in + " -o " + out + " --target-tets 10", 2, {"t.off"});
+  expect_refused("prepare " + in + " -o " + out + " --target-tets -5", 2, {"-5"});
+  expect_refused("prepare " + in + " -o " + out + " --target-tets 99999999999999999999999", 2,
+                 {"--target-tets"});
+  expect_refused("prepare " + in + " -o " + out + " --target-tets ''", 2, {"--target-tets"});
+  expect_refused("prepare " + in + " -o " + out + " --target-tets 100 --seed -1", 2, {"-1"});
   expect_refused("sample dodo -o " + out, 2, {"dodo", "sphere"});
   expect_refused("sample sphere -o " + out, 2, {"t.vtu", ".ply"});
   EXPECT_EQ(f.entries(), 1u);
+}
+
+TEST(Program, StatisticsNeverReplaceAMesh) {
+  const TemporaryFolder f;
+  put(f / "t.off", tetrahedron_off);
+  const std::string mesh = "mesh " + (f / "t.off") + " --resolution 8 -o ";
+  expect_refused(mesh + (f / "a.vtu") + " --stats " + (f / "a.vtu"), 2, {"--stats", ".json"});
+  expect_refused(mesh + (f / "a.vtu") + " --stats " + (f / "t.off"), 2, {"--stats", ".json"});
+  ASSERT_EQ(run(mesh + (f / "a.vtu")).status, 0);
+  std::filesystem::create_symlink(f / "a.vtu", f / "link.json");
+  expect_refused("check " + (f / "a.vtu") + " --stats " + (f / "link.json"), 2, {"link.json"});
+  EXPECT_EQ(contents(f / "t.off"), tetrahedron_off);
+  EXPECT_EQ(run("check " + (f / "a.vtu")).status, 0);
+}
+
+TEST(Program, AnInterruptLeavesNothingBehind) {
+  const TemporaryFolder f;
+  ASSERT_EQ(run("sample knot -o " + (f / "k.off")).status, 0);
+  const std::size_t files = f.entries();
+  // In the middle of work, and while it waits for input that never comes.
+  const std::string prefix = "timeout --preserve-status -s INT ";
+  const Answer working =
+      run("prepare " + (f / "k.off") + " -o " + (f / "k.vtu") + " --target-tets 500000", "", prefix + "0.5");
+  EXPECT_EQ(working.status, 130) << working.err;
+  EXPECT_EQ(f.entries(), files);
+  ASSERT_EQ(std::system(("mkfifo " + (f / "pipe.off")).c_str()), 0);
+  const Answer waiting = run("mesh " + (f / "pipe.off") + " -o " + (f / "k.vtu"), "", prefix + "0.3");
+  EXPECT_EQ(waiting.status, 130) << waiting.err;
+  EXPECT_EQ(f.entries(), files + 1);
+}
+
+TEST(Program, ResultsThatCannotBePrintedAreStatusFive) {
+  const TemporaryFolder f;
+  ASSERT_EQ(run("sample tet_cube -o " + (f / "t.vtu")).status, 0);
+  const int code =
+      std::system((TETWRIGHT_PROGRAM " check --json " + (f / "t.vtu") + " >/dev/full 2>/dev/null").c_str());
+  EXPECT_EQ(WEXITSTATUS(code), 5);
+}
+
+TEST(Program, AnErrorIsOneLineWhateverTheName) {
+  expect_refused("check \"$(printf 'no\\nfile.vtu')\"", 3, {"no?file.vtu"});
 }
 
 TEST(Program, BrokenInputsAreStatusThree) {

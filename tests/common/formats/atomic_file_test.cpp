@@ -92,8 +92,7 @@ TEST_F(AtomicFile, ADiskThatIsFull) {
 TEST_F(AtomicFile, UnreadableInput) {
   EXPECT_NE(error_of<InputError>([&] { (void)read_whole_file(path("none")); }).find("No such file"),
             std::string::npos);
-  EXPECT_NE(error_of<InputError>([&] { (void)read_whole_file(path("")); }).find("folder"),
-            std::string::npos);
+  EXPECT_NE(error_of<InputError>([&] { (void)read_whole_file(path("")); }).find("folder"), std::string::npos);
   EXPECT_NE(error_of<InputError>([&] { (void)read_whole_file("/dev/zero"); }).find("regular"),
             std::string::npos);
   put(path("empty"), "");
