@@ -34,6 +34,9 @@ constexpr double largest_coordinate = 1e50;
 /// for flat ones.
 constexpr double tets_per_area_thick = 29;
 constexpr double half_full_thickness = 1.6;
+/// Lattice tets along the surface that resolution_for_target() pays at most for each dense tet that is
+/// wanted.
+constexpr double most_lattice_per_dense = 4;
 /// Dense tets of a uniform mesh for each finest cell of volume: the lattice has twelve.
 constexpr double tets_per_volume_uniform = 12;
 /// Peak memory for each dense tet, with the lattice outside; measured on scans, rounded up.
@@ -108,7 +111,8 @@ MesherEstimate estimate(const ClosedSurface& s, double h, bool uniform) {
     const double thickness = volume / area;
     tets = tets_per_area_thick * area * thickness / (thickness + half_full_thickness);
   }
-  return {static_cast<std::size_t>(tets), static_cast<std::size_t>(bytes + bytes_per_tet * tets)};
+  return {static_cast<std::size_t>(tets),
+          static_cast<std::size_t>(bytes + bytes_per_tet * std::max(tets, tets_per_area_thick * area / 2))};
 }
 
 void check_memory(const MesherEstimate& e) {
@@ -227,7 +231,12 @@ int resolution_for_target(const std::vector<MaterialSurface>& surfaces, std::siz
   if (!(longest > 0)) return smallest_target_resolution;
   const double dense = std::min(most_dense_tets, dense_per_target * static_cast<double>(target_tets));
   const auto enough = [&](int resolution) {
-    return static_cast<double>(estimate(surface, longest / resolution, false).tets) >= dense;
+    const double h = longest / resolution;
+    // A body thinner than a cell has few tets but a lattice as large as its surface: there is no end to
+    // refining it.
+    const double lattice = tets_per_area_thick * surface.area / (h * h);
+    return static_cast<double>(estimate(surface, h, false).tets) >= dense ||
+           lattice >= most_lattice_per_dense * dense;
   };
   // The smallest one that is enough; the estimate grows with the resolution.
   int low = smallest_target_resolution, high = largest_resolution;
