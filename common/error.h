@@ -69,11 +69,6 @@ namespace detail {
 
 }  // namespace tetwright
 
-/// Our own invariants: TETWRIGHT_CHECK always, TETWRIGHT_DCHECK in builds without NDEBUG.
+/// Our own invariants, in every build.
 #define TETWRIGHT_CHECK(condition) \
   ((condition) ? void(0) : ::tetwright::detail::check_failed(#condition, __FILE__, __LINE__))
-#ifdef NDEBUG
-#define TETWRIGHT_DCHECK(condition) void(0)
-#else
-#define TETWRIGHT_DCHECK(condition) TETWRIGHT_CHECK(condition)
-#endif

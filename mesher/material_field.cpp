@@ -116,8 +116,8 @@ std::vector<MortonKey> MaterialField::interface_cells() const {
       0, leaves.size(), 64, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
         for (std::size_t i = begin; i < end; ++i) {
           const openvdb::Coord o = leaves[i]->origin();
-          // Bit z of a row: the grid point is inside. A cell with both signs has all corners within the band,
-          // so neighbours that do not exist hold none.
+          // Bit z of a row: the grid point is inside. A leaf that does not exist lies wholly on one side,
+          // beyond the band.
           unsigned rows[n][n] = {};
           for (int neighbour = 0; neighbour < 8; ++neighbour) {
             const int dx = neighbour & 1, dy = neighbour >> 1 & 1, dz = neighbour >> 2;
@@ -125,13 +125,15 @@ std::vector<MortonKey> MaterialField::interface_cells() const {
                 neighbour == 0
                     ? leaves[i]
                     : tree.probeConstLeaf(o.offsetBy(dx * leaf_side, dy * leaf_side, dz * leaf_side));
-            if (!leaf) continue;
-            const float* values = leaf->buffer().data();
+            const openvdb::Coord first = o.offsetBy(dx * leaf_side, dy * leaf_side, dz * leaf_side);
+            const bool far_inside = !leaf && impl_->far_value(first.x(), first.y(), first.z()) < 0;
+            const float* values = leaf ? leaf->buffer().data() : nullptr;
             for (int x = 0; x < (dx ? 1 : leaf_side); ++x)
               for (int y = 0; y < (dy ? 1 : leaf_side); ++y)
                 for (int z = 0; z < (dz ? 1 : leaf_side); ++z)
                   rows[dx * leaf_side + x][dy * leaf_side + y] |=
-                      static_cast<unsigned>(values[(x * leaf_side + y) * leaf_side + z] < 0)
+                      static_cast<unsigned>(values ? values[(x * leaf_side + y) * leaf_side + z] < 0
+                                                   : far_inside)
                       << (dz * leaf_side + z);
           }
           for (int x = 0; x < leaf_side; ++x)
@@ -140,9 +142,7 @@ std::vector<MortonKey> MaterialField::interface_cells() const {
               const unsigned all = rows[x][y] & rows[x + 1][y] & rows[x][y + 1] & rows[x + 1][y + 1];
               const unsigned mixed = (any | any >> 1) & ~(all & all >> 1);
               for (int z = 0; z < leaf_side; ++z)
-                if (mixed >> z & 1 && std::abs(leaves[i]->getValue(static_cast<openvdb::Index>(
-                                          (x * leaf_side + y) * leaf_side + z))) < field_band)
-                  out.push_back(morton_encode(o.x() + x, o.y() + y, o.z() + z));
+                if (mixed >> z & 1) out.push_back(morton_encode(o.x() + x, o.y() + y, o.z() + z));
             }
         }
       });

@@ -27,6 +27,7 @@ constexpr int largest_resolution = 4096;
 /// Cubes of input coordinates, as areas and volumes need them, must neither overflow nor vanish; single
 /// precision fields hold 1e38.
 constexpr double largest_coordinate = 1e50;
+constexpr double smallest_in_cells = 1e-6;  ///< longest side of a surface that is looked at
 
 /// Dense tets of an adaptive mesh for each squared finest cell of surface: they tend to the first number
 /// where the solid is thick, and half of it fill one that is as thick as the second, in finest cells of
@@ -60,13 +61,20 @@ std::string number_text(double v) {
   return text;
 }
 
+double longest_side(const ClosedSurface& s) { return (s.high - s.low).maxCoeff(); }
+
 ClosedSurface close_only_surface(const std::vector<MaterialSurface>& surfaces) {
   if (surfaces.size() != 1)
     throw UsageError("one surface can be meshed at a time, not " + std::to_string(surfaces.size()));
-  return close_surface(surfaces[0].surface, surfaces[0].file);
+  ClosedSurface s = close_surface(surfaces[0].surface, surfaces[0].file);
+  const double farthest = std::max(s.low.cwiseAbs().maxCoeff(), s.high.cwiseAbs().maxCoeff());
+  if (farthest > largest_coordinate || longest_side(s) < 1 / largest_coordinate)
+    throw InputError(
+        surfaces[0].file, 0,
+        "a size of " + number_text(longest_side(s)) + " with coordinates up to " + number_text(farthest) +
+            " is beyond what can be measured safely; scale the surface to between 1e-50 and 1e50");
+  return s;
 }
-
-double longest_side(const ClosedSurface& s) { return (s.high - s.low).maxCoeff(); }
 
 void check_options(const MesherOptions& options) {
   if (options.voxel_size != 0 && !(options.voxel_size > 0 && std::isfinite(options.voxel_size)))
@@ -89,11 +97,6 @@ double cell_size(const ClosedSurface& s, const std::string& file, const MesherOp
                      " cells along the longest side; at most " + std::to_string(largest_resolution) +
                      " are possible");
   const double farthest = std::max(s.low.cwiseAbs().maxCoeff(), s.high.cwiseAbs().maxCoeff());
-  if (farthest > largest_coordinate || longest < 1 / largest_coordinate)
-    throw InputError(
-        file, 0,
-        "a size of " + number_text(longest) + " with coordinates up to " + number_text(farthest) +
-            " is beyond what can be measured safely; scale the surface to between 1e-50 and 1e50");
   if (farthest * 0x1p-52 > h * cell_share_of_rounding)
     throw InputError(
         file, 0,
@@ -187,8 +190,10 @@ MeshedSurface mesh_surfaces(const std::vector<MaterialSurface>& surfaces, const 
       material.file +
       ": the surface is smaller than a cell; use a higher resolution or a smaller "
       "voxel size");
-  if (!(longest_side(surface) > 0)) throw nothing;
   report.cell_size = cell_size(surface, material.file, options);
+  // So much smaller that no lattice could be laid out in numbers that are still exact; a little smaller is
+  // found out by the lattice itself.
+  if (longest_side(surface) < report.cell_size * smallest_in_cells) throw nothing;
   report.resolution = static_cast<int>(std::ceil(longest_side(surface) / report.cell_size - 0.5));
   check_memory(estimate(surface, report.cell_size, options.uniform));
   const GridFrame frame = make_grid_frame(surface.low, surface.high, report.cell_size, options.uniform);
@@ -228,7 +233,6 @@ int resolution_for_target(const std::vector<MaterialSurface>& surfaces, std::siz
   if (target_tets == 0) throw UsageError("the target must be at least one tet");
   const ClosedSurface surface = close_only_surface(surfaces);
   const double longest = longest_side(surface);
-  if (!(longest > 0)) return smallest_target_resolution;
   const double dense = std::min(most_dense_tets, dense_per_target * static_cast<double>(target_tets));
   const auto enough = [&](int resolution) {
     const double h = longest / resolution;

@@ -102,8 +102,8 @@ void check_no_holes(const std::vector<Side>& sides, const std::vector<Vec3>& poi
                        place(middle) + "; close its holes first");
 }
 
-/// Turns triangles over so that neighbours across edges of exactly two triangles are wound alike, going out
-/// from the first triangle of each component.
+/// Turns triangles over so that neighbours across edges of exactly two triangles are wound alike, in each
+/// component the way most of its triangles are.
 void wind_alike(std::vector<Triangle>& triangles, const std::vector<Side>& sides) {
   struct Neighbour {
     std::uint32_t triangle, other;
@@ -123,21 +123,24 @@ void wind_alike(std::vector<Triangle>& triangles, const std::vector<Side>& sides
   std::partial_sum(start.begin(), start.end(), start.begin());
   enum : std::uint8_t { unseen, kept, turned };
   std::vector<std::uint8_t> state(triangles.size(), unseen);
-  std::vector<std::uint32_t> queue;
+  std::vector<std::uint32_t> component;  // and at the same time the queue of its flooding
   for (std::uint32_t seed = 0; seed < triangles.size(); ++seed) {
     if (state[seed] != unseen) continue;
     state[seed] = kept;
-    queue.assign(1, seed);
-    while (!queue.empty()) {
-      const std::uint32_t t = queue.back();
-      queue.pop_back();
+    component.assign(1, seed);
+    std::size_t against = 0;
+    for (std::size_t i = 0; i < component.size(); ++i) {
+      const std::uint32_t t = component[i];
+      against += state[t] == turned;
       for (std::size_t k = start[t]; k < start[t + 1]; ++k) {
         const Neighbour& n = neighbours[k];
         if (state[n.other] != unseen) continue;
         state[n.other] = (state[t] == turned) != (n.same_direction == 1) ? turned : kept;
-        queue.push_back(n.other);
+        component.push_back(n.other);
       }
     }
+    if (2 * against > component.size())
+      for (std::uint32_t t : component) state[t] = state[t] == turned ? kept : turned;
   }
   for (std::size_t t = 0; t < triangles.size(); ++t)
     if (state[t] == turned) std::swap(triangles[t][1], triangles[t][2]);

@@ -71,6 +71,26 @@ TEST(MaterialField, InterfaceCellsAreThoseWithBothSigns) {
   EXPECT_EQ(found, keys.size());
 }
 
+// Wherever the surface lies relative to the leaves of the tree, no cell away from it is listed.
+TEST(MaterialField, NoInterfaceCellsDeepInside) {
+  for (double x : {6.5, 7.5, 8.5, 9.5, 10.5, 11.5, 12.5, 13.5}) {
+    const ClosedSurface s = close_surface(
+        joined(make_box({0, 0, 0}, {2, 2, 2}), make_box({x, 6.5, 6.5}, {x + 30, 36.5, 36.5})), "");
+    const GridFrame frame = make_grid_frame(s.low, s.high, 1, false);
+    const MaterialField field(s, {"", 1}, frame, nullptr);
+    FieldSampler sampler(field);
+    for (const MortonKey key : field.interface_cells()) {
+      const auto cell = morton_decode(key);
+      int inside = 0;
+      for (int k = 0; k < 8; ++k)
+        inside +=
+            sampler.at_node(static_cast<int>(cell[0]) + (k & 1), static_cast<int>(cell[1]) + (k >> 1 & 1),
+                            static_cast<int>(cell[2]) + (k >> 2)) < 0;
+      ASSERT_TRUE(inside != 0 && inside != 8) << x;
+    }
+  }
+}
+
 TEST(MaterialField, CanBeCancelled) {
   Progress progress;
   progress.cancel();

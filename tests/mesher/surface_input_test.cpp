@@ -86,5 +86,16 @@ TEST(SurfaceInput, KeepsCavities) {
   EXPECT_NEAR(close_surface(turned_over(shell), "").volume, sphere_volume * 7 / 8, 0.03);
 }
 
+// Whichever triangle is wound wrongly, the majority of its component decides.
+TEST(SurfaceInput, OneWrongTriangleTurnsNothingElse) {
+  const TriangleMesh shell = joined(make_sphere(1), turned_over(make_sphere(0.5)));
+  const std::size_t half = shell.triangles.size() / 2;
+  for (std::size_t wrong : {std::size_t{0}, std::size_t{1}, half, half + 1}) {
+    TriangleMesh mesh = shell;
+    std::swap(mesh.triangles[wrong][0], mesh.triangles[wrong][1]);
+    EXPECT_NEAR(close_surface(mesh, "").volume, sphere_volume * 7 / 8, 0.03) << wrong;
+  }
+}
+
 }  // namespace
 }  // namespace tetwright
