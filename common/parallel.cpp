@@ -20,18 +20,27 @@ std::atomic<unsigned> thread_limit{0};
 std::atomic<unsigned> loop_started{0};
 std::atomic<unsigned> body_ended{0};
 
+/// Says so when a body ends, also by an exception.
+struct BodyEnd {
+  ~BodyEnd() { body_ended.fetch_add(1, std::memory_order_release); }
+};
+/// The caller's side of it, also when an exception comes through.
+struct LoopEnd {
+  ~LoopEnd() { (void)body_ended.load(std::memory_order_acquire); }
+};
+
 /// body(i) for each i in [0, count) on up to `threads` threads.
 void run_loop(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& body) {
   loop_started.fetch_add(1, std::memory_order_release);
+  const LoopEnd loop_end;
   tbb_loop(
       count, threads,
       [](const void* context, std::size_t i) {
         (void)loop_started.load(std::memory_order_acquire);
+        const BodyEnd body_end;
         (*static_cast<const std::function<void(std::size_t)>*>(context))(i);
-        body_ended.fetch_add(1, std::memory_order_release);
       },
       &body);
-  (void)body_ended.load(std::memory_order_acquire);
 }
 
 }  // namespace

@@ -6,8 +6,23 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <new>
 
 namespace tetwright {
+
+namespace {
+
+/// At the end of the program TBB's threads are waited for: else the last of them takes the library apart
+/// while the program is already going.
+class WaitForThreads {
+ public:
+  ~WaitForThreads() { (void)tbb::finalize(handle_, std::nothrow); }
+
+ private:
+  tbb::task_scheduler_handle handle_{tbb::attach{}};
+};
+
+}  // namespace
 
 struct TbbLimit::Impl {
   explicit Impl(unsigned threads) : control(tbb::global_control::max_allowed_parallelism, threads) {}
@@ -21,6 +36,7 @@ unsigned tbb_concurrency() { return static_cast<unsigned>(std::max(1, tbb::info:
 
 void tbb_loop(std::size_t count, unsigned threads, void (*body)(const void* context, std::size_t i),
               const void* context) {
+  static const WaitForThreads wait_for_threads;
   tbb::task_arena arena(static_cast<int>(threads));
   arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { body(context, i); }); });
 }
