@@ -13,7 +13,7 @@
 namespace tetwright {
 
 /// The Stanford bunny of Debian's glmark2-data where it is installed, else the built-in knot.
-inline std::vector<MaterialSurface> benchmark_surface() {
+inline PreparedInput benchmark_input() {
   const std::string bunny = "/usr/share/glmark2/models/bunny.obj";
   MaterialSurface s{"body", 1, {}, "knot"};
   if (std::filesystem::exists(bunny)) {
@@ -22,7 +22,7 @@ inline std::vector<MaterialSurface> benchmark_surface() {
   } else {
     s.surface = std::get<TriangleMesh>(make_sample("knot"));
   }
-  return {s};
+  return prepare_input({s});
 }
 
 /// Its dense mesh at a resolution, made once.
@@ -32,7 +32,7 @@ inline const TetMesh& benchmark_mesh(int resolution) {
   if (known != meshes.end()) return known->second;
   MesherOptions options;
   options.resolution = resolution;
-  return meshes[resolution] = mesh_surfaces(benchmark_surface(), options, nullptr).mesh;
+  return meshes[resolution] = mesh_surfaces(benchmark_input(), options, nullptr).mesh;
 }
 
 }  // namespace tetwright

@@ -26,23 +26,39 @@ Triangle sorted_face(const Tet& tet, int k) {
   return f;
 }
 
+/// Calls `body(face, tet)` for the faces of every tet, as sorted_face() gives them; with `candidates` for
+/// those of three flagged points.
+template <class Body>
+void for_each_face(std::span<const Tet> tets, const std::vector<std::uint8_t>* candidates, Body&& body) {
+  for (std::size_t t = 0; t < tets.size(); ++t) {
+    const Tet& tet = tets[t];
+    std::array<bool, 4> flagged{true, true, true, true};
+    if (candidates)
+      for (int k = 0; k < 4; ++k) flagged[k] = (*candidates)[tet[k]] != 0;
+    const int missing = 4 - flagged[0] - flagged[1] - flagged[2] - flagged[3];
+    if (missing > 1) continue;
+    // A face lies opposite its number: without a flag, only the one that does without that point is left.
+    for (int k = 0; k < 4; ++k)
+      if (missing == 0 || !flagged[k]) body(sorted_face(tet, k), t);
+  }
+}
+
 constexpr std::size_t points_per_part = 4096;
 
 }  // namespace
 
-std::vector<MeshFace> mesh_faces(std::span<const Tet> tets, std::size_t points) {
+std::vector<MeshFace> mesh_faces(std::span<const Tet> tets, std::size_t points,
+                                 const std::vector<std::uint8_t>* candidates) {
   TETWRIGHT_CHECK(tets.size() < no_index);
+  TETWRIGHT_CHECK(!candidates || candidates->size() == points);
   // A bucket for each smallest vertex, filled by counting: sorting is then local and cheap.
   std::vector<std::size_t> begin(points + 2, 0);
-  for (const Tet& tet : tets)
-    for (int k = 0; k < 4; ++k) ++begin[sorted_face(tet, k)[0] + 2];
+  for_each_face(tets, candidates, [&](const Triangle& f, std::size_t) { ++begin[f[0] + std::size_t{2}]; });
   for (std::size_t i = 2; i < begin.size(); ++i) begin[i] += begin[i - 1];
-  std::vector<Entry> entries(4 * tets.size());
-  for (std::size_t t = 0; t < tets.size(); ++t)
-    for (int k = 0; k < 4; ++k) {
-      const Triangle f = sorted_face(tets[t], k);
-      entries[begin[f[0] + 1]++] = {f[1], f[2], static_cast<Index>(t)};
-    }
+  std::vector<Entry> entries(begin.back());
+  for_each_face(tets, candidates, [&](const Triangle& f, std::size_t t) {
+    entries[begin[f[0] + std::size_t{1}]++] = {f[1], f[2], static_cast<Index>(t)};
+  });
 
   const std::size_t parts = (points + points_per_part - 1) / points_per_part;
   std::vector<std::size_t> part_begin(parts + 1, 0);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -16,7 +17,10 @@ struct MeshFace {
 };
 
 /// All faces in lexicographic order of their ids. `points` is the number of points; ids must be below it.
-/// Memory: at the peak about 100 bytes for each tet. Parallel; the result does not depend on the threads.
-std::vector<MeshFace> mesh_faces(std::span<const Tet> tets, std::size_t points);
+/// With `candidates`, a flag for each point, only the faces of three flagged points. Memory: at the peak
+/// about 100 bytes for each tet; with candidates 50 for each face found and 8 for each point. Parallel; the
+/// result does not depend on the threads.
+std::vector<MeshFace> mesh_faces(std::span<const Tet> tets, std::size_t points,
+                                 const std::vector<std::uint8_t>* candidates = nullptr);
 
 }  // namespace tetwright

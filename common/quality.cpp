@@ -43,10 +43,11 @@ SolidAngleTerms terms(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
 
 /// All four share the numerator, so the smallest angle has the largest denominator; it is always acute enough
 /// for the denominator to be positive (four angles of a tet sum to less than 2 pi).
+double largest_denominator(const SolidAngleTerms& t) {
+  return std::max(std::max(t.denominator[0], t.denominator[1]), std::max(t.denominator[2], t.denominator[3]));
+}
 double smallest_angle(const SolidAngleTerms& t) {
-  const double largest =
-      std::max(std::max(t.denominator[0], t.denominator[1]), std::max(t.denominator[2], t.denominator[3]));
-  return 2 * portable_atan2_upper(t.det, largest);
+  return 2 * portable_atan2_upper(t.det, largest_denominator(t));
 }
 
 /// The rounded determinant of edges no longer than l is off by less than 40 l^3 2^-53 (differences, two
@@ -66,6 +67,11 @@ std::array<double, 4> solid_angles(const std::array<Vec3, 4>& p) {
 double min_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const SolidAngleTerms t = terms(a, b, c, d);
   return t.det > 0 ? smallest_angle(t) : 0;
+}
+
+double min_solid_angle_tangent(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const SolidAngleTerms t = terms(a, b, c, d);
+  return t.det > 0 ? t.det / largest_denominator(t) : 0;
 }
 
 std::array<double, 6> dihedral_angles(const std::array<Vec3, 4>& p) {

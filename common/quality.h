@@ -17,6 +17,9 @@ std::array<double, 4> solid_angles(const std::array<Vec3, 4>& tet);
 /// The smallest of solid_angles(), without computing the others.
 double min_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
+/// The tangent of half of min_solid_angle(): grows with the angle and takes less time, for comparisons.
+double min_solid_angle_tangent(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
 /// The six dihedral angles in degrees, in the order of tet_edges. Not a number where a face is degenerate.
 std::array<double, 6> dihedral_angles(const std::array<Vec3, 4>& tet);
 

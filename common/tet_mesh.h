@@ -1,12 +1,28 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/types.h"
 
 namespace tetwright {
+
+/// Two regions that meet in a face: of two materials the smaller tag comes first; the second is nothing for
+/// outside.
+using MaterialPair = std::pair<MaterialTag, std::optional<MaterialTag>>;
+
+/// A face between two materials or between a material and outside.
+struct InterfaceTriangle {
+  Triangle ids;                      ///< indices into points; the normal points out of `material`
+  MaterialTag material;              ///< on the side of the normal's tail
+  std::optional<MaterialTag> other;  ///< on the side of its tip: a larger tag, or nothing for outside
+
+  MaterialPair pair() const { return {material, other}; }
+  bool operator==(const InterfaceTriangle&) const = default;
+};
 
 /// A tetrahedral mesh of one or more materials: a plain value, the currency between all parts.
 ///
@@ -17,6 +33,9 @@ struct TetMesh {
   std::vector<Tet> tets;                              ///< indices into points
   std::vector<MaterialTag> materials;                 ///< one tag for each tet
   std::map<MaterialTag, std::string> material_names;  ///< only materials that have a name
+  /// What find_interfaces() of interfaces.h finds in this mesh, or empty: readers leave it so, mesher/ and
+  /// simplify/ fill it. Who changes points' numbers, tets or materials clears it or fills it anew.
+  std::vector<InterfaceTriangle> interfaces = {};
 };
 
 }  // namespace tetwright

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/disjoint_sets.h"
+#include "common/interfaces.h"
 #include "common/parallel.h"
 #include "common/surface_chains.h"
 
@@ -149,9 +150,7 @@ std::vector<std::pair<std::string, std::string>> parts(const Topology& t) {
   add_solid("domain", t.domain);
   for (const auto& [tag, solid] : t.materials) add_solid("material " + std::to_string(tag), solid);
   for (const auto& [pair, surface] : t.interfaces)
-    out.emplace_back("interface " + std::to_string(pair.first) + "|" +
-                         (pair.second ? std::to_string(*pair.second) : "outside"),
-                     text(surface));
+    out.emplace_back("interface " + pair_name(pair), text(surface));
   if (t.touching_fans)
     out.emplace_back("interfaces touch at points", "count " + std::to_string(*t.touching_fans));
   if (t.junction_curves)

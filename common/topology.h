@@ -36,8 +36,7 @@ struct Topology {
     Count branch_points = 0;  ///< points at which other than two such edges meet
     bool operator==(const Curves&) const = default;
   };
-  /// Two materials, the smaller tag first; the second is nothing for outside.
-  using Pair = std::pair<MaterialTag, std::optional<MaterialTag>>;
+  using Pair = MaterialPair;
 
   Solid domain;
   // What follows is empty for a mesh of one material: the domain says it all.

@@ -7,25 +7,38 @@ namespace tetwright {
 
 namespace {
 
+using Mask = std::uint64_t;
+
+constexpr Mask bit(int i) { return Mask{1} << i; }
+
 /// The link of a point as bit masks over at most 64 neighbours. Stars of the lattice have at most 17; only
 /// octrees with many hanging edges around one point come near the limit.
 struct Link {
   static constexpr int capacity = 64;
   Index points[capacity];
-  std::uint64_t neighbours[capacity];
+  Mask neighbours[capacity];
   int size = 0;
   bool overflow = false;
+  const LabelledLattice& lattice;
+  Index centre;
 
-  Link(const LabelledLattice& lattice, const StarMap& stars, Index centre) {
-    for (const Index* t = stars.begin(centre); t != stars.end(centre); ++t) {
-      int local[3], n = 0;
-      for (Index v : lattice.tets[*t])
-        if (v != centre) local[n++] = number(v);
+  Link(const LabelledLattice& l, Index c) : lattice(l), centre(c) {
+    for (Index t : lattice.stars.tets(centre)) {
+      const auto [a, b, d] = opposite(t);
       if (overflow) return;
-      neighbours[local[0]] |= std::uint64_t{1} << local[1] | std::uint64_t{1} << local[2];
-      neighbours[local[1]] |= std::uint64_t{1} << local[0] | std::uint64_t{1} << local[2];
-      neighbours[local[2]] |= std::uint64_t{1} << local[0] | std::uint64_t{1} << local[1];
+      neighbours[a] |= bit(b) | bit(d);
+      neighbours[b] |= bit(a) | bit(d);
+      neighbours[d] |= bit(a) | bit(b);
     }
+  }
+
+  /// The numbers of the three points of a tet other than the centre.
+  std::array<int, 3> opposite(Index t) {
+    std::array<int, 3> local{};
+    int n = 0;
+    for (Index v : lattice.tets[t])
+      if (v != centre) local[n++] = number(v);
+    return local;
   }
 
   int number(Index v) {
@@ -40,70 +53,104 @@ struct Link {
     return size++;
   }
 
-  std::uint64_t of_side(const LabelledLattice& lattice, Side side) const {
-    std::uint64_t mask = 0;
+  Mask of_region(RegionIndex region) const {
+    Mask mask = 0;
     for (int i = 0; i < size; ++i)
-      if (lattice.sides[points[i]] == side) mask |= std::uint64_t{1} << i;
+      if (lattice.region(points[i]) == region) mask |= bit(i);
     return mask;
   }
 
+  /// The regions of the pure points of the link; nothing if they are too many.
+  std::optional<RegionSet> pure() const {
+    RegionSet set;
+    for (int i = 0; i < size; ++i)
+      if (const RegionIndex r = lattice.region(points[i]); r != on_interface && !set.insert(r))
+        return std::nullopt;
+    return set;
+  }
+
   /// True if the points of the mask are some and hang together.
-  bool one_piece(std::uint64_t mask) const {
+  bool one_piece(Mask mask) const {
     if (mask == 0) return false;
-    std::uint64_t reached = mask & (~mask + 1), frontier = reached;
+    Mask reached = mask & (~mask + 1), frontier = reached;
     while (frontier) {
       const int i = std::countr_zero(frontier);
       frontier &= frontier - 1;
-      const std::uint64_t fresh = neighbours[i] & mask & ~reached;
+      const Mask fresh = neighbours[i] & mask & ~reached;
       reached |= fresh;
       frontier |= fresh;
     }
     return reached == mask;
   }
-};
 
-/// One piece of each side around `u`; `dropped` counts as on the interface.
-bool regular(const LabelledLattice& lattice, const StarMap& stars, Index u, Index dropped) {
-  const Link link(lattice, stars, u);
-  if (link.overflow) return false;
-  std::uint64_t keep = ~std::uint64_t{0};
-  for (int i = 0; i < link.size; ++i)
-    if (link.points[i] == dropped) keep &= ~(std::uint64_t{1} << i);
-  return link.one_piece(link.of_side(lattice, Side::inside) & keep) &&
-         link.one_piece(link.of_side(lattice, Side::outside) & keep);
-}
+  /// True if the points of the mask with the edges and triangles between them are one disc.
+  bool one_disc(Mask mask) {
+    if (!one_piece(mask)) return false;
+    int twice_edges = 0, triangles = 0;
+    for (Mask rest = mask; rest; rest &= rest - 1)
+      twice_edges += std::popcount(neighbours[std::countr_zero(rest)] & mask);
+    for (Index t : lattice.stars.tets(centre)) {
+      const auto [a, b, d] = opposite(t);
+      triangles += (bit(a) | bit(b) | bit(d)) == ((bit(a) | bit(b) | bit(d)) & mask);
+    }
+    return std::popcount(mask) - twice_edges / 2 + triangles == 1;
+  }
+
+  /// Every region of the set shows in the points of the mask as it must around a point on an interface.
+  bool regular(const RegionSet& regions, Mask keep) {
+    for (RegionIndex r : regions) {
+      const Mask part = of_region(r) & keep;
+      // Of two regions on a sphere each is connected if and only if neither encloses anything.
+      if (regions.size() == 2 ? !one_piece(part) : !one_disc(part)) return false;
+    }
+    return true;
+  }
+};
 
 }  // namespace
 
-bool may_move_onto_interface(const LabelledLattice& lattice, const StarMap& stars, Index point) {
-  const Link link(lattice, stars, point);
-  if (link.overflow) return false;
-  const std::uint64_t on = link.of_side(lattice, Side::on);
-  const std::uint64_t inside = link.of_side(lattice, Side::inside);
-  const std::uint64_t outside = link.of_side(lattice, Side::outside);
-  if (!link.one_piece(inside) || !link.one_piece(outside)) return false;
-  if (on == 0) return true;
+std::optional<RegionSet> pure_regions(const LabelledLattice& lattice, Index point) {
+  RegionSet set;
+  for (Index t : lattice.stars.tets(point))
+    for (Index v : lattice.tets[t])
+      if (const RegionIndex r = lattice.region(v); r != on_interface && !set.insert(r)) return std::nullopt;
+  return set;
+}
 
-  const Side side = lattice.sides[point];
-  const std::uint64_t own = side == Side::inside ? inside : outside;
-  for (std::uint64_t rest = on; rest; rest &= rest - 1) {
+std::optional<RegionSet> regions_if_moved(const LabelledLattice& lattice, Index point) {
+  Link link(lattice, point);
+  if (link.overflow) return std::nullopt;
+  const std::optional<RegionSet> regions = link.pure();
+  const RegionIndex region = lattice.first_region[point];
+  if (!regions || regions->size() < 2 || !regions->contains(region)) return std::nullopt;
+  if (!link.regular(*regions, ~Mask{0})) return std::nullopt;
+  const Mask on = link.of_region(on_interface);
+  const Mask own = link.of_region(region);
+  for (Mask rest = on; rest; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     const Index u = link.points[i];
-    const std::uint64_t around_edge = link.neighbours[i];
-    const bool same_origin = lattice.first_side(u) == side;
-    if (same_origin && !(around_edge & own)) return false;
-    // Triangles of the point, u and w, all on the interface then. Two tets hold each, and their tips are the
+    const Mask around_edge = link.neighbours[i];
+    const bool same_origin = lattice.first_region[u] == region;
+    if (same_origin && !(around_edge & own)) return std::nullopt;
+    // Triangles of the point, u and w, all on interfaces then. Two tets hold each, and their tips are the
     // common neighbours of u and w in the link (others than those two are rare and only make us more
     // careful).
-    for (std::uint64_t more = around_edge & on; more; more &= more - 1) {
+    for (Mask more = around_edge & on; more; more &= more - 1) {
       const int j = std::countr_zero(more);
-      const std::uint64_t tips = around_edge & link.neighbours[j];
-      if (tips & on) return false;
-      if (same_origin && lattice.first_side(link.points[j]) == side && !(tips & own)) return false;
+      const Mask tips = around_edge & link.neighbours[j];
+      if (tips & on) return std::nullopt;
+      if (same_origin && lattice.first_region[link.points[j]] == region && !(tips & own)) return std::nullopt;
     }
-    if (!regular(lattice, stars, u, point)) return false;
+    // What meets at u is what shows around it now, the point itself among it.
+    Link around_u(lattice, u);
+    const std::optional<RegionSet> at_u = around_u.pure();
+    if (around_u.overflow || !at_u) return std::nullopt;
+    Mask keep = ~Mask{0};
+    for (int k = 0; k < around_u.size; ++k)
+      if (around_u.points[k] == point) keep &= ~bit(k);
+    if (!around_u.regular(*at_u, keep)) return std::nullopt;
   }
-  return true;
+  return regions;
 }
 
 }  // namespace tetwright

@@ -1,6 +1,8 @@
 #include "mesher/cutting.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "common/parallel_sort.h"
@@ -15,214 +17,497 @@ constexpr std::size_t grain = 1 << 13;  // tets to a task, some ten nanoseconds 
 /// Cuts stay this share of the edge off its ends, for the sake of the shape of the pieces. Only points that
 /// could not be moved have cuts that near.
 constexpr double smallest_share = 0.25;
+/// The same for the point of a face and of a tet, as barycentric coordinates.
+constexpr double smallest_face_share = 0.15;
+constexpr double smallest_tet_share = 0.2;
 
+/// The corners of an edge or face, ascending.
 using EdgeKey = std::uint64_t;
 EdgeKey edge_key(Index a, Index b) { return static_cast<EdgeKey>(std::min(a, b)) << 32 | std::max(a, b); }
+using FaceKey = std::array<Index, 3>;
+FaceKey face_key(Index a, Index b, Index c) {
+  FaceKey key{a, b, c};
+  std::sort(key.begin(), key.end());
+  return key;
+}
 
-bool is_cut(const LabelledLattice& lattice, const Tet& t) {
-  bool in = false, out = false;
+/// The regions of a tet's pure points; at most four.
+RegionSet pure_regions(const LabelledLattice& lattice, const Tet& t) {
+  RegionSet set;
+  for (Index v : t)
+    if (const RegionIndex r = lattice.region(v); r != on_interface) set.insert(r);
+  return set;
+}
+
+/// What becomes of a tet: cut, or kept whole, or left out.
+enum class Fate { cut, whole, dropped };
+Fate fate(const LabelledLattice& lattice, const Tet& t, RegionIndex& region) {
+  region = on_interface;
   for (Index v : t) {
-    in |= lattice.sides[v] == Side::inside;
-    out |= lattice.sides[v] == Side::outside;
+    const RegionIndex r = lattice.region(v);
+    if (r == on_interface) continue;
+    if (region != on_interface && r != region) return Fate::cut;
+    region = r;
   }
-  return in && out;
+  return region == on_interface || (region == outside_region && !lattice.keep_outside) ? Fate::dropped
+                                                                                       : Fate::whole;
 }
 
-bool is_inside(const LabelledLattice& lattice, const Tet& t) {
-  bool in = false;
-  for (Index v : t) {
-    if (lattice.sides[v] == Side::outside) return false;
-    in |= lattice.sides[v] == Side::inside;
-  }
-  return in;
+bool pure(const LabelledLattice& lattice, Index v) { return !lattice.is_on[v]; }
+
+bool edge_is_cut(const LabelledLattice& lattice, Index a, Index b) {
+  return pure(lattice, a) && pure(lattice, b) && lattice.first_region[a] != lattice.first_region[b];
 }
 
-/// The edges that are cut, ascending.
-std::vector<EdgeKey> cut_edges(const LabelledLattice& lattice) {
-  std::vector<EdgeKey> edges = parallel_collect<EdgeKey>(
-      0, lattice.tets.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<EdgeKey>& out) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const Tet& t = lattice.tets[i];
-          if (!is_cut(lattice, t)) continue;
-          for (const auto& e : tet_edges) {
-            const Side a = lattice.sides[t[e[0]]], b = lattice.sides[t[e[1]]];
-            if (a != b && a != Side::on && b != Side::on) out.push_back(edge_key(t[e[0]], t[e[1]]));
-          }
-        }
-      });
-  parallel_sort_unique(edges);
-  return edges;
+bool face_is_cut(const LabelledLattice& lattice, Index a, Index b, Index c) {
+  return edge_is_cut(lattice, a, b) && edge_is_cut(lattice, b, c) && edge_is_cut(lattice, c, a);
 }
 
-Vec3 cut_point(const LabelledLattice& lattice, EdgeKey key) {
-  const auto a = static_cast<Index>(key >> 32), b = static_cast<Index>(key);
-  const double da = lattice.distances[a], db = lattice.distances[b];
-  const double share = std::clamp(da / (da - db), smallest_share, 1 - smallest_share);
+Vec3 edge_cut(const LabelledLattice& lattice, Index a, Index b) {
+  if (b < a) std::swap(a, b);  // the same bits from both ends
+  const double share = std::clamp(lattice.cut_share(a, lattice.first_region[a], b, lattice.first_region[b]),
+                                  smallest_share, 1 - smallest_share);
   return lattice.positions[a] + share * (lattice.positions[b] - lattice.positions[a]);
 }
 
+/// Barycentric coordinates that are at least `smallest` and as they were if they are already.
+template <int N>
+Eigen::Matrix<double, N, 1> kept_off_the_ends(const Eigen::Matrix<double, N, 1>& shares, double smallest) {
+  Eigen::Matrix<double, N, 1> excess = (shares.array() - smallest).max(0.0);
+  const double sum = excess.sum();
+  // Also where they are not numbers.
+  if (!(sum > 0) || !std::isfinite(sum))
+    excess.setConstant(1), excess /= N;
+  else
+    excess /= sum;
+  return (excess.array() * (1 - N * smallest) + smallest).matrix();
+}
+
+/// The point of the simplex of N corners, each of a region of its own, where all regions are equally near by
+/// linear interpolation.
+template <int N>
+Vec3 meeting_point(const LabelledLattice& lattice, const std::array<Index, N>& corners, double smallest) {
+  Eigen::Matrix<double, N, N> equations;
+  Eigen::Matrix<double, N, 1> right;
+  right.setZero();
+  for (int c = 0; c < N; ++c) {
+    const RegionIndex first = lattice.first_region[corners[0]];
+    for (int r = 1; r < N; ++r)
+      equations(r - 1, c) = lattice.gap(corners[c], first, lattice.first_region[corners[r]]);
+    equations(N - 1, c) = 1;
+  }
+  right[N - 1] = 1;
+  const Eigen::Matrix<double, N, 1> shares =
+      kept_off_the_ends<N>(equations.partialPivLu().solve(right), smallest);
+  Vec3 point = Vec3::Zero();
+  for (int c = 0; c < N; ++c) point += shares[c] * lattice.positions[corners[c]];
+  return point;
+}
+
+Vec3 face_cut(const LabelledLattice& lattice, const FaceKey& key) {
+  return meeting_point<3>(lattice, key, smallest_face_share);
+}
+
+/// The point within a tet of three or four regions: where all four meet, or the middle of the junction curve
+/// between its two faces of three regions.
+Vec3 tet_cut(const LabelledLattice& lattice, const Tet& t) {
+  if (pure_regions(lattice, t).size() == 4) {
+    Tet sorted = t;
+    std::sort(sorted.begin(), sorted.end());
+    return meeting_point<4>(lattice, sorted, smallest_tet_share);
+  }
+  Vec3 middle = Vec3::Zero();
+  double faces = 0;
+  for (const auto& f : tet_faces)
+    if (face_is_cut(lattice, t[f[0]], t[f[1]], t[f[2]])) {
+      middle += face_cut(lattice, face_key(t[f[0]], t[f[1]], t[f[2]]));
+      faces += 1;
+    }
+  middle /= faces;
+  // Barycentric coordinates of the middle, kept off the faces.
+  const Vec3 &a = lattice.positions[t[0]], &b = lattice.positions[t[1]], &c = lattice.positions[t[2]],
+             &d = lattice.positions[t[3]];
+  const double whole = tet_volume(a, b, c, d);
+  const Eigen::Vector4d shares =
+      kept_off_the_ends<4>(Eigen::Vector4d(tet_volume(middle, b, c, d), tet_volume(a, middle, c, d),
+                                           tet_volume(a, b, middle, d), tet_volume(a, b, c, middle)) /
+                               whole,
+                           smallest_tet_share);
+  return shares[0] * a + shares[1] * b + shares[2] * c + shares[3] * d;
+}
+
+CutCase cut_case(const LabelledLattice& lattice, const Tet& t) {
+  CutCase cut;
+  std::array<float, 4> margins;
+  for (int k = 0; k < 4; ++k) {
+    cut.regions[k] = lattice.region(t[k]);
+    margins[k] = lattice.margin(t[k]);
+  }
+  for (int k = 0; k < 4; ++k) {
+    cut.ranks[k] = 0;
+    // Farthest from the interface first: the longest edge is the one to be cut short.
+    for (int l = 0; l < 4; ++l)
+      cut.ranks[k] += margins[l] > margins[k] || (margins[l] == margins[k] && t[l] < t[k]);
+  }
+  return cut;
+}
+
+/// cut_tet() with the shorter diagonal; `cut_of(a, b)` is the cut between two corners.
+template <class CutOf>
+int cut_tet_well(const CutCase& cut, Pieces& pieces, CutOf&& cut_of) {
+  // Two corners of each of two regions, each pair in the order of its ranks.
+  std::array<int, 2> one{-1, -1}, other{-1, -1};
+  for (int rank = 0; rank < 4; ++rank)
+    for (int k = 0; k < 4; ++k) {
+      if (cut.ranks[k] != static_cast<Index>(rank) || cut.regions[k] == on_interface) continue;
+      auto& side = one[0] < 0 || cut.regions[k] == cut.regions[one[0]] ? one : other;
+      if (side[0] >= 0 && (cut.regions[k] != cut.regions[side[0]] || side[1] >= 0))
+        return cut_tet(cut, false, pieces);
+      side[side[0] < 0 ? 0 : 1] = k;
+    }
+  if (one[1] < 0 || other[1] < 0) return cut_tet(cut, false, pieces);
+  // In cut_tet()'s order of corners the diagonals are 02-13 and 03-12, whichever region comes first.
+  const double straight = (cut_of(one[0], other[0]) - cut_of(one[1], other[1])).squaredNorm();
+  const double crossed = (cut_of(one[0], other[1]) - cut_of(one[1], other[0])).squaredNorm();
+  return cut_tet(cut, crossed < straight, pieces);
+}
+
+constexpr PieceVertex corner(int k) { return static_cast<PieceVertex>(1 << k); }
+
+/// Cuts one region's part out of a tet of two.
+class TwoRegions {
+ public:
+  /// `region` is cut out; `other` is the second one.
+  TwoRegions(const CutCase& cut, RegionIndex region, Pieces& pieces, int& count)
+      : region_(region), pieces_(pieces), count_(count) {
+    // The corners in the order of this region (by rank), on the interface, of the other one (by rank), and
+    // whether that turned the tet over.
+    const auto place = [&](int k) {
+      return cut.regions[k] == region ? 0 : cut.regions[k] == on_interface ? 1 : 2;
+    };
+    for (int i = 1; i < 4; ++i)
+      for (int j = i; j > 0; --j) {
+        const int a = v_[j], b = v_[j - 1];
+        if (std::pair(place(a), cut.ranks[a]) > std::pair(place(b), cut.ranks[b])) break;
+        std::swap(v_[j], v_[j - 1]);
+        turned_ = !turned_;
+      }
+    for (int k = 0; k < 4; ++k) {
+      own_ += place(k) == 0;
+      others_ += place(k) == 2;
+    }
+  }
+
+  void emit_pieces(bool other_diagonal) {
+    const auto end = [&](int k) { return k >= 4 - others_ ? between(0, k) : at(k); };
+    if (own_ == 1) {
+      // A smaller tet at the corner.
+      emit(at(0), end(1), end(2), end(3));
+    } else if (own_ == 2 && others_ == 1) {
+      // A pyramid over the quadrilateral 0, 1, 13, 03 with its tip on the interface (corner 2).
+      emit(at(0), at(1), at(2), between(1, 3));
+      emit(at(0), between(1, 3), at(2), between(0, 3));
+    } else if (own_ == 3) {
+      // A prism between 0, 1, 2 and 03, 13, 23 with the diagonals 0-13, 0-23, 1-23.
+      emit(at(0), at(1), at(2), between(2, 3));
+      emit(at(0), at(1), between(2, 3), between(1, 3));
+      emit(at(0), between(1, 3), between(2, 3), between(0, 3));
+    } else {
+      // A prism between 0, 02, 03 and 1, 12, 13 with the diagonals 0-12, 0-13 and either within the tet.
+      emit(at(0), at(1), between(1, 2), between(1, 3));
+      if (other_diagonal) {
+        emit(at(0), between(1, 3), between(1, 2), between(0, 3));
+        emit(at(0), between(1, 2), between(0, 2), between(0, 3));
+      } else {
+        emit(at(0), between(1, 3), between(0, 2), between(0, 3));
+        emit(at(0), between(1, 2), between(0, 2), between(1, 3));
+      }
+    }
+  }
+
+ private:
+  PieceVertex at(int k) const { return corner(v_[k]); }
+  PieceVertex between(int k, int l) const { return static_cast<PieceVertex>(at(k) | at(l)); }
+  /// The pieces list their vertices in the places of the corners they come from or are cut towards: each is
+  /// positive because its matrix of barycentric coordinates is triangular up to a positive minor.
+  void emit(PieceVertex a, PieceVertex b, PieceVertex c, PieceVertex d) {
+    if (turned_) std::swap(c, d);
+    pieces_[count_++] = {{a, b, c, d}, region_};
+  }
+
+  RegionIndex region_;
+  Pieces& pieces_;
+  int& count_;
+  std::array<int, 4> v_{0, 1, 2, 3};
+  bool turned_ = false;
+  int own_ = 0, others_ = 0;
+};
+
+/// Cuts a tet of three or four regions: the triangles of its faces are joined to an apex.
+class ManyRegions {
+ public:
+  ManyRegions(const CutCase& cut, PieceVertex apex, Pieces& pieces, int& count)
+      : cut_(cut), apex_(apex), pieces_(pieces), count_(count) {}
+
+  /// The face of corners x, y, z, listed so that its normal points out of the tet.
+  void face(int x, int y, int z) {
+    const RegionIndex a = cut_.regions[x], b = cut_.regions[y], c = cut_.regions[z];
+    const PieceVertex vx = corner(x), vy = corner(y), vz = corner(z);
+    if (a == b && b == c) {
+      emit(vx, vy, vz, a);
+    } else if (a != b && b != c && c != a) {
+      const PieceVertex middle = join(join(vx, vy), vz);
+      const std::array<int, 3> ring{x, y, z};
+      for (int i = 0; i < 3; ++i) {
+        const int from = ring[i], to = ring[(i + 1) % 3];
+        const PieceVertex cut = join(corner(from), corner(to));
+        emit(corner(from), cut, middle, cut_.regions[from]);
+        emit(cut, corner(to), middle, cut_.regions[to]);
+      }
+    } else if (a == b) {
+      pair_and_tip(x, y, z);
+    } else if (b == c) {
+      pair_and_tip(y, z, x);
+    } else {
+      pair_and_tip(z, x, y);
+    }
+  }
+
+ private:
+  /// x and y are of one region, z of another.
+  void pair_and_tip(int x, int y, int z) {
+    const PieceVertex vx = corner(x), vy = corner(y), vz = corner(z);
+    const PieceVertex xz = join(vx, vz), yz = join(vy, vz);
+    emit(xz, yz, vz, cut_.regions[z]);
+    if (cut_.ranks[x] < cut_.ranks[y]) {
+      emit(vx, vy, yz, cut_.regions[x]);
+      emit(vx, yz, xz, cut_.regions[x]);
+    } else {
+      emit(vx, vy, xz, cut_.regions[x]);
+      emit(vy, yz, xz, cut_.regions[x]);
+    }
+  }
+
+  static PieceVertex join(PieceVertex a, PieceVertex b) { return static_cast<PieceVertex>(a | b); }
+  void emit(PieceVertex a, PieceVertex b, PieceVertex c, RegionIndex region) {
+    pieces_[count_++] = {{apex_, a, b, c}, region};
+  }
+
+  const CutCase& cut_;
+  PieceVertex apex_;
+  Pieces& pieces_;
+  int& count_;
+};
+
+/// The sorted cuts of a lattice: edges first, then faces of three regions.
+struct Cuts {
+  std::vector<EdgeKey> edges;
+  std::vector<FaceKey> faces;
+  std::vector<Index> tets;  ///< those with a point of their own within
+
+  explicit Cuts(const LabelledLattice& lattice) {
+    edges = collect<EdgeKey>(lattice, [&](const Tet& t, std::vector<EdgeKey>& out) {
+      for (const auto& e : tet_edges)
+        if (edge_is_cut(lattice, t[e[0]], t[e[1]])) out.push_back(edge_key(t[e[0]], t[e[1]]));
+    });
+    faces = collect<FaceKey>(lattice, [&](const Tet& t, std::vector<FaceKey>& out) {
+      for (const auto& f : tet_faces)
+        if (face_is_cut(lattice, t[f[0]], t[f[1]], t[f[2]]))
+          out.push_back(face_key(t[f[0]], t[f[1]], t[f[2]]));
+    });
+    if (faces.empty()) return;
+    tets = parallel_collect<Index>(
+        0, lattice.tets.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+          for (std::size_t i = begin; i < end; ++i) {
+            const Tet& t = lattice.tets[i];
+            const bool all_pure =
+                pure(lattice, t[0]) && pure(lattice, t[1]) && pure(lattice, t[2]) && pure(lattice, t[3]);
+            if (all_pure && pure_regions(lattice, t).size() > 2) out.push_back(static_cast<Index>(i));
+          }
+        });
+  }
+
+  std::size_t size() const { return edges.size() + faces.size() + tets.size(); }
+  Index edge(Index a, Index b) const { return place(edges, edge_key(a, b)); }
+  Index face(Index a, Index b, Index c) const {
+    return static_cast<Index>(edges.size()) + place(faces, face_key(a, b, c));
+  }
+  Index tet(Index t) const { return static_cast<Index>(edges.size() + faces.size()) + place(tets, t); }
+  std::vector<Vec3> points(const LabelledLattice& lattice) const {
+    std::vector<Vec3> points(size());
+    parallel_for(0, points.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (i < edges.size())
+          points[i] = edge_cut(lattice, static_cast<Index>(edges[i] >> 32), static_cast<Index>(edges[i]));
+        else if (i < edges.size() + faces.size())
+          points[i] = face_cut(lattice, faces[i - edges.size()]);
+        else
+          points[i] = tet_cut(lattice, lattice.tets[tets[i - edges.size() - faces.size()]]);
+      }
+    });
+    return points;
+  }
+
+ private:
+  /// What `body(tet, out)` adds for each tet that is cut, sorted, each once.
+  template <class Key, class Body>
+  static std::vector<Key> collect(const LabelledLattice& lattice, Body&& body) {
+    std::vector<Key> keys = parallel_collect<Key>(
+        0, lattice.tets.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<Key>& out) {
+          RegionIndex unused;
+          for (std::size_t i = begin; i < end; ++i)
+            if (fate(lattice, lattice.tets[i], unused) == Fate::cut) body(lattice.tets[i], out);
+        });
+    parallel_sort_unique(keys);
+    return keys;
+  }
+  template <class Key>
+  static Index place(const std::vector<Key>& ascending, const Key& key) {
+    return static_cast<Index>(std::lower_bound(ascending.begin(), ascending.end(), key) - ascending.begin());
+  }
+};
+
+/// The corners of a piece's vertex, in ascending order; returns their number.
+int corners_of(PieceVertex vertex, std::array<int, 4>& corners) {
+  int n = 0;
+  for (int k = 0; k < 4; ++k)
+    if (vertex >> k & 1) corners[n++] = k;
+  return n;
+}
+
 /// Numbers the points in the order of their first use and drops the rest.
-CutMesh compact(const std::vector<Vec3>& positions, const std::vector<Vec3>& cuts, std::vector<Tet> tets) {
-  CutMesh mesh;
+void compact(const LabelledLattice& lattice, const std::vector<Vec3>& cuts, CutMesh& mesh) {
+  const std::vector<Vec3>& positions = lattice.positions;
   std::vector<Index> number(positions.size() + cuts.size(), no_index);
   Index next = 0;
-  for (Tet& t : tets)
+  for (Tet& t : mesh.tets)
     for (Index& v : t) {
       if (number[v] == no_index) number[v] = next++;
       v = number[v];
     }
   mesh.points.resize(next);
+  mesh.on_interface.resize(next);
   parallel_for(0, number.size(), 4 * grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      if (number[i] != no_index)
-        mesh.points[number[i]] = i < positions.size() ? positions[i] : cuts[i - positions.size()];
-  });
-  mesh.tets = std::move(tets);
-  return mesh;
-}
-
-CutCase cut_case(const LabelledLattice& lattice, const Tet& t) {
-  CutCase cut;
-  for (int k = 0; k < 4; ++k) {
-    cut.sides[k] = lattice.sides[t[k]];
-    cut.ranks[k] = 0;
-    for (int l = 0; l < 4; ++l) {
-      // Farthest from the interface first: the longest edge is the one to be cut short.
-      const float a = std::abs(lattice.distances[t[l]]), b = std::abs(lattice.distances[t[k]]);
-      cut.ranks[k] += a > b || (a == b && t[l] < t[k]);
+    for (std::size_t i = begin; i < end; ++i) {
+      if (number[i] == no_index) continue;
+      const bool is_cut = i >= positions.size();
+      mesh.points[number[i]] = is_cut ? cuts[i - positions.size()] : positions[i];
+      mesh.on_interface[number[i]] = is_cut || lattice.is_on[i];
     }
-  }
-  return cut;
-}
-
-/// cut_inside() with the shorter diagonal; `point_of(a, b)` is the cut between two corners.
-template <class PointOf>
-int cut_inside(const CutCase& cut, std::array<Piece, 3>& pieces, PointOf&& point_of) {
-  std::array<int, 2> in{}, out{};
-  int inside = 0, outside = 0;
-  for (int k = 0; k < 4; ++k) {
-    if (cut.sides[k] == Side::inside && inside++ < 2) in[inside - 1] = k;
-    if (cut.sides[k] == Side::outside && outside++ < 2) out[outside - 1] = k;
-  }
-  if (inside != 2 || outside != 2) return cut_inside(cut, false, pieces);
-  // Corners in the order of cut_inside(), so that the two diagonals are 02-13 and 03-12.
-  if (cut.ranks[in[1]] < cut.ranks[in[0]]) std::swap(in[0], in[1]);
-  if (cut.ranks[out[1]] < cut.ranks[out[0]]) std::swap(out[0], out[1]);
-  const double one = (point_of(in[0], out[0]) - point_of(in[1], out[1])).squaredNorm();
-  const double other = (point_of(in[0], out[1]) - point_of(in[1], out[0])).squaredNorm();
-  return cut_inside(cut, other < one, pieces);
+  });
 }
 
 }  // namespace
 
-double worst_inside_angle(const LabelledLattice& lattice, const Tet& t) {
-  constexpr double none = 4 * regular_solid_angle;
-  const auto angle = [](const std::array<Vec3, 4>& p) { return min_solid_angle(p[0], p[1], p[2], p[3]); };
-  if (is_inside(lattice, t))
-    return angle(
-        {lattice.positions[t[0]], lattice.positions[t[1]], lattice.positions[t[2]], lattice.positions[t[3]]});
-  if (!is_cut(lattice, t)) return none;
-  std::array<Piece, 3> pieces;
-  const auto point_of = [&](int a, int b) { return cut_point(lattice, edge_key(t[a], t[b])); };
-  const int n = cut_inside(cut_case(lattice, t), pieces, point_of);
+int cut_tet(const CutCase& cut, bool other_diagonal, Pieces& pieces) {
+  RegionSet regions;
+  int on = -1;
+  for (int k = 0; k < 4; ++k)
+    if (cut.regions[k] == on_interface)
+      on = k;
+    else
+      regions.insert(cut.regions[k]);
+  int count = 0;
+  if (regions.size() == 1) {
+    pieces[count++] = {{corner(0), corner(1), corner(2), corner(3)}, regions[0]};
+  } else if (regions.size() == 2) {
+    for (RegionIndex r : regions) TwoRegions(cut, r, pieces, count).emit_pieces(other_diagonal);
+  } else {
+    constexpr PieceVertex within = 0b1111;
+    ManyRegions many(cut, on < 0 ? within : corner(on), pieces, count);
+    for (int k = 0; k < 4; ++k)
+      if (on < 0 || k == on) many.face(tet_faces[k][0], tet_faces[k][1], tet_faces[k][2]);
+  }
+  return count;
+}
+
+double worst_piece_tangent(const LabelledLattice& lattice, const Tet& t) {
+  constexpr double none = 1;  // no tet has a smallest angle near pi / 2
+  const auto angle = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    return min_solid_angle_tangent(a, b, c, d);
+  };
+  RegionIndex region;
+  switch (fate(lattice, t, region)) {
+    case Fate::dropped:
+      return none;
+    case Fate::whole:
+      return angle(lattice.positions[t[0]], lattice.positions[t[1]], lattice.positions[t[2]],
+                   lattice.positions[t[3]]);
+    case Fate::cut:
+      break;
+  }
+  // Every vertex that pieces have, computed when first asked for.
+  std::array<Vec3, 16> places;
+  unsigned known = 0;
+  const auto place = [&](PieceVertex vertex) -> const Vec3& {
+    if (!(known >> vertex & 1)) {
+      std::array<int, 4> c;
+      const int n = corners_of(vertex, c);
+      places[vertex] = n == 1   ? lattice.positions[t[c[0]]]
+                       : n == 2 ? edge_cut(lattice, t[c[0]], t[c[1]])
+                       : n == 3 ? face_cut(lattice, face_key(t[c[0]], t[c[1]], t[c[2]]))
+                                : tet_cut(lattice, t);
+      known |= 1u << vertex;
+    }
+    return places[vertex];
+  };
+  Pieces pieces;
+  const int n = cut_tet_well(cut_case(lattice, t), pieces, [&](int a, int b) {
+    return place(static_cast<PieceVertex>(corner(a) | corner(b)));
+  });
   double worst = none;
   for (int p = 0; p < n; ++p) {
-    std::array<Vec3, 4> x;
-    for (int k = 0; k < 4; ++k) {
-      const auto [from, to] = pieces[p][k];
-      x[k] = from == to ? lattice.positions[t[from]] : point_of(from, to);
-    }
-    worst = std::min(worst, angle(x));
+    if (pieces[p].region == outside_region && !lattice.keep_outside) continue;
+    const auto& v = pieces[p].vertices;
+    worst = std::min(worst, angle(place(v[0]), place(v[1]), place(v[2]), place(v[3])));
   }
   return worst;
 }
 
-int cut_inside(const CutCase& cut, bool other_diagonal, std::array<Piece, 3>& pieces) {
-  // The corners in the order inside (by rank), on, outside, and whether that turned the tet over.
-  std::array<int, 4> v{0, 1, 2, 3};
-  const auto before = [&](int a, int b) {
-    if (cut.sides[a] != cut.sides[b]) return cut.sides[a] < cut.sides[b];
-    return cut.ranks[a] < cut.ranks[b];
-  };
-  bool turned = false;
-  for (int i = 1; i < 4; ++i)
-    for (int j = i; j > 0 && before(v[j], v[j - 1]); --j) {
-      std::swap(v[j], v[j - 1]);
-      turned = !turned;
-    }
-  const auto count = [&](Side s) { return std::count(cut.sides.begin(), cut.sides.end(), s); };
-  const auto inside = count(Side::inside), outside = count(Side::outside);
-  const auto corner = [&](int k) { return PieceVertex{v[k], v[k]}; };
-  const auto between = [&](int k, int l) { return PieceVertex{v[k], v[l]}; };
-  int n = 0;
-  // The pieces list their vertices in the places of the corners they come from or are cut towards: each is
-  // positive because its matrix of barycentric coordinates is triangular up to a positive minor.
-  const auto emit = [&](PieceVertex a, PieceVertex b, PieceVertex c, PieceVertex d) {
-    if (turned) std::swap(c, d);
-    pieces[n++] = {a, b, c, d};
-  };
-
-  if (inside == 0) return 0;
-  if (outside == 0) {
-    emit(corner(0), corner(1), corner(2), corner(3));
-  } else if (inside == 1) {
-    // A smaller tet at the inside corner.
-    const auto end = [&](int k) { return cut.sides[v[k]] == Side::outside ? between(0, k) : corner(k); };
-    emit(corner(0), end(1), end(2), end(3));
-  } else if (inside == 2 && outside == 1) {
-    // A pyramid over the quadrilateral 0, 1, 13, 03 with its tip on the interface (corner 2).
-    emit(corner(0), corner(1), corner(2), between(1, 3));
-    emit(corner(0), between(1, 3), corner(2), between(0, 3));
-  } else if (inside == 3) {
-    // A prism between 0, 1, 2 and 03, 13, 23 with the diagonals 0-13, 0-23, 1-23.
-    emit(corner(0), corner(1), corner(2), between(2, 3));
-    emit(corner(0), corner(1), between(2, 3), between(1, 3));
-    emit(corner(0), between(1, 3), between(2, 3), between(0, 3));
-  } else {
-    // A prism between 0, 02, 03 and 1, 12, 13 with the diagonals 0-12, 0-13 and either within the tet.
-    emit(corner(0), corner(1), between(1, 2), between(1, 3));
-    if (other_diagonal) {
-      emit(corner(0), between(1, 3), between(1, 2), between(0, 3));
-      emit(corner(0), between(1, 2), between(0, 2), between(0, 3));
-    } else {
-      emit(corner(0), between(1, 3), between(0, 2), between(0, 3));
-      emit(corner(0), between(1, 2), between(0, 2), between(1, 3));
-    }
-  }
-  return n;
-}
-
 CutMesh cut_lattice(const LabelledLattice& lattice) {
-  const std::vector<EdgeKey> edges = cut_edges(lattice);
-  std::vector<Vec3> cuts(edges.size());
-  parallel_for(0, edges.size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) cuts[i] = cut_point(lattice, edges[i]);
-  });
+  const Cuts cuts(lattice);
+  const std::vector<Vec3> cut_points = cuts.points(lattice);
   const auto first_cut = static_cast<Index>(lattice.positions.size());
-  const auto cut_number = [&](Index a, Index b) {
-    return static_cast<Index>(std::lower_bound(edges.begin(), edges.end(), edge_key(a, b)) - edges.begin());
-  };
 
-  std::vector<Tet> tets = parallel_collect<Tet>(
-      0, lattice.tets.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<Tet>& out) {
-        std::array<Piece, 3> pieces;
+  struct CutTet {
+    Tet tet;
+    RegionIndex region;
+  };
+  const std::vector<CutTet> cut = parallel_collect<CutTet>(
+      0, lattice.tets.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<CutTet>& out) {
+        Pieces pieces;
         for (std::size_t i = begin; i < end; ++i) {
           const Tet& t = lattice.tets[i];
-          if (is_inside(lattice, t)) out.push_back(t);
-          if (!is_cut(lattice, t)) continue;
-          const int n = cut_inside(cut_case(lattice, t), pieces,
-                                   [&](int a, int b) -> const Vec3& { return cuts[cut_number(t[a], t[b])]; });
+          RegionIndex region;
+          const Fate f = fate(lattice, t, region);
+          if (f == Fate::whole) out.push_back({t, region});
+          if (f != Fate::cut) continue;
+          const int n = cut_tet_well(cut_case(lattice, t), pieces, [&](int a, int b) -> const Vec3& {
+            return cut_points[cuts.edge(t[a], t[b])];
+          });
           for (int p = 0; p < n; ++p) {
-            Tet piece;
+            if (pieces[p].region == outside_region && !lattice.keep_outside) continue;
+            CutTet piece{{}, pieces[p].region};
             for (int k = 0; k < 4; ++k) {
-              const Index from = t[pieces[p][k].from], to = t[pieces[p][k].to];
-              piece[k] = from == to ? from : first_cut + cut_number(from, to);
+              std::array<int, 4> c;
+              const int corners = corners_of(pieces[p].vertices[k], c);
+              piece.tet[k] = corners == 1   ? t[c[0]]
+                             : corners == 2 ? first_cut + cuts.edge(t[c[0]], t[c[1]])
+                             : corners == 3 ? first_cut + cuts.face(t[c[0]], t[c[1]], t[c[2]])
+                                            : first_cut + cuts.tet(static_cast<Index>(i));
             }
             out.push_back(piece);
           }
         }
       });
-  return compact(lattice.positions, cuts, std::move(tets));
+  CutMesh mesh;
+  mesh.tets.resize(cut.size());
+  mesh.regions.resize(cut.size());
+  parallel_for(0, cut.size(), 4 * grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) mesh.tets[i] = cut[i].tet, mesh.regions[i] = cut[i].region;
+  });
+  compact(lattice, cut_points, mesh);
+  return mesh;
 }
 
 }  // namespace tetwright

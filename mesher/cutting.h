@@ -7,37 +7,49 @@
 
 namespace tetwright {
 
-/// A tet mesh in grid coordinates.
+/// A tet mesh in lattice units, with the region of each tet.
 struct CutMesh {
   std::vector<Vec3> points;
   std::vector<Tet> tets;
+  std::vector<RegionIndex> regions;
+  std::vector<std::uint8_t> on_interface;  ///< 1 for points between regions: cuts and points moved there
 };
 
-/// A tet as it is to be cut: the sides of its four points and the order of its quadrilaterals' diagonals.
+/// A tet as it is to be cut: the regions of its four points (or on_interface) and the order of its
+/// quadrilaterals' diagonals.
 struct CutCase {
-  std::array<Side, 4> sides;
-  /// Of two points inside, the diagonal starts at the one of lower rank. Different for each point.
+  std::array<RegionIndex, 4> regions;
+  /// Of two points of one region, the diagonal starts at the one of lower rank. Different for each point.
   std::array<Index, 4> ranks;
 };
 
-/// A vertex of a piece: a corner of the tet (from == to) or the cut on the edge between two corners.
-struct PieceVertex {
-  int from, to;
+/// A vertex of a piece as a set of the tet's corners, bit k for corner k: a corner itself, the cut of an
+/// edge, the point of a face where three regions meet, or (all four) the point within the tet.
+using PieceVertex = std::uint8_t;
+struct Piece {
+  std::array<PieceVertex, 4> vertices;
+  RegionIndex region;
 };
-using Piece = std::array<PieceVertex, 4>;
+/// Four faces of six triangles each around a point within.
+inline constexpr int most_pieces = 24;
+using Pieces = std::array<Piece, most_pieces>;
 
-/// The inside of a cut tet as at most three tets, all with the orientation of the whole. Where two corners
-/// are inside and two outside, one quadrilateral lies within the tet; `other_diagonal` says which way it is
-/// cut. Writes to `pieces` and returns their number.
-int cut_inside(const CutCase& cut, bool other_diagonal, std::array<Piece, 3>& pieces);
+/// A tet cut into pieces of one region each, all with the orientation of the whole.
+///
+/// One region: the tet itself. Two: a smaller tet and a prism, or two prisms; where two corners are on either
+/// side, one quadrilateral lies within the tet, and `other_diagonal` says which way it is cut. Three and
+/// four: the faces are cut as they would be for two, a face of three regions into six triangles around its
+/// own point, and all are joined to a point within, or to the corner that is on an interface if there is one.
+/// Writes to `pieces` and returns their number. A tet with all corners on interfaces does not exist.
+int cut_tet(const CutCase& cut, bool other_diagonal, Pieces& pieces);
 
-/// The smallest solid angle (steradians) among the pieces that a tet of the lattice leaves inside; larger
-/// than any tet's if it leaves none.
-double worst_inside_angle(const LabelledLattice& lattice, const Tet& tet);
+/// The smallest solid angle among the pieces of a tet that go into the mesh, as the tangent of its half;
+/// larger than any tet's if there are none. The tet has a point near an interface.
+double worst_piece_tangent(const LabelledLattice& lattice, const Tet& tet);
 
-/// The part of the lattice inside the interface: tets inside are kept, tets with points of both sides are
-/// cut. A cut is made once per edge, by linear interpolation of the distances, and kept off the ends. Tets
-/// stay in the order of the lattice, points are numbered in the order of their first use.
+/// The lattice cut along its interfaces, without what is outside unless the lattice keeps that. Cuts are made
+/// once per edge, face and tet, by linear interpolation of the distances, and kept off the ends. Tets stay in
+/// the order of the lattice, points are numbered in the order of their first use.
 CutMesh cut_lattice(const LabelledLattice& lattice);
 
 }  // namespace tetwright

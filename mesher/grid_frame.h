@@ -26,7 +26,12 @@ inline constexpr int frame_margin = 3;
 
 /// A frame whose box holds [low, high] (input units) with frame_margin cells to spare. With `uniform` the
 /// root cells are finest cells; otherwise the longest side has about four to eight root cells.
-/// `cell_size` > 0; the box has at most 2^18 cells to a side.
-GridFrame make_grid_frame(const Vec3& low, const Vec3& high, double cell_size, bool uniform);
+/// `cell_size` > 0; the box has at most 2^18 cells to a side. What the box has to spare beyond that is above
+/// `high`, or the same on either side where it is `centred`.
+GridFrame make_grid_frame(const Vec3& low, const Vec3& high, double cell_size, bool uniform,
+                          bool centred = false);
+
+/// The same box with cells of 1/2^levels the size; the largest cells stay as they are.
+GridFrame refined_frame(GridFrame frame, int levels);
 
 }  // namespace tetwright

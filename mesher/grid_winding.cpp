@@ -64,7 +64,7 @@ constexpr double shadow_slack = 1e-3;
 
 }  // namespace
 
-GridWinding::GridWinding(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+GridWinding::GridWinding(std::span<const Vec3> points, std::span<const Triangle> triangles,
                          const std::array<int, 3>& cells)
     : nodes_x_(cells[0] + 1), nodes_y_(cells[1] + 1) {
   constexpr std::size_t grain = 4096;

@@ -24,7 +24,7 @@ class GridWinding {
   };
 
   /// `points` in grid coordinates; the grid has the nodes 0...cells[a] along each axis a.
-  GridWinding(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+  GridWinding(std::span<const Vec3> points, std::span<const Triangle> triangles,
               const std::array<int, 3>& cells);
 
   /// The entries of the vertical row at (x, y), by ascending `first`; before the first one the winding number
@@ -36,15 +36,16 @@ class GridWinding {
     return {crossings_.data() + starts_[r], crossings_.data() + starts_[r + 1]};
   }
 
-  /// True where the winding number is positive.
-  bool inside(int x, int y, int z) const {
-    bool in = false;
+  std::int32_t at(int x, int y, int z) const {
+    std::int32_t winding = 0;
     for (const Crossing& c : row(x, y)) {
       if (c.first > z) break;
-      in = c.winding > 0;
+      winding = c.winding;
     }
-    return in;
+    return winding;
   }
+  /// True where the winding number is positive.
+  bool inside(int x, int y, int z) const { return at(x, y, z) > 0; }
 
  private:
   int nodes_x_, nodes_y_;

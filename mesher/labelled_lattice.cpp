@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 
 #include "common/parallel_sort.h"
 
@@ -12,88 +13,218 @@ namespace {
 
 constexpr std::size_t grain = 1 << 14;  // tets or points to a task, some nanoseconds each
 
-}  // namespace
-
-LabelledLattice label_lattice(LatticePoints points, std::vector<float> distances, std::vector<Tet> tets) {
-  LabelledLattice lattice;
-  lattice.positions = std::move(points.positions);
-  lattice.is_centre = std::move(points.is_centre);
-  lattice.distances = std::move(distances);
-  const std::size_t count = lattice.positions.size();
-  lattice.sides.resize(count);
-  parallel_for(0, count, grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) lattice.sides[i] = lattice.first_side(static_cast<Index>(i));
-  });
-
-  const auto inside_count = [&](const Tet& t) {
-    int inside = 0;
-    for (Index v : t) inside += lattice.sides[v] == Side::inside;
-    return inside;
-  };
-  std::vector<std::uint8_t> near(count, 0);
-  parallel_for(0, tets.size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const int inside = inside_count(tets[i]);
-      if (inside == 0 || inside == 4) continue;
-      // Relaxed: all writers write 1, and nobody reads before the loop is over.
-      for (Index v : tets[i]) std::atomic_ref<std::uint8_t>(near[v]).store(1, std::memory_order_relaxed);
-    }
-  });
-  for (Index i = 0; i < count; ++i)
-    if (near[i]) lattice.near_points.push_back(i);
-  lattice.tets = parallel_collect<Tet>(
-      0, tets.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<Tet>& out) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const Tet& t = tets[i];
-          if (inside_count(t) || near[t[0]] || near[t[1]] || near[t[2]] || near[t[3]]) out.push_back(t);
-        }
-      });
-  return lattice;
+bool mixed(const std::vector<RegionIndex>& regions, const Tet& t) {
+  const RegionIndex r = regions[t[0]];
+  return regions[t[1]] != r || regions[t[2]] != r || regions[t[3]] != r;
 }
 
-std::size_t remove_specks(LabelledLattice& lattice) {
-  std::size_t count = 0;
-  // One side after the other, so that two specks side by side don't just change places.
-  for (Side side : {Side::outside, Side::inside}) {
-    std::vector<std::uint8_t> has_company(lattice.positions.size(), 0);
-    parallel_for(0, lattice.tets.size(), grain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const Tet& t = lattice.tets[i];
-        int members = 0;
-        for (Index v : t) members += lattice.sides[v] == side;
-        if (members < 2) continue;
-        // Relaxed: as in label_lattice().
-        for (Index v : t)
-          if (lattice.sides[v] == side)
-            std::atomic_ref<std::uint8_t>(has_company[v]).store(1, std::memory_order_relaxed);
-      }
-    });
-    for (Index p : lattice.near_points) {
-      if (lattice.sides[p] != side || has_company[p]) continue;
-      // Never 0: an outside point at distance 0 would stay outside by its sign.
-      constexpr float smallest = 1e-6f;
-      const float size = std::max(std::abs(lattice.distances[p]), smallest);
-      lattice.distances[p] = side == Side::inside ? size : -size;
-      lattice.sides[p] = lattice.first_side(p);
-      ++count;
+/// Marks points of tets; relaxed, since all writers write 1 and nobody reads before the loop is over.
+void mark(std::uint8_t& flag) { std::atomic_ref<std::uint8_t>(flag).store(1, std::memory_order_relaxed); }
+
+/// The points of tets with more than one region, ascending.
+std::vector<std::uint8_t> points_near_interfaces(const std::vector<RegionIndex>& regions,
+                                                 const std::vector<Tet>& tets) {
+  std::vector<std::uint8_t> near(regions.size(), 0);
+  parallel_for(0, tets.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (mixed(regions, tets[i]))
+        for (Index v : tets[i]) mark(near[v]);
+  });
+  return near;
+}
+
+/// Gives specks another region; see label_lattice().
+std::size_t relabel_specks(std::vector<RegionIndex>& regions, const std::vector<Tet>& tets,
+                           const StarMap& stars) {
+  std::vector<std::uint8_t> has_company(regions.size(), 0);
+  parallel_for(0, tets.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Tet& t = tets[i];
+      if (!mixed(regions, t)) continue;  // enough to find nearly all company; alone() finds the rest
+      for (int a = 0; a < 4; ++a)
+        for (int b = 0; b < 4; ++b)
+          if (a != b && regions[t[a]] == regions[t[b]]) mark(has_company[t[a]]);
     }
+  });
+  const auto alone = [&](Index p) {
+    for (Index t : stars.tets(p))
+      for (Index q : tets[t])
+        if (q != p && regions[q] == regions[p]) return false;
+    return true;
+  };
+  std::vector<Index> specks;
+  for (Index p : stars.points())
+    if (!has_company[p] && alone(p)) specks.push_back(p);
+  // One after the other, so that two specks side by side don't just change places.
+  std::stable_partition(specks.begin(), specks.end(), [&](Index p) { return regions[p] == outside_region; });
+  std::size_t count = 0;
+  std::vector<RegionIndex> around;
+  for (Index p : specks) {
+    if (!alone(p)) continue;
+    around.clear();
+    for (Index t : stars.tets(p))
+      for (Index q : tets[t])
+        if (q != p) around.push_back(regions[q]);
+    std::sort(around.begin(), around.end());
+    std::size_t most = 0;
+    for (std::size_t i = 0, j; i < around.size(); i = j) {
+      for (j = i; j < around.size() && around[j] == around[i];) ++j;
+      if (j - i > most) most = j - i, regions[p] = around[i];
+    }
+    ++count;
   }
   return count;
 }
 
-StarMap::StarMap(const LabelledLattice& lattice) {
-  slots_.assign(lattice.positions.size(), no_index);
-  for (Index i = 0; i < lattice.near_points.size(); ++i) slots_[lattice.near_points[i]] = i;
-  starts_.assign(lattice.near_points.size() + 2, 0);
-  // Counted two places on, so that after filling, starts_[i] is where the star of i begins.
-  for (const Tet& t : lattice.tets)
-    for (Index v : t)
-      if (slots_[v] != no_index) ++starts_[slots_[v] + 2];
-  for (std::size_t i = 2; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
+}  // namespace
+
+StarMap::StarMap(std::vector<Index> points, std::size_t point_count, std::span<const Tet> tets)
+    : points_(std::move(points)) {
+  slots_.assign(point_count, no_index);
+  for (Index i = 0; i < points_.size(); ++i) slots_[points_[i]] = i;
+  // Counted, filled in whatever order the threads come, then each row sorted: the same rows in the end.
+  std::vector<Index> next(points_.size(), 0);
+  const auto for_each_corner = [&](auto&& body) {
+    parallel_for(0, tets.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        for (Index v : tets[i])
+          if (const Index s = slots_[v]; s != no_index)
+            body(std::atomic_ref<Index>(next[s]).fetch_add(1, std::memory_order_relaxed), s, i);
+    });
+  };
+  for_each_corner([](Index, Index, std::size_t) {});
+  starts_.assign(points_.size() + 1, 0);
+  for (std::size_t s = 0; s < next.size(); ++s) starts_[s + 1] = starts_[s] + next[s];
+  std::fill(next.begin(), next.end(), 0);
   tets_.resize(starts_.back());
-  for (Index k = 0; k < lattice.tets.size(); ++k)
-    for (Index v : lattice.tets[k])
-      if (slots_[v] != no_index) tets_[starts_[slots_[v] + 1]++] = k;
+  for_each_corner(
+      [&](Index place, Index s, std::size_t i) { tets_[starts_[s] + place] = static_cast<Index>(i); });
+  parallel_for(0, points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s)
+      std::sort(tets_.begin() + static_cast<std::ptrdiff_t>(starts_[s]),
+                tets_.begin() + static_cast<std::ptrdiff_t>(starts_[s + 1]));
+  });
+}
+
+float LabelledLattice::gap(Index p, RegionIndex a, RegionIndex b) const {
+  const std::span<const RegionIndex> regions = star_regions(p);
+  const std::span<const float> values = star_values(p);
+  float at_a = 0, at_b = 0;
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    if (regions[i] == a) at_a = values[i];
+    if (regions[i] == b) at_b = values[i];
+  }
+  return at_b - at_a;
+}
+
+float LabelledLattice::margin(Index p) const {
+  const std::span<const RegionIndex> regions = star_regions(p);
+  const std::span<const float> values = star_values(p);
+  float own = 0, next = HUGE_VALF;
+  for (std::size_t i = 0; i < regions.size(); ++i)
+    if (regions[i] == first_region[p])
+      own = values[i];
+    else
+      next = std::min(next, values[i]);
+  return next - own;
+}
+
+void LabelledLattice::list_star_regions(std::size_t region_count) {
+  const std::vector<Index>& points = stars.points();
+  starts_.assign(points.size() + 1, 0);
+  if (region_count == 2) {  // both, at each point near an interface
+    regions_.resize(2 * points.size());
+    values_.assign(regions_.size(), 0);
+    for (std::size_t s = 0; s < points.size(); ++s) {
+      starts_[s + 1] = 2 * s + 2;
+      regions_[2 * s + 1] = 1;
+    }
+    return;
+  }
+  // Two passes over the stars: sizes, then places.
+  const auto regions_of = [&](Index p, std::vector<RegionIndex>& out) {
+    out.clear();
+    for (Index t : stars.tets(p))
+      for (Index q : tets[t])
+        if (std::find(out.begin(), out.end(), first_region[q]) == out.end()) out.push_back(first_region[q]);
+  };
+  parallel_for(0, points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    std::vector<RegionIndex> found;
+    for (std::size_t s = begin; s < end; ++s) {
+      regions_of(points[s], found);
+      starts_[s + 1] = found.size();
+    }
+  });
+  std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+  regions_.resize(starts_.back());
+  parallel_for(0, points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    std::vector<RegionIndex> found;
+    for (std::size_t s = begin; s < end; ++s) {
+      regions_of(points[s], found);
+      std::sort(found.begin(), found.end());
+      std::copy(found.begin(), found.end(), regions_.begin() + static_cast<std::ptrdiff_t>(starts_[s]));
+    }
+  });
+  values_.assign(regions_.size(), 0);
+}
+
+LabelledLattice label_lattice(LatticePoints points, std::vector<NearestRegion> nearest, std::vector<Tet> tets,
+                              std::size_t region_count, bool keep_outside, std::size_t* specks) {
+  LabelledLattice lattice;
+  lattice.keep_outside = keep_outside;
+  lattice.positions = std::move(points.positions);
+  lattice.is_centre = std::move(points.is_centre);
+  const std::size_t count = lattice.positions.size();
+  std::vector<RegionIndex>& regions = lattice.first_region;
+  regions.resize(count);
+  for (std::size_t i = 0; i < count; ++i) regions[i] = nearest[i].region;
+  std::vector<NearestRegion>().swap(nearest);
+  lattice.is_on.assign(count, 0);
+
+  const std::vector<std::uint8_t> near = points_near_interfaces(regions, tets);
+  if (keep_outside)
+    lattice.tets = std::move(tets);
+  else
+    lattice.tets = parallel_collect<Tet>(0, tets.size(), grain,
+                                         [&](std::size_t begin, std::size_t end, std::vector<Tet>& out) {
+                                           for (std::size_t i = begin; i < end; ++i) {
+                                             bool matters = false;
+                                             for (Index v : tets[i])
+                                               matters |= near[v] || regions[v] != outside_region;
+                                             if (matters) out.push_back(tets[i]);
+                                           }
+                                         });
+  std::vector<Index> near_points;
+  for (Index i = 0; i < count; ++i)
+    if (near[i]) near_points.push_back(i);
+  lattice.stars = StarMap(std::move(near_points), count, lattice.tets);
+  const std::size_t found = relabel_specks(regions, lattice.tets, lattice.stars);
+  if (specks) *specks = found;
+  lattice.list_star_regions(region_count);
+  return lattice;
+}
+
+void read_star_values(LabelledLattice& lattice, const MaterialField& field) {
+  // What makes a point's own region the nearest where it is not by itself.
+  constexpr float smallest_lead = 1e-6f;
+  const std::vector<Index>& points = lattice.stars.points();
+  parallel_for(0, points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    FieldSampler sampler(field);
+    for (std::size_t s = begin; s < end; ++s) {
+      const Index p = points[s];
+      const std::span<const RegionIndex> regions = lattice.star_regions(p);
+      const std::span<float> values = lattice.star_values(p);
+      sampler.values(lattice.positions[p], regions, values.data());
+      float others = HUGE_VALF;
+      float* own = nullptr;
+      for (std::size_t i = 0; i < values.size(); ++i)
+        if (regions[i] == lattice.first_region[p])
+          own = &values[i];
+        else
+          others = std::min(others, values[i]);
+      if (own && !(*own <= others - smallest_lead)) *own = others - smallest_lead;
+    }
+  });
 }
 
 }  // namespace tetwright

@@ -1,53 +1,99 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "common/types.h"
 #include "mesher/lattice.h"
+#include "mesher/material_field.h"
+#include "mesher/regions.h"
 
 namespace tetwright {
 
-/// On which side of the interface a lattice point is.
-enum class Side : std::int8_t { inside = -1, on = 0, outside = 1 };
-
-/// The tets of the lattice that matter, with the side of every point: what is moved, then cut.
-struct LabelledLattice {
-  std::vector<Vec3> positions;   ///< grid coordinates
-  std::vector<float> distances;  ///< finest cells, negative inside; of a point on the interface: as it was
-  std::vector<std::uint8_t>
-      is_centre;  ///< 1 for centres of leaves: long edges join alike points, short ones unlike
-  std::vector<Side> sides;
-  std::vector<Tet> tets;           ///< positive
-  std::vector<Index> near_points;  ///< ascending: the points of tets with both sides
-
-  /// The side a point had before it was moved onto the interface.
-  Side first_side(Index p) const { return distances[p] < 0 ? Side::inside : Side::outside; }
-};
-
-/// Takes the points and tets over and drops tets outside that have no point next to the interface.
-LabelledLattice label_lattice(LatticePoints points, std::vector<float> distances, std::vector<Tet> tets);
-
-/// Gives single points that have no neighbour on their own side the side of all their neighbours, cavities
-/// first, and returns how many there were. Such specks are smaller than a cell: they come from cracks and
-/// self-intersections that the grid hits by chance, and would each become a component or a cavity.
-std::size_t remove_specks(LabelledLattice& lattice);
-
-/// For some points the tets they belong to.
+/// For the points near interfaces the tets they belong to: rows of one array.
 class StarMap {
  public:
-  /// For the points that `near_points` of the lattice lists.
-  explicit StarMap(const LabelledLattice& lattice);
+  StarMap() = default;
+  /// `points` ascending; `point_count` in all.
+  StarMap(std::vector<Index> points, std::size_t point_count, std::span<const Tet> tets);
 
+  const std::vector<Index>& points() const { return points_; }  ///< ascending
   bool lists(Index point) const { return slots_[point] != no_index; }
-  /// The numbers of the tets around a listed point.
-  const Index* begin(Index point) const { return tets_.data() + starts_[slots_[point]]; }
-  const Index* end(Index point) const { return tets_.data() + starts_[slots_[point] + 1]; }
+  Index slot(Index point) const { return slots_[point]; }  ///< place in points(), or no_index
+  /// The numbers of the tets around a listed point, ascending.
+  std::span<const Index> tets(Index point) const {
+    const Index s = slots_[point];
+    return {tets_.data() + starts_[s], tets_.data() + starts_[s + 1]};
+  }
 
  private:
-  std::vector<Index> slots_;  ///< place in near_points, for each point of the lattice
-  std::vector<Index> starts_;
+  std::vector<Index> points_, slots_;
+  std::vector<std::size_t> starts_;
   std::vector<Index> tets_;
 };
+
+/// The tets of the lattice that matter and the region of every point: what is moved, then cut.
+///
+/// A point near an interface knows the signed distances of the regions in its closed star, which is all that
+/// cuts of its edges depend on. The region of a pure point is the one of the smallest distance.
+class LabelledLattice {
+ public:
+  std::vector<Vec3> positions;  ///< lattice units
+  std::vector<std::uint8_t>
+      is_centre;  ///< 1 for centres of leaves: long edges join alike points, short ones unlike
+  std::vector<RegionIndex> first_region;  ///< of each point before it was moved onto an interface
+  std::vector<std::uint8_t> is_on;        ///< 1 for points that were
+  std::vector<Tet> tets;                  ///< positive
+  StarMap stars;                          ///< of the points of tets with more than one region
+  bool keep_outside = false;
+
+  /// The region of a point now, or on_interface.
+  RegionIndex region(Index p) const { return is_on[p] ? on_interface : first_region[p]; }
+
+  /// The regions of the closed star of a point near an interface as the lattice was laid out, ascending, and
+  /// their signed distances, in the same order.
+  std::span<const RegionIndex> star_regions(Index p) const {
+    const Index s = stars.slot(p);
+    return {regions_.data() + starts_[s], regions_.data() + starts_[s + 1]};
+  }
+  std::span<const float> star_values(Index p) const {
+    const Index s = stars.slot(p);
+    return {values_.data() + starts_[s], values_.data() + starts_[s + 1]};
+  }
+  std::span<float> star_values(Index p) {
+    const Index s = stars.slot(p);
+    return {values_.data() + starts_[s], values_.data() + starts_[s + 1]};
+  }
+  /// How much nearer region a is than region b at a point near an interface; both are in its star.
+  float gap(Index p, RegionIndex a, RegionIndex b) const;
+  /// Where on the edge from p (region a) to q (region b) the two are equally near, as a share of the edge.
+  double cut_share(Index p, RegionIndex a, Index q, RegionIndex b) const {
+    const double at_p = gap(p, a, b), at_q = gap(q, b, a);
+    return at_p + at_q > 0 ? at_p / (at_p + at_q) : 0.5;
+  }
+  /// By how much the region of a point near an interface wins over the others of its star.
+  float margin(Index p) const;
+
+  /// Lists the regions of all stars; values are 0 then.
+  void list_star_regions(std::size_t region_count);
+
+ private:
+  std::vector<std::size_t> starts_;  ///< by slot
+  std::vector<RegionIndex> regions_;
+  std::vector<float> values_;
+};
+
+/// Takes points and tets over, drops tets outside that have no point next to an interface (with
+/// `keep_outside` none), and gives single points without a neighbour of their own region the region most of
+/// their neighbours have, those outside first; `specks` (may be null) is how many there were. They are
+/// smaller than a cell: cracks and self-intersections that the grid hits by chance, and each would become a
+/// component or a cavity. `nearest` is the region of each point, of `region_count` in all.
+LabelledLattice label_lattice(LatticePoints points, std::vector<NearestRegion> nearest, std::vector<Tet> tets,
+                              std::size_t region_count, bool keep_outside, std::size_t* specks);
+
+/// Reads the signed distances of all stars. Where the field does not give a point its own region (specks,
+/// ties), that is made the nearest by a hair, so that no cut is undefined.
+void read_star_values(LabelledLattice& lattice, const MaterialField& field);
 
 }  // namespace tetwright

@@ -57,20 +57,21 @@ HalfCells middle(const HalfCells& a, const HalfCells& b) {
 /// Emits the tets that belong to one leaf after another.
 class TetEmitter {
  public:
-  TetEmitter(const Octree& octree, const LatticePoints& points, const std::vector<float>* distances,
-             std::vector<Tet>& out)
-      : octree_(octree), points_(points), distances_(distances), out_(out) {}
+  TetEmitter(const Octree& octree, const LatticePoints& points, const std::vector<std::uint8_t>* unwanted,
+             int unwanted_level, std::vector<Tet>& out)
+      : octree_(octree), points_(points), unwanted_(unwanted), unwanted_level_(unwanted_level), out_(out) {}
 
   void leaf(std::size_t i) {
     box_ = leaf_box(octree_, i);
-    centre_ = find(box_.centre());
+    leaf_ = i;
+    centre_ = points_.leaf_centres[i];
     for (int k = 0; k < 8; ++k) corners_[k] = find(box_.corner(k));
     for (int axis = 0; axis < 3; ++axis)
       for (bool upper : {false, true}) face(axis, upper);
   }
 
  private:
-  Index find(const HalfCells& p) const { return points_.find(morton_encode(p)); }
+  Index find(const HalfCells& p) const { return points_.find(morton_encode(p), centre_); }
 
   void face(int axis, bool upper) {
     if (on_box(octree_, box_, axis, upper)) {
@@ -79,12 +80,12 @@ class TetEmitter {
     }
     HalfCells beyond = box_.low;
     beyond[axis] += upper ? box_.side : -box_.side;
-    const std::size_t j = octree_.find(morton_encode(beyond[0] / 2, beyond[1] / 2, beyond[2] / 2));
+    const std::size_t j = octree_.find(morton_encode(beyond[0] / 2, beyond[1] / 2, beyond[2] / 2), leaf_);
     const LeafBox other = leaf_box(octree_, j);
     if (other.level == box_.level) {
-      if (upper) around(axis, upper, find(other.centre()));
+      if (upper) around(axis, upper, points_.leaf_centres[j]);
     } else if (other.level > box_.level) {
-      against_bigger(axis, upper, other);
+      against_bigger(axis, upper, other, points_.leaf_centres[j]);
     }  // a smaller neighbour emits the tets between
   }
 
@@ -104,9 +105,8 @@ class TetEmitter {
     }
   }
 
-  void against_bigger(int axis, bool upper, const LeafBox& big) {
+  void against_bigger(int axis, bool upper, const LeafBox& big, Index big_centre) {
     const HalfCells heart = face_centre(big, axis, !upper);
-    const Index big_centre = find(big.centre());
     const std::array<int, 4> ring = face_ring(axis, upper);
     for (std::size_t e = 0; e < 4; ++e) {
       if (box_.corner(ring[e]) != heart) continue;
@@ -120,10 +120,9 @@ class TetEmitter {
   }
 
   void emit(Index a, Index b, Index c, Index d) {
-    if (distances_ && box_.level == 0) {
-      const std::vector<float>& phi = *distances_;
-      constexpr float far = field_band;
-      if (phi[a] >= far && phi[b] >= far && phi[c] >= far && phi[d] >= far) return;
+    if (unwanted_ && box_.level <= unwanted_level_) {
+      const std::vector<std::uint8_t>& u = *unwanted_;
+      if (u[a] && u[b] && u[c] && u[d]) return;
     }
     // The coordinates are small halves of whole numbers: the value has no rounding error.
     const auto& p = points_.positions;
@@ -133,18 +132,20 @@ class TetEmitter {
 
   const Octree& octree_;
   const LatticePoints& points_;
-  const std::vector<float>* distances_;
+  const std::vector<std::uint8_t>* unwanted_;
+  int unwanted_level_;
   std::vector<Tet>& out_;
   LeafBox box_{};
+  std::size_t leaf_ = 0;
   Index centre_ = no_index;
   std::array<Index, 8> corners_{};
 };
 
 }  // namespace
 
-Index LatticePoints::find(MortonKey key) const {
-  const auto it = std::lower_bound(keys.begin(), keys.end(), key);
-  return it != keys.end() && *it == key ? static_cast<Index>(it - keys.begin()) : no_index;
+Index LatticePoints::find(MortonKey key, Index hint) const {
+  const std::size_t i = lower_bound_near(keys, key, hint);
+  return i < keys.size() && keys[i] == key ? static_cast<Index>(i) : no_index;
 }
 
 LatticePoints lattice_points(const Octree& octree) {
@@ -174,28 +175,40 @@ LatticePoints lattice_points(const Octree& octree) {
       points.positions[i] = 0.5 * Vec3(p[0], p[1], p[2]);
     }
   });
+  // Leaves and their centres come in the same order.
+  points.leaf_centres.reserve(octree.size());
+  for (Index i = 0; i < points.size(); ++i)
+    if (points.is_centre[i]) points.leaf_centres.push_back(i);
   return points;
 }
 
-std::vector<float> lattice_distances(const LatticePoints& points, const MaterialField& field) {
-  std::vector<float> distances(points.size());
+std::vector<NearestRegion> lattice_regions(const LatticePoints& points, const MaterialField& field) {
+  std::vector<NearestRegion> regions(points.size());
+  const int voxel = 2 << field.refinement();  // half lattice units
   parallel_for(0, points.size(), 4 * grain, [&](std::size_t begin, std::size_t end) {
     FieldSampler sampler(field);
     for (std::size_t i = begin; i < end; ++i) {
       const HalfCells p = morton_decode(points.keys[i]);
-      const bool at_node = !((p[0] | p[1] | p[2]) & 1);
-      distances[i] = static_cast<float>(at_node ? sampler.at_node(p[0] / 2, p[1] / 2, p[2] / 2)
-                                                : sampler.at(points.positions[i]));
+      const bool at_voxel = !((p[0] | p[1] | p[2]) & (voxel - 1));
+      regions[i] = at_voxel ? sampler.nearest_at_voxel(p[0] / voxel, p[1] / voxel, p[2] / voxel)
+                            : sampler.nearest(points.positions[i]);
     }
   });
-  return distances;
+  return regions;
+}
+
+std::vector<std::uint8_t> far_outside(const std::vector<NearestRegion>& regions, const MaterialField& field) {
+  std::vector<std::uint8_t> far(regions.size());
+  for (std::size_t i = 0; i < far.size(); ++i)
+    far[i] = regions[i].region == outside_region && regions[i].margin >= static_cast<float>(field.band());
+  return far;
 }
 
 std::vector<Tet> lattice_tets(const Octree& octree, const LatticePoints& points,
-                              const std::vector<float>* distances) {
+                              const std::vector<std::uint8_t>* unwanted, int unwanted_level) {
   return parallel_collect<Tet>(0, octree.size(), grain,
                                [&](std::size_t begin, std::size_t end, std::vector<Tet>& out) {
-                                 TetEmitter emitter(octree, points, distances, out);
+                                 TetEmitter emitter(octree, points, unwanted, unwanted_level, out);
                                  for (std::size_t i = begin; i < end; ++i) emitter.leaf(i);
                                });
 }

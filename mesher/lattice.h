@@ -14,18 +14,23 @@ namespace tetwright {
 struct LatticePoints {
   /// Morton keys of the points in half finest cells (centres of finest cells are at odd numbers), ascending.
   std::vector<MortonKey> keys;
-  std::vector<Vec3> positions;          ///< grid coordinates
+  std::vector<Vec3> positions;          ///< lattice units
   std::vector<std::uint8_t> is_centre;  ///< 1 for centres of leaves
 
   std::size_t size() const { return keys.size(); }
-  /// The number of the point with this key, or no_index.
-  Index find(MortonKey key) const;
+  std::vector<Index> leaf_centres;  ///< of each leaf the number of its centre
+
+  /// The number of the point with this key, or no_index. Fast where it is not far from the number `hint`.
+  Index find(MortonKey key, Index hint = 0) const;
 };
 
 LatticePoints lattice_points(const Octree& octree);
 
-/// Signed distance of each lattice point, in finest cells, cut off at the band.
-std::vector<float> lattice_distances(const LatticePoints& points, const MaterialField& field);
+/// The region that has each lattice point.
+std::vector<NearestRegion> lattice_regions(const LatticePoints& points, const MaterialField& field);
+
+/// Of each lattice point: 1 if it is outside and no interface is within the field's band.
+std::vector<std::uint8_t> far_outside(const std::vector<NearestRegion>& regions, const MaterialField& field);
 
 /// The tets of the body-centred lattice: positive, conforming without T-junctions, filling the box.
 ///
@@ -36,9 +41,9 @@ std::vector<float> lattice_distances(const LatticePoints& points, const Material
 /// pyramids is a triangle of a centre and an edge and every quadrilateral's diagonal depends on it alone, so
 /// neighbours agree. Equal leaves give dihedral angles of 60 and 90 degrees, all transitions 45 to 120.
 ///
-/// With `distances` given, tets of finest cells that lie outside beyond the band are left out: none of their
-/// points can be moved or cut.
+/// With `unwanted` points given, tets of leaves up to the level `unwanted_level` whose points are all
+/// unwanted are left out.
 std::vector<Tet> lattice_tets(const Octree& octree, const LatticePoints& points,
-                              const std::vector<float>* distances = nullptr);
+                              const std::vector<std::uint8_t>* unwanted = nullptr, int unwanted_level = 0);
 
 }  // namespace tetwright

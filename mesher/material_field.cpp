@@ -1,238 +1,305 @@
 #include "mesher/material_field.h"
 
-#include <openvdb/openvdb.h>
-#include <openvdb/tools/MeshToVolume.h>
-
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "common/parallel_sort.h"
-#include "mesher/grid_winding.h"
 
 namespace tetwright {
 
-namespace {
-
-using Grid = openvdb::FloatGrid;
-using Tree = Grid::TreeType;
-using Leaf = Tree::LeafNodeType;
-/// Not registered with the tree: cheap to make, and the tree does not change any more.
-using Accessor = openvdb::tree::ValueAccessor<const Tree, false>;
-
-constexpr int leaf_side = static_cast<int>(Leaf::DIM);
-
-/// Distances below this (finest cells) count as this, so that every grid point has a sign.
-constexpr float smallest_distance = 1e-6f;
-
-/// The triangles in grid coordinates, as OpenVDB wants them.
-struct MeshAdapter {
-  const std::vector<Vec3>& points;
-  const std::vector<Triangle>& triangles;
-  std::size_t polygonCount() const { return triangles.size(); }
-  std::size_t pointCount() const { return points.size(); }
-  std::size_t vertexCount(std::size_t) const { return 3; }
-  void getIndexSpacePoint(std::size_t n, std::size_t v, openvdb::Vec3d& out) const {
-    const Vec3& p = points[triangles[n][v]];
-    out = {p.x(), p.y(), p.z()};
-  }
-};
-
-struct Interrupter {
-  Progress* progress;
-  void start(const char* = nullptr) {}
-  void end() {}
-  bool wasInterrupted(int = -1) { return progress && progress->cancelled(); }
-};
-
-void initialise_openvdb() {
-  static std::once_flag once;
-  std::call_once(once, [] { openvdb::initialize(); });
-}
-
-/// Gives the unsigned distances of one leaf the signs of the grid points.
-void sign_leaf(Leaf& leaf, const GridWinding& winding) {
-  const openvdb::Coord corner = leaf.origin();
-  float* values = leaf.buffer().data();
-  for (int x = 0; x < leaf_side; ++x)
-    for (int y = 0; y < leaf_side; ++y) {
-      const auto row = winding.row(corner.x() + x, corner.y() + y);
-      auto next = row.begin();
-      bool inside = false;
-      for (int z = 0; z < leaf_side; ++z) {
-        for (; next != row.end() && next->first <= corner.z() + z; ++next) inside = next->winding > 0;
-        float& value = values[(x * leaf_side + y) * leaf_side + z];
-        const float size = std::clamp(value, smallest_distance, static_cast<float>(field_band));
-        value = inside ? -size : size;
-      }
-    }
-}
-
-}  // namespace
-
-struct MaterialField::Impl {
-  Grid::Ptr grid;
-  std::unique_ptr<GridWinding> winding;
-
-  /// Where no leaf is, the interface is beyond the band.
-  double far_value(int x, int y, int z) const { return winding->inside(x, y, z) ? -field_band : field_band; }
-};
-
-MaterialField::MaterialField(const ClosedSurface& surface, const Material& material, const GridFrame& frame,
-                             Progress* progress)
-    : impl_(std::make_unique<Impl>()), frame_(frame), material_(material) {
-  initialise_openvdb();
-  std::vector<Vec3> points(surface.points.size());
-  parallel_for(0, points.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) points[i] = frame.to_grid(surface.points[i]);
-  });
-  impl_->winding = std::make_unique<GridWinding>(points, surface.triangles, frame.cells);
-  if (progress) progress->throw_if_cancelled();
-
-  Interrupter interrupter{progress};
-  const MeshAdapter adapter{points, surface.triangles};
-  impl_->grid = openvdb::tools::meshToVolume<Grid>(
-      interrupter, adapter, *openvdb::math::Transform::createLinearTransform(1.0),
-      static_cast<float>(field_band), static_cast<float>(field_band),
-      openvdb::tools::UNSIGNED_DISTANCE_FIELD);
-  // An interrupted conversion hands back whatever it has so far.
-  if (progress) progress->throw_if_cancelled();
-
-  std::vector<Leaf*> leaves;
-  impl_->grid->tree().getNodes(leaves);
-  parallel_for(0, leaves.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) sign_leaf(*leaves[i], *impl_->winding);
-  });
-}
+MaterialField::MaterialField(const GridFrame& voxels, std::vector<std::shared_ptr<const LevelSet>> level_sets,
+                             std::vector<FieldRegion> regions, int refinement)
+    : voxels_(voxels),
+      frame_(refined_frame(voxels, refinement)),
+      refinement_(refinement),
+      band_(std::ldexp(level_set_band, refinement)),
+      level_sets_(std::move(level_sets)),
+      regions_(std::move(regions)) {}
 
 MaterialField::~MaterialField() = default;
 
-std::vector<MortonKey> MaterialField::interface_cells() const {
-  std::vector<const Leaf*> leaves;
-  const Tree& tree = impl_->grid->constTree();
-  tree.getNodes(leaves);
-  constexpr int n = leaf_side + 1;
-  std::vector<MortonKey> keys = parallel_collect<MortonKey>(
-      0, leaves.size(), 64, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const openvdb::Coord o = leaves[i]->origin();
-          // Bit z of a row: the grid point is inside. A leaf that does not exist lies wholly on one side,
-          // beyond the band.
-          unsigned rows[n][n] = {};
-          for (int neighbour = 0; neighbour < 8; ++neighbour) {
-            const int dx = neighbour & 1, dy = neighbour >> 1 & 1, dz = neighbour >> 2;
-            const Leaf* leaf =
-                neighbour == 0
-                    ? leaves[i]
-                    : tree.probeConstLeaf(o.offsetBy(dx * leaf_side, dy * leaf_side, dz * leaf_side));
-            const openvdb::Coord first = o.offsetBy(dx * leaf_side, dy * leaf_side, dz * leaf_side);
-            const bool far_inside = !leaf && impl_->far_value(first.x(), first.y(), first.z()) < 0;
-            const float* values = leaf ? leaf->buffer().data() : nullptr;
-            for (int x = 0; x < (dx ? 1 : leaf_side); ++x)
-              for (int y = 0; y < (dy ? 1 : leaf_side); ++y)
-                for (int z = 0; z < (dz ? 1 : leaf_side); ++z)
-                  rows[dx * leaf_side + x][dy * leaf_side + y] |=
-                      static_cast<unsigned>(values ? values[(x * leaf_side + y) * leaf_side + z] < 0
-                                                   : far_inside)
-                      << (dz * leaf_side + z);
-          }
-          for (int x = 0; x < leaf_side; ++x)
-            for (int y = 0; y < leaf_side; ++y) {
-              const unsigned any = rows[x][y] | rows[x + 1][y] | rows[x][y + 1] | rows[x + 1][y + 1];
-              const unsigned all = rows[x][y] & rows[x + 1][y] & rows[x][y + 1] & rows[x + 1][y + 1];
-              const unsigned mixed = (any | any >> 1) & ~(all & all >> 1);
-              for (int z = 0; z < leaf_side; ++z)
-                if (mixed >> z & 1) out.push_back(morton_encode(o.x() + x, o.y() + y, o.z() + z));
-            }
-        }
-      });
-  parallel_sort(keys);
-  return keys;
+std::shared_ptr<const MaterialField> MaterialField::refined(int refinement) const {
+  return std::make_shared<MaterialField>(voxels_, level_sets_, regions_, refinement);
 }
 
+std::vector<MortonKey> MaterialField::interface_voxels() const {
+  std::vector<MortonKey> keys;
+  for (const auto& level_set : level_sets_) {
+    const std::vector<MortonKey> crossed = level_set->interface_cells();
+    keys.insert(keys.end(), crossed.begin(), crossed.end());
+  }
+  if (level_sets_.size() == 1) return keys;
+  parallel_sort_unique(keys);
+  // Where a later material covers an earlier one's surface there is no interface.
+  constexpr std::size_t grain = 1024;
+  return parallel_collect<MortonKey>(
+      0, keys.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+        FieldSampler sampler(*this);
+        const double voxel = std::ldexp(1, refinement_);
+        for (std::size_t i = begin; i < end; ++i) {
+          const auto [x, y, z] = morton_decode(keys[i]);
+          const RegionIndex first = sampler.nearest_at_voxel(x, y, z).region;
+          bool mixed = false;
+          for (int k = 1; k < 8 && !mixed; ++k)
+            mixed = sampler.nearest_at_voxel(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2)).region != first;
+          // A sheet between equal corners: the middles of edges, faces and of the voxel.
+          for (int k = 0; k < 27 && !mixed; ++k) {
+            const int i0 = k % 3, i1 = k / 3 % 3, i2 = k / 9;
+            if (i0 != 1 && i1 != 1 && i2 != 1) continue;
+            const Vec3 place = voxel * Vec3(x + 0.5 * i0, y + 0.5 * i1, z + 0.5 * i2);
+            mixed = sampler.nearest(place).region != first;
+          }
+          if (mixed) out.push_back(keys[i]);
+        }
+      });
+}
+
+namespace {
+
+/// Where two surfaces that face each other more or less are nearer than this (voxels) they are one: faces
+/// that bodies have in common are known to a few hundredths of a voxel, near sharp edges to a few tenths, and
+/// slivers of another region between them would be noise. Cosine between their normals.
+constexpr double contact = 0.4, contact_facing = -0.7;
+/// Cosine between the normals of two surfaces: nearer to -1 what is between them is a sheet; else it is a
+/// wedge, which is thin at its edge whatever the cells.
+constexpr double sheet_facing = -0.95;
+/// Thinner sheets (voxels) are what is left between two faces that were meant to be one.
+constexpr double noticed = 0.1;
+
+}  // namespace
+
 struct FieldSampler::Impl {
-  explicit Impl(const MaterialField& field)
-      : source(*field.impl_), accessor(field.impl_->grid->constTree()), cells(field.frame().cells) {}
-
-  double node(int x, int y, int z) const {
-    const Leaf* leaf = accessor.probeConstLeaf({x, y, z});
-    if (!leaf) return source.far_value(x, y, z);
-    return leaf->getValue(Leaf::coordToOffset({x, y, z}));
+  explicit Impl(const MaterialField& f)
+      : field(f),
+        per_voxel(std::ldexp(1, f.refinement())),
+        values(f.level_sets().size()),
+        gradients(f.level_sets().size()) {
+    readers.reserve(values.size());
+    for (const auto& level_set : f.level_sets())
+      readers.push_back(std::make_unique<LevelSetSampler>(*level_set));
   }
 
-  /// The lower corner of the cell around `p` and the eight values around it, z fastest.
-  Eigen::Vector3i cell(const Vec3& p, double v[8]) const {
-    Eigen::Vector3i c;
-    for (int a = 0; a < 3; ++a)
-      c[a] = static_cast<int>(std::floor(std::clamp(p[a], 0.0, static_cast<double>(cells[a]) - 0.5)));
-    const openvdb::Coord corner(c.x(), c.y(), c.z());
-    constexpr int last = leaf_side - 1;
-    const Leaf* leaf = accessor.probeConstLeaf(corner);
-    if (leaf && (c.x() & last) != last && (c.y() & last) != last && (c.z() & last) != last) {
-      const float* at = leaf->buffer().data() + Leaf::coordToOffset(corner);
-      for (int k = 0; k < 8; ++k) v[k] = at[((k >> 2) * leaf_side + (k >> 1 & 1)) * leaf_side + (k & 1)];
-    } else {
-      for (int k = 0; k < 8; ++k) v[k] = node(c.x() + (k >> 2), c.y() + (k >> 1 & 1), c.z() + (k & 1));
+  void read(const Vec3& point) {
+    place = point;
+    const Vec3 at = point / per_voxel;
+    for (std::size_t j = 0; j < values.size(); ++j) values[j] = per_voxel * readers[j]->at(at);
+    has_gradients = false;
+  }
+  void read_gradients(const Vec3& point) {
+    place = point;
+    const Vec3 at = point / per_voxel;
+    for (std::size_t j = 0; j < values.size(); ++j) values[j] = per_voxel * readers[j]->at(at, gradients[j]);
+    has_gradients = true;
+  }
+  void read_voxel(int x, int y, int z) {
+    place = per_voxel * Vec3(x, y, z);
+    for (std::size_t j = 0; j < values.size(); ++j) values[j] = per_voxel * readers[j]->at_node(x, y, z);
+    has_gradients = false;
+  }
+
+  /// The largest term of a region, and which one it is; more where the region is a sliver between surfaces
+  /// in contact.
+  double value(RegionIndex r) {
+    const RegionTerm* unused;
+    return value(r, unused);
+  }
+  double value(RegionIndex r, const RegionTerm*& largest) {
+    const std::vector<RegionTerm>& terms = field.regions()[r].terms;
+    double best = 0;
+    largest = nullptr;
+    for (const RegionTerm& t : terms) {
+      const double v = signed_term(t);
+      if (!largest || v > best) best = v, largest = &t;
     }
-    return c;
+    const double thinnest = contact * per_voxel;
+    if (terms.size() < 2 || best < -thinnest || best > thinnest) return best;
+    double more = 0;
+    for (std::size_t i = 0; i < terms.size(); ++i)
+      for (std::size_t k = i + 1; k < terms.size(); ++k)
+        if (in_contact(terms[i], terms[k]) && cosine(terms[i], terms[k]) < contact_facing)
+          more = std::max(more, thinnest - sheet(terms[i], terms[k]));
+    return best + more;
+  }
+  /// Across a sheet one distance grows as the other falls: the sum is its thickness anywhere.
+  double sheet(const RegionTerm& a, const RegionTerm& b) const { return -signed_term(a) - signed_term(b); }
+  bool in_contact(const RegionTerm& a, const RegionTerm& b) const {
+    return a.body != b.body && sheet(a, b) < contact * per_voxel;
+  }
+  /// Of the angle between the directions in which two terms grow.
+  double cosine(const RegionTerm& a, const RegionTerm& b) {
+    if (!has_gradients) {
+      const Vec3 at = place / per_voxel;
+      for (const RegionTerm& t : {a, b}) readers[t.level_set]->at(at, gradients[t.level_set]);
+    }
+    const Vec3 ga = signed_gradient(a), gb = signed_gradient(b);
+    const double lengths = ga.norm() * gb.norm();
+    return lengths > 0 ? ga.dot(gb) / lengths : 0;
+  }
+  double signed_term(const RegionTerm& t) const {
+    return t.negated ? -values[t.level_set] : values[t.level_set];
+  }
+  Vec3 signed_gradient(const RegionTerm& t) const {
+    return t.negated ? Vec3(-gradients[t.level_set]) : gradients[t.level_set];
   }
 
-  const MaterialField::Impl& source;
-  Accessor accessor;
-  std::array<int, 3> cells;
+  NearestRegion nearest() {
+    const std::size_t count = field.regions().size();
+    RegionIndex best = 0;
+    double smallest = value(0), next = HUGE_VAL;
+    for (std::size_t r = 1; r < count; ++r) {
+      const double v = value(static_cast<RegionIndex>(r));
+      if (v < smallest) {
+        next = smallest;
+        smallest = v;
+        best = static_cast<RegionIndex>(r);
+      } else if (v < next) {
+        next = v;
+      }
+    }
+    return {best, static_cast<float>(std::min(0.5 * (next - smallest), field.band()))};
+  }
+
+  const MaterialField& field;
+  double per_voxel;  ///< lattice units
+  Vec3 place;        ///< where was read, lattice units
+  bool has_gradients = false;
+  std::vector<std::unique_ptr<LevelSetSampler>> readers;
+  std::vector<double> values;
+  std::vector<Vec3> gradients;
 };
 
 FieldSampler::FieldSampler(const MaterialField& field) : impl_(std::make_unique<Impl>(field)) {}
 FieldSampler::~FieldSampler() = default;
 
-double FieldSampler::at_node(int x, int y, int z) { return impl_->node(x, y, z); }
-
-double FieldSampler::at(const Vec3& point) {
-  Vec3 unused;
-  return at(point, unused);
+NearestRegion FieldSampler::nearest(const Vec3& point) {
+  impl_->read(point);
+  return impl_->nearest();
 }
 
-double FieldSampler::at(const Vec3& point, Vec3& gradient) {
-  double v[8];
-  const Vec3 f = point - impl_->cell(point, v).cast<double>();
-  // Along z, then y, then x.
-  double z0[4], dz[4];
-  for (int k = 0; k < 4; ++k) {
-    dz[k] = v[2 * k + 1] - v[2 * k];
-    z0[k] = v[2 * k] + f.z() * dz[k];
+NearestRegion FieldSampler::nearest_at_voxel(int x, int y, int z) {
+  impl_->read_voxel(x, y, z);
+  return impl_->nearest();
+}
+
+void FieldSampler::values(const Vec3& point, std::span<const RegionIndex> regions, float* out) {
+  impl_->read(point);
+  for (RegionIndex r : regions) *out++ = static_cast<float>(impl_->value(r));
+}
+
+void FieldSampler::values_at_voxel(int x, int y, int z, std::span<const RegionIndex> regions, float* out) {
+  impl_->read_voxel(x, y, z);
+  for (RegionIndex r : regions) *out++ = static_cast<float>(impl_->value(r));
+}
+
+std::optional<RegionSet> FieldSampler::two_nearest(const Vec3& point) {
+  impl_->read(point);
+  const NearestRegion nearest = impl_->nearest();
+  if (nearest.margin >= impl_->field.band()) return std::nullopt;
+  double smallest = HUGE_VAL;
+  RegionIndex second = nearest.region;
+  for (std::size_t r = 0; r < impl_->field.regions().size(); ++r) {
+    const auto region = static_cast<RegionIndex>(r);
+    if (region == nearest.region) continue;
+    if (const double v = impl_->value(region); v < smallest) smallest = v, second = region;
   }
-  const double y0 = z0[0] + f.y() * (z0[1] - z0[0]), y1 = z0[2] + f.y() * (z0[3] - z0[2]);
-  const double dz0 = dz[0] + f.y() * (dz[1] - dz[0]), dz1 = dz[2] + f.y() * (dz[3] - dz[2]);
-  gradient = {y1 - y0, (z0[1] - z0[0]) + f.x() * ((z0[3] - z0[2]) - (z0[1] - z0[0])),
-              dz0 + f.x() * (dz1 - dz0)};
-  return y0 + f.x() * (y1 - y0);
+  RegionSet both;
+  both.insert(nearest.region);
+  both.insert(second);
+  return both;
 }
 
-bool FieldSampler::project(Vec3& point) {
+double FieldSampler::between(RegionIndex a, RegionIndex b, const Vec3& point, Vec3& gradient) {
+  impl_->read_gradients(point);
+  const RegionTerm *ta, *tb;
+  const double va = impl_->value(a, ta), vb = impl_->value(b, tb);
+  gradient = 0.5 * (impl_->signed_gradient(*ta) - impl_->signed_gradient(*tb));
+  return 0.5 * (va - vb);
+}
+
+bool FieldSampler::project(const RegionSet& regions, Vec3& point) {
   constexpr int steps = 8;
-  constexpr double close_enough = 1e-3;   // finest cells; far below what the voxels resolve
-  constexpr double smallest_slope = 0.1;  // squared; below, the point is near a ridge of the distance
-  Vec3 gradient;
+  constexpr double close_enough = 1e-3;  // voxels; far below what they resolve
+  // Squared; below, the point is near a ridge of the distance.
+  constexpr double smallest_slope = 0.1;
+  // Damping (Levenberg 1944): two of the distances may be the same thing on one side of a junction curve, and
+  // their difference has no slope there, but then it says nothing about the step either.
+  constexpr double damping = 0.01;
+  const double enough = close_enough * impl_->per_voxel;
+  const int equations = regions.size() - 1;
+  if (equations < 1) return false;
+  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> slopes(equations, 3);
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> misses(equations);
   for (int step = 0; step < steps; ++step) {
-    const double value = at(point, gradient);
-    if (std::abs(value) < close_enough) return true;
-    const double slope = gradient.squaredNorm();
-    if (slope < smallest_slope) return false;
-    point -= gradient * (value / slope);
+    impl_->read_gradients(point);
+    const RegionTerm *first, *other;
+    const double value = impl_->value(regions[0], first);
+    double worst = 0;
+    for (int k = 0; k < equations; ++k) {
+      misses[k] = 0.5 * (value - impl_->value(regions[k + 1], other));
+      slopes.row(k) = 0.5 * (impl_->signed_gradient(*first) - impl_->signed_gradient(*other)).transpose();
+      worst = std::max(worst, std::abs(misses[k]));
+    }
+    if (worst < enough) {
+      const NearestRegion nearest = impl_->nearest();
+      return regions.contains(nearest.region) || impl_->value(nearest.region) > value - 2 * enough;
+    }
+    if (equations == 1) {
+      const double slope = slopes.row(0).squaredNorm();
+      if (slope < smallest_slope) return false;
+      point -= slopes.row(0).transpose() * (misses[0] / slope);
+    } else {
+      // The shortest step that makes all equal to first order.
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> square = slopes * slopes.transpose();
+      square.diagonal().array() += damping;
+      point -= slopes.transpose() * square.partialPivLu().solve(misses);
+    }
   }
   return false;
 }
 
-double MaterialField::signed_distance(const Vec3& point, MaterialTag) const {
-  FieldSampler sampler(*this);
-  return frame_.cell_size * sampler.at(frame_.to_grid(point));
+std::optional<FieldSampler::Sheet> FieldSampler::thinnest_sheet(const Vec3& point, double reach) {
+  impl_->read_gradients(point);
+  std::optional<Sheet> thinnest;
+  for (std::size_t r = 1; r < impl_->field.regions().size(); ++r) {
+    const auto& terms = impl_->field.regions()[r].terms;
+    if (terms.size() < 2 || impl_->value(static_cast<RegionIndex>(r)) > reach) continue;
+    for (std::size_t i = 0; i < terms.size(); ++i)
+      for (std::size_t k = i + 1; k < terms.size(); ++k) {
+        const double thickness = impl_->sheet(terms[i], terms[k]);
+        if (!(thickness > noticed * impl_->per_voxel) || impl_->cosine(terms[i], terms[k]) > sheet_facing)
+          continue;
+        if (!thinnest || thickness < thinnest->thickness)
+          thinnest = Sheet{static_cast<RegionIndex>(r), thickness, impl_->in_contact(terms[i], terms[k])};
+      }
+  }
+  return thinnest;
 }
 
-std::optional<Vec3> MaterialField::project(const Vec3& point, Region, Region, double max_distance) const {
-  FieldSampler sampler(*this);
+std::optional<RegionIndex> MaterialField::find(Region region) const {
+  if (!region) return outside_region;
+  for (std::size_t r = 1; r < regions_.size(); ++r)
+    if (regions_[r].tag == *region) return static_cast<RegionIndex>(r);
+  return std::nullopt;
+}
+
+double MaterialField::signed_distance(const Vec3& point, MaterialTag material) const {
+  const std::optional<RegionIndex> region = find(material);
+  float value = static_cast<float>(band_);
+  if (region) FieldSampler(*this).values(frame_.to_grid(point), {&*region, 1}, &value);
+  return frame_.cell_size * value;
+}
+
+std::optional<Vec3> MaterialField::project(const Vec3& point, Region first, Region second,
+                                           double max_distance) const {
+  const std::optional<RegionIndex> a = find(first), b = find(second);
+  if (!a || !b || *a == *b) return std::nullopt;
+  RegionSet both;
+  both.insert(*a);
+  both.insert(*b);
   const Vec3 start = frame_.to_grid(point);
   Vec3 end = start;
-  if (!sampler.project(end)) return std::nullopt;
+  if (!FieldSampler(*this).project(both, end)) return std::nullopt;
   if ((end - start).norm() * frame_.cell_size > max_distance) return std::nullopt;
   return frame_.to_input(end);
 }

@@ -8,15 +8,17 @@
 #include <cstdio>
 
 #include "common/error.h"
+#include "common/interfaces.h"
 #include "common/parallel.h"
 #include "common/predicates.h"
 #include "mesher/cutting.h"
+#include "mesher/field_builder.h"
 #include "mesher/labelled_lattice.h"
 #include "mesher/lattice.h"
 #include "mesher/material_field.h"
 #include "mesher/octree.h"
 #include "mesher/point_mover.h"
-#include "mesher/surface_input.h"
+#include "mesher/thin_parts.h"
 
 namespace tetwright {
 
@@ -42,6 +44,11 @@ constexpr double most_lattice_per_dense = 4;
 constexpr double tets_per_volume_uniform = 12;
 /// Peak memory for each dense tet, with the lattice outside; measured on scans, rounded up.
 constexpr double bytes_per_tet = 140;
+/// Numbers have 32 bits, and a lattice has some tets that no mesh keeps.
+constexpr double most_tets = 2e9;
+/// Tets of the lattice for each leaf of an octree.
+constexpr double tets_per_leaf = 12;
+constexpr double bytes_per_lattice_tet = 40;
 /// A uniform grid has leaves and lattice points all over its box.
 constexpr double bytes_per_cell_uniform = 150;
 /// What the program takes anyhow, libraries and the surface included.
@@ -61,19 +68,10 @@ std::string number_text(double v) {
   return text;
 }
 
-double longest_side(const ClosedSurface& s) { return (s.high - s.low).maxCoeff(); }
+double longest_side(const PreparedInput& input) { return (input.high - input.low).maxCoeff(); }
 
-ClosedSurface close_only_surface(const std::vector<MaterialSurface>& surfaces) {
-  if (surfaces.size() != 1)
-    throw UsageError("one surface can be meshed at a time, not " + std::to_string(surfaces.size()));
-  ClosedSurface s = close_surface(surfaces[0].surface, surfaces[0].file);
-  const double farthest = std::max(s.low.cwiseAbs().maxCoeff(), s.high.cwiseAbs().maxCoeff());
-  if (farthest > largest_coordinate || longest_side(s) < 1 / largest_coordinate)
-    throw InputError(
-        surfaces[0].file, 0,
-        "a size of " + number_text(longest_side(s)) + " with coordinates up to " + number_text(farthest) +
-            " is beyond what can be measured safely; scale the surface to between 1e-50 and 1e50");
-  return s;
+double farthest_coordinate(const PreparedInput& input) {
+  return std::max(input.low.cwiseAbs().maxCoeff(), input.high.cwiseAbs().maxCoeff());
 }
 
 void check_options(const MesherOptions& options) {
@@ -88,44 +86,59 @@ void check_options(const MesherOptions& options) {
 }
 
 /// The finest cell's edge in input units.
-double cell_size(const ClosedSurface& s, const std::string& file, const MesherOptions& options) {
+double cell_size(const PreparedInput& input, const MesherOptions& options) {
   check_options(options);
-  const double longest = longest_side(s);
+  const double longest = longest_side(input);
   const double h = options.voxel_size > 0 ? options.voxel_size : longest / options.resolution;
   if (longest > h * (largest_resolution + 0.5))
     throw UsageError("a voxel size of " + number_text(h) + " gives " + number_text(longest / h) +
                      " cells along the longest side; at most " + std::to_string(largest_resolution) +
                      " are possible");
-  const double farthest = std::max(s.low.cwiseAbs().maxCoeff(), s.high.cwiseAbs().maxCoeff());
+  const double farthest = farthest_coordinate(input);
   if (farthest * 0x1p-52 > h * cell_share_of_rounding)
     throw InputError(
-        file, 0,
+        input.bodies[0].file, 0,
         "with coordinates up to " + number_text(farthest) + " cells of " + number_text(h) +
             " cannot be told apart safely; move the surface nearer to the origin or take larger cells");
   return h;
 }
 
-MesherEstimate estimate(const ClosedSurface& s, double h, bool uniform) {
-  const double area = s.area / (h * h), volume = std::max(0.0, s.volume) / (h * h * h);
-  double tets = tets_per_volume_uniform * volume, bytes = bytes_at_least;
+MesherEstimate estimate(const PreparedInput& input, double h, bool uniform, bool keep_outside) {
+  double tets = 0, cells = 0, bytes = bytes_at_least;
+  const auto add = [&](const PreparedSurface& s, double sides) {
+    const double area = s.area / (h * h), volume = std::max(0.0, s.volume) / (h * h * h);
+    if (uniform) {
+      if (sides == 1) tets += tets_per_volume_uniform * volume;
+    } else if (area > 0) {
+      const double thickness = volume / area;
+      tets += sides * tets_per_area_thick * area * thickness / (thickness + half_full_thickness);
+    }
+    cells += area;
+  };
+  // On a surface within another body there are tets on both sides.
+  for (std::size_t b = 0; b < input.bodies.size(); ++b)
+    add(input.bodies[b].surface, b == 0 && !keep_outside ? 1 : 2);
+  for (std::size_t l = 0; l < input.layers.size(); ++l) add(input.bodies[0].surface, 2);
   if (uniform) {
-    bytes += bytes_per_cell_uniform * ((s.high - s.low) / h).prod();
-  } else if (area > 0) {
-    const double thickness = volume / area;
-    tets = tets_per_area_thick * area * thickness / (thickness + half_full_thickness);
+    const double box = ((input.high - input.low) / h).prod();
+    bytes += bytes_per_cell_uniform * box;
+    if (keep_outside) tets = tets_per_volume_uniform * box;
   }
   return {static_cast<std::size_t>(tets),
-          static_cast<std::size_t>(bytes + bytes_per_tet * std::max(tets, tets_per_area_thick * area / 2))};
+          static_cast<std::size_t>(bytes + bytes_per_tet * std::max(tets, tets_per_area_thick * cells / 2))};
 }
 
 void check_memory(const MesherEstimate& e) {
   const double machine =
       static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  if (static_cast<double>(e.bytes) > machine)
-    throw OutputError("the mesh would have about " + number_text(static_cast<double>(e.tets)) +
-                      " tets and take " + number_text(static_cast<double>(e.bytes) / (1 << 30)) +
-                      " GB, this machine has " + number_text(machine / (1 << 30)) +
-                      " GB; use a lower resolution");
+  const double tets = static_cast<double>(e.tets), bytes = static_cast<double>(e.bytes);
+  if (tets > most_tets)
+    throw OutputError("the mesh would have about " + number_text(tets) + " tets, and at most " +
+                      number_text(most_tets) + " can be numbered; use a lower resolution");
+  if (bytes > machine)
+    throw OutputError("the mesh would have about " + number_text(tets) + " tets and take " +
+                      number_text(bytes / (1 << 30)) + " GB, this machine has " +
+                      number_text(machine / (1 << 30)) + " GB; use a lower resolution");
 }
 
 /// Runs the stages, tells about them and takes their times.
@@ -148,15 +161,31 @@ class Stages {
   std::chrono::steady_clock::time_point start_;
 };
 
-TetMesh to_input_units(CutMesh cut, const GridFrame& frame, const MaterialSurface& material) {
+/// True for a point on a face of the frame's box, which is the mesh's boundary where outside is kept.
+bool on_box(const Vec3& point, const GridFrame& frame) {
+  for (int k = 0; k < 3; ++k)
+    if (point[k] == 0 || point[k] == frame.cells[k]) return true;  // exact: no point on the box moves
+  return false;
+}
+
+TetMesh to_input_units(CutMesh cut, const MaterialField& field) {
   TetMesh mesh;
+  const GridFrame& frame = field.frame();
   mesh.points = std::move(cut.points);
+  std::vector<std::uint8_t> candidates = std::move(cut.on_interface);
   parallel_for(0, mesh.points.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) mesh.points[i] = frame.to_input(mesh.points[i]);
+    for (std::size_t i = begin; i < end; ++i) {
+      if (on_box(mesh.points[i], frame)) candidates[i] = 1;
+      mesh.points[i] = frame.to_input(mesh.points[i]);
+    }
   });
   mesh.tets = std::move(cut.tets);
-  mesh.materials.assign(mesh.tets.size(), material.tag);
-  if (!material.name.empty()) mesh.material_names[material.tag] = material.name;
+  mesh.materials.resize(mesh.tets.size());
+  parallel_for(0, mesh.tets.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) mesh.materials[i] = field.regions()[cut.regions[i]].tag;
+  });
+  for (const FieldRegion& region : field.regions())
+    if (!region.name.empty()) mesh.material_names[region.tag] = region.name;
   // The promise is about the coordinates as handed out; the frame leaves room for their rounding.
   parallel_for(0, mesh.tets.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -165,54 +194,156 @@ TetMesh to_input_units(CutMesh cut, const GridFrame& frame, const MaterialSurfac
                       0);
     }
   });
+  mesh.interfaces = find_interfaces(mesh, &candidates);
   return mesh;
+}
+
+/// A material none of whose lattice points is left: which one, and what to do about it.
+void check_all_there(const PreparedInput& input, const MaterialField& field,
+                     const std::vector<NearestRegion>& points) {
+  std::vector<std::uint8_t> there(field.regions().size(), 0);
+  for (const NearestRegion& p : points) there[p.region] = 1;
+  if (std::count(there.begin() + 1, there.end(), 1) == 0)
+    throw NothingToMeshError(
+        input.bodies[0].file +
+        ": the surface is smaller than a cell; use a higher resolution or a smaller voxel size");
+  for (std::size_t r = 1; r < there.size(); ++r) {
+    if (there[r]) continue;
+    const FieldRegion& region = field.regions()[r];
+    const auto body = std::find_if(input.bodies.begin(), input.bodies.end(),
+                                   [&](const PreparedInput::Body& b) { return b.tag == region.tag; });
+    if (body == input.bodies.end())
+      throw InputError(
+          input.bodies[0].file, 0,
+          "nothing is left of the layer '" + region.name +
+              "': it is thinner than the smallest cells or later surfaces cover it; use a higher "
+              "resolution, or list the surfaces that it goes round first");
+    if (body == input.bodies.begin() && !input.layers.empty())
+      throw InputError(body->file, 0,
+                       "nothing is left of '" + region.name +
+                           "' inside its layers; make the layers thinner or use a higher resolution");
+    throw InputError(
+        body->file, 0,
+        "nothing is left of the material '" + region.name +
+            "': it is smaller than a cell or later surfaces cover it; list the outermost surface "
+            "first, or use a higher resolution");
+  }
+}
+
+ThinPartReport thin_part_report(const ThinPart& part, const MaterialField& field, bool refined) {
+  const std::string& name = field.regions()[part.region].name;
+  return {part.region == outside_region ? "outside" : name, part.places, field.voxels().to_input(part.first),
+          refined};
 }
 
 }  // namespace
 
-MesherEstimate estimate_mesh(const std::vector<MaterialSurface>& surfaces, const MesherOptions& options) {
-  check_options(options);
-  const ClosedSurface surface = close_only_surface(surfaces);
-  return estimate(surface, cell_size(surface, surfaces[0].file, options), options.uniform);
+PreparedInput prepare_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers,
+                            NestedRule nested) {
+  if (surfaces.empty()) throw UsageError("there is no surface to mesh");
+  PreparedInput input;
+  MaterialTag next_tag = 0;
+  for (const MaterialSurface& s : surfaces) next_tag = std::max(next_tag, s.tag);
+  for (const MaterialLayer& l : layers) {
+    if (!(l.thickness > 0 && std::isfinite(l.thickness)))
+      throw UsageError("the layer '" + l.name + "' must have a thickness above 0, not " +
+                       number_text(l.thickness));
+    next_tag = std::max(next_tag, l.tag);
+  }
+  for (MaterialSurface& s : surfaces) {
+    SurfaceInput prepared = prepare_surface(s.surface, s.file, nested);
+    s.surface = {};
+    for (SurfaceFinding& f : prepared.findings) input.findings.push_back({s.file, std::move(f)});
+    input.bodies.push_back({s.name, s.tag, s.file, std::move(prepared.surface)});
+    for (std::size_t k = 0; k < prepared.nested.size(); ++k)
+      input.bodies.push_back(
+          {s.name + "_" + std::to_string(k + 1), ++next_tag, s.file, std::move(prepared.nested[k])});
+  }
+  input.layers = std::move(layers);
+  input.low = input.bodies[0].surface.low;
+  input.high = input.bodies[0].surface.high;
+  for (const PreparedInput::Body& b : input.bodies) {
+    input.low = input.low.cwiseMin(b.surface.low);
+    input.high = input.high.cwiseMax(b.surface.high);
+  }
+  std::vector<std::pair<std::string, MaterialTag>> all;
+  for (const PreparedInput::Body& b : input.bodies) all.emplace_back(b.name, b.tag);
+  for (const MaterialLayer& l : input.layers) all.emplace_back(l.name, l.tag);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      if (!all[i].first.empty() && all[i].first == all[k].first)
+        throw UsageError("two materials are called '" + all[i].first +
+                         "'; give one another name with --material NAME=FILE");
+      if (all[i].second == all[k].second)
+        throw UsageError("two materials have the tag " + std::to_string(all[i].second));
+    }
+  const double farthest = farthest_coordinate(input);
+  if (farthest > largest_coordinate || longest_side(input) < 1 / largest_coordinate)
+    throw InputError(
+        input.bodies[0].file, 0,
+        "a size of " + number_text(longest_side(input)) + " with coordinates up to " + number_text(farthest) +
+            " is beyond what can be measured safely; scale the surface to between 1e-50 and 1e50");
+  return input;
 }
 
-MeshedSurface mesh_surfaces(const std::vector<MaterialSurface>& surfaces, const MesherOptions& options,
-                            Progress* progress) {
-  check_options(options);
+MesherEstimate estimate_mesh(const PreparedInput& input, const MesherOptions& options) {
+  return estimate(input, cell_size(input, options), options.uniform, options.keep_outside);
+}
+
+MeshedSurface mesh_surfaces(const PreparedInput& input, const MesherOptions& options, Progress* progress) {
   MeshedSurface result;
   MesherReport& report = result.report;
   Stages stages(progress);
 
   stages.begin("signed distances");
-  const ClosedSurface surface = close_only_surface(surfaces);
-  const MaterialSurface& material = surfaces[0];
-  const NothingToMeshError nothing(
-      material.file +
-      ": the surface is smaller than a cell; use a higher resolution or a smaller "
-      "voxel size");
-  report.cell_size = cell_size(surface, material.file, options);
+  report.cell_size = cell_size(input, options);
   // So much smaller that no lattice could be laid out in numbers that are still exact; a little smaller is
   // found out by the lattice itself.
-  if (longest_side(surface) < report.cell_size * smallest_in_cells) throw nothing;
-  report.resolution = static_cast<int>(std::ceil(longest_side(surface) / report.cell_size - 0.5));
-  check_memory(estimate(surface, report.cell_size, options.uniform));
-  const GridFrame frame = make_grid_frame(surface.low, surface.high, report.cell_size, options.uniform);
-  const auto field = std::make_shared<const MaterialField>(
-      surface, MaterialField::Material{material.name, material.tag}, frame, progress);
+  if (longest_side(input) < report.cell_size * smallest_in_cells)
+    throw NothingToMeshError(
+        input.bodies[0].file +
+        ": the surface is smaller than a cell; use a higher resolution or a smaller voxel size");
+  report.resolution = static_cast<int>(std::ceil(longest_side(input) / report.cell_size - 0.5));
+  check_memory(estimate_mesh(input, options));
+  const GridFrame voxels =
+      make_grid_frame(input.low, input.high, report.cell_size, options.uniform, options.keep_outside);
+  std::shared_ptr<const MaterialField> field = build_field(input, voxels, options.keep_outside, progress);
   report.seconds_sdf = stages.seconds();
 
   stages.begin("octree");
-  const Octree octree = build_octree(*field, {options.uniform, options.adaptivity}, progress);
+  const std::vector<MortonKey> interface_voxels = field->interface_voxels();
+  ThinSheets sheets;
+  if (!options.uniform) sheets = find_thin_sheets(*field, interface_voxels);
+  for (const ThinPart& part : sheets.too_thin)
+    report.thin_parts.push_back(thin_part_report(part, *field, true));
+  for (const ThinPart& part : find_thin_parts(*field, interface_voxels))
+    report.thin_parts.push_back(thin_part_report(part, *field, false));
+  report.refinement = sheets.refinement;
+  if (sheets.refinement > 0) field = field->refined(sheets.refinement);
+  const Octree octree =
+      build_octree(*field, {options.uniform, options.adaptivity}, interface_voxels, sheets.cells, progress);
   report.cells = octree.size();
+  // Thin sheets may have taken far more cells than the surface alone.
+  const double lattice_tets_expected = tets_per_leaf * static_cast<double>(octree.size());
+  check_memory({static_cast<std::size_t>(lattice_tets_expected),
+                static_cast<std::size_t>(bytes_per_lattice_tet * lattice_tets_expected)});
   report.seconds_octree = stages.seconds();
 
   stages.begin("lattice");
   LatticePoints points = lattice_points(octree);
-  std::vector<float> distances = lattice_distances(points, *field);
-  std::vector<Tet> tets = lattice_tets(octree, points, &distances);
-  LabelledLattice lattice = label_lattice(std::move(points), std::move(distances), std::move(tets));
+  std::vector<NearestRegion> regions = lattice_regions(points, *field);
+  check_all_there(input, *field, regions);
+  std::vector<Tet> tets;
+  if (options.keep_outside) {
+    tets = lattice_tets(octree, points);
+  } else {
+    const std::vector<std::uint8_t> far = far_outside(regions, *field);
+    tets = lattice_tets(octree, points, &far, field->refinement());
+  }
+  LabelledLattice lattice = label_lattice(std::move(points), std::move(regions), std::move(tets),
+                                          field->regions().size(), options.keep_outside, &report.specks);
+  read_star_values(lattice, *field);
   report.lattice_tets = lattice.tets.size();
-  report.specks = remove_specks(lattice);
   report.seconds_lattice = stages.seconds();
 
   stages.begin("moving points");
@@ -221,25 +352,30 @@ MeshedSurface mesh_surfaces(const std::vector<MaterialSurface>& surfaces, const 
 
   stages.begin("cutting");
   CutMesh cut = cut_lattice(lattice);
-  if (cut.tets.empty()) throw nothing;
-  result.mesh = to_input_units(std::move(cut), frame, material);
+  if (cut.tets.empty())
+    throw NothingToMeshError(
+        input.bodies[0].file +
+        ": the surface is smaller than a cell; use a higher resolution or a smaller voxel size");
+  result.mesh = to_input_units(std::move(cut), *field);
   report.seconds_cut = stages.seconds();
+  if (progress) progress->throw_if_cancelled();
 
-  result.reference = field;
+  result.field = std::move(field);
   return result;
 }
 
-int resolution_for_target(const std::vector<MaterialSurface>& surfaces, std::size_t target_tets) {
+int resolution_for_target(const PreparedInput& input, std::size_t target_tets) {
   if (target_tets == 0) throw UsageError("the target must be at least one tet");
-  const ClosedSurface surface = close_only_surface(surfaces);
-  const double longest = longest_side(surface);
+  const double longest = longest_side(input);
   const double dense = std::min(most_dense_tets, dense_per_target * static_cast<double>(target_tets));
+  double area = 0;
+  for (const PreparedInput::Body& b : input.bodies) area += b.surface.area;
   const auto enough = [&](int resolution) {
     const double h = longest / resolution;
     // A body thinner than a cell has few tets but a lattice as large as its surface: there is no end to
     // refining it.
-    const double lattice = tets_per_area_thick * surface.area / (h * h);
-    return static_cast<double>(estimate(surface, h, false).tets) >= dense ||
+    const double lattice = tets_per_area_thick * area / (h * h);
+    return static_cast<double>(estimate(input, h, false, false).tets) >= dense ||
            lattice >= most_lattice_per_dense * dense;
   };
   // The smallest one that is enough; the estimate grows with the resolution.

@@ -9,6 +9,7 @@
 #include "common/reference_surface.h"
 #include "common/tet_mesh.h"
 #include "common/triangle_mesh.h"
+#include "mesher/surface_input.h"
 
 namespace tetwright {
 
@@ -17,10 +18,12 @@ struct MesherOptions {
   double voxel_size = 0;  ///< edge of a finest cell, input units; 0: by resolution
   bool uniform = false;   ///< finest cells everywhere instead of an octree
   double adaptivity =
-      0.05;  ///< how far a coarser cell may misplace the interface, finest cells; 0: never coarser
+      0.05;  ///< how far a coarser cell may misplace an interface, finest cells; 0: never coarser
+  /// Mesh the outside too, in a box, as the material `outside` of tag 0.
+  bool keep_outside = false;
 };
 
-/// One closed surface and the material it encloses.
+/// A surface and the material it encloses.
 struct MaterialSurface {
   std::string name;
   MaterialTag tag = 0;
@@ -28,20 +31,72 @@ struct MaterialSurface {
   std::string file;  ///< for messages
 };
 
+/// A shell of the first surface's material, a material of its own.
+struct MaterialLayer {
+  std::string name;
+  MaterialTag tag = 0;
+  double thickness = 0;  ///< input units
+};
+
+/// Something found in an input and what was done about it.
+struct InputFinding {
+  std::string file;
+  SurfaceFinding finding;
+};
+
+/// Surfaces made ready for meshing.
+struct PreparedInput {
+  struct Body {
+    std::string name;
+    MaterialTag tag;
+    std::string file;
+    PreparedSurface surface;
+  };
+  std::vector<Body> bodies;           ///< later ones carve earlier ones
+  std::vector<MaterialLayer> layers;  ///< of the first body, outermost first
+  std::vector<InputFinding> findings;
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< bounding box of all, input units
+};
+
+/// Checks and mends the surfaces, see prepare_surface(); with NestedRule::material what is enclosed becomes a
+/// body of its own right after its encloser, with tags above all others. Names must be different.
+///
+/// Throws InputError (see prepare_surface(); a size beyond what can be measured), UsageError (no surface, two
+/// materials of one name or tag, a layer that is not thicker than 0).
+PreparedInput prepare_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers = {},
+                            NestedRule nested = NestedRule::automatic);
+
+/// A material, or the outside, that is too thin for the cells somewhere.
+struct ThinPartReport {
+  std::string name;
+  std::size_t places = 0;
+  Vec3 first = Vec3::Zero();  ///< one of them, input units
+  /// True if it is a sheet between two surfaces for which the cells were refined as far as they go.
+  bool refined = false;
+};
+
 struct MesherReport {
-  double cell_size = 0;          ///< edge of a finest cell, input units
-  int resolution = 0;            ///< finest cells along the surface's longest side
+  double cell_size = 0;          ///< edge of a finest cell (a voxel), input units
+  int resolution = 0;            ///< finest cells along the longest side
+  int refinement = 0;            ///< how often cells were halved beyond that for thin sheets
   std::size_t cells = 0;         ///< leaves of the octree
   std::size_t lattice_tets = 0;  ///< before cutting, without those far outside
   std::size_t specks = 0;        ///< parts and cavities of a single lattice point, left out
+  std::vector<ThinPartReport> thin_parts;
   double seconds_sdf = 0, seconds_octree = 0, seconds_lattice = 0, seconds_move = 0, seconds_cut = 0;
 };
 
+class MaterialField;
+
 struct MeshedSurface {
-  TetMesh mesh;                                       ///< input units; see README.md for what it promises
-  std::shared_ptr<const ReferenceSurface> reference;  ///< the signed distances the mesh was cut from
+  TetMesh mesh;  ///< input units, with interface triangles; README.md has the promises
+  std::shared_ptr<const MaterialField> field;  ///< the signed distances it was cut from, a ReferenceSurface
   MesherReport report;
 };
+
+/// Writes the signed distances of each material as a level set of its name to a .vdb file. Throws
+/// OutputError.
+void write_fields(const MaterialField& field, const std::string& path);
 
 /// What meshing would take.
 struct MesherEstimate {
@@ -49,22 +104,20 @@ struct MesherEstimate {
   std::size_t bytes = 0;  ///< largest memory while it is made, on the high side
 };
 
-/// Estimates from the surface's area and volume, without meshing. Throws as mesh_surfaces() does for surfaces
-/// and options that make no sense.
-MesherEstimate estimate_mesh(const std::vector<MaterialSurface>& surfaces, const MesherOptions& options);
+/// Estimates from the surfaces' areas and volumes, without meshing. Throws UsageError and InputError as
+/// mesh_surfaces() does.
+MesherEstimate estimate_mesh(const PreparedInput& input, const MesherOptions& options);
 
-/// Closed surfaces to a dense tet mesh with the invariants of README.md, the same bytes for any number of
-/// threads. So far for a single material.
+/// Surfaces to a dense tet mesh with the invariants of README.md, the same bytes for any number of threads.
 ///
-/// `progress` may be null. Throws UsageError (option values, not one surface), InputError (a surface that is
-/// not closed, or too far from the origin for cells this small), NothingToMeshError (no lattice point is
-/// inside), OutputError (the mesh would not fit in memory), Interrupted.
-MeshedSurface mesh_surfaces(const std::vector<MaterialSurface>& surfaces, const MesherOptions& options,
-                            Progress* progress);
+/// `progress` may be null. Throws UsageError (option values), InputError (too far from the origin for cells
+/// this small, a material carved away entirely, a layer thicker than the body), NothingToMeshError (no
+/// lattice point is inside), OutputError (the mesh would not fit in memory), Interrupted.
+MeshedSurface mesh_surfaces(const PreparedInput& input, const MesherOptions& options, Progress* progress);
 
 /// The resolution that gives about 40 dense tets for each of `target_tets`, which is what a simplification
-/// needs to have a choice: at least 32, no more than some 20 million dense tets. Throws InputError as
-/// mesh_surfaces() does, UsageError for a target of 0.
-int resolution_for_target(const std::vector<MaterialSurface>& surfaces, std::size_t target_tets);
+/// needs to have a choice: at least 32, no more than some 20 million dense tets. UsageError for a target of
+/// 0.
+int resolution_for_target(const PreparedInput& input, std::size_t target_tets);
 
 }  // namespace tetwright

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace tetwright {
 
@@ -46,6 +49,36 @@ constexpr MortonKey morton_encode(const std::array<int, 3>& p) { return morton_e
 constexpr std::array<int, 3> morton_decode(MortonKey key) {
   return {static_cast<int>(detail::gather_bits(key)), static_cast<int>(detail::gather_bits(key >> 1)),
           static_cast<int>(detail::gather_bits(key >> 2))};
+}
+
+/// std::lower_bound in an ascending list, from a place that is likely not far from the result: its time grows
+/// with the logarithm of the way (Bentley & Yao 1976).
+inline std::size_t lower_bound_near(const std::vector<std::uint64_t>& ascending, std::uint64_t value,
+                                    std::size_t hint) {
+  std::size_t low = 0, high = ascending.size();
+  if (hint < high && ascending[hint] < value) {
+    low = hint + 1;
+    for (std::size_t step = 1; low + step < high; step *= 2) {
+      if (ascending[low + step] >= value) {
+        high = low + step;
+        break;
+      }
+      low += step + 1;
+    }
+  } else if (hint < high) {
+    high = hint;
+    for (std::size_t step = 1; step <= high; step *= 2) {
+      if (ascending[high - step] < value) {
+        low = high - step + 1;
+        break;
+      }
+      high -= step;
+    }
+  }
+  return static_cast<std::size_t>(std::lower_bound(ascending.begin() + static_cast<std::ptrdiff_t>(low),
+                                                   ascending.begin() + static_cast<std::ptrdiff_t>(high),
+                                                   value) -
+                                  ascending.begin());
 }
 
 }  // namespace tetwright

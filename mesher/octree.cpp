@@ -12,8 +12,8 @@ namespace {
 /// Cells per task where a cell takes about a microsecond.
 constexpr std::size_t grain = 2048;
 
-/// The largest cells, as a level, that may hold an interface: their tests read every grid point of the cell,
-/// and their corners must mostly be within the narrow band.
+/// The largest cells that may hold an interface, in levels above a voxel: their tests read every corner of
+/// voxels in the cell, and their own corners must mostly be within the narrow band.
 constexpr int coarsest_interface_level = 2;
 
 /// The parents (level l + 1) that must be split because the cell `key` of level l is: its own, and those of
@@ -56,44 +56,48 @@ bool has_split_neighbour(MortonKey key, const std::array<int, 3>& size, const st
   return false;
 }
 
-/// True if trilinear interpolation between the eight corners of the cell puts the interface within
-/// `tolerance` of where the grid has it, and sees the same sides.
-bool interpolates(FieldSampler& sampler, MortonKey key, int level, double tolerance) {
+/// True if trilinear interpolation between the eight corners of the cell puts its one interface within
+/// `tolerance` (voxels) of where the voxels have it, and sees the same regions. `key` and `level` count
+/// voxels.
+bool interpolates(FieldSampler& sampler, MortonKey key, int level, double tolerance,
+                  const MaterialField& field) {
+  const double voxel = 1 << field.refinement();  // lattice units
   const std::array<int, 3> low = morton_decode(key << 3 * level);
   const int side = 1 << level;
-  double corner[8];
-  bool any_inside = false, any_outside = false;
+  RegionSet regions;
+  NearestRegion nearest[8];
   for (int k = 0; k < 8; ++k) {
-    corner[k] =
-        sampler.at_node(low[0] + (k & 1) * side, low[1] + (k >> 1 & 1) * side, low[2] + (k >> 2) * side);
-    if (beyond_band(corner[k])) return false;
-    (corner[k] < 0 ? any_inside : any_outside) = true;
+    nearest[k] = sampler.nearest_at_voxel(low[0] + (k & 1) * side, low[1] + (k >> 1 & 1) * side,
+                                          low[2] + (k >> 2) * side);
+    if (nearest[k].margin >= field.band() || !regions.insert(nearest[k].region)) return false;
   }
-  if (!any_inside || !any_outside) return false;
+  if (regions.size() != 2) return false;
+  double corner[8];
+  for (int k = 0; k < 8; ++k)
+    corner[k] = nearest[k].region == regions[0] ? -nearest[k].margin : nearest[k].margin;
   for (int z = 0; z <= side; ++z)
     for (int y = 0; y <= side; ++y)
       for (int x = 0; x <= side; ++x) {
-        const double value = sampler.at_node(low[0] + x, low[1] + y, low[2] + z);
+        const NearestRegion there = sampler.nearest_at_voxel(low[0] + x, low[1] + y, low[2] + z);
+        if (!regions.contains(there.region)) return false;
+        const double value = there.region == regions[0] ? -there.margin : there.margin;
         const double fx = static_cast<double>(x) / side, fy = static_cast<double>(y) / side,
                      fz = static_cast<double>(z) / side;
         const auto mix = [](double a, double b, double f) { return a + f * (b - a); };
         const double coarse = mix(mix(mix(corner[0], corner[1], fx), mix(corner[2], corner[3], fx), fy),
                                   mix(mix(corner[4], corner[5], fx), mix(corner[6], corner[7], fx), fy), fz);
         // A distance has slope 1, so near the interface the difference of values is the misplacement.
-        if (std::min(std::abs(value), std::abs(coarse)) < 1 && std::abs(coarse - value) > tolerance)
-          return false;
-        if ((value < 0) != (coarse < 0) && std::abs(coarse - value) > tolerance) return false;
+        if (std::min(std::abs(value), std::abs(coarse)) >= voxel && (value < 0) == (coarse < 0)) continue;
+        if (std::abs(coarse - value) > tolerance * voxel) return false;
       }
   return true;
 }
 
 }  // namespace
 
-std::size_t Octree::find(MortonKey finest_cell) const {
-  // The level bits are all ones at most, so this finds the last leaf that starts at or before the cell.
-  return static_cast<std::size_t>(std::upper_bound(packed.begin(), packed.end(), finest_cell << 5 | 31) -
-                                  packed.begin()) -
-         1;
+std::size_t Octree::find(MortonKey finest_cell, std::size_t hint) const {
+  // The level bits are all ones at most: the last leaf that starts at or before the cell.
+  return lower_bound_near(packed, (finest_cell << 5 | 31) + 1, hint) - 1;
 }
 
 Octree build_octree(const std::array<int, 3>& cells, int root_level, const SplitCells& split) {
@@ -146,28 +150,35 @@ Octree build_octree(const std::array<int, 3>& cells, int root_level, const Split
   return octree;
 }
 
-Octree build_octree(const MaterialField& field, const OctreeOptions& options, Progress* progress) {
+Octree build_octree(const MaterialField& field, const OctreeOptions& options,
+                    std::vector<MortonKey> interface_voxels, const std::vector<std::vector<MortonKey>>& thin,
+                    Progress* progress) {
   const GridFrame& frame = field.frame();
   if (options.uniform)
     return build_octree(frame.cells, 0,
                         [](int, const std::vector<MortonKey>&) { return std::vector<MortonKey>(); });
 
+  const int voxel_level = field.refinement();
   // Cells of the level at hand that hold an interface.
-  std::vector<MortonKey> holding = field.interface_cells();
+  std::vector<MortonKey> holding = std::move(interface_voxels);
   return build_octree(frame.cells, frame.root_level, [&](int level, const std::vector<MortonKey>& already) {
     if (progress) {
       progress->throw_if_cancelled();
       progress->update(static_cast<double>(level) / (frame.root_level + 1));
     }
+    const auto place = static_cast<std::size_t>(level);
+    const std::vector<MortonKey> sheets = place < thin.size() ? thin[place] : std::vector<MortonKey>();
+    if (level <= voxel_level) return sheets;
     for (MortonKey& key : holding) key >>= 3;
     holding.erase(std::unique(holding.begin(), holding.end()), holding.end());
-    if (level > coarsest_interface_level || options.adaptivity <= 0) return holding;
+    const int voxel_steps = level - voxel_level;
+    if (voxel_steps > coarsest_interface_level || options.adaptivity <= 0) return holding;
     const std::vector<MortonKey> failed = parallel_collect<MortonKey>(
         0, holding.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
           FieldSampler sampler(field);
           for (std::size_t i = begin; i < end; ++i)
             if (contains(already, holding[i]) ||
-                !interpolates(sampler, holding[i], level, options.adaptivity))
+                !interpolates(sampler, holding[i], voxel_steps, options.adaptivity, field))
               out.push_back(holding[i]);
         });
     const std::array<int, 3> size{frame.cells[0] >> level, frame.cells[1] >> level, frame.cells[2] >> level};

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 
 #include "common/parallel_sort.h"
 #include "common/quality.h"
 #include "mesher/arrangement.h"
 #include "mesher/cutting.h"
+#include "mesher/independent_rounds.h"
 
 namespace tetwright {
 
@@ -18,143 +20,220 @@ namespace {
 constexpr double near_long = 0.35;
 constexpr double near_short = 0.49;
 
-/// No lattice tet may get a smaller solid angle (steradians) by a move: the dial for the smallest dihedral
-/// angle (0.06 gives 6 degrees, 0.1 gives 11, 0.14 gives 13, but then more points are refused).
-constexpr double smallest_angle = 0.1;
+/// No lattice tet may get a smaller solid angle than 0.1 steradians by a move: the dial for the smallest
+/// dihedral angle (0.06 gives 6 degrees, 0.1 gives 11, 0.14 gives 13, but then more points are refused). As
+/// the tangent of its half, which is what is compared.
+constexpr double smallest_tangent = 0.05004170837553879;
 
-struct Candidate {
-  float distance;  ///< from the interface, finest cells
-  Index point;
-  bool operator<(const Candidate& o) const {
-    return distance != o.distance ? distance < o.distance : point < o.point;
+/// "Nearest first" goes by steps of this share of an edge: along a flat face all points have nearly the same
+/// distance.
+constexpr double distance_steps = 32;
+
+/// Points that are worked on one after the other by one thread.
+constexpr std::size_t block_size = 16;
+
+/// Spreads neighbours over the order, so that blocks worked on at the same time rarely meet.
+std::uint32_t scattered(Index i) {
+  std::uint32_t h = i * 0x9e3779b9u;
+  h ^= h >> 15;
+  h *= 0x85ebca6bu;
+  return h ^ h >> 13;
+}
+
+/// Cuts a list into blocks of neighbours and scatters those. `group(item)` does not fall along the list, and
+/// stays the same in a block; within a group near items stand together. Returns where blocks start, and the
+/// end.
+template <class Group>
+std::vector<std::size_t> scatter_blocks(std::vector<Index>& items, Group&& group) {
+  struct Block {
+    std::size_t first, last;
+    std::uint32_t key;
+  };
+  std::vector<Block> blocks;
+  for (std::size_t i = 0, j; i < items.size(); i = j) {
+    for (j = i + 1; j < items.size() && j - i < block_size && group(items[j]) == group(items[i]);) ++j;
+    blocks.push_back({i, j, scattered(items[i])});
   }
-};
+  for (std::size_t i = 0, j; i < blocks.size(); i = j) {
+    const auto now = group(items[blocks[i].first]);
+    for (j = i; j < blocks.size() && group(items[blocks[j].first]) == now;) ++j;
+    std::sort(blocks.begin() + static_cast<std::ptrdiff_t>(i),
+              blocks.begin() + static_cast<std::ptrdiff_t>(j),
+              [](const Block& a, const Block& b) { return a.key < b.key; });
+  }
+  std::vector<Index> scattered_items;
+  scattered_items.reserve(items.size());
+  std::vector<std::size_t> starts{0};
+  for (const Block& b : blocks) {
+    scattered_items.insert(scattered_items.end(), items.begin() + static_cast<std::ptrdiff_t>(b.first),
+                           items.begin() + static_cast<std::ptrdiff_t>(b.last));
+    starts.push_back(scattered_items.size());
+  }
+  items.swap(scattered_items);
+  return starts;
+}
 
-/// Where a candidate could go.
-struct Target {
-  Vec3 projected;   ///< the interface along the gradient
-  Vec3 on_edge;     ///< the nearest cut
-  double room = 0;  ///< length of the edge with the nearest cut
+/// A point with a cut too near to it, and where it could go.
+struct Candidate {
+  Index point;
+  bool at_junction;         ///< more than two regions in its star
+  int rank;                 ///< distance from where it should go, in steps
+  Vec3 projected;           ///< where all regions of the star meet, or the interface along the gradient
+  Vec3 on_edge;             ///< the nearest cut
+  RegionIndex beyond_edge;  ///< the region on the other side of that cut
+  double room;              ///< length of the edge with the nearest cut
+
+  /// Points near junction curves go first: moved onto a sheet they could not reach the curve any more.
+  int group() const { return at_junction ? rank : rank + static_cast<int>(distance_steps) + 1; }
+  bool operator<(const Candidate& o) const {
+    return group() != o.group() ? group() < o.group() : point < o.point;
+  }
 };
 
 class Mover {
  public:
-  Mover(LabelledLattice& lattice, const MaterialField& field)
-      : lattice_(lattice), field_(field), stars_(lattice) {}
+  Mover(LabelledLattice& lattice, const MaterialField& field, Progress* progress)
+      : lattice_(lattice), field_(field), rounds_(lattice), progress_(progress) {}
 
-  MoveCounts run(Progress* progress) {
+  MoveCounts run() {
     find_candidates();
     MoveCounts counts;
     counts.candidates = candidates_.size();
-    std::vector<std::size_t> refused;
-    constexpr std::size_t report_every = 1 << 14;
-    for (std::size_t i = 0; i < candidates_.size(); ++i) {
-      if (progress && i % report_every == 0) {
-        progress->throw_if_cancelled();
-        progress->update(static_cast<double>(i) / static_cast<double>(candidates_.size()));
-      }
-      if (move(i))
-        ++counts.moved;
-      else
-        refused.push_back(i);
-    }
+    std::vector<Index> order(candidates_.size());
+    for (Index i = 0; i < order.size(); ++i) order[i] = i;
+    std::vector<Index> left = attempt(
+        order, [&](Index i) { return candidates_[i].group(); },
+        [&](Index i, FieldSampler&) { return move(candidates_[i]); });
     // Neighbours that moved since may have made room.
-    FieldSampler sampler(field_);
-    std::vector<std::size_t> left;
-    for (std::size_t i : refused) {
-      if (move(i) || slide(i, sampler))
-        ++counts.moved;
-      else
-        left.push_back(i);
-    }
-    for (std::size_t i : left) counts.pushed += push_away(i, sampler);
-    // A second sweep still finds something, a third hardly.
-    for (int sweep = 0; sweep < 2; ++sweep) {
-      if (progress) progress->throw_if_cancelled();
-      mend_poor_stars(sampler);
-    }
+    left = attempt(left, one_group, [&](Index i, FieldSampler& sampler) {
+      return move(candidates_[i]) || slide(candidates_[i], sampler);
+    });
+    counts.moved = candidates_.size() - left.size();
+    counts.pushed = left.size() - attempt(left, one_group, [&](Index i, FieldSampler& sampler) {
+                                    return push_away(candidates_[i], sampler);
+                                  }).size();
+    // The first sweep mends most; the others the few whose neighbours had to move first.
+    constexpr int sweeps = 4;
+    std::vector<Index> tets = tets_near_interfaces();
+    for (int sweep = 0; sweep < sweeps && !tets.empty(); ++sweep) tets = mend_poor_stars(tets);
     return counts;
   }
 
  private:
-  /// The nearest cut among the edges of a point; false where none is too near.
-  bool find_target(Index p, FieldSampler& sampler, Target& target) const {
-    const double phi = lattice_.distances[p];
-    double nearest = 0;
+  std::span<const Index> star(Index p) const { return lattice_.stars.tets(p); }
+
+  static constexpr auto one_group = [](Index) { return 0; };
+
+  /// Runs `work(i, sampler)` for the candidates listed, group after group, and returns those for which it was
+  /// false, in the order of their points.
+  template <class Group, class Work>
+  std::vector<Index> attempt(std::vector<Index> list, Group&& group, Work&& work) {
+    const std::vector<std::size_t> starts = scatter_blocks(list, group);
+    std::vector<Index> points(list.size());
+    for (std::size_t k = 0; k < list.size(); ++k) points[k] = candidates_[list[k]].point;
+    std::vector<std::uint8_t> done(list.size(), 0);
+    run_blocks(points, starts,
+               [&](std::size_t k, FieldSampler& sampler) { done[k] = work(list[k], sampler); });
+    std::vector<Index> left;
+    for (std::size_t k = 0; k < list.size(); ++k)
+      if (!done[k]) left.push_back(list[k]);
+    parallel_sort(left, [&](Index a, Index b) { return candidates_[a].point < candidates_[b].point; });
+    return left;
+  }
+
+  /// `work(k, sampler)` for each place k in `points`, block after block as far as they touch.
+  template <class Work>
+  void run_blocks(std::span<const Index> points, std::span<const std::size_t> starts, Work&& work) {
+    rounds_.run(
+        points, starts,
+        [&](std::span<const Index> blocks) {
+          FieldSampler sampler(field_);
+          for (Index b : blocks)
+            for (std::size_t k = starts[b]; k < starts[b + 1]; ++k) work(k, sampler);
+        },
+        [&](std::size_t done) {
+          if (!progress_) return;
+          progress_->throw_if_cancelled();
+          progress_->update(static_cast<double>(done) / static_cast<double>(starts.size()));
+        });
+  }
+
+  /// What there is to know about a point with a cut too near to it; nothing for others.
+  std::optional<Candidate> candidate(Index p, FieldSampler& sampler) const {
+    const RegionIndex own = lattice_.first_region[p];
+    const std::optional<RegionSet> regions = pure_regions(lattice_, p);
+    if (!regions) return std::nullopt;
+    double nearest = 0, nearest_share = 0;
     Index other = no_index;
     bool too_near = false;
-    for (const Index* t = stars_.begin(p); t != stars_.end(p); ++t)
-      for (Index q : lattice_.tets[*t]) {
-        if (lattice_.sides[q] == lattice_.sides[p]) continue;
-        const double share = phi / (phi - lattice_.distances[q]);
+    for (Index t : star(p))
+      for (Index q : lattice_.tets[t]) {
+        const RegionIndex r = lattice_.first_region[q];
+        if (r == own) continue;
+        const double share = lattice_.cut_share(p, own, q, r);
         too_near |= share <= (lattice_.is_centre[p] == lattice_.is_centre[q] ? near_long : near_short);
         const double length = share * (lattice_.positions[q] - lattice_.positions[p]).norm();
         if (other == no_index || length < nearest || (length == nearest && q < other)) {
           nearest = length;
+          nearest_share = share;
           other = q;
         }
       }
-    if (!too_near) return false;
+    if (!too_near) return std::nullopt;
     const Vec3 &from = lattice_.positions[p], &to = lattice_.positions[other];
-    target.room = (to - from).norm();
-    target.on_edge = from + (to - from) * (phi / (phi - lattice_.distances[other]));
-    target.projected = from;
+    Candidate c;
+    c.point = p;
+    c.at_junction = regions->size() > 2;
+    c.room = (to - from).norm();
+    c.on_edge = from + (to - from) * nearest_share;
+    c.beyond_edge = lattice_.first_region[other];
+    c.projected = from;
     // Past a ridge of the distance the gradient leads anywhere.
-    if (!sampler.project(target.projected) || (target.projected - from).norm() > target.room)
-      target.projected = target.on_edge;
-    return true;
+    if (!sampler.project(*regions, c.projected) || (c.projected - from).norm() > c.room)
+      c.projected = c.on_edge;
+    const double distance = c.at_junction ? (c.projected - from).norm() : lattice_.margin(p);
+    c.rank = static_cast<int>(std::min(distance / c.room, 1.0) * distance_steps);
+    return c;
   }
 
   void find_candidates() {
-    const std::vector<Index>& near = lattice_.near_points;
-    struct Found {
-      Candidate candidate;
-      Target target;
-      bool operator<(const Found& o) const { return candidate < o.candidate; }
-    };
-    std::vector<Found> found = parallel_collect<Found>(
-        0, near.size(), 1024, [&](std::size_t begin, std::size_t end, std::vector<Found>& out) {
+    const std::vector<Index>& near = lattice_.stars.points();
+    candidates_ = parallel_collect<Candidate>(
+        0, near.size(), 1024, [&](std::size_t begin, std::size_t end, std::vector<Candidate>& out) {
           FieldSampler sampler(field_);
-          Found f;
           for (std::size_t i = begin; i < end; ++i)
-            if (find_target(near[i], sampler, f.target)) {
-              f.candidate = {std::abs(lattice_.distances[near[i]]), near[i]};
-              out.push_back(f);
-            }
+            if (const std::optional<Candidate> c = candidate(near[i], sampler)) out.push_back(*c);
         });
-    parallel_sort(found);
-    candidates_.reserve(found.size());
-    targets_.reserve(found.size());
-    for (const Found& f : found) candidates_.push_back(f.candidate), targets_.push_back(f.target);
+    parallel_sort(candidates_);
   }
 
   /// True if all tets around the point keep good angles with the point at `place`.
   bool star_holds(Index p, const Vec3& place) const {
-    for (const Index* t = stars_.begin(p); t != stars_.end(p); ++t) {
+    for (Index t : star(p)) {
       std::array<const Vec3*, 4> x;
       for (std::size_t k = 0; k < 4; ++k) {
-        const Index v = lattice_.tets[*t][k];
+        const Index v = lattice_.tets[t][k];
         x[k] = v == p ? &place : &lattice_.positions[v];
       }
-      if (!(min_solid_angle(*x[0], *x[1], *x[2], *x[3]) >= smallest_angle)) return false;
+      if (!(min_solid_angle_tangent(*x[0], *x[1], *x[2], *x[3]) >= smallest_tangent)) return false;
     }
     return true;
   }
 
-  bool move(std::size_t i) {
-    const Index p = candidates_[i].point;
-    const Target& target = targets_[i];
-    const Vec3* place = star_holds(p, target.projected) ? &target.projected
-                        : star_holds(p, target.on_edge) ? &target.on_edge
-                                                        : nullptr;
-    return place && put(p, *place);
+  bool move(const Candidate& c) {
+    const bool projected = star_holds(c.point, c.projected);
+    if (!projected && !star_holds(c.point, c.on_edge)) return false;
+    const std::optional<RegionSet> regions = regions_if_moved(lattice_, c.point);
+    if (!regions) return false;
+    // The cut of an edge is on one sheet, not on a curve.
+    const bool sheet = regions->size() == 2 && regions->contains(c.beyond_edge);
+    if (projected && (c.projected != c.on_edge || sheet)) return put(c.point, c.projected);
+    return sheet && star_holds(c.point, c.on_edge) && put(c.point, c.on_edge);
   }
 
-  /// Onto the interface at `place`, if that keeps the arrangement.
   bool put(Index p, const Vec3& place) {
-    if (!may_move_onto_interface(lattice_, stars_, p)) return false;
     lattice_.positions[p] = place;
-    lattice_.sides[p] = Side::on;
+    lattice_.is_on[p] = 1;
     return true;
   }
 
@@ -162,8 +241,8 @@ class Mover {
   Vec3 middle_of_star(Index p) const {
     Vec3 sum = Vec3::Zero();
     double count = 0;
-    for (const Index* t = stars_.begin(p); t != stars_.end(p); ++t)
-      for (Index q : lattice_.tets[*t])
+    for (Index t : star(p))
+      for (Index q : lattice_.tets[t])
         if (q != p) {
           sum += lattice_.positions[q];
           ++count;
@@ -172,12 +251,14 @@ class Mover {
   }
 
   /// Tries places of the interface nearer to the middle of the star, where its tets are less thin.
-  bool slide(std::size_t i, FieldSampler& sampler) {
-    const Index p = candidates_[i].point;
+  bool slide(const Candidate& c, FieldSampler& sampler) {
+    const Index p = c.point;
+    const std::optional<RegionSet> regions = regions_if_moved(lattice_, p);
+    if (!regions) return false;
     const Vec3 middle = middle_of_star(p);
-    for (double share : {0.5, 1.0}) {
+    for (double share : {0.0, 0.5, 1.0}) {
       Vec3 place = lattice_.positions[p] + share * (middle - lattice_.positions[p]);
-      if (sampler.project(place) && (place - lattice_.positions[p]).norm() <= targets_[i].room &&
+      if (sampler.project(*regions, place) && (place - lattice_.positions[p]).norm() <= c.room &&
           star_holds(p, place))
         return put(p, place);
     }
@@ -185,101 +266,132 @@ class Mover {
   }
 
   double worst_piece(Index p) const {
-    double worst = 4;
-    for (const Index* t = stars_.begin(p); t != stars_.end(p); ++t)
-      worst = std::min(worst, worst_inside_angle(lattice_, lattice_.tets[*t]));
+    double worst = 1;
+    for (Index t : star(p)) worst = std::min(worst, worst_piece_tangent(lattice_, lattice_.tets[t]));
     return worst;
   }
 
   /// Puts a point where the worst piece of its star is best, of where it is and some places. The point keeps
-  /// its side, and the lattice its angles.
+  /// its region, and the lattice its angles.
   bool take_best(Index p, std::span<const Vec3> places, FieldSampler& sampler) {
-    const bool on = lattice_.sides[p] == Side::on;
-    Vec3 best_place = lattice_.positions[p];
-    const Vec3 from = best_place;
-    float best_distance = lattice_.distances[p];
+    const bool on = lattice_.is_on[p];
+    const Vec3 from = lattice_.positions[p];
+    Vec3 best_place = from;
+    const std::span<float> values = lattice_.star_values(p);
+    std::vector<float> best_values(values.begin(), values.end());
     double best = worst_piece(p);
     for (const Vec3& place : places) {
-      const double reached = on ? best_distance : sampler.at(place);
-      if ((reached < 0) != (best_distance < 0) || beyond_band(reached) || !star_holds(p, place)) continue;
+      if (!on) {
+        const NearestRegion there = sampler.nearest(place);
+        if (there.region != lattice_.first_region[p] || there.margin >= field_.band()) continue;
+      }
+      if (!star_holds(p, place)) continue;
       lattice_.positions[p] = place;
-      lattice_.distances[p] = static_cast<float>(reached);
+      if (!on) sampler.values(place, lattice_.star_regions(p), values.data());
       if (const double worst = worst_piece(p); worst > best) {
         best = worst;
         best_place = place;
-        best_distance = lattice_.distances[p];
+        best_values.assign(values.begin(), values.end());
       }
     }
     lattice_.positions[p] = best_place;
-    lattice_.distances[p] = best_distance;
+    std::copy(best_values.begin(), best_values.end(), values.begin());
     return best_place != from;
   }
 
   /// A refused point makes thin pieces where it is; farther from the interface they are thicker.
-  bool push_away(std::size_t i, FieldSampler& sampler) {
-    const Index p = candidates_[i].point;
+  bool push_away(const Candidate& c, FieldSampler& sampler) {
+    const Index p = c.point;
     Vec3 gradient;
-    const double value = sampler.at(lattice_.positions[p], gradient);
+    const double value =
+        sampler.between(lattice_.first_region[p], c.beyond_edge, lattice_.positions[p], gradient);
     const double slope = gradient.norm();
     if (!(slope > 0)) return false;
     std::vector<Vec3> places;
     for (double share : {0.15, 0.25, 0.35, 0.5})
-      if (const double step = share * targets_[i].room - std::abs(value); step > 0)
-        places.push_back(lattice_.positions[p] + gradient * ((value < 0 ? -step : step) / slope));
+      if (const double step = share * c.room - std::abs(value); step > 0)
+        places.push_back(lattice_.positions[p] - gradient * (step / slope));
     return take_best(p, places, sampler);
   }
 
-  /// Points of stars with a piece that is still poor: those on the interface slide along it, the others step
-  /// about.
-  void mend_poor_stars(FieldSampler& sampler) {
-    const std::vector<Index> poor = parallel_collect<Index>(
-        0, lattice_.tets.size(), 1 << 12, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
-          for (std::size_t i = begin; i < end; ++i)
-            if (is_near(lattice_.tets[i]) && worst_inside_angle(lattice_, lattice_.tets[i]) < smallest_angle)
-              out.push_back(static_cast<Index>(i));
-        });
-    std::vector<Index> points;
-    for (Index t : poor)
-      for (Index v : lattice_.tets[t])
-        if (stars_.lists(v)) points.push_back(v);
-    parallel_sort_unique(points);
-    std::vector<Vec3> places;
-    for (Index p : points) {
-      const Vec3 from = lattice_.positions[p], to_middle = middle_of_star(p) - from;
-      places.clear();
-      if (lattice_.sides[p] == Side::on) {
-        for (double share : {0.25, 0.5, 1.0}) {
-          Vec3 place = from + share * to_middle;
-          if (sampler.project(place)) places.push_back(place);
-        }
-      } else {
-        Vec3 gradient;
-        const double value = sampler.at(from, gradient);
-        // Shares of the distance itself keep to the side without knowing how large the cells are.
-        for (double share : {-0.4, -0.2, 0.3, 0.6})
-          places.push_back(from + gradient * (share * value / std::max(1e-3, gradient.squaredNorm())));
-        places.push_back(from + 0.5 * to_middle);
-      }
-      take_best(p, places, sampler);
-    }
+  std::vector<Index> tets_near_interfaces() const {
+    return parallel_collect<Index>(0, lattice_.tets.size(), 1 << 14,
+                                   [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+                                     for (std::size_t i = begin; i < end; ++i)
+                                       for (Index v : lattice_.tets[i])
+                                         if (lattice_.stars.lists(v)) {
+                                           out.push_back(static_cast<Index>(i));
+                                           break;
+                                         }
+                                   });
   }
 
-  /// True for tets with a point at the interface: only these can be poor.
-  bool is_near(const Tet& t) const {
-    return stars_.lists(t[0]) || stars_.lists(t[1]) || stars_.lists(t[2]) || stars_.lists(t[3]);
+  /// Moves the points of those of the tets that have a piece that is still poor: points on an interface slide
+  /// along it, the others step about. Returns the tets that may be poor after that.
+  std::vector<Index> mend_poor_stars(const std::vector<Index>& tets) {
+    std::vector<Index> points = parallel_collect<Index>(
+        0, tets.size(), 1 << 12, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+          for (std::size_t i = begin; i < end; ++i) {
+            const Tet& t = lattice_.tets[tets[i]];
+            if (worst_piece_tangent(lattice_, t) >= smallest_tangent) continue;
+            for (Index v : t)
+              if (lattice_.stars.lists(v)) out.push_back(v);
+          }
+        });
+    parallel_sort_unique(points);
+    const std::vector<std::size_t> starts = scatter_blocks(points, one_group);
+    run_blocks(points, starts, [&](std::size_t k, FieldSampler& sampler) { mend(points[k], sampler); });
+    std::vector<Index> touched;
+    for (Index p : points)
+      for (Index t : star(p)) touched.push_back(t);
+    parallel_sort_unique(touched);
+    return touched;
+  }
+
+  void mend(Index p, FieldSampler& sampler) {
+    std::vector<Vec3> places;
+    const Vec3 from = lattice_.positions[p], to_middle = middle_of_star(p) - from;
+    if (lattice_.is_on[p]) {
+      const std::optional<RegionSet> regions = pure_regions(lattice_, p);
+      if (!regions) return;
+      for (double share : {0.25, 0.5, 1.0}) {
+        Vec3 place = from + share * to_middle;
+        if (sampler.project(*regions, place)) places.push_back(place);
+      }
+    } else if (const RegionIndex other = nearest_other(p); other != on_interface) {
+      Vec3 gradient;
+      const double value = sampler.between(lattice_.first_region[p], other, from, gradient);
+      // Shares of the distance itself keep to the side without knowing how large the cells are.
+      for (double share : {-0.4, -0.2, 0.3, 0.6})
+        places.push_back(from + gradient * (share * value / std::max(1e-3, gradient.squaredNorm())));
+      places.push_back(from + 0.5 * to_middle);
+    }
+    take_best(p, places, sampler);
+  }
+
+  /// The region of the star that is nearest after the point's own; on_interface if there is none.
+  RegionIndex nearest_other(Index p) const {
+    RegionIndex best = on_interface;
+    float smallest = HUGE_VALF;
+    const auto regions = lattice_.star_regions(p);
+    const auto values = lattice_.star_values(p);
+    for (std::size_t i = 0; i < regions.size(); ++i)
+      if (regions[i] != lattice_.first_region[p] && values[i] < smallest)
+        smallest = values[i], best = regions[i];
+    return best;
   }
 
   LabelledLattice& lattice_;
   const MaterialField& field_;
-  const StarMap stars_;
+  IndependentRounds rounds_;
+  Progress* progress_;
   std::vector<Candidate> candidates_;
-  std::vector<Target> targets_;
 };
 
 }  // namespace
 
 MoveCounts move_points(LabelledLattice& lattice, const MaterialField& field, Progress* progress) {
-  return Mover(lattice, field).run(progress);
+  return Mover(lattice, field, progress).run();
 }
 
 }  // namespace tetwright

@@ -2,23 +2,17 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <cstdio>
-#include <numeric>
 
 #include "common/error.h"
 #include "common/parallel_sort.h"
-#include "mesher/ray_crossing.h"
+#include "common/predicates.h"
+#include "common/self_intersection.h"
+#include "mesher/surface_components.h"
+#include "mesher/surface_nesting.h"
 
 namespace tetwright {
 
 namespace {
-
-std::string place(const Vec3& p) {
-  char text[96];
-  std::snprintf(text, sizeof text, "(%.9g, %.9g, %.9g)", p.x(), p.y(), p.z());
-  return text;
-}
 
 /// For each point the number of the first one with equal coordinates.
 std::vector<Index> first_equal_point(const std::vector<Vec3>& points) {
@@ -44,196 +38,55 @@ Triangle canonical(Triangle t) {
   return t;
 }
 
-/// One side of a triangle; sides that join the same two points stand together when sorted.
-struct Side {
-  std::uint64_t edge;  ///< smaller point << 32 | larger point
-  std::uint32_t triangle;
-  std::uint32_t forward;  ///< 1 when the triangle runs from the smaller to the larger point
-  auto operator<=>(const Side&) const = default;
+/// True if the corners are on one line, exactly.
+bool flat(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 u = b - a, v = c - a;
+  // Rounding leaves less than 1e-14 of the product of the lengths.
+  if (u.cross(v).squaredNorm() > 1e-24 * u.squaredNorm() * v.squaredNorm()) return false;
+  return orient2d(a, b, c, 0, 1) == 0 && orient2d(a, b, c, 1, 2) == 0 && orient2d(a, b, c, 2, 0) == 0;
+}
+
+/// The points that triangles use, in their order; renumbers the triangles accordingly.
+std::vector<Vec3> keep_used(const std::vector<Vec3>& points, std::vector<Triangle>& triangles) {
+  std::vector<Index> renumbered(points.size(), no_index);
+  for (const Triangle& t : triangles)
+    for (Index v : t) renumbered[v] = 0;
+  std::vector<Vec3> used;
+  for (Index i = 0; i < points.size(); ++i)
+    if (renumbered[i] != no_index) {
+      renumbered[i] = static_cast<Index>(used.size());
+      used.push_back(points[i]);
+    }
+  for (Triangle& t : triangles)
+    for (Index& v : t) v = renumbered[v];
+  return used;
+}
+
+struct Cleaned {
+  std::vector<Vec3> points;
+  std::vector<Triangle> triangles;  ///< canonical
+  std::vector<char> two_sided;      ///< of each triangle: wound both ways in the file
 };
 
-std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles) {
-  std::vector<Side> sides(3 * triangles.size());
-  parallel_for(0, triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t)
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint64_t a = triangles[t][k], b = triangles[t][(k + 1) % 3];
-        sides[3 * t + k] = {std::min(a, b) << 32 | std::max(a, b), static_cast<std::uint32_t>(t), a < b};
-      }
-  });
-  parallel_sort(sides);
-  return sides;
-}
-
-/// Calls `body(begin, end)` for each group of sides on one edge.
-template <class Body>
-void for_each_edge(const std::vector<Side>& sides, Body&& body) {
-  for (std::size_t i = 0, j; i < sides.size(); i = j) {
-    for (j = i + 1; j < sides.size() && sides[j].edge == sides[i].edge;) ++j;
-    body(i, j);
-  }
-}
-
-/// Sum of +1 for each side that runs forward and -1 for each that runs back.
-int balance(const std::vector<Side>& sides, std::size_t begin, std::size_t end) {
-  int sum = 0;
-  for (std::size_t i = begin; i < end; ++i) sum += sides[i].forward ? 1 : -1;
-  return sum;
-}
-
-bool balanced(const std::vector<Side>& sides) {
-  bool all = true;
-  for_each_edge(sides, [&](std::size_t i, std::size_t j) { all &= balance(sides, i, j) == 0; });
-  return all;
-}
-
-void check_no_holes(const std::vector<Side>& sides, const std::vector<Vec3>& points,
-                    const std::string& file) {
-  std::size_t open = 0;
-  std::uint64_t first_edge = 0;
-  for_each_edge(sides, [&](std::size_t i, std::size_t j) {
-    if ((j - i) % 2 && open++ == 0) first_edge = sides[i].edge;
-  });
-  if (open == 0) return;
-  const Vec3 middle = 0.5 * (points[first_edge >> 32] + points[first_edge & 0xffffffffu]);
-  throw InputError(file, 0,
-                   "the surface is not closed: " + std::to_string(open) +
-                       (open == 1 ? " boundary edge" : " boundary edges") + ", the first at " +
-                       place(middle) + "; close its holes first");
-}
-
-/// Turns triangles over so that neighbours across edges of exactly two triangles are wound alike, in each
-/// component the way most of its triangles are.
-void wind_alike(std::vector<Triangle>& triangles, const std::vector<Side>& sides) {
-  struct Neighbour {
-    std::uint32_t triangle, other;
-    std::uint32_t same_direction;
-    auto operator<=>(const Neighbour&) const = default;
-  };
-  std::vector<Neighbour> neighbours;
-  for_each_edge(sides, [&](std::size_t i, std::size_t j) {
-    if (j - i != 2) return;
-    const std::uint32_t same = sides[i].forward == sides[i + 1].forward;
-    neighbours.push_back({sides[i].triangle, sides[i + 1].triangle, same});
-    neighbours.push_back({sides[i + 1].triangle, sides[i].triangle, same});
-  });
-  parallel_sort(neighbours);
-  std::vector<std::size_t> start(triangles.size() + 1, 0);
-  for (const Neighbour& n : neighbours) ++start[n.triangle + 1];
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  enum : std::uint8_t { unseen, kept, turned };
-  std::vector<std::uint8_t> state(triangles.size(), unseen);
-  std::vector<std::uint32_t> component;  // and at the same time the queue of its flooding
-  for (std::uint32_t seed = 0; seed < triangles.size(); ++seed) {
-    if (state[seed] != unseen) continue;
-    state[seed] = kept;
-    component.assign(1, seed);
-    std::size_t against = 0;
-    for (std::size_t i = 0; i < component.size(); ++i) {
-      const std::uint32_t t = component[i];
-      against += state[t] == turned;
-      for (std::size_t k = start[t]; k < start[t + 1]; ++k) {
-        const Neighbour& n = neighbours[k];
-        if (state[n.other] != unseen) continue;
-        state[n.other] = (state[t] == turned) != (n.same_direction == 1) ? turned : kept;
-        component.push_back(n.other);
-      }
-    }
-    if (2 * against > component.size())
-      for (std::uint32_t t : component) state[t] = state[t] == turned ? kept : turned;
-  }
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    if (state[t] == turned) std::swap(triangles[t][1], triangles[t][2]);
-}
-
-struct Component {
-  std::vector<std::uint32_t> triangles;
-  Vec3 low, high;
-  double volume = 0;  ///< signed
-  bool turn = false;
-};
-
-/// The parts of the surface that hang together by edges, in the order of their first triangles.
-std::vector<Component> components(const ClosedSurface& s, const std::vector<Side>& sides) {
-  std::vector<std::uint32_t> parent(s.triangles.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t t) {
-    while (parent[t] != t) t = parent[t] = parent[parent[t]];
-    return t;
-  };
-  for_each_edge(sides, [&](std::size_t i, std::size_t j) {
-    for (std::size_t k = i + 1; k < j; ++k) {
-      const std::uint32_t a = root(sides[i].triangle), b = root(sides[k].triangle);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
-  });
-  std::vector<Component> parts;
-  std::vector<std::uint32_t> number(s.triangles.size());
-  const Vec3 centre = 0.5 * (s.low + s.high);
-  for (std::uint32_t t = 0; t < s.triangles.size(); ++t) {
-    const std::uint32_t r = root(t);
-    const auto& [a, b, c] = s.triangles[t];
-    if (r == t) {
-      number[t] = static_cast<std::uint32_t>(parts.size());
-      parts.emplace_back();
-      parts.back().low = parts.back().high = s.points[a];
-    }
-    Component& part = parts[number[r]];
-    part.triangles.push_back(t);
-    for (Index v : {a, b, c}) {
-      part.low = part.low.cwiseMin(s.points[v]);
-      part.high = part.high.cwiseMax(s.points[v]);
-    }
-    part.volume += (s.points[a] - centre).dot((s.points[b] - centre).cross(s.points[c] - centre)) / 6;
-  }
-  return parts;
-}
-
-/// True if the point is inside the component, whichever way that is wound.
-bool contains(const ClosedSurface& s, const Component& part, const Vec3& point) {
-  if ((point.array() < part.low.array()).any() || (point.array() > part.high.array()).any()) return false;
-  int winding = 0;
-  for (std::uint32_t t : part.triangles) {
-    const Vec3 &a = s.points[s.triangles[t][0]], &b = s.points[s.triangles[t][1]],
-               &c = s.points[s.triangles[t][2]];
-    if (std::max({a.x(), b.x(), c.x()}) < point.x() || std::min({a.x(), b.x(), c.x()}) > point.x() ||
-        std::max({a.y(), b.y(), c.y()}) < point.y() || std::min({a.y(), b.y(), c.y()}) > point.y())
-      continue;
-    const int crossing = vertical_crossing(a, b, c, point);
-    if (crossing && at_or_above(a, b, c, crossing, point)) winding += crossing;
-  }
-  return winding != 0;
-}
-
-/// Turns outermost components outwards, and with each what it contains, so that cavities stay cavities.
-void turn_outwards(ClosedSurface& s, std::vector<Component>& parts) {
-  if (std::none_of(parts.begin(), parts.end(), [](const Component& c) { return c.volume < 0; })) return;
-  std::vector<std::vector<std::size_t>> containers(parts.size());
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const Vec3& point = s.points[s.triangles[parts[i].triangles[0]][0]];
-    for (std::size_t j = 0; j < parts.size(); ++j)
-      if (i != j && contains(s, parts[j], point)) containers[i].push_back(j);
-  }
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    if (containers[i].empty()) parts[i].turn = parts[i].volume < 0;
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    for (std::size_t j : containers[i])
-      if (containers[j].empty()) parts[i].turn = parts[j].turn;
-  for (Component& part : parts) {
-    if (!part.turn) continue;
-    part.volume = -part.volume;
-    for (std::uint32_t t : part.triangles) std::swap(s.triangles[t][1], s.triangles[t][2]);
-  }
-}
-
-}  // namespace
-
-ClosedSurface close_surface(const TriangleMesh& surface, const std::string& file) {
+/// Merges equal points, drops unused ones, triangles with equal corners and all but one of each set of
+/// triangles with the same corners: the first one of the way in which most of them are wound.
+Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<SurfaceFinding>& findings) {
+  if (surface.triangles.empty()) throw InputError(file, 0, "there are no triangles");
   for (const Vec3& p : surface.points)
     if (!p.allFinite()) throw InputError(file, 0, "a point has a coordinate that is not finite");
   const std::vector<Index> first = first_equal_point(surface.points);
-  ClosedSurface s;
-  s.triangles.reserve(surface.triangles.size());
+
+  struct Entry {
+    Index low, middle, high;
+    Index turned;  ///< 1 when wound low, high, middle
+    auto operator<=>(const Entry&) const = default;
+    bool same_corners(const Entry& e) const { return low == e.low && middle == e.middle && high == e.high; }
+  };
+  std::vector<Entry> entries;
+  entries.reserve(surface.triangles.size());
+  std::vector<char> used(surface.points.size(), 0);
+  std::size_t collapsed = 0, repeated = 0, flats = 0;
+  std::optional<Vec3> collapsed_place, repeated_place, flat_place, merged_place, unused_place;
   for (const Triangle& t : surface.triangles) {
     Triangle u;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -241,48 +94,109 @@ ClosedSurface close_surface(const TriangleMesh& surface, const std::string& file
         throw InputError(file, 0,
                          "a triangle names point " + std::to_string(t[k]) + " of " +
                              std::to_string(surface.points.size()));
+      used[t[k]] = 1;
       u[k] = first[t[k]];
     }
-    if (u[0] != u[1] && u[1] != u[2] && u[2] != u[0]) s.triangles.push_back(canonical(u));
-  }
-  if (s.triangles.empty()) throw InputError(file, 0, "there are no triangles");
-  parallel_sort_unique(s.triangles);
-
-  // Points in the order in which the triangles use them.
-  std::vector<Index> renumbered(surface.points.size(), no_index);
-  for (Triangle& t : s.triangles)
-    for (Index& v : t) {
-      if (renumbered[v] == no_index) {
-        renumbered[v] = static_cast<Index>(s.points.size());
-        s.points.push_back(surface.points[v]);
-      }
-      v = renumbered[v];
+    if (u[0] == u[1] || u[1] == u[2] || u[2] == u[0]) {
+      if (collapsed++ == 0) collapsed_place = surface.points[u[0]];
+      continue;
     }
+    u = canonical(u);
+    entries.push_back({u[0], std::min(u[1], u[2]), std::max(u[1], u[2]), u[1] > u[2]});
+  }
+  parallel_sort(entries);
+
+  Cleaned result;
+  result.triangles.reserve(entries.size());
+  for (std::size_t i = 0, j; i < entries.size(); i = j) {
+    for (j = i + 1; j < entries.size() && entries[j].same_corners(entries[i]);) ++j;
+    if (j - i > 1 && repeated == 0) repeated_place = surface.points[entries[i].low];
+    repeated += j - i - 1;
+    result.two_sided.push_back(entries[i].turned != entries[j - 1].turned);
+    // Both ways of winding stand together; the middle one belongs to the majority.
+    const Entry& e = entries[i + (j - i - 1) / 2];
+    result.triangles.push_back(e.turned ? Triangle{e.low, e.high, e.middle}
+                                        : Triangle{e.low, e.middle, e.high});
+  }
+
+  // Points keep their order, so that what is found first is first in the file.
+  std::size_t merged = 0, unused = 0;
+  for (Index i = 0; i < used.size(); ++i) {
+    if (!used[i] && unused++ == 0) unused_place = surface.points[i];
+    if (used[i] && first[i] != i && merged++ == 0) merged_place = surface.points[i];
+  }
+  for (const Triangle& t : result.triangles) {
+    const Vec3 &a = surface.points[t[0]], &b = surface.points[t[1]], &c = surface.points[t[2]];
+    if (flat(a, b, c) && flats++ == 0) flat_place = a;
+  }
+  result.points = keep_used(surface.points, result.triangles);
+  if (flats == result.triangles.size())
+    throw InputError(file, 0, "all triangles are flat, without any area; write the surface again");
+  add_finding(findings, "points at the place of another one", merged, merged_place, "merged");
+  add_finding(findings, "points that no triangle uses", unused, unused_place, "left out");
+  add_finding(findings, "triangles with equal corners", collapsed, collapsed_place, "left out");
+  add_finding(findings, "repeated triangles", repeated, repeated_place, "one of each kept");
+  add_finding(findings, "triangles with all corners on a line", flats, flat_place,
+              "kept, they join their neighbours");
+  return result;
+}
+
+/// A surface of some of the components, closed ones first.
+PreparedSurface assemble(const Cleaned& from, const std::vector<SurfaceComponent>& components,
+                         const std::vector<Index>& chosen) {
+  PreparedSurface s;
+  for (const bool closed : {true, false}) {
+    for (Index c : chosen)
+      if (components[c].closed == closed)
+        for (Index t : components[c].triangles) s.triangles.push_back(from.triangles[t]);
+    if (closed) s.closed = s.triangles.size();
+  }
+  s.points = keep_used(from.points, s.triangles);
   s.low = s.high = s.points[0];
   for (const Vec3& p : s.points) s.low = s.low.cwiseMin(p), s.high = s.high.cwiseMax(p);
-
-  std::vector<Side> sides = sorted_sides(s.triangles);
-  check_no_holes(sides, s.points, file);
-  if (!balanced(sides)) {
-    wind_alike(s.triangles, sides);
-    sides = sorted_sides(s.triangles);
-    if (!balanced(sides))
-      throw InputError(file, 0,
-                       "its triangles cannot all be wound the same way (a one-sided surface or inner walls)");
-  }
-  std::vector<Component> parts = components(s, sides);
-  turn_outwards(s, parts);
-  s.volume = 0;
-  for (const Component& part : parts) s.volume += part.volume;
-  s.area = parallel_sum(0, s.triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    double sum = 0;
-    for (std::size_t t = begin; t < end; ++t) {
-      const auto& [a, b, c] = s.triangles[t];
-      sum += 0.5 * (s.points[b] - s.points[a]).cross(s.points[c] - s.points[a]).norm();
-    }
-    return sum;
+  const Vec3 apex = 0.5 * s.low + 0.5 * s.high;
+  const auto sum = [&](auto&& of_triangle) {
+    return parallel_sum(0, s.triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      double total = 0;
+      for (std::size_t t = begin; t < end; ++t) {
+        const auto& [a, b, c] = s.triangles[t];
+        total += of_triangle(s.points[a], s.points[b], s.points[c]);
+      }
+      return total;
+    });
+  };
+  s.area = sum([](const Vec3& a, const Vec3& b, const Vec3& c) { return 0.5 * (b - a).cross(c - a).norm(); });
+  s.volume = sum([&](const Vec3& a, const Vec3& b, const Vec3& c) {
+    return (a - apex).dot((b - apex).cross(c - apex)) / 6;
   });
   return s;
+}
+
+}  // namespace
+
+SurfaceInput prepare_surface(const TriangleMesh& surface, const std::string& file, NestedRule nested) {
+  SurfaceInput result;
+  Cleaned cleaned = clean(surface, file, result.findings);
+  const std::vector<SurfaceComponent> components =
+      split_into_components(cleaned.points, cleaned.triangles, cleaned.two_sided, file, result.findings);
+  const auto crossing = self_intersections(cleaned.points, cleaned.triangles);
+  if (!crossing.empty())
+    add_finding(result.findings, "pairs of triangles that intersect", crossing.size(),
+                cleaned.points[cleaned.triangles[crossing[0].first][0]],
+                "kept; what is inside any part is inside");
+  const ArrangedComponents arranged =
+      arrange_components(cleaned.points, cleaned.triangles, components, crossing, nested, result.findings);
+  std::vector<char> elsewhere = arranged.redundant;
+  for (Index c : arranged.nested) elsewhere[c] = 1;
+  std::vector<Index> chosen;
+  for (Index c = 0; c < components.size(); ++c) {
+    if (!elsewhere[c]) chosen.push_back(c);
+    if (arranged.turn[c])
+      for (Index t : components[c].triangles) std::swap(cleaned.triangles[t][1], cleaned.triangles[t][2]);
+  }
+  result.surface = assemble(cleaned, components, chosen);
+  for (Index c : arranged.nested) result.nested.push_back(assemble(cleaned, components, {c}));
+  return result;
 }
 
 }  // namespace tetwright

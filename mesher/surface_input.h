@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,24 +9,64 @@
 
 namespace tetwright {
 
-/// A surface that encloses a volume: every edge is run through as often one way as the other, outermost
-/// components are wound outwards (normals point out), cavities inwards. It may intersect itself.
-struct ClosedSurface {
-  std::vector<Vec3> points;  ///< input units, no two equal
-  std::vector<Triangle> triangles;
-  Vec3 low, high;  ///< bounding box of the triangles
-  double area;     ///< input units squared
-  double volume;   ///< input units cubed, cavities taken off
+/// What becomes of components inside other ones that they do not intersect.
+enum class NestedRule {
+  automatic,  ///< wound against the encloser: a cavity, or a body within a cavity; alike: nothing changes
+              ///< there
+  cavity,     ///< solid and cavity take turns from the outside to the inside
+  solid,      ///< no cavities
+  material    ///< closed ones become surfaces of their own
 };
 
-/// Makes a closed surface of what a file says: exactly equal points become one, triangles with fewer than
-/// three different points and repeated triangles go away, triangles are wound alike where the file does not
-/// do it, and components that are inside out (a negative volume and in no other component) are turned over
-/// together with what they contain.
+/// A surface ready to be turned into signed distances: inside is where the generalised winding number is at
+/// least 0.5.
+struct PreparedSurface {
+  std::vector<Vec3> points;  ///< input units, no two equal, all used
+  std::vector<Triangle>
+      triangles;  ///< wound alike in each component; no repeats, three different corners each
+  /// The first so many triangles make up the closed components, all of whose edges balance: there the winding
+  /// number is a whole number off the surface.
+  std::size_t closed = 0;
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< bounding box
+  double area = 0;                               ///< input units squared
+  /// Input units cubed, cavities taken off; of open components their cone from the middle of the box.
+  double volume = 0;
+};
+
+/// Something in an input that a clean closed surface does not have.
+struct SurfaceFinding {
+  std::string what;           ///< plural, for example "boundary edges of holes"
+  std::size_t count = 0;      ///< at least 1
+  std::optional<Vec3> place;  ///< of the first one, input units
+  std::string done;           ///< what was done about it
+};
+
+struct SurfaceInput {
+  PreparedSurface surface;
+  /// With NestedRule::material the enclosed components, wound outwards, enclosing ones before what they
+  /// enclose, so that later ones carve earlier ones.
+  std::vector<PreparedSurface> nested;
+  std::vector<SurfaceFinding> findings;
+};
+
+/// Makes the best of what a file says and lists whatever is done to it, so that a clean closed surface has no
+/// findings. In this order:
 ///
-/// Throws InputError that begins with `file`: no triangles, coordinates that are not finite, indices out of
-/// range, a surface with holes (with the number of boundary edges and the place of the first one), a surface
-/// that cannot be wound consistently.
-ClosedSurface close_surface(const TriangleMesh& surface, const std::string& file);
+/// - equal points become one; unused points, triangles with fewer than three different points and repeated
+///   triangles (whichever way they are wound) go;
+/// - triangles are wound alike and in components, inner walls go (surface_components.h);
+/// - components that nothing encloses are turned outwards together with what they enclose, and enclosed ones
+///   as `nested` says (surface_nesting.h). A component counts as enclosed where it does not intersect the
+///   other one. Where an open component's outside is unclear it stays as it is.
+///
+/// Holes and self-intersections stay: the winding number deals with them. A cavity where two overlapping
+/// components both enclose it is filled, as the winding number there is 1 + 1 - 1.
+///
+/// O(n log n) and pairs of triangles that intersect; the same for any number of threads.
+///
+/// Throws InputError that begins with `file`: no triangles or only flat ones, coordinates that are not
+/// finite, indices out of range, a one-sided surface.
+SurfaceInput prepare_surface(const TriangleMesh& surface, const std::string& file,
+                             NestedRule nested = NestedRule::automatic);
 
 }  // namespace tetwright

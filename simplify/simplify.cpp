@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/error.h"
+#include "common/interfaces.h"
 #include "common/parallel.h"
 #include "common/portable_math.h"
 #include "simplify/block.h"
@@ -72,7 +73,9 @@ class Simplifier {
       report_->seconds_simplify = loop_end - build;
       report_->seconds_close = seconds_since(start) - loop_end;
     }
-    return std::move(mesh_).to_mesh();
+    TetMesh mesh = std::move(mesh_).to_mesh();
+    mesh.interfaces = find_interfaces(mesh);
+    return mesh;
   }
 
  private:

@@ -46,7 +46,8 @@ struct SimplifyReport {
 /// Simplifies a valid mesh to about `target_tets` (within 1 % where topology and shapes allow) and improves
 /// its shapes: block iteration of Cutler, Dorsey & McMillan 2004 with a tuned schedule (README.md), then
 /// closing rounds at that count. Every material, component, handle, cavity and interface survives; the
-/// boundary does not come to intersect itself; all tets stay positive by exact sign.
+/// boundary does not come to intersect itself; all tets stay positive by exact sign. The result
+/// has its interface triangles.
 ///
 /// Uses thread_count() threads; with one thread the same input and seed give the same bytes. A mesh that has
 /// fewer tets than the target is only improved. Throws InputError if the mesh has flat, inverted or

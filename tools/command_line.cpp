@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
+#include <map>
 
 #include "common/error.h"
 #include "common/samples.h"
@@ -55,6 +56,13 @@ void add_output(CLI::App& app, CommandLine& c, const char* formats) {
   app.add_option("-o,--output", c.output, formats)->required();
 }
 
+NamedValue split_named(const std::string& text, const char* option, const char* value) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    throw CLI::ValidationError(option, "'" + text + "' is not NAME=" + value);
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
 void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) {
   app.add_option("--resolution", c.resolution,
                  std::string("Finest cells along the longest side (default: ") + default_resolution + ")")
@@ -69,6 +77,40 @@ void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) 
                  "all along it")
       ->check(number_from(0, true))
       ->capture_default_str();
+  app.add_option_function<std::vector<std::string>>(
+         "--material",
+         [&c](const std::vector<std::string>& all) {
+           for (const std::string& text : all) c.materials.push_back(split_named(text, "--material", "FILE"));
+         },
+         "One more surface under a name of its own, NAME=FILE; repeatable. Later materials carve earlier "
+         "ones")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option_function<std::vector<std::string>>(
+         "--layer",
+         [&c](const std::vector<std::string>& all) {
+           for (const std::string& text : all) {
+             c.layers.push_back(split_named(text, "--layer", "THICKNESS"));
+             std::string value = c.layers.back().value;
+             if (const std::string wrong = number_from(0, false)(value); !wrong.empty())
+               throw CLI::ValidationError("--layer", wrong);
+           }
+         },
+         "A shell of the first surface, NAME=THICKNESS in input units; repeatable, outermost first")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--nested", c.nested,
+                 "What closed parts inside others are: auto (wound against them: cavities; alike: solid), "
+                 "cavity, solid, or material (of their own)")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, NestedRule>{{"auto", NestedRule::automatic},
+                                                                    {"cavity", NestedRule::cavity},
+                                                                    {"solid", NestedRule::solid},
+                                                                    {"material", NestedRule::material}},
+                                  CLI::ignore_case));
+  app.add_flag("--keep-outside", c.keep_outside,
+               "Mesh the outside too, in a box, as the material 'outside' with tag 0");
+  app.add_option("--write-sdf", c.write_sdf, "Write the signed distances that were meshed to this .vdb file");
 }
 
 void add_simplifying(CLI::App& app, CommandLine& c) {
@@ -113,12 +155,13 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
       "Exit status: 0 done, 1 written but short of what was asked (check: not valid), 2 wrong call, 3 bad "
       "input,\n"
       "4 nothing to mesh, 5 could not be written or out of memory, 130 interrupted.");
-  constexpr const char* surfaces = "Closed surface: .ply .obj .stl .off";
+  constexpr const char* surfaces =
+      "Surfaces: .ply .obj .stl .off, level sets: .vdb; each a material, later ones carve earlier ones";
   constexpr const char* meshes = "Tet mesh: .vtu .msh .mesh";
   constexpr const char* mesh_out = "Where the mesh goes: .vtu .msh .mesh";
 
   CLI::App* prepare = app.add_subcommand("prepare", "Scan to simulation mesh, in one go");
-  prepare->add_option("INPUT", out.inputs, surfaces)->required();
+  prepare->add_option("INPUT", out.inputs, surfaces);
   add_output(*prepare, out, mesh_out);
   add_simplifying(*prepare, out);
   add_meshing(*prepare, out, "what the target needs");
@@ -126,7 +169,7 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
   add_seed(*prepare, out);
 
   CLI::App* mesh = app.add_subcommand("mesh", "Scan to dense mesh");
-  mesh->add_option("INPUT", out.inputs, surfaces)->required();
+  mesh->add_option("INPUT", out.inputs, surfaces);
   add_output(*mesh, out, mesh_out);
   add_meshing(*mesh, out, "128");
   add_common(*mesh, out);
@@ -173,6 +216,9 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
     out.min_solid_angle_given = chosen->count("--min-solid-angle") > 0;
     if (out.target_tets == 0) throw UsageError("--target-tets 0 leaves no mesh; give 1 or more");
   }
+  if ((out.command == Command::prepare || out.command == Command::mesh) && out.inputs.empty() &&
+      out.materials.empty())
+    throw UsageError("there is no input; name a surface, or give --material NAME=FILE");
   if (out.resolution && out.voxel_size > 0) throw UsageError("give --resolution or --voxel-size, not both");
   return true;
 }

@@ -5,7 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "mesher/surface_input.h"
+
 namespace tetwright {
+
+/// NAME=VALUE as given on the command line.
+struct NamedValue {
+  std::string name, value;
+};
 
 enum class Command { prepare, mesh, simplify, check, sample };
 
@@ -26,7 +33,12 @@ struct CommandLine {
   int resolution = 0;     ///< 0: not given
   double voxel_size = 0;  ///< input units; 0: not given
   bool uniform = false;
-  double adaptivity = 0.05;  ///< finest cells
+  double adaptivity = 0.05;           ///< finest cells
+  std::vector<NamedValue> materials;  ///< after the positional inputs: name and file
+  std::vector<NamedValue> layers;     ///< name and thickness (a number above 0, input units)
+  NestedRule nested = NestedRule::automatic;
+  bool keep_outside = false;
+  std::string write_sdf;  ///< .vdb file; empty: not wanted
 
   unsigned threads = 0;  ///< 0: all
   std::uint64_t seed = 1;

@@ -17,6 +17,7 @@
 #include "common/parallel.h"
 #include "common/samples.h"
 #include "common/topology.h"
+#include "mesher/vdb_files.h"
 #include "tools/progress_bar.h"
 #include "tools/report.h"
 #include "tools/stats_json.h"
@@ -41,6 +42,23 @@ void check_stats_path(const CommandLine& line) {
       throw UsageError("--stats " + line.stats +
                        " is also the name of another file of this call; give it its own");
   check_output_file(line.stats);
+}
+
+bool is_vdb(const std::string& path) { return std::filesystem::path(path).extension() == ".vdb"; }
+
+/// --write-sdf must not take the place of another file either.
+void check_sdf_path(const CommandLine& line) {
+  if (line.write_sdf.empty()) return;
+  if (!is_vdb(line.write_sdf))
+    throw UsageError("--write-sdf " + line.write_sdf +
+                     ": signed distances are written for OpenVDB; give a name that ends in .vdb");
+  std::error_code ignored;
+  std::vector<std::string> inputs = line.inputs;
+  for (const NamedValue& m : line.materials) inputs.push_back(m.value);
+  for (const std::string& input : inputs)
+    if (input == line.write_sdf || std::filesystem::equivalent(input, line.write_sdf, ignored))
+      throw UsageError("--write-sdf " + line.write_sdf + " is also an input; give it another name");
+  check_output_file(line.write_sdf);
 }
 
 /// What an interrupt cancels.
@@ -89,22 +107,44 @@ class Run {
         handler_(progress_) {
     check_output_path(line.output);
     check_stats_path(line);
+    check_sdf_path(line);
     report_.inputs = line.inputs;
+    for (const NamedValue& m : line.materials) report_.inputs.push_back(m.value);
   }
 
   void read_surfaces() {
     const Stopwatch watch;
     progress_.begin_stage("read");
+    std::vector<MaterialSurface> surfaces;
+    const auto add = [&](const std::string& name, const std::string& file, TriangleMesh surface) {
+      report_.input_triangles += surface.triangles.size();
+      report_.input_points += surface.points.size();
+      surfaces.push_back({name, static_cast<MaterialTag>(surfaces.size() + 1), std::move(surface), file});
+    };
     for (const std::string& file : line_.inputs) {
-      MaterialSurface s;
-      s.name = std::filesystem::path(file).stem().string();
-      s.tag = static_cast<MaterialTag>(surfaces_.size() + 1);
-      s.surface = read_surface(file);
-      s.file = file;
-      report_.input_triangles += s.surface.triangles.size();
-      report_.input_points += s.surface.points.size();
-      surfaces_.push_back(std::move(s));
+      if (is_vdb(file))
+        for (NamedSurface& s : read_level_sets(file)) add(s.name, file, std::move(s.surface));
+      else
+        add(std::filesystem::path(file).stem().string(), file, read_surface(file));
     }
+    for (const NamedValue& m : line_.materials) {
+      if (!is_vdb(m.value)) {
+        add(m.name, m.value, read_surface(m.value));
+        continue;
+      }
+      std::vector<NamedSurface> read = read_level_sets(m.value);
+      if (read.size() > 1)
+        throw InputError(m.value, 0,
+                         "holds " + std::to_string(read.size()) + " level sets, but --material " + m.name +
+                             " is one; give the file as an input, and its grids name the materials");
+      add(m.name, m.value, std::move(read[0].surface));
+    }
+    std::vector<MaterialLayer> layers;
+    for (const NamedValue& l : line_.layers)
+      layers.push_back(
+          {l.name, static_cast<MaterialTag>(surfaces.size() + layers.size() + 1), std::stod(l.value)});
+    input_ = prepare_input(std::move(surfaces), std::move(layers), line_.nested);
+    report_.findings = input_.findings;
     report_.seconds_read = watch.seconds();
   }
 
@@ -114,16 +154,18 @@ class Run {
     options.voxel_size = line_.voxel_size;
     options.uniform = line_.uniform;
     options.adaptivity = line_.adaptivity;
+    options.keep_outside = line_.keep_outside;
     if (line_.resolution) {
       options.resolution = line_.resolution;
     } else if (line_.voxel_size == 0 && line_.command == Command::prepare) {
-      options.resolution = resolution_for_target(surfaces_, line_.target_tets);
+      options.resolution = resolution_for_target(input_, line_.target_tets);
     }
-    MeshedSurface dense = mesh_surfaces(surfaces_, options, &progress_);
+    MeshedSurface dense = mesh_surfaces(input_, options, &progress_);
+    if (!line_.write_sdf.empty()) write_fields(*dense.field, line_.write_sdf);
     mesh_ = std::move(dense.mesh);
     report_.mesher = dense.report;
     report_.seconds_mesh = watch.seconds();
-    surfaces_.clear();
+    input_ = {};
     report_.dense = mesh_statistics(mesh_, line_.min_solid_angle);
   }
 
@@ -167,6 +209,7 @@ class Run {
     report_.seconds_total = total_.seconds();
     if (!line_.stats.empty()) write_file_atomically(line_.stats, stats_json(line_, report_).dump(1) + "\n");
     progress_.clear();
+    if (!line_.quiet) print_notes(report_);
     if (!line_.quiet) print_report(line_, report_);
     for (const Shortfall& s : report_.shortfall)
       std::fprintf(stderr, "tetwright: short of --%s: %g was asked, %g reached; held back by: %s\n",
@@ -208,7 +251,7 @@ class Run {
   ProgressBar progress_;
   InterruptHandler handler_;
   RunReport report_;
-  std::vector<MaterialSurface> surfaces_;
+  PreparedInput input_;
   TetMesh mesh_;
 };
 

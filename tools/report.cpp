@@ -55,4 +55,22 @@ void print_report(const CommandLine& line, const RunReport& run) {
               static_cast<double>(peak_bytes()) / 1e6);
 }
 
+void print_notes(const RunReport& run) {
+  std::string line, file;
+  for (const InputFinding& f : run.findings) {
+    line += line.empty() ? "" : "; ";
+    if (f.file != file) line += f.file + ": ";
+    file = f.file;
+    line += std::to_string(f.finding.count) + " " + f.finding.what + " (" + f.finding.done + ")";
+  }
+  if (!line.empty()) std::fprintf(stderr, "tetwright: note: %s\n", line.c_str());
+  if (!run.mesher) return;
+  for (const ThinPartReport& t : run.mesher->thin_parts)
+    std::fprintf(stderr,
+                 "tetwright: note: %s is thinner than %s at %zu places, the first at (%g, %g, %g): %s\n",
+                 t.name == "outside" ? "a gap" : ("'" + t.name + "'").c_str(),
+                 t.refined ? "the smallest cells can hold" : "two cells", t.places, t.first.x(), t.first.y(),
+                 t.first.z(), "parts may tear or join there; a higher resolution keeps them");
+}
+
 }  // namespace tetwright

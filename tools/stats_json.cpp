@@ -43,6 +43,8 @@ nlohmann::json iteration_json(const IterationReport& it) {
           {"skipped", it.skipped},    {"seconds", it.seconds}};
 }
 
+nlohmann::json place_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
 }  // namespace
 
 std::size_t peak_bytes() {
@@ -91,6 +93,19 @@ nlohmann::json stats_json(const CommandLine& line, const RunReport& run) {
     j["dense"]["resolution"] = m.resolution;
     j["dense"]["cells"] = m.cells;
     j["dense"]["lattice_tets"] = m.lattice_tets;
+    j["dense"]["refinement"] = m.refinement;
+    j["dense"]["specks"] = m.specks;
+    j["dense"]["thin_parts"] = nlohmann::json::array();
+    for (const ThinPartReport& t : m.thin_parts)
+      j["dense"]["thin_parts"].push_back(
+          {{"name", t.name}, {"places", t.places}, {"first", place_json(t.first)}, {"refined", t.refined}});
+    j["input"]["findings"] = nlohmann::json::array();
+    for (const InputFinding& f : run.findings) {
+      nlohmann::json finding = {
+          {"file", f.file}, {"what", f.finding.what}, {"count", f.finding.count}, {"done", f.finding.done}};
+      if (f.finding.place) finding["place"] = place_json(*f.finding.place);
+      j["input"]["findings"].push_back(finding);
+    }
     seconds["mesh"] = run.seconds_mesh;
     seconds["sdf"] = m.seconds_sdf;
     seconds["octree"] = m.seconds_octree;

@@ -24,6 +24,7 @@ struct RunReport {
   std::vector<std::string> inputs;
   std::size_t input_triangles = 0, input_points = 0;
   std::string material_field;  ///< of a tet mesh: where its materials came from
+  std::vector<InputFinding> findings;
   std::optional<MesherReport> mesher;
   std::optional<MeshStatistics> dense, result;
   std::map<MaterialTag, std::string> material_names;

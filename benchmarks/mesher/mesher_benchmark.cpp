@@ -1,6 +1,7 @@
 #include "mesher/mesher.h"
 
 #include <benchmark/benchmark.h>
+#include <sys/resource.h>
 
 #include "benchmarks/inputs.h"
 #include "common/parallel.h"
@@ -8,16 +9,11 @@
 namespace tetwright {
 namespace {
 
-/// Surface to dense mesh; seconds of each stage as counters.
-void dense(benchmark::State& state) {
-  const auto surface = benchmark_surface();
-  MesherOptions options;
-  options.resolution = static_cast<int>(state.range(0));
-  const ThreadLimit limit(static_cast<unsigned>(state.range(1)));
-  MeshedSurface meshed;
-  for (auto _ : state) meshed = mesh_surfaces(surface, options, nullptr);
+void report(benchmark::State& state, const MeshedSurface& meshed) {
   const MesherReport& r = meshed.report;
   const double tets = static_cast<double>(meshed.mesh.tets.size());
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
   state.counters["tets"] = tets;
   state.counters["sdf_s"] = r.seconds_sdf;
   state.counters["octree_s"] = r.seconds_octree;
@@ -26,9 +22,59 @@ void dense(benchmark::State& state) {
   state.counters["cut_s"] = r.seconds_cut;
   state.counters["tets/s_without_sdf"] =
       tets / (r.seconds_octree + r.seconds_lattice + r.seconds_move + r.seconds_cut);
+  // Of the whole process so far: look at it with a filter that leaves one case.
+  state.counters["peak_MB"] = static_cast<double>(usage.ru_maxrss) / 1e3;
 }
-BENCHMARK(dense)
-    ->Name("mesh_surfaces")
+
+/// Surface to dense mesh; seconds of each stage as counters. Doubling the cells should take about four times
+/// as long and as much memory.
+void adaptive(benchmark::State& state) {
+  const PreparedInput input = benchmark_input();
+  MesherOptions options;
+  options.resolution = static_cast<int>(state.range(0));
+  const ThreadLimit limit(static_cast<unsigned>(state.range(1)));
+  MeshedSurface meshed;
+  for (auto _ : state) meshed = mesh_surfaces(input, options, nullptr);
+  report(state, meshed);
+}
+BENCHMARK(adaptive)
+    ->Name("mesh_surfaces/adaptive")
+    ->ArgNames({"cells", "threads"})
+    ->ArgsProduct({{64, 128, 256, 512}, {1, 2}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+void uniform(benchmark::State& state) {
+  const PreparedInput input = benchmark_input();
+  MesherOptions options;
+  options.resolution = static_cast<int>(state.range(0));
+  options.uniform = true;
+  const ThreadLimit limit(static_cast<unsigned>(state.range(1)));
+  MeshedSurface meshed;
+  for (auto _ : state) meshed = mesh_surfaces(input, options, nullptr);
+  report(state, meshed);
+}
+BENCHMARK(uniform)
+    ->Name("mesh_surfaces/uniform")
+    ->ArgNames({"cells", "threads"})
+    ->ArgsProduct({{64, 128, 160}, {1, 2}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+/// The same body with two layers: three materials.
+void layered(benchmark::State& state) {
+  PreparedInput input = benchmark_input();
+  const double size = (input.high - input.low).maxCoeff();
+  input.layers = {{"skin", 2, 0.02 * size}, {"fat", 3, 0.04 * size}};
+  MesherOptions options;
+  options.resolution = static_cast<int>(state.range(0));
+  const ThreadLimit limit(static_cast<unsigned>(state.range(1)));
+  MeshedSurface meshed;
+  for (auto _ : state) meshed = mesh_surfaces(input, options, nullptr);
+  report(state, meshed);
+}
+BENCHMARK(layered)
+    ->Name("mesh_surfaces/layered")
     ->ArgNames({"cells", "threads"})
     ->ArgsProduct({{64, 128}, {1, 2}})
     ->Unit(benchmark::kMillisecond)

@@ -5,6 +5,7 @@
 #include "common/error.h"
 #include "common/formats/number_text.h"
 #include "common/formats/text_scanner.h"
+#include "common/interfaces.h"
 
 namespace tetwright {
 
@@ -101,6 +102,28 @@ class Reader {
   bool has_vertices_ = false;
 };
 
+void append_triangles(std::string& out, const std::vector<InterfaceTriangle>& triangles) {
+  const std::vector<MaterialPair> groups = interface_groups(triangles);
+  out += '\n';
+  // Tags, not names: there are readers that know no comments, and a name could be a word they look for.
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    out += "# reference ";
+    append_number(out, g + 1);
+    out += ": " + pair_name(groups[g]) + '\n';
+  }
+  out += "Triangles\n";
+  append_number(out, triangles.size());
+  out += '\n';
+  for (const InterfaceTriangle& t : triangles) {
+    for (Index vertex : t.ids) {
+      append_number(out, std::uint64_t{vertex} + 1);
+      out += ' ';
+    }
+    append_number(out, group_number(groups, t));
+    out += '\n';
+  }
+}
+
 }  // namespace
 
 ReadTetMesh read_medit(std::string_view bytes, const std::string& name) { return Reader(bytes, name).read(); }
@@ -125,6 +148,7 @@ std::string write_medit(const TetMesh& mesh) {
     append_number(out, mesh.materials[t]);
     out += '\n';
   }
+  if (!mesh.interfaces.empty()) append_triangles(out, mesh.interfaces);
   return out + "\nEnd\n";
 }
 

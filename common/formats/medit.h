@@ -13,6 +13,8 @@ namespace tetwright {
 ReadTetMesh read_medit(std::string_view bytes, const std::string& name);
 
 /// The file's content; coordinates come back bit by bit. Names of materials have no place in the format.
+/// Interface triangles, where the mesh has them, make the section Triangles; the reference is the number of
+/// the pair of materials, see interface_groups(), and a comment gives the tags of each pair.
 std::string write_medit(const TetMesh& mesh);
 
 }  // namespace tetwright

@@ -2,16 +2,19 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "common/error.h"
 #include "common/formats/number_text.h"
 #include "common/formats/text_scanner.h"
+#include "common/interfaces.h"
 
 namespace tetwright {
 
 namespace {
 
+constexpr std::int64_t triangle_type = 2;
 constexpr std::int64_t tet_type = 4;
 
 /// The file's numbers of its nodes, which need be neither dense nor sorted, and ours.
@@ -176,23 +179,45 @@ class Reader {
   bool any_tag_ = false;
 };
 
+void append_name(std::string& out, int dimension, std::int64_t group, const std::string& name) {
+  append_number(out, dimension);
+  out += ' ';
+  append_number(out, group);
+  out += " \"";
+  for (char c : name) out += c == '"' || static_cast<unsigned char>(c) < ' ' ? '_' : c;
+  out += "\"\n";
+}
+
+void append_element(std::string& out, std::size_t number, std::int64_t type, std::int64_t physical,
+                    std::int64_t geometrical, std::span<const Index> points) {
+  append_number(out, number);
+  out += ' ';
+  append_number(out, type);
+  out += " 2 ";
+  append_number(out, physical);
+  out += ' ';
+  append_number(out, geometrical);
+  for (Index point : points) {
+    out += ' ';
+    append_number(out, std::uint64_t{point} + 1);
+  }
+  out += '\n';
+}
+
 }  // namespace
 
 ReadTetMesh read_msh(std::string_view bytes, const std::string& name) { return Reader(bytes, name).read(); }
 
 std::string write_msh(const TetMesh& mesh) {
   std::string out = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
-  if (!mesh.material_names.empty()) {
+  const std::vector<MaterialPair> groups = interface_groups(mesh.interfaces);
+  if (!mesh.material_names.empty() || !groups.empty()) {
     out += "$PhysicalNames\n";
-    append_number(out, mesh.material_names.size());
+    append_number(out, groups.size() + mesh.material_names.size());
     out += '\n';
-    for (const auto& [tag, name] : mesh.material_names) {
-      out += "3 ";
-      append_number(out, tag);
-      out += " \"";
-      for (char c : name) out += c == '"' || static_cast<unsigned char>(c) < ' ' ? '_' : c;
-      out += "\"\n";
-    }
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      append_name(out, 2, static_cast<std::int64_t>(g) + 1, pair_name(groups[g], mesh.material_names));
+    for (const auto& [tag, name] : mesh.material_names) append_name(out, 3, tag, name);
     out += "$EndPhysicalNames\n";
   }
   out += "$Nodes\n";
@@ -204,24 +229,22 @@ std::string write_msh(const TetMesh& mesh) {
     append_point(out, mesh.points[i]);
     out += '\n';
   }
+  // Tets first: their numbers are the same with and without triangles, and simple readers look at the first
+  // block of elements.
   out += "$EndNodes\n$Elements\n";
-  append_number(out, mesh.tets.size());
+  append_number(out, mesh.tets.size() + mesh.interfaces.size());
   out += '\n';
-  // The second tag is the geometrical entity: positive, one for each material.
+  // The second tag is the geometrical entity: positive, one for each material, one for each pair.
   std::vector<MaterialTag> tags = mesh.materials;
   std::sort(tags.begin(), tags.end());
   tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    append_number(out, t + 1);
-    out += " 4 2 ";
-    append_number(out, mesh.materials[t]);
-    out += ' ';
-    append_number(out, std::lower_bound(tags.begin(), tags.end(), mesh.materials[t]) - tags.begin() + 1);
-    for (Index vertex : mesh.tets[t]) {
-      out += ' ';
-      append_number(out, std::uint64_t{vertex} + 1);
-    }
-    out += '\n';
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    append_element(out, t + 1, tet_type, mesh.materials[t],
+                   std::lower_bound(tags.begin(), tags.end(), mesh.materials[t]) - tags.begin() + 1,
+                   mesh.tets[t]);
+  for (std::size_t i = 0; i < mesh.interfaces.size(); ++i) {
+    const auto group = static_cast<std::int64_t>(group_number(groups, mesh.interfaces[i]));
+    append_element(out, mesh.tets.size() + i + 1, triangle_type, group, group, mesh.interfaces[i].ids);
   }
   return out + "$EndElements\n";
 }

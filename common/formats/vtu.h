@@ -15,7 +15,8 @@ ReadTetMesh read_vtu(std::string_view bytes, const std::string& name);
 
 /// The file's content: zlib-compressed, points as Float64, the integer cell field "material"; names as the
 /// field "material_names", UTF-8 bytes of lines "tag<TAB>name". A control character in a name becomes an
-/// underscore.
+/// underscore. Tets only: the cell fields are those of a solver's elements, and readers that take every cell
+/// for an element would stumble over interface triangles.
 std::string write_vtu(const TetMesh& mesh);
 
 }  // namespace tetwright

@@ -50,6 +50,27 @@ TEST(MeshFaces, AgreesWithAMapOnRandomTetsAndAnyThreads) {
   }
 }
 
+TEST(MeshFaces, CandidatesLeaveTheFacesOfThreeFlaggedPoints) {
+  Random random(7);
+  std::vector<Tet> tets(5000);
+  for (Tet& tet : tets)
+    for (Index& v : tet) v = random.below(300);
+  std::vector<std::uint8_t> flagged(300);
+  for (std::uint8_t& f : flagged) f = static_cast<std::uint8_t>(random.below(2));
+  std::vector<MeshFace> expected = mesh_faces(tets, 300);
+  std::erase_if(expected, [&](const MeshFace& f) {
+    return !(flagged[f.ids[0]] && flagged[f.ids[1]] && flagged[f.ids[2]]);
+  });
+  const std::vector<MeshFace> faces = mesh_faces(tets, 300, &flagged);
+  ASSERT_EQ(faces.size(), expected.size());
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    EXPECT_EQ(faces[i].ids, expected[i].ids);
+    EXPECT_EQ(faces[i].first, expected[i].first);
+    EXPECT_EQ(faces[i].second, expected[i].second);
+    EXPECT_EQ(faces[i].count, expected[i].count);
+  }
+}
+
 TEST(MeshFaces, Empty) { EXPECT_TRUE(mesh_faces({}, 0).empty()); }
 
 }  // namespace

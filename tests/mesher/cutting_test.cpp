@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
 #include <map>
 #include <set>
 
 #include "common/quality.h"
+#include "lattices.h"
 #include "test_surfaces.h"
 
 namespace tetwright {
@@ -14,124 +17,156 @@ namespace {
 /// The corners of the regular tet, positive.
 const std::array<Vec3, 4> corners{Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, -1, 1), Vec3(-1, 1, -1)};
 
+/// Somewhere within the simplex of the corners, different for each, the same for all pieces.
 Vec3 place(const CutCase& cut, PieceVertex v) {
-  if (v.from == v.to) return corners[v.from];
-  // A different place on every edge, the same from both ends.
-  const int a = std::min(v.from, v.to), b = std::max(v.from, v.to);
-  const double share = 0.3 + 0.06 * a + 0.03 * b + 0.01 * static_cast<double>(cut.ranks[0]);
-  return corners[a] + share * (corners[b] - corners[a]);
-}
-
-double case_volume(const CutCase& cut, bool other) {
-  std::array<Piece, 3> pieces;
-  double sum = 0;
-  for (int p = 0, n = cut_inside(cut, other, pieces); p < n; ++p) {
-    std::array<Vec3, 4> x;
-    for (int k = 0; k < 4; ++k) x[k] = place(cut, pieces[p][k]);
-    const double v = tet_volume(x[0], x[1], x[2], x[3]);
-    EXPECT_GT(v, 1e-3);
-    sum += v;
+  Vec3 sum = Vec3::Zero();
+  double weights = 0;
+  for (int k = 0; k < 4; ++k) {
+    if (!(v >> k & 1)) continue;
+    const double weight = 1 + 0.2 * ((k * 3 + v + static_cast<int>(cut.ranks[0])) % 4);
+    sum += weight * corners[k];
+    weights += weight;
   }
-  return sum;
+  return sum / weights;
 }
 
+double volume_of(const CutCase& cut, const Piece& piece) {
+  std::array<Vec3, 4> x;
+  for (int k = 0; k < 4; ++k) x[k] = place(cut, piece.vertices[k]);
+  return tet_volume(x[0], x[1], x[2], x[3]);
+}
+
+/// All cases of four corners, each on an interface or in one of four regions.
 template <class Body>
 void for_each_case(Body&& body) {
-  for (int code = 0; code < 81; ++code) {
+  for (int code = 0; code < 625; ++code) {
     std::array<Index, 4> ranks{0, 1, 2, 3};
     do {
       CutCase cut;
-      for (int k = 0, c = code; k < 4; ++k, c /= 3) cut.sides[k] = static_cast<Side>(c % 3 - 1);
+      for (int k = 0, c = code; k < 4; ++k, c /= 5)
+        cut.regions[k] = c % 5 == 4 ? on_interface : static_cast<RegionIndex>(c % 5);
       cut.ranks = ranks;
+      if (std::count(cut.regions.begin(), cut.regions.end(), on_interface) == 4) continue;
       for (bool other : {false, true}) body(cut, other);
     } while (std::next_permutation(ranks.begin(), ranks.end()));
   }
 }
 
-CutCase swapped_sides(CutCase cut) {
-  for (Side& s : cut.sides) s = static_cast<Side>(-static_cast<int>(s));
-  return cut;
-}
-
-TEST(Cutting, InsideAndOutsideAddUp) {
+TEST(Cutting, PiecesFillTheTet) {
   const double whole = tet_volume(corners[0], corners[1], corners[2], corners[3]);
   ASSERT_GT(whole, 0);
   for_each_case([&](const CutCase& cut, bool other) {
-    if (std::all_of(cut.sides.begin(), cut.sides.end(), [](Side s) { return s == Side::on; })) return;
-    // The quadrilateral within the tet is bent: the other side must take the same diagonal. With the sides
-    // swapped, corners 0, 1 and 2, 3 of the order change places and the diagonals 02-13 and 03-12 stay.
-    EXPECT_NEAR(case_volume(cut, other) + case_volume(swapped_sides(cut), other), whole, 1e-12);
+    Pieces pieces;
+    const int n = cut_tet(cut, other, pieces);
+    ASSERT_LE(n, most_pieces);
+    double sum = 0;
+    for (int p = 0; p < n; ++p) {
+      const double v = volume_of(cut, pieces[p]);
+      ASSERT_GT(v, 1e-4);
+      sum += v;
+      // A piece has no corner of another region, and its region is one of the tet's.
+      for (PieceVertex vertex : pieces[p].vertices) {
+        if (!std::has_single_bit(static_cast<unsigned>(vertex))) continue;
+        const RegionIndex r = cut.regions[std::countr_zero(static_cast<unsigned>(vertex))];
+        ASSERT_TRUE(r == on_interface || r == pieces[p].region);
+      }
+      ASSERT_NE(std::count(cut.regions.begin(), cut.regions.end(), pieces[p].region), 0);
+    }
+    ASSERT_NEAR(sum, whole, 1e-12);
   });
+}
+
+/// The triangles that pieces show on the face opposite a corner, with their regions.
+std::set<std::pair<std::set<int>, int>> shown_on(const Pieces& pieces, int n, int dropped) {
+  std::set<std::pair<std::set<int>, int>> shown;
+  for (int p = 0; p < n; ++p)
+    for (int skip = 0; skip < 4; ++skip) {
+      std::set<int> face;
+      bool on_face = true;
+      for (int k = 0; k < 4; ++k) {
+        if (k == skip) continue;
+        face.insert(pieces[p].vertices[k]);
+        on_face &= !(pieces[p].vertices[k] >> dropped & 1);
+      }
+      if (on_face) shown.insert({face, pieces[p].region});
+    }
+  return shown;
 }
 
 // What a case shows on a face follows from that face's corners alone.
 TEST(Cutting, FacesAgreeWithTheNeighbours) {
-  using Vertex = std::pair<int, int>;
-  using Shown = std::set<std::set<Vertex>>;
   for (int dropped = 0; dropped < 4; ++dropped) {
-    std::map<std::vector<int>, Shown> known;
+    std::map<std::vector<int>, std::set<std::pair<std::set<int>, int>>> known;
     for_each_case([&](const CutCase& cut, bool other) {
-      std::array<Piece, 3> pieces;
-      const int n = cut_inside(cut, other, pieces);
-      std::map<std::set<Vertex>, int> faces;
-      for (int p = 0; p < n; ++p)
-        for (int skip = 0; skip < 4; ++skip) {
-          std::set<Vertex> face;
-          for (int k = 0; k < 4; ++k)
-            if (k != skip)
-              face.insert({std::min(pieces[p][k].from, pieces[p][k].to),
-                           std::max(pieces[p][k].from, pieces[p][k].to)});
-          EXPECT_EQ(face.size(), 3u);
-          EXPECT_LE(++faces[face], 2);
-        }
-      Shown shown;
-      for (const auto& [face, count] : faces) {
-        bool on_face = true;
-        for (const Vertex& v : face) on_face &= v.first != dropped && v.second != dropped;
-        if (!on_face) continue;
-        EXPECT_EQ(count, 1);
-        shown.insert(face);
-      }
+      Pieces pieces;
+      const int n = cut_tet(cut, other, pieces);
       std::vector<int> key;
-      bool any_inside = false;
+      bool any_pure = false;
       for (int k = 0; k < 4; ++k) {
         if (k == dropped) continue;
-        key.push_back(static_cast<int>(cut.sides[k]));
-        any_inside |= cut.sides[k] == Side::inside;
+        key.push_back(cut.regions[k]);
+        any_pure |= cut.regions[k] != on_interface;
         for (int l = 0; l < 4; ++l)
           if (l != dropped) key.push_back(cut.ranks[k] < cut.ranks[l]);
       }
-      // A face on the interface belongs to whichever tets are inside.
-      if (!any_inside) return;
-      const auto [it, fresh] = known.try_emplace(key, shown);
-      EXPECT_EQ(it->second, shown);
+      // A face on interfaces is an interface itself, or within whichever region the fourth corner has.
+      if (!any_pure) return;
+      const auto [it, fresh] = known.try_emplace(key, shown_on(pieces, n, dropped));
+      EXPECT_EQ(it->second, shown_on(pieces, n, dropped));
     });
   }
 }
 
 TEST(Cutting, CutsAreSharedAndOffTheEnds) {
-  // Two tets on one face, cut through all of its edges' far ends.
-  LabelledLattice lattice;
-  lattice.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.4, 0.4, -1}};
-  lattice.distances = {-1, 1e-9f, 2, 0.5f, 3};
-  lattice.is_centre.assign(5, 0);
-  for (float d : lattice.distances) lattice.sides.push_back(d < 0 ? Side::inside : Side::outside);
-  lattice.tets = {{0, 1, 2, 3}, {0, 2, 1, 4}};
-  const CutMesh mesh = cut_lattice(lattice);
-  EXPECT_EQ(mesh.tets.size(), 2u);
-  EXPECT_EQ(mesh.points.size(), 5u);
-  EXPECT_EQ(broken_promise(mesh.points, mesh.tets), "");
-  for (const Vec3& p : mesh.points) {
-    if (p.x() > 0 && p.y() == 0) {
-      EXPECT_LT(p.x(), 0.8);
-    }
+  // A plane between two layers of points, all but on the upper one.
+  LabelledLattice lattice = make_lattice([](const Vec3& p) { return p.z() < 2.75 ? 1 : 0; });
+  for (Index p : lattice.stars.points()) {
+    const float above = static_cast<float>(lattice.positions[p].z() - 2.9999);
+    lattice.star_values(p)[0] = -above;
+    lattice.star_values(p)[1] = above;
   }
-  double worst = 4;
+  const CutMesh mesh = cut_lattice(lattice);
+  EXPECT_EQ(mesh.regions.size(), mesh.tets.size());
+  EXPECT_EQ(broken_promise(mesh.points, mesh.tets), "");
+  double highest = 0, worst = 4;
+  for (const Vec3& p : mesh.points) highest = std::max(highest, p.z());
+  EXPECT_LE(highest, 2.5 + 0.75 * 0.5 + 1e-12 + 0.25);
   for (const Tet& t : mesh.tets)
-    worst = std::min(
-        worst, min_solid_angle(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]));
-  EXPECT_EQ(worst, std::min(worst_inside_angle(lattice, lattice.tets[0]),
-                            worst_inside_angle(lattice, lattice.tets[1])));
+    worst = std::min(worst, min_solid_angle_tangent(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]],
+                                                    mesh.points[t[3]]));
+  double expected = 4;
+  for (const Tet& t : lattice.tets)
+    if (lattice.stars.lists(t[0]) || lattice.stars.lists(t[1]) || lattice.stars.lists(t[2]) ||
+        lattice.stars.lists(t[3]))
+      expected = std::min(expected, worst_piece_tangent(lattice, t));
+  EXPECT_EQ(worst, expected);
+  // No point was moved: what is on the interface are the cuts.
+  ASSERT_EQ(mesh.on_interface.size(), mesh.points.size());
+  std::size_t cuts = 0;
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    const bool is_lattice_point = std::find(lattice.positions.begin(), lattice.positions.end(),
+                                            mesh.points[i]) != lattice.positions.end();
+    EXPECT_EQ(mesh.on_interface[i] != 0, !is_lattice_point);
+    cuts += mesh.on_interface[i];
+  }
+  EXPECT_GT(cuts, 0u);
+}
+
+TEST(Cutting, FourRegionsMeetInAPoint) {
+  LabelledLattice lattice = make_lattice([](const Vec3& p) -> RegionIndex {
+    if (p.z() < 0.9 || p.z() > 5.1 || p.x() < 0.9 || p.x() > 5.1 || p.y() < 0.9 || p.y() > 5.1) return 0;
+    return p.z() < 2.9 ? 4 : p.x() < 2.9 ? 1 : p.y() < 2.9 ? 2 : 3;
+  });
+  const CutMesh mesh = cut_lattice(lattice);
+  EXPECT_EQ(broken_promise(mesh.points, mesh.tets), "");
+  EXPECT_EQ(std::set<RegionIndex>(mesh.regions.begin(), mesh.regions.end()),
+            (std::set<RegionIndex>{1, 2, 3, 4}));
+  double kept = volume(mesh.points, mesh.tets);
+  lattice.keep_outside = true;
+  const CutMesh all = cut_lattice(lattice);
+  EXPECT_EQ(broken_promise(all.points, all.tets), "");
+  EXPECT_GT(volume(all.points, all.tets), kept);
+  EXPECT_EQ(std::count(all.regions.begin(), all.regions.end(), 0) > 0, true);
 }
 
 }  // namespace

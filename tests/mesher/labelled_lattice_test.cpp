@@ -3,58 +3,88 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
+
+#include "lattices.h"
 
 namespace tetwright {
 namespace {
 
-LabelledLattice make_lattice(const std::function<bool(const Vec3&)>& inside) {
-  const Octree octree =
-      build_octree({6, 6, 6}, 0, [](int, const std::vector<MortonKey>&) { return std::vector<MortonKey>(); });
-  LatticePoints points = lattice_points(octree);
-  std::vector<float> distances;
-  for (const Vec3& p : points.positions) distances.push_back(inside(p) ? -1.0f : 1.0f);
-  std::vector<Tet> tets = lattice_tets(octree, points);
-  return label_lattice(std::move(points), std::move(distances), std::move(tets));
-}
-
-std::ptrdiff_t inside_count(const LabelledLattice& lattice) {
-  return std::count(lattice.sides.begin(), lattice.sides.end(), Side::inside);
+std::ptrdiff_t count_of(const LabelledLattice& lattice, RegionIndex region) {
+  return std::count(lattice.first_region.begin(), lattice.first_region.end(), region);
 }
 
 TEST(LabelledLattice, DropsTetsFarOutside) {
   const LabelledLattice lattice =
-      make_lattice([](const Vec3& p) { return (p - Vec3(2, 2, 2)).norm() < 1.2; });
+      make_lattice([](const Vec3& p) { return (p - Vec3(2, 2, 2)).norm() < 1.2 ? 1 : 0; });
   EXPECT_LT(lattice.tets.size(), 3u * 180u * 4u + 6u * 36u * 4u);
   for (const Tet& t : lattice.tets)
-    EXPECT_TRUE(std::any_of(t.begin(), t.end(), [&](Index v) {
-      return lattice.sides[v] == Side::inside ||
-             std::binary_search(lattice.near_points.begin(), lattice.near_points.end(), v);
-    }));
+    EXPECT_TRUE(std::any_of(t.begin(), t.end(),
+                            [&](Index v) { return lattice.first_region[v] == 1 || lattice.stars.lists(v); }));
 }
 
 TEST(LabelledLattice, StarMapListsEveryTetOfAPoint) {
-  const LabelledLattice lattice = make_lattice([](const Vec3& p) { return p.x() < 2.7; });
-  const StarMap stars(lattice);
-  for (Index p : lattice.near_points) {
+  const LabelledLattice lattice = make_lattice([](const Vec3& p) { return p.x() < 2.7 ? 1 : 0; });
+  for (Index p : lattice.stars.points()) {
     std::vector<Index> expected;
     for (Index t = 0; t < lattice.tets.size(); ++t)
       if (std::count(lattice.tets[t].begin(), lattice.tets[t].end(), p)) expected.push_back(t);
-    EXPECT_EQ(std::vector<Index>(stars.begin(p), stars.end(p)), expected);
+    const auto listed = lattice.stars.tets(p);
+    EXPECT_EQ(std::vector<Index>(listed.begin(), listed.end()), expected);
   }
 }
 
+TEST(LabelledLattice, StarRegionsAreThoseOfTheClosedStar) {
+  const LabelledLattice lattice = make_lattice([](const Vec3& p) {
+    return p.x() < 2.7 ? 1 : p.y() < 3.2 ? 2 : p.z() < 3.1 ? 0 : 3;
+  });
+  for (Index p : lattice.stars.points()) {
+    std::vector<RegionIndex> expected;
+    for (Index t : lattice.stars.tets(p))
+      for (Index v : lattice.tets[t]) expected.push_back(lattice.first_region[v]);
+    std::sort(expected.begin(), expected.end());
+    expected.erase(std::unique(expected.begin(), expected.end()), expected.end());
+    const auto listed = lattice.star_regions(p);
+    EXPECT_EQ(std::vector<RegionIndex>(listed.begin(), listed.end()), expected);
+  }
+}
+
+TEST(LabelledLattice, CutsAreWhereTwoRegionsAreEquallyNear) {
+  LabelledLattice lattice = make_lattice([](const Vec3& p) { return p.x() < 2.9 ? 1 : 0; });
+  const Index p = point_at(lattice, {2, 3, 3}), q = point_at(lattice, {3, 3, 3});
+  const auto set = [&](Index point, float outside, float inside) {
+    lattice.star_values(point)[0] = outside;
+    lattice.star_values(point)[1] = inside;
+  };
+  set(p, 0.5f, -1.5f);
+  set(q, -3.0f, 3.0f);
+  EXPECT_FLOAT_EQ(lattice.gap(p, 1, 0), 2);
+  EXPECT_FLOAT_EQ(lattice.gap(q, 1, 0), -6);
+  EXPECT_FLOAT_EQ(lattice.margin(p), 2);
+  EXPECT_DOUBLE_EQ(lattice.cut_share(p, 1, q, 0), 0.25);
+  EXPECT_DOUBLE_EQ(lattice.cut_share(q, 0, p, 1), 0.75);
+}
+
 TEST(LabelledLattice, SpecksGoAndPairsStay) {
-  LabelledLattice speck = make_lattice([](const Vec3& p) { return p == Vec3(3, 3, 3); });
-  EXPECT_EQ(remove_specks(speck), 1u);
-  EXPECT_EQ(inside_count(speck), 0);
-  LabelledLattice cavity = make_lattice([](const Vec3& p) { return p.x() < 5 && p != Vec3(3, 3, 3); });
-  const auto before = inside_count(cavity);
-  EXPECT_EQ(remove_specks(cavity), 1u);
-  EXPECT_EQ(inside_count(cavity), before + 1);
-  LabelledLattice pair = make_lattice([](const Vec3& p) { return p == Vec3(3, 3, 3) || p == Vec3(3, 3, 2); });
-  EXPECT_EQ(remove_specks(pair), 0u);
-  EXPECT_EQ(inside_count(pair), 2);
+  std::size_t specks = 0;
+  const auto speck = make_lattice([](const Vec3& p) { return p == Vec3(3, 3, 3) ? 1 : 0; }, &specks);
+  EXPECT_EQ(specks, 1u);
+  EXPECT_EQ(count_of(speck, 1), 0);
+  const auto solid = make_lattice([](const Vec3& p) { return p.x() < 5 ? 1 : 0; });
+  const auto cavity =
+      make_lattice([](const Vec3& p) { return p.x() < 5 && p != Vec3(3, 3, 3) ? 1 : 0; }, &specks);
+  EXPECT_EQ(specks, 1u);
+  EXPECT_EQ(count_of(cavity, 1), count_of(solid, 1));
+  const auto pair =
+      make_lattice([](const Vec3& p) { return p == Vec3(3, 3, 3) || p == Vec3(3, 3, 2) ? 1 : 0; }, &specks);
+  EXPECT_EQ(specks, 0u);
+  EXPECT_EQ(count_of(pair, 1), 2);
+  // Among several regions the one most of the neighbours have.
+  const auto third =
+      make_lattice([](const Vec3& p) { return p == Vec3(3, 3, 3) ? 3
+                                              : p.z() < 3.2      ? 2
+                                                                 : 1; }, &specks);
+  EXPECT_EQ(specks, 1u);
+  EXPECT_EQ(third.first_region[point_at(third, {3, 3, 3})], 2);
 }
 
 }  // namespace

@@ -56,10 +56,17 @@ TEST(Lattice, EqualCells) {
       build_octree({4, 4, 4}, 0, [](int, const std::vector<MortonKey>&) { return std::vector<MortonKey>(); });
   const LatticePoints points = lattice_points(octree);
   EXPECT_EQ(points.size(), 125u + 64u + 6u * 16u);
+  ASSERT_EQ(points.leaf_centres.size(), octree.size());
+  for (std::size_t i = 0; i < octree.size(); ++i) {
+    const auto low = morton_decode(octree.leaf(i).key);
+    EXPECT_EQ(points.positions[points.leaf_centres[i]], Vec3(low[0] + 0.5, low[1] + 0.5, low[2] + 0.5));
+  }
   const std::vector<Tet> tets = lattice_tets(octree, points);
   EXPECT_EQ(tets.size(), 3u * 48u * 4u + 6u * 16u * 4u);
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_EQ(points.find(points.keys[i]), i);
+    EXPECT_EQ(points.find(points.keys[i], static_cast<Index>(points.size() - 1)), i);
+    EXPECT_EQ(points.find(points.keys[i], 100), i);
     EXPECT_EQ(points.is_centre[i], (morton_decode(points.keys[i])[0] & 1) &&
                                        (morton_decode(points.keys[i])[1] & 1) &&
                                        (morton_decode(points.keys[i])[2] & 1));

@@ -3,99 +3,112 @@
 #include <gtest/gtest.h>
 
 #include "common/random.h"
-#include "test_surfaces.h"
+#include "fields.h"
 
 namespace tetwright {
 namespace {
 
-struct Sphere {
-  Vec3 centre{1.5, -2, 0.25};
-  double radius = 2;
-  GridFrame frame;
-  std::unique_ptr<MaterialField> field;
-  explicit Sphere(double cell) {
-    const ClosedSurface s = close_surface(make_sphere(radius, centre, 6), "");
-    frame = make_grid_frame(s.low, s.high, cell, false);
-    field = std::make_unique<MaterialField>(s, MaterialField::Material{"ball", 7}, frame, nullptr);
-  }
-};
+Vec3 random_direction(Random& random) {
+  const Vec3 d(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
+  return d.normalized();
+}
 
-TEST(MaterialField, DistancesOfASphere) {
-  const Sphere sphere(0.1);
+TEST(MaterialField, DistancesAndProjectionInInputUnits) {
+  const Vec3 centre(1.5, -2, 0.25);
+  const auto field = make_field({make_sphere(2, centre, 6)}, 0.1);
   Random random(3);
-  FieldSampler sampler(*sphere.field);
-  for (int i = 0; i < 2000; ++i) {
-    Vec3 direction(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
-    direction.normalize();
-    const double distance = 0.9 * (random.uniform() - 0.5);
-    const Vec3 p = sphere.centre + (sphere.radius + distance) * direction;
-    const double read = sphere.field->signed_distance(p, 7);
-    // Farther than two voxels away OpenVDB hands distances on from voxel to voxel.
-    if (std::abs(distance) < 0.1) {
-      EXPECT_NEAR(read, distance, 0.003);
-    } else if (std::abs(distance) < 0.25) {
-      EXPECT_NEAR(read, distance, 0.02);
-    } else {
-      EXPECT_EQ(read < 0, distance < 0);
-    }
-    Vec3 gradient;
-    sampler.at(sphere.frame.to_grid(p), gradient);
-    if (std::abs(distance) < 0.1) {
-      EXPECT_GT(gradient.normalized().dot(direction), 0.99);
-      const auto foot = sphere.field->project(p, 7, std::nullopt, 1);
-      ASSERT_TRUE(foot);
-      EXPECT_NEAR((*foot - sphere.centre).norm(), sphere.radius, 0.003);
-      EXPECT_NEAR((*foot - p).norm(), std::abs(distance), 0.01);
-    }
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 direction = random_direction(random);
+    const double distance = 0.2 * (random.uniform() - 0.5);
+    const Vec3 p = centre + (2 + distance) * direction;
+    EXPECT_NEAR(field->signed_distance(p, 1), distance, 0.003);
+    const auto foot = field->project(p, 1, std::nullopt, 1);
+    ASSERT_TRUE(foot);
+    EXPECT_NEAR((*foot - centre).norm(), 2, 0.003);
+    EXPECT_NEAR((*foot - p).norm(), std::abs(distance), 0.01);
   }
-  EXPECT_LT(sphere.field->signed_distance(sphere.centre, 7), 0);
-  EXPECT_FALSE(sphere.field->project(sphere.centre + Vec3(2.2, 0, 0), 7, std::nullopt, 0.1));
+  EXPECT_LT(field->signed_distance(centre, 1), 0);
+  EXPECT_FALSE(field->project(centre + Vec3(2.2, 0, 0), 1, std::nullopt, 0.1));
+  EXPECT_FALSE(field->project(centre + Vec3(2.2, 0, 0), 1, 77, 1));
 }
 
-TEST(MaterialField, InterfaceCellsAreThoseWithBothSigns) {
-  const Sphere sphere(0.25);
-  const std::vector<MortonKey> keys = sphere.field->interface_cells();
-  FieldSampler sampler(*sphere.field);
-  std::size_t found = 0;
-  const auto& n = sphere.frame.cells;
-  for (int x = 0; x < n[0]; ++x)
-    for (int y = 0; y < n[1]; ++y)
-      for (int z = 0; z < n[2]; ++z) {
-        int inside = 0;
-        for (int k = 0; k < 8; ++k)
-          inside += sampler.at_node(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2)) < 0;
-        const bool listed = std::binary_search(keys.begin(), keys.end(), morton_encode(x, y, z));
-        EXPECT_EQ(listed, inside != 0 && inside != 8);
-        found += listed;
-      }
-  EXPECT_EQ(found, keys.size());
-}
-
-// Wherever the surface lies relative to the leaves of the tree, no cell away from it is listed.
-TEST(MaterialField, NoInterfaceCellsDeepInside) {
-  for (double x : {6.5, 7.5, 8.5, 9.5, 10.5, 11.5, 12.5, 13.5}) {
-    const ClosedSurface s = close_surface(
-        joined(make_box({0, 0, 0}, {2, 2, 2}), make_box({x, 6.5, 6.5}, {x + 30, 36.5, 36.5})), "");
-    const GridFrame frame = make_grid_frame(s.low, s.high, 1, false);
-    const MaterialField field(s, {"", 1}, frame, nullptr);
-    FieldSampler sampler(field);
-    for (const MortonKey key : field.interface_cells()) {
-      const auto cell = morton_decode(key);
-      int inside = 0;
-      for (int k = 0; k < 8; ++k)
-        inside +=
-            sampler.at_node(static_cast<int>(cell[0]) + (k & 1), static_cast<int>(cell[1]) + (k >> 1 & 1),
-                            static_cast<int>(cell[2]) + (k >> 2)) < 0;
-      ASSERT_TRUE(inside != 0 && inside != 8) << x;
+// A later body carves an earlier one, and outside is where none is; also under a finer lattice.
+TEST(MaterialField, LaterMaterialsCarveEarlierOnes) {
+  const auto coarse = make_field({make_sphere(1), make_sphere(0.6, {0.7, 0.03, 0.01})}, 0.05);
+  for (int refinement : {0, 2}) {
+    const auto field = coarse->refined(refinement);
+    FieldSampler sampler(*field);
+    Random random(5);
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3 p = 1.4 * Vec3(2 * random.uniform() - 1, 2 * random.uniform() - 1, 2 * random.uniform() - 1);
+      const double first = p.norm() - 1, second = (p - Vec3(0.7, 0.03, 0.01)).norm() - 0.6;
+      if (std::min(std::abs(first), std::abs(second)) < 0.01) continue;
+      const NearestRegion nearest = sampler.nearest(field->frame().to_grid(p));
+      ASSERT_EQ(nearest.region, second < 0 ? 2 : first < 0 ? 1 : 0);
+      ASSERT_GT(nearest.margin, 0);
     }
   }
 }
 
-TEST(MaterialField, CanBeCancelled) {
-  Progress progress;
-  progress.cancel();
-  const ClosedSurface s = close_surface(make_sphere(1), "");
-  EXPECT_THROW(MaterialField(s, {"", 1}, make_grid_frame(s.low, s.high, 0.1, false), &progress), Interrupted);
+TEST(MaterialField, ProjectsOntoJunctionCurves) {
+  const Vec3 centre(0.9, 0, 0);
+  const auto field = make_field({make_sphere(1, Vec3::Zero(), 6), make_sphere(0.8, centre, 6)}, 0.05);
+  FieldSampler sampler(*field);
+  RegionSet all;
+  for (RegionIndex r = 0; r < 3; ++r) all.insert(r);
+  // The circle where both spheres meet.
+  const double x = (1 + 0.81 - 0.64) / 1.8, radius = std::sqrt(1 - x * x);
+  int reached = 0;
+  Random random(7);
+  for (int i = 0; i < 100; ++i) {
+    const double a = 6.28 * random.uniform();
+    const Vec3 on(x, radius * std::cos(a), radius * std::sin(a));
+    Vec3 p = field->frame().to_grid(on + 0.03 * random_direction(random));
+    if (!sampler.project(all, p)) continue;
+    ++reached;
+    const Vec3 q = field->frame().to_input(p);
+    EXPECT_NEAR(q.norm(), 1, 0.002);
+    EXPECT_NEAR((q - centre).norm(), 0.8, 0.002);
+  }
+  EXPECT_GT(reached, 95);
+}
+
+// Boxes that share a face: no sliver of a third region anywhere on it.
+TEST(MaterialField, FacesInContactLeaveNoSlivers) {
+  const TriangleMesh left = make_box({-1, -0.5, -0.5}, {0.0131, 0.5, 0.5});
+  const TriangleMesh right = make_box({0.0131, -0.5, -0.5}, {1, 0.5, 0.5});
+  const TriangleMesh both = make_box({-1, -0.5, -0.5}, {1, 0.5, 0.5});
+  for (const auto& surfaces : {std::vector{left, right}, std::vector{both, right}}) {
+    const auto field = make_field(surfaces, 0.07);
+    FieldSampler sampler(*field);
+    Random random(11);
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3 p(0.0131 + 0.1 * (random.uniform() - 0.5), 0.9 * (random.uniform() - 0.5),
+                   0.9 * (random.uniform() - 0.5));
+      EXPECT_NE(sampler.nearest(field->frame().to_grid(p)).region, 0);
+      const Vec3 q(0.1 + 0.8 * random.uniform(), 0.9 * (random.uniform() - 0.5),
+                   0.5 + 0.05 * (random.uniform() - 0.5));
+      EXPECT_NE(sampler.nearest(field->frame().to_grid(q)).region, 1);
+    }
+  }
+}
+
+TEST(MaterialField, SheetsAndTheirThickness) {
+  const auto field = make_field({make_sphere(1, Vec3::Zero(), 6), make_sphere(0.9, Vec3::Zero(), 6)}, 0.05);
+  FieldSampler sampler(*field);
+  const auto sheet = sampler.thinnest_sheet(field->frame().to_grid({0.57, 0.55, 0.54}), 0.5);
+  ASSERT_TRUE(sheet);
+  EXPECT_EQ(sheet->region, 1);
+  EXPECT_NEAR(sheet->thickness, 2, 0.05);  // lattice units
+  EXPECT_FALSE(sampler.thinnest_sheet(field->frame().to_grid({0, 0, 0.5}), 0.5));
+}
+
+TEST(MaterialField, TwoNearest) {
+  const auto field = make_field({make_sphere(1), make_sphere(0.5)}, 0.05);
+  FieldSampler sampler(*field);
+  EXPECT_EQ((*sampler.two_nearest(field->frame().to_grid({0.97, 0, 0})))[1], 1);
+  EXPECT_EQ((*sampler.two_nearest(field->frame().to_grid({0.47, 0, 0})))[0], 1);
+  EXPECT_FALSE(sampler.two_nearest(field->frame().to_grid({0, 0, 0})));
 }
 
 }  // namespace

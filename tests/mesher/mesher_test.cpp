@@ -6,8 +6,10 @@
 #include <numbers>
 
 #include "common/error.h"
+#include "common/interfaces.h"
 #include "common/parallel.h"
 #include "common/quality.h"
+#include "mesher/material_field.h"
 #include "test_surfaces.h"
 
 namespace tetwright {
@@ -15,7 +17,7 @@ namespace {
 
 MeshedSurface mesh_of(const TriangleMesh& surface, const MesherOptions& options = {},
                       Progress* progress = nullptr) {
-  return mesh_surfaces({{"body", 5, surface, "body.ply"}}, options, progress);
+  return mesh_surfaces(prepare_input({{"body", 5, surface, "body.ply"}}), options, progress);
 }
 
 MesherOptions resolution(int n) {
@@ -25,17 +27,18 @@ MesherOptions resolution(int n) {
 }
 
 /// Meshes, checks every promise and returns what it is like.
-Topology meshed_topology(const TriangleMesh& surface, int n, TetMesh* out = nullptr) {
+SolidTopology meshed_topology(const TriangleMesh& surface, int n, TetMesh* out = nullptr) {
   TetMesh mesh = mesh_of(surface, resolution(n)).mesh;
   EXPECT_EQ(broken_promise(mesh.points, mesh.tets), "");
-  const Topology t = topology(mesh.points, mesh.tets);
+  EXPECT_EQ(mesh.interfaces, find_interfaces(mesh));
+  const SolidTopology t = solid_topology(mesh.points, mesh.tets);
   if (out) *out = std::move(mesh);
   return t;
 }
 
 TEST(Mesher, Sphere) {
   TetMesh mesh;
-  const Topology t = meshed_topology(make_sphere(2, {10, -20, 5}, 5), 32, &mesh);
+  const SolidTopology t = meshed_topology(make_sphere(2, {10, -20, 5}, 5), 32, &mesh);
   EXPECT_EQ(t.components, 1);
   EXPECT_EQ(t.euler, 1);
   EXPECT_EQ(t.boundary_euler, 2);
@@ -55,11 +58,11 @@ TEST(Mesher, BoundaryIsWithinACellOfTheSurface) {
   EXPECT_DOUBLE_EQ(m.report.cell_size, 2.0 / 40);
   EXPECT_EQ(m.report.resolution, 40);
   EXPECT_GT(m.report.cells, 0u);
-  for (const Vec3& p : m.mesh.points) EXPECT_LT(m.reference->signed_distance(p, 5), 0.3 * m.report.cell_size);
+  for (const Vec3& p : m.mesh.points) EXPECT_LT(m.field->signed_distance(p, 5), 0.3 * m.report.cell_size);
 }
 
 TEST(Mesher, Torus) {
-  const Topology t = meshed_topology(make_torus(1, 0.4), 30);
+  const SolidTopology t = meshed_topology(make_torus(1, 0.4), 30);
   EXPECT_EQ(t.components, 1);
   EXPECT_EQ(t.euler, 0);
   EXPECT_EQ(t.boundary_euler, 0);
@@ -67,7 +70,7 @@ TEST(Mesher, Torus) {
 
 TEST(Mesher, CavityStays) {
   TetMesh mesh;
-  const Topology t = meshed_topology(joined(make_sphere(1), turned_over(make_sphere(0.5))), 32, &mesh);
+  const SolidTopology t = meshed_topology(joined(make_sphere(1), turned_over(make_sphere(0.5))), 32, &mesh);
   EXPECT_EQ(t.components, 1);
   EXPECT_EQ(t.boundary_components, 2);
   EXPECT_EQ(t.euler, 2);
@@ -80,7 +83,7 @@ TEST(Mesher, TwoComponents) {
 }
 
 TEST(Mesher, SelfIntersectingSurface) {
-  const Topology t = meshed_topology(joined(make_sphere(1), make_sphere(0.8, {0.9, 0.1, 0.2})), 32);
+  const SolidTopology t = meshed_topology(joined(make_sphere(1), make_sphere(0.8, {0.9, 0.1, 0.2})), 32);
   EXPECT_EQ(t.components, 1);
   EXPECT_EQ(t.boundary_euler, 2);
 }
@@ -88,13 +91,13 @@ TEST(Mesher, SelfIntersectingSurface) {
 // Faces on grid planes, where every distance is 0, and sharp edges.
 TEST(Mesher, Box) {
   TetMesh mesh;
-  const Topology t = meshed_topology(make_box({0, 0, 0}, {2, 1, 0.5}), 32, &mesh);
+  const SolidTopology t = meshed_topology(make_box({0, 0, 0}, {2, 1, 0.5}), 32, &mesh);
   EXPECT_EQ(t.boundary_euler, 2);
   EXPECT_NEAR(volume(mesh.points, mesh.tets), 1, 0.01);
 }
 
 TEST(Mesher, ThinPlateOfTwoCells) {
-  const Topology t = meshed_topology(make_box({0.01, 0.02, 0.03}, {1.01, 0.93, 0.03 + 2.0 / 32}), 32);
+  const SolidTopology t = meshed_topology(make_box({0.01, 0.02, 0.03}, {1.01, 0.93, 0.03 + 2.0 / 32}), 32);
   EXPECT_EQ(t.components, 1);
   EXPECT_EQ(t.boundary_euler, 2);
 }
@@ -110,6 +113,7 @@ TEST(Mesher, SameBytesForAnyNumberOfThreads) {
     const TetMesh other = mesh_with(threads);
     EXPECT_EQ(one.points, other.points);
     EXPECT_EQ(one.tets, other.tets);
+    EXPECT_EQ(one.interfaces, other.interfaces);
   }
 }
 
@@ -149,22 +153,22 @@ TEST(Mesher, RefusesBadOptions) {
   MesherOptions options;
   options.adaptivity = -1;
   EXPECT_THROW(mesh_of(ball, options), UsageError);
-  EXPECT_THROW(mesh_surfaces({}, {}, nullptr), UsageError);
-  EXPECT_THROW(mesh_surfaces(std::vector<MaterialSurface>(2), {}, nullptr), UsageError);
+  EXPECT_THROW(prepare_input({}), UsageError);
+  EXPECT_THROW(prepare_input({{"a", 1, ball, ""}, {"a", 2, ball, ""}}), UsageError);
+  EXPECT_THROW(prepare_input({{"a", 1, ball, ""}, {"b", 1, ball, ""}}), UsageError);
+  for (double thickness : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THROW(prepare_input({{"a", 1, ball, ""}}, {{"b", 2, thickness}}), UsageError);
 }
 
 TEST(Mesher, RefusesWhatCannotBeMeshed) {
-  TriangleMesh open = make_sphere(1, Vec3::Zero(), 2);
-  open.triangles.pop_back();
-  EXPECT_THROW(mesh_of(open), InputError);
   MesherOptions options;
   options.voxel_size = 10;
   EXPECT_THROW(mesh_of(make_sphere(1), options), NothingToMeshError);
-  // A sheet without thickness.
+  // A sheet without thickness: nothing is inside.
   TriangleMesh sheet;
   sheet.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   sheet.triangles = {{0, 1, 2}, {0, 2, 1}};
-  EXPECT_THROW(mesh_of(sheet), NothingToMeshError);
+  EXPECT_THROW(mesh_of(sheet), Error);
 }
 
 TEST(Mesher, RefusesWhatDoesNotFitInMemory) {
@@ -178,7 +182,8 @@ TEST(Mesher, EstimatesWithinAFactor) {
     for (bool uniform : {false, true}) {
       MesherOptions options = resolution(64);
       options.uniform = uniform;
-      const auto estimated = static_cast<double>(estimate_mesh({{"", 1, surface, ""}}, options).tets);
+      const auto estimated =
+          static_cast<double>(estimate_mesh(prepare_input({{"", 1, surface, ""}}), options).tets);
       const auto got = static_cast<double>(mesh_of(surface, options).mesh.tets.size());
       EXPECT_LT(estimated, 2 * got);
       EXPECT_GT(estimated, got / 2);
@@ -186,10 +191,10 @@ TEST(Mesher, EstimatesWithinAFactor) {
 }
 
 TEST(Mesher, ResolutionForATarget) {
-  const std::vector<MaterialSurface> ball{{"", 1, make_sphere(1), ""}};
+  const PreparedInput ball = prepare_input({{"", 1, make_sphere(1), ""}});
   EXPECT_EQ(resolution_for_target(ball, 1), 32);
   const int n = resolution_for_target(ball, 5000);
-  const auto dense = static_cast<double>(mesh_of(ball[0].surface, resolution(n)).mesh.tets.size());
+  const auto dense = static_cast<double>(mesh_of(make_sphere(1), resolution(n)).mesh.tets.size());
   EXPECT_GT(dense, 25 * 5000);
   EXPECT_LT(dense, 60 * 5000);
   EXPECT_THROW(resolution_for_target(ball, 0), UsageError);
@@ -213,7 +218,7 @@ TEST(Mesher, ReportsStagesAndCanBeCancelledInEach) {
   CancelAtStage never("");
   mesh_of(ball, resolution(16), &never);
   EXPECT_EQ(never.stages, 5);
-  for (const char* stage : {"signed distances", "octree", "lattice", "moving points"}) {
+  for (const char* stage : {"signed distances", "octree", "lattice", "moving points", "cutting"}) {
     CancelAtStage progress(stage);
     EXPECT_THROW(mesh_of(ball, resolution(16), &progress), Interrupted) << stage;
   }

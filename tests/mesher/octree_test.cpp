@@ -3,8 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "common/random.h"
+#include "fields.h"
+#include "mesher/thin_parts.h"
 #include "random_octree.h"
-#include "test_surfaces.h"
 
 namespace tetwright {
 namespace {
@@ -61,16 +62,15 @@ TEST(Octree, FindsEveryCell) {
         const MortonKey key = morton_encode(x, y, z);
         const Octree::Leaf leaf = octree.leaf(octree.find(key));
         ASSERT_EQ(key >> 3 * leaf.level << 3 * leaf.level, leaf.key);
+        ASSERT_EQ(octree.find(key, octree.size() / 2), octree.find(key));
       }
 }
 
 Octree sphere_octree(int resolution, const OctreeOptions& options) {
-  const ClosedSurface s = close_surface(make_sphere(1, {0.01, 0.02, 0.03}, 5), "");
-  const GridFrame frame =
-      make_grid_frame(s.low, s.high, (s.high - s.low).maxCoeff() / resolution, options.uniform);
-  const MaterialField field(s, {"", 1}, frame, nullptr);
-  Octree octree = build_octree(field, options, nullptr);
-  const auto cells = field.interface_cells();
+  const auto field =
+      make_field({make_sphere(1, {0.01, 0.02, 0.03}, 5)}, 2.0 / resolution, {}, options.uniform);
+  const auto cells = field->interface_voxels();
+  Octree octree = build_octree(*field, options, cells, {}, nullptr);
   if (!options.uniform && options.adaptivity == 0) {
     for (MortonKey key : cells) EXPECT_EQ(octree.leaf(octree.find(key)).level, 0);
   }
@@ -105,6 +105,20 @@ TEST(Octree, ToleranceCoarsensFlatInterfaces) {
   const std::size_t finest = sphere_octree(96, {false, 0}).size();
   EXPECT_LT(sphere_octree(96, {false, 0.5}).size(), finest * 2 / 3);
   EXPECT_LE(sphere_octree(96, {false, 0.05}).size(), finest);
+}
+
+TEST(Octree, ThinSheetsAreSplitBelowVoxels) {
+  const auto voxels = make_field({make_sphere(1), make_sphere(0.97)}, 0.05);
+  const ThinSheets sheets = find_thin_sheets(*voxels, voxels->interface_voxels());
+  ASSERT_EQ(sheets.refinement, 2);
+  const auto field = voxels->refined(sheets.refinement);
+  const Octree octree =
+      build_octree(*field, {false, 0.05}, voxels->interface_voxels(), sheets.cells, nullptr);
+  expect_covers_box(octree);
+  expect_balanced(octree);
+  for (std::size_t level = 1; level < sheets.cells.size(); ++level)
+    for (MortonKey key : sheets.cells[level])
+      EXPECT_LT(octree.leaf(octree.find(key << 3 * level)).level, static_cast<int>(level));
 }
 
 }  // namespace

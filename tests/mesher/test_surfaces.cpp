@@ -96,6 +96,57 @@ TriangleMesh make_box(const Vec3& low, const Vec3& high) {
   return mesh;
 }
 
+TriangleMesh make_moebius_strip(int around) {
+  TriangleMesh mesh;
+  for (int i = 0; i < around; ++i) {
+    const double u = 2 * std::numbers::pi * i / around;
+    for (const double side : {-0.3, 0.3}) {
+      const double r = 1 + side * std::cos(u / 2);
+      mesh.points.emplace_back(r * std::cos(u), r * std::sin(u), side * std::sin(u / 2));
+    }
+  }
+  // After a whole turn the two sides have changed places.
+  const auto at = [&](int i, int side) { return static_cast<Index>(i < around ? 2 * i + side : 1 - side); };
+  for (int i = 0; i < around; ++i) {
+    mesh.triangles.push_back({at(i, 0), at(i + 1, 0), at(i + 1, 1)});
+    mesh.triangles.push_back({at(i, 0), at(i + 1, 1), at(i, 1)});
+  }
+  return mesh;
+}
+
+TriangleMesh make_klein_bottle(int around, int across) {
+  TriangleMesh mesh;
+  for (int i = 0; i < around; ++i)
+    for (int j = 0; j < across; ++j) {
+      const double u = 2 * std::numbers::pi * i / around, v = 2 * std::numbers::pi * (j + 0.5) / across;
+      const double x = std::sin(v), y = std::sin(2 * v);
+      const double r = 2 + std::cos(u / 2) * x - std::sin(u / 2) * y;
+      mesh.points.emplace_back(r * std::cos(u), r * std::sin(u), std::sin(u / 2) * x + std::cos(u / 2) * y);
+    }
+  // After a whole turn the figure eight comes back turned by half a turn: (x, y) is (-x, -y), v is -v.
+  const auto at = [&](int i, int j) {
+    j %= across;
+    return static_cast<Index>(i < around ? i * across + j : across - 1 - j);
+  };
+  for (int i = 0; i < around; ++i)
+    for (int j = 0; j < across; ++j) {
+      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  return mesh;
+}
+
+TriangleMesh punctured(TriangleMesh mesh, int step) {
+  std::erase_if(mesh.triangles, [&, i = 0](const Triangle&) mutable { return ++i % step == 0; });
+  return mesh;
+}
+
+TriangleMesh partly_turned_over(TriangleMesh mesh, std::size_t step) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += step)
+    std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
+  return mesh;
+}
+
 TriangleMesh turned_over(TriangleMesh mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[0], t[1]);
   return mesh;
@@ -169,8 +220,8 @@ std::string broken_promise(const std::vector<Vec3>& points, const std::vector<Te
   return "";
 }
 
-Topology topology(const std::vector<Vec3>& points, const std::vector<Tet>& tets) {
-  Topology result;
+SolidTopology solid_topology(const std::vector<Vec3>& points, const std::vector<Tet>& tets) {
+  SolidTopology result;
   Sets solid(points.size()), surface(points.size());
   std::set<Edge> edges, surface_edges;
   std::set<Index> surface_points;

@@ -15,6 +15,14 @@ TriangleMesh make_sphere(double radius, const Vec3& centre = Vec3::Zero(), int s
 TriangleMesh make_torus(double ring_radius, double tube_radius, int around = 48, int across = 24);
 /// Axis-aligned box of twelve triangles, wound outwards.
 TriangleMesh make_box(const Vec3& low, const Vec3& high);
+/// Strip around the z axis that comes back turned over.
+TriangleMesh make_moebius_strip(int around = 24);
+/// The figure-eight immersion of the Klein bottle: no boundary, one-sided.
+TriangleMesh make_klein_bottle(int around = 24, int across = 12);
+/// Without each `step`-th triangle.
+TriangleMesh punctured(TriangleMesh mesh, int step);
+/// Each `step`-th triangle wound the other way.
+TriangleMesh partly_turned_over(TriangleMesh mesh, std::size_t step);
 /// The same surface wound the other way.
 TriangleMesh turned_over(TriangleMesh mesh);
 /// Both in one; points are not merged.
@@ -29,12 +37,12 @@ double volume(const std::vector<Vec3>& points, const std::vector<Tet>& tets);
 /// at each point, no unused point.
 std::string broken_promise(const std::vector<Vec3>& points, const std::vector<Tet>& tets);
 
-struct Topology {
+struct SolidTopology {
   int components = 0;  ///< of the solid
   int boundary_components = 0;
   int euler = 0;  ///< of the solid
   int boundary_euler = 0;
 };
-Topology topology(const std::vector<Vec3>& points, const std::vector<Tet>& tets);
+SolidTopology solid_topology(const std::vector<Vec3>& points, const std::vector<Tet>& tets);
 
 }  // namespace tetwright

@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "common/interfaces.h"
 #include "common/mesh_check.h"
 #include "common/parallel.h"
 #include "common/topology.h"
@@ -45,6 +46,9 @@ TEST(Simplify, ReachesTheCountAndKeepsTheTopology) {
   SimplifyReport report;
   const TetMesh after = simplify(mesh, options, &report);
   expect_guarantees(mesh, after, 1500);
+  EXPECT_EQ(after.interfaces, find_interfaces(after));
+  EXPECT_EQ(interface_groups(after.interfaces),
+            (std::vector<MaterialPair>{{4, std::nullopt}, {4, 7}, {7, std::nullopt}}));
   EXPECT_FALSE(report.iterations.empty());
   EXPECT_EQ(report.iterations.back().tets_after, after.tets.size());
 }

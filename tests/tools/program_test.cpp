@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/program.h"
@@ -187,12 +188,92 @@ TEST(Program, BrokenInputsAreStatusThree) {
       "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n1234",
       {"4000000000"});
   refused("huge.off", "OFF\n4000000000 4000000000 0\n0 0 0\n", {});
-  refused("open.off", "OFF\n4 3 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n",
-          {"3 boundary edges", "(0, 0, "});
+  refused("flat.off", "OFF\n3 1 3\n0 0 0\n1 0 0\n2 0 0\n3 0 1 0\n", {});
+  refused("not.vdb", tetrahedron_off, {"not a .vdb"});
   put(f / "empty.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices\n0\nTetrahedra\n0\nEnd\n");
   expect_refused("simplify " + (f / "empty.mesh") + " -o " + (f / "out.vtu") + " --target-tets 10", 3,
                  {"empty.mesh"});
   expect_refused("check " + (f / "empty.mesh"), 3, {"empty.mesh"});
+}
+
+TEST(Program, HolesAreClosedAndSaid) {
+  const TemporaryFolder f;
+  ASSERT_EQ(run("sample open_sphere -o " + (f / "open.ply")).status, 0);
+  const std::string mesh = "mesh " + (f / "open.ply") + " -o " + (f / "out.vtu") + " --resolution 24";
+  const Answer a = run(mesh + " --stats " + (f / "s.json"));
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_EQ(a.err.rfind("tetwright: note: ", 0), 0u) << a.err;
+  EXPECT_NE(a.err.find("boundary edges of holes"), std::string::npos) << a.err;
+  const auto findings = nlohmann::json::parse(contents(f / "s.json"))["input"]["findings"];
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0]["what"], "boundary edges of holes");
+  EXPECT_GT(findings[0]["count"], 2);
+  EXPECT_EQ(findings[0]["place"].size(), 3u);
+  EXPECT_EQ(run(mesh + " --quiet").err, "");
+  EXPECT_EQ(run("check " + (f / "out.vtu")).status, 0);
+}
+
+TEST(Program, MaterialsLayersAndLevelSets) {
+  const TemporaryFolder f;
+  ASSERT_EQ(run("sample sphere -o " + (f / "ball.off")).status, 0);
+  put(f / "cube.off",
+      "OFF\n8 6 12\n-0.4 -0.4 -0.4\n0.4 -0.4 -0.4\n-0.4 0.4 -0.4\n0.4 0.4 -0.4\n-0.4 -0.4 0.4\n"
+      "0.4 -0.4 0.4\n-0.4 0.4 0.4\n0.4 0.4 0.4\n4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n"
+      "4 0 4 6 2\n4 1 3 7 5\n");
+  const std::string surfaces = (f / "ball.off") + " --material \"the core=" + (f / "cube.off") +
+                               "\" --layer skin=0.12 --voxel-size 0.06 ";
+  const auto materials = [&](const std::string& mesh) {
+    std::map<std::string, std::pair<int, double>> found;
+    const auto j = nlohmann::json::parse(run("check --json " + mesh).out);
+    EXPECT_TRUE(j["valid"]) << j;
+    for (const auto& m : j["mesh"]["materials"])
+      found[m["name"].get<std::string>()] = {m["tag"].get<int>(), m["volume"].get<double>()};
+    return found;
+  };
+  for (const char* name : {"out.vtu", "out.msh"}) {
+    const Answer a = run("mesh " + surfaces + " -o " + (f / name) + " --write-sdf " + (f / "fields.vdb"));
+    ASSERT_EQ(a.status, 0) << a.err;
+    const auto found = materials(f / name);
+    ASSERT_EQ(found.size(), 3u);
+    EXPECT_EQ(found.at("ball").first, 1);
+    EXPECT_EQ(found.at("the core").first, 2);
+    EXPECT_EQ(found.at("skin").first, 3);
+    EXPECT_GT(found.at("skin").second, 0);
+  }
+  // The fields that were meshed give the same materials again.
+  const auto first = materials(f / "out.vtu");
+  const Answer again = run("mesh " + (f / "fields.vdb") + " --voxel-size 0.06 -o " + (f / "again.vtu"));
+  ASSERT_EQ(again.status, 0) << again.err;
+  for (const auto& [name, material] : materials(f / "again.vtu"))
+    EXPECT_NEAR(material.second, first.at(name).second, 0.05 * first.at(name).second) << name;
+  // All the way to a simulation mesh.
+  ASSERT_EQ(run("prepare " + surfaces + " -o " + (f / "small.vtu") + " --target-tets 6000").status, 0);
+  EXPECT_EQ(materials(f / "small.vtu").size(), 3u);
+  const Answer outside =
+      run("mesh " + (f / "ball.off") + " --keep-outside --resolution 12 -o " + (f / "box.vtu"));
+  ASSERT_EQ(outside.status, 0) << outside.err;
+  EXPECT_EQ(materials(f / "box.vtu").at("outside").first, 0);
+}
+
+TEST(Program, MaterialsThatMakeNoSense) {
+  const TemporaryFolder f;
+  ASSERT_EQ(run("sample sphere -o " + (f / "ball.off")).status, 0);
+  ASSERT_EQ(run("sample cube -o " + (f / "cube.off")).status, 0);
+  const std::string out = " --resolution 16 -o " + (f / "out.vtu"), ball = "mesh " + (f / "ball.off");
+  expect_refused("mesh" + out, 2, {"input"});
+  expect_refused(ball + " --material core" + out, 2, {"core", "NAME=FILE"});
+  expect_refused(ball + " --material core=" + (f / "none.off") + out, 3, {"none.off"});
+  expect_refused(ball + " --material ball=" + (f / "cube.off") + out, 2, {"'ball'"});
+  expect_refused(ball + " --layer skin=thick" + out, 2, {"thick"});
+  expect_refused(ball + " --layer skin=-1" + out, 2, {"-1"});
+  expect_refused(ball + " --layer skin=50" + out, 3, {"skin", "thicker"});
+  expect_refused(ball + " --nested never" + out, 2, {"never"});
+  expect_refused(ball + " --write-sdf " + (f / "fields.txt") + out, 2, {".vdb"});
+  // The outermost last covers what was before.
+  expect_refused("mesh " + (f / "cube.off") + " --voxel-size 0.1 --material shell=" + (f / "ball.off") +
+                     " --layer hull=0.01 -o " + (f / "out.vtu"),
+                 3, {"hull"});
+  EXPECT_FALSE(std::filesystem::exists(f / "out.vtu"));
 }
 
 TEST(Program, ASurfaceSmallerThanACellIsStatusFour) {

@@ -1,7 +1,9 @@
 #include "common/formats/medit.h"
 
+#include "common/interfaces.h"
 #include "tests/common/formats/expect_error.h"
 #include "tests/common/formats/tricky_meshes.h"
+#include "tests/common/small_meshes.h"
 
 namespace tetwright {
 namespace {
@@ -16,6 +18,25 @@ TEST(Medit, RoundTripKeepsEveryBit) {
   EXPECT_EQ(back.mesh.tets, mesh.tets);
   EXPECT_EQ(back.mesh.materials, mesh.materials);
   EXPECT_EQ(back.material_field, "medit:ref");
+}
+
+TEST(Medit, InterfaceTrianglesAreASectionOfTheirOwn) {
+  TetMesh mesh = two_tets(-7);
+  mesh.material_names = {{1, "End"}};
+  const std::string without = write_medit(mesh);
+  EXPECT_EQ(without.find("Triangles"), std::string::npos);
+  mesh.interfaces = find_interfaces(mesh);
+  const std::string text = write_medit(mesh);
+  EXPECT_NE(text.find("# reference 1: -7|outside\n# reference 2: -7|1\n# reference 3: 1|outside\n"
+                      "Triangles\n7\n1 2 3 2\n1 2 4 3\n"),
+            std::string::npos)
+      << text;
+  const ReadTetMesh back = read_medit(text, "f");
+  EXPECT_EQ(back.mesh.tets, mesh.tets);
+  EXPECT_EQ(back.mesh.materials, mesh.materials);
+  EXPECT_TRUE(back.mesh.material_names.empty());
+  EXPECT_TRUE(back.mesh.interfaces.empty());
+  EXPECT_EQ(write_medit(back.mesh), without);
 }
 
 TEST(Medit, OtherSectionsAndCommentsAreSkippedInAnyOrder) {

@@ -1,7 +1,9 @@
 #include "common/formats/msh.h"
 
+#include "common/interfaces.h"
 #include "tests/common/formats/expect_error.h"
 #include "tests/common/formats/tricky_meshes.h"
+#include "tests/common/small_meshes.h"
 
 namespace tetwright {
 namespace {
@@ -20,6 +22,30 @@ TEST(Msh, RoundTripKeepsEveryBitAndTheNames) {
   EXPECT_EQ(back.mesh.materials, mesh.materials);
   EXPECT_EQ(back.mesh.material_names, mesh.material_names);
   EXPECT_EQ(back.material_field, "gmsh:physical");
+}
+
+TEST(Msh, InterfaceTrianglesFollowTheTets) {
+  TetMesh mesh = two_tets(-7);
+  mesh.material_names = {{1, "bone"}};
+  const std::string without = write_msh(mesh);
+  EXPECT_NE(without.find("$PhysicalNames\n1\n3 1 \"bone\"\n"), std::string::npos) << without;
+  mesh.interfaces = find_interfaces(mesh);
+  const std::string text = write_msh(mesh);
+  EXPECT_NE(
+      text.find(
+          "$PhysicalNames\n4\n2 1 \"-7|outside\"\n2 2 \"-7|bone\"\n2 3 \"bone|outside\"\n3 1 \"bone\"\n"),
+      std::string::npos)
+      << text;
+  EXPECT_NE(text.find("$Elements\n9\n1 4 2 1 2 1 2 3 4\n2 4 2 -7 1 1 3 2 5\n3 2 2 2 2 1 2 3\n"),
+            std::string::npos)
+      << text;
+  const ReadTetMesh back = read_msh(text, "f");
+  EXPECT_EQ(back.mesh.tets, mesh.tets);
+  EXPECT_EQ(back.mesh.materials, mesh.materials);
+  EXPECT_EQ(back.mesh.material_names, mesh.material_names);
+  EXPECT_EQ(back.material_field, "gmsh:physical");
+  EXPECT_TRUE(back.mesh.interfaces.empty());
+  EXPECT_EQ(write_msh(back.mesh), without);
 }
 
 TEST(Msh, WhatGmshWrites) {

@@ -140,6 +140,13 @@ TEST(Vtu, RoundTripKeepsEveryBitAndTheNames) {
   EXPECT_EQ(back.material_field, "material");
 }
 
+TEST(Vtu, HasNoPlaceForInterfaceTriangles) {
+  TetMesh mesh = tricky_tets();
+  const std::string without = write_vtu(mesh);
+  mesh.interfaces = {{{0, 1, 2}, 0, std::nullopt}};
+  EXPECT_EQ(write_vtu(mesh), without);
+}
+
 TEST(Vtu, LargeEnoughForSeveralBlocks) {
   TetMesh mesh;
   for (int i = 0; i < 40000; ++i) mesh.points.push_back(Vec3(i, 0.1 * i, 1.0 / (i + 1)));

@@ -11,7 +11,7 @@ int main() {
       "body", 1, std::get<tetwright::TriangleMesh>(tetwright::make_sample("torus")), "torus"};
   tetwright::MesherOptions meshing;
   meshing.resolution = 40;
-  const auto dense = tetwright::mesh_surfaces({body}, meshing, nullptr);
+  const auto dense = tetwright::mesh_surfaces(tetwright::prepare_input({body}), meshing, nullptr);
   tetwright::SimplifyOptions options;
   options.target_tets = 2000;
   const tetwright::TetMesh mesh = tetwright::simplify(dense.mesh, options);

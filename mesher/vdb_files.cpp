@@ -1,0 +1,217 @@
+#include "mesher/vdb_files.h"
+
+#include <openvdb/io/Stream.h>
+#include <openvdb/tools/VolumeToMesh.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "common/error.h"
+#include "common/formats/atomic_file.h"
+#include "common/parallel.h"
+#include "mesher/level_set_grid.h"
+#include "mesher/vdb_structure.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Where OpenVDB puts a random identifier of 36 characters, after magic, three numbers of 32 bits and a flag.
+constexpr std::size_t identifier_start = 21, identifier_length = 36;
+
+std::vector<VdbGrid> take_apart(const std::string& file) {
+  const std::string bytes = read_whole_file(file);
+  try {
+    return take_apart_vdb(bytes);
+  } catch (const std::runtime_error& e) {
+    throw InputError(file, 0, e.what());
+  }
+}
+
+bool has_both_signs(const DistanceGrid& grid) {
+  bool positive = false, negative = false;
+  for (auto value = grid.cbeginValueOn(); value && !(positive && negative); ++value) {
+    positive |= *value > 0;
+    negative |= *value < 0;
+  }
+  return positive && negative;
+}
+
+/// The grid itself if it is a level set, else nothing.
+DistanceGrid::Ptr level_set_of(VdbGrid& grid, const std::string& file) {
+  const bool without_kind = grid.kind == "unknown";
+  if (grid.alone.empty() || !(without_kind || grid.kind == "level set")) return nullptr;
+  DistanceGrid::Ptr distances;
+  try {
+    std::istringstream stream(std::exchange(grid.alone, {}));
+    // OpenVDB itself does not look whether its reading worked.
+    stream.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
+    const auto grids = openvdb::io::Stream(stream, false).getGrids();
+    distances = openvdb::gridPtrCast<DistanceGrid>(grids->at(0));
+  } catch (const std::exception&) {  // of OpenVDB or the stream
+  }
+  if (!distances) throw InputError(file, 0, "the grid '" + grid.name + "' is damaged; write it again");
+  if (without_kind && !(distances->background() > 0 && has_both_signs(*distances))) return nullptr;
+  distances->setGridClass(openvdb::GRID_LEVEL_SET);
+  return distances;
+}
+
+/// As in "density (fog volume, float)".
+std::string described(const VdbGrid& grid) {
+  return grid.name + " (" + (grid.kind == "unknown" ? "no class" : grid.kind) + ", " + grid.type + ")";
+}
+
+/// The places of a grid's index coordinates in the world, in doubles throughout.
+class ToWorld {
+ public:
+  explicit ToWorld(const DistanceGrid& grid) : transform_(grid.transform()) {
+    const openvdb::Vec3d middle = grid.evalActiveVoxelBoundingBox().getCenter();
+    const Vec3 o = at(middle);
+    mirrors_ =
+        (at(middle + openvdb::Vec3d(1, 0, 0)) - o)
+            .dot((at(middle + openvdb::Vec3d(0, 1, 0)) - o).cross(at(middle + openvdb::Vec3d(0, 0, 1)) - o)) <
+        0;
+  }
+  bool mirrors() const { return mirrors_; }
+  Vec3 at(const openvdb::Vec3d& index) const {
+    const openvdb::Vec3d p = transform_.indexToWorld(index);
+    return {p.x(), p.y(), p.z()};
+  }
+
+ private:
+  const openvdb::math::Transform& transform_;
+  bool mirrors_;
+};
+
+TriangleMesh surface_of(DistanceGrid& grid) {
+  // In index coordinates, because OpenVDB's points are floats; shares the tree.
+  const DistanceGrid::Ptr local = grid.copy();
+  local->setTransform(openvdb::math::Transform::createLinearTransform(1.0));
+  std::vector<openvdb::Vec3s> points;
+  std::vector<openvdb::Vec3I> triangles;
+  std::vector<openvdb::Vec4I> quads;
+  openvdb::tools::volumeToMesh(*local, points, triangles, quads, 0.0, 0.0);
+
+  TriangleMesh mesh;
+  if (quads.empty() && triangles.empty()) return mesh;
+  const ToWorld to_world(grid);
+  mesh.points.resize(points.size());
+  parallel_for(0, points.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) mesh.points[i] = to_world.at(openvdb::Vec3d(points[i]));
+  });
+  for (const openvdb::Vec3I& t : triangles) mesh.triangles.push_back({t[0], t[1], t[2]});
+  for (const openvdb::Vec4I& q : quads) {
+    const auto length = [&](int a, int b) { return (mesh.points[q[a]] - mesh.points[q[b]]).squaredNorm(); };
+    const int first = length(0, 2) <= length(1, 3) ? 0 : 1;
+    mesh.triangles.push_back({q[first], q[first + 1], q[first + 2]});
+    mesh.triangles.push_back({q[first + 2], q[(first + 3) % 4], q[first]});
+  }
+  // OpenVDB winds them with the outside on the back.
+  if (!to_world.mirrors())
+    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+DistanceGrid::Ptr make_grid(const GridFrame& frame, const LevelSetSource& source) {
+  const auto size = static_cast<float>(frame.cell_size);
+  const auto band = static_cast<float>(level_set_band);
+  const auto grid = DistanceGrid::create(size * band);
+  std::vector<DistanceLeaf*> leaves(source.leaves.size());
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    const auto& [x, y, z] = source.leaves[i];
+    leaves[i] = grid->tree().touchLeaf({x, y, z});
+  }
+  parallel_for(0, leaves.size(), 16, [&](std::size_t begin, std::size_t end) {
+    std::array<float, leaf_points> values;
+    for (std::size_t i = begin; i < end; ++i) {
+      source.distances(source.leaves[i], values);
+      for (openvdb::Index k = 0; k < leaf_points; ++k)
+        if (std::abs(values[k]) < band)
+          leaves[i]->setValueOn(k, size * values[k]);
+        else
+          leaves[i]->setValueOff(k, std::copysign(size * band, values[k]));
+    }
+  });
+  fill_beyond_band(*grid, size * band);
+  grid->setName(source.name);
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  const auto transform = openvdb::math::Transform::createLinearTransform(frame.cell_size);
+  transform->postTranslate({frame.origin.x(), frame.origin.y(), frame.origin.z()});
+  grid->setTransform(transform);
+  return grid;
+}
+
+/// In place of the random identifier one that depends on the rest of the file alone (FNV-1a).
+void settle_identifier(std::string& bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    if (i < identifier_start || i >= identifier_start + identifier_length)
+      hash = (hash ^ static_cast<unsigned char>(bytes[i])) * 0x100000001b3;
+  char digits[17] = "0000000000000000";
+  std::array<char, 16> text;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), hash, 16).ptr;
+  std::copy_backward(text.data(), end, digits + 16);
+  // As random identifiers are written: 8-4-4-4-12 hexadecimal digits.
+  std::string identifier = "00000000-0000-0000-0000-000000000000";
+  identifier.replace(0, 8, digits, 8);
+  identifier.replace(24, 8, digits + 8, 8);
+  bytes.replace(identifier_start, identifier_length, identifier);
+}
+
+}  // namespace
+
+std::vector<NamedSurface> read_level_sets(const std::string& file) {
+  initialise_openvdb();
+  std::vector<NamedSurface> surfaces;
+  std::set<std::string> names;
+  std::string others;
+  for (VdbGrid& grid : take_apart(file)) {
+    const DistanceGrid::Ptr level_set = level_set_of(grid, file);
+    if (!level_set) {
+      others += (others.empty() ? "" : ", ") + described(grid);
+      continue;
+    }
+    const std::string& name = grid.name;
+    if (!names.insert(name).second)
+      throw InputError(file, 0, "has two level sets called '" + name + "'; rename one");
+    NamedSurface& out = surfaces.emplace_back(NamedSurface{name, {}});
+    try {
+      out.surface = surface_of(*level_set);
+    } catch (const openvdb::Exception&) {  // a transform that can't be inverted
+      throw InputError(file, 0, "the level set '" + name + "' has a transform without sense");
+    }
+    if (out.surface.triangles.empty())
+      throw InputError(file, 0, "the level set '" + name + "' is empty: its values do not pass 0; remove it");
+    for (const Vec3& p : out.surface.points)
+      if (!p.allFinite())
+        throw InputError(file, 0, "the level set '" + name + "' has values or a transform without sense");
+  }
+  if (surfaces.empty())
+    throw InputError(file, 0,
+                     "has no level set of floats; there is " + (others.empty() ? "nothing in it" : others));
+  return surfaces;
+}
+
+void write_level_sets(const std::string& file, const GridFrame& frame,
+                      std::span<const LevelSetSource> level_sets) {
+  initialise_openvdb();
+  std::string bytes;
+  try {
+    openvdb::GridPtrVec grids;
+    for (const LevelSetSource& source : level_sets) grids.push_back(make_grid(frame, source));
+    std::ostringstream stream;
+    openvdb::io::Stream(stream).write(grids);
+    bytes = std::move(stream).str();
+  } catch (const openvdb::ArithmeticError&) {
+    throw OutputError(file + ": OpenVDB has no transform for cells this small; scale the input up");
+  }
+  settle_identifier(bytes);
+  write_file_atomically(file, bytes);
+}
+
+}  // namespace tetwright

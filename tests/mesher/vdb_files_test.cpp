@@ -1,0 +1,233 @@
+#include "mesher/vdb_files.h"
+
+#include <gtest/gtest.h>
+#include <openvdb/io/File.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/SignedFloodFill.h>
+
+#include <map>
+
+#include "common/error.h"
+#include "common/formats/atomic_file.h"
+#include "common/parallel.h"
+#include "common/random.h"
+#include "test_surfaces.h"
+#include "tests/common/temporary_folder.h"
+
+namespace tetwright {
+namespace {
+
+constexpr double ball_volume = 4.18879;  // of radius 1
+
+class VdbFiles : public testing::Test {
+ protected:
+  VdbFiles() { openvdb::initialize(); }
+  std::string path(const std::string& name) const { return folder_ / name; }
+
+  /// Writes a sphere's level set with our own means.
+  void write_sphere(const std::string& file, const std::string& name, double radius, const Vec3& centre,
+                    double cell) const {
+    const TriangleMesh mesh = make_sphere(radius, centre, 5);
+    PreparedSurface s;
+    s.points = mesh.points;
+    s.triangles = mesh.triangles;
+    s.closed = s.triangles.size();
+    const Vec3 low = centre - Vec3::Constant(radius), high = centre + Vec3::Constant(radius);
+    const GridFrame frame = make_grid_frame(low, high, cell, false);
+    const auto level_set = LevelSet::of_surface(s, frame, nullptr);
+    const auto read = [&](const LeafOrigin& o, std::span<float, leaf_points> values) {
+      LevelSetSampler sampler(*level_set);
+      for (int k = 0; k < leaf_points; ++k)
+        values[k] = static_cast<float>(sampler.at_node(o[0] + k / 64, o[1] + k / 8 % 8, o[2] + k % 8));
+    };
+    write_level_sets(file, frame, std::vector<LevelSetSource>{{name, level_set->leaves(), read}});
+  }
+
+  void write_grids(const std::string& file, const openvdb::GridPtrVec& grids) const {
+    openvdb::io::File(file).write(grids);
+  }
+
+  std::string message_of(const std::string& file) const {
+    try {
+      read_level_sets(file);
+    } catch (const InputError& e) {
+      EXPECT_TRUE(std::string_view(e.what()).starts_with(file + ": ")) << e.what();
+      EXPECT_EQ(std::string_view(e.what()).find('\n'), std::string_view::npos);
+      return std::string(e.what()).substr(file.size() + 2);
+    }
+    return "";
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+openvdb::FloatGrid::Ptr ball(const std::string& name, float radius = 10, float cell = 0.1f) {
+  const auto grid = openvdb::FloatGrid::create(3 * cell);
+  for (int x = -14; x <= 14; ++x)
+    for (int y = -14; y <= 14; ++y)
+      for (int z = -14; z <= 14; ++z) {
+        const auto d = static_cast<float>(openvdb::Vec3d(x, y, z).length()) - radius;
+        if (std::abs(d) < 3) grid->tree().setValue({x, y, z}, d * cell);
+      }
+  openvdb::tools::signedFloodFill(grid->tree());
+  grid->setName(name);
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(cell));
+  return grid;
+}
+
+void expect_ball(const TriangleMesh& mesh, double radius, const Vec3& centre) {
+  for (const Vec3& p : mesh.points) EXPECT_NEAR((p - centre).norm(), radius, 0.02 * radius);
+  EXPECT_NEAR(enclosed_volume(mesh), ball_volume * std::pow(radius, 3),
+              0.03 * ball_volume * std::pow(radius, 3));
+  std::map<std::pair<Index, Index>, int> balance;
+  for (const Triangle& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const Index a = t[k], b = t[(k + 1) % 3];
+      balance[std::minmax(a, b)] += a < b ? 1 : -1;
+    }
+  for (const auto& [edge, sum] : balance) EXPECT_EQ(sum, 0);
+}
+
+TEST_F(VdbFiles, WhatIsWrittenIsReadAgain) {
+  const Vec3 centre(1000.5, -20, 3);
+  write_sphere(path("a.vdb"), "bone marrow", 2, centre, 0.1);
+  const auto back = read_level_sets(path("a.vdb"));
+  ASSERT_EQ(back.size(), 1u);
+  EXPECT_EQ(back[0].name, "bone marrow");
+  expect_ball(back[0].surface, 2, centre);
+}
+
+TEST_F(VdbFiles, OtherProgramsReadWhatIsWritten) {
+  write_sphere(path("a.vdb"), "bone", 2, Vec3(5, 6, 7), 0.1);
+  openvdb::io::File file(path("a.vdb"));
+  file.open(false);
+  ASSERT_TRUE(file.hasGrid("bone"));
+  const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("bone"));
+  ASSERT_TRUE(grid);
+  EXPECT_EQ(grid->getGridClass(), openvdb::GRID_LEVEL_SET);
+  EXPECT_FLOAT_EQ(grid->background(), 0.3f);
+  EXPECT_NEAR(grid->voxelSize()[0], 0.1, 1e-12);
+  const auto at = [&](double x) {
+    return grid->tree().getValue(openvdb::Coord::round(grid->worldToIndex({x, 6, 7})));
+  };
+  EXPECT_FLOAT_EQ(at(5), -0.3f);
+  EXPECT_NEAR(at(7), 0, 0.06);
+  EXPECT_FLOAT_EQ(at(8), 0.3f);
+}
+
+TEST_F(VdbFiles, TheSameBytesForAnyThreads) {
+  std::string bytes[2];
+  for (const unsigned threads : {1u, 4u}) {
+    const ThreadLimit limit(threads);
+    write_sphere(path("a.vdb"), "bone", 2, Vec3(5, 6, 7), 0.1);
+    bytes[threads > 1] = read_whole_file(path("a.vdb"));
+  }
+  EXPECT_EQ(bytes[0], bytes[1]);
+}
+
+TEST_F(VdbFiles, SeveralAndOtherGridsBetween) {
+  const auto fog = ball("fog");
+  fog->setGridClass(openvdb::GRID_FOG_VOLUME);
+  const auto unclassed = ball("no class");
+  unclassed->setGridClass(openvdb::GRID_UNKNOWN);
+  const auto mirrored = ball("mirrored");
+  openvdb::Mat4d matrix = openvdb::Mat4d::identity();
+  matrix.preScale(openvdb::Vec3d(-0.2, 0.2, 0.2));
+  matrix.postTranslate(openvdb::Vec3d(100, 0, 0));
+  mirrored->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
+  write_grids(path("a.vdb"), {ball("b"), fog, openvdb::Int32Grid::create(), unclassed, mirrored});
+  const auto back = read_level_sets(path("a.vdb"));
+  ASSERT_EQ(back.size(), 3u);
+  EXPECT_EQ(back[0].name, "b");
+  EXPECT_EQ(back[1].name, "no class");
+  expect_ball(back[0].surface, 1, Vec3::Zero());
+  expect_ball(back[1].surface, 1, Vec3::Zero());
+  expect_ball(back[2].surface, 2, Vec3(100, 0, 0));
+}
+
+TEST_F(VdbFiles, EveryCompression) {
+  for (const std::uint32_t compression : {0u, 1u, 2u, 3u, 4u, 6u})
+    for (const bool half : {false, true}) {
+      const auto grid = ball("b");
+      grid->setSaveFloatAsHalf(half);
+      openvdb::io::File out(path("a.vdb"));
+      out.setCompression(compression);
+      out.write(openvdb::GridPtrVec{grid});
+      out.close();
+      const auto back = read_level_sets(path("a.vdb"));
+      ASSERT_EQ(back.size(), 1u) << compression << ' ' << half;
+      expect_ball(back[0].surface, 1, Vec3::Zero());
+    }
+}
+
+TEST_F(VdbFiles, SaysWhatIsWrong) {
+  const std::string file = path("a.vdb");
+  write_file_atomically(file, "OFF\n3 1 0\n");
+  EXPECT_EQ(message_of(file), "is not a .vdb file");
+  write_file_atomically(file, "");
+  EXPECT_EQ(message_of(file), "is not a .vdb file");
+  write_grids(file, {});
+  EXPECT_EQ(message_of(file), "has no level set of floats; there is nothing in it");
+
+  const auto fog = ball("density");
+  fog->setGridClass(openvdb::GRID_FOG_VOLUME);
+  const auto labels = openvdb::Int32Grid::create();
+  labels->setName("labels");
+  const auto doubles = openvdb::DoubleGrid::create();
+  doubles->setName("precise");
+  doubles->setGridClass(openvdb::GRID_LEVEL_SET);
+  const auto velocity = openvdb::Vec3SGrid::create();
+  velocity->setName("v");
+  const auto one_sided = openvdb::FloatGrid::create(1);
+  one_sided->setName("mask");
+  write_grids(file, {fog, labels, doubles, velocity, one_sided});
+  EXPECT_EQ(
+      message_of(file),
+      "has no level set of floats; there is density (fog volume, float), labels (no class, int32), precise "
+      "(level set, double), v (no class, vec3s), mask (no class, float)");
+
+  const auto empty = openvdb::FloatGrid::create(1);
+  empty->setName("gone");
+  empty->setGridClass(openvdb::GRID_LEVEL_SET);
+  write_grids(file, {ball("b"), empty});
+  EXPECT_EQ(message_of(file), "the level set 'gone' is empty: its values do not pass 0; remove it");
+  write_grids(file, {ball("b"), ball("b", 5)});
+  EXPECT_EQ(message_of(file), "has two level sets called 'b'; rename one");
+
+  EXPECT_THROW(read_level_sets(path("missing.vdb")), InputError);
+}
+
+// Cut short anywhere and with bytes changed at random: an error or a surface, no crash.
+TEST_F(VdbFiles, DamagedFiles) {
+  write_grids(path("a.vdb"), {ball("b")});
+  const std::string whole = read_whole_file(path("a.vdb"));
+  const std::string file = path("damaged.vdb");
+  for (std::size_t k = 0; k < 60; ++k) {
+    put(file, whole.substr(0, whole.size() * k / 60));
+    EXPECT_THROW(read_level_sets(file), InputError) << k;
+  }
+  Random random(5);
+  for (int k = 0; k < 300; ++k) {
+    std::string bytes = whole;
+    // Half of them at the start, where names, counts and the transform are.
+    const std::size_t reach = k % 2 ? bytes.size() : std::min<std::size_t>(bytes.size(), 1500);
+    for (int n = 0; n <= k % 3; ++n)
+      bytes[static_cast<std::size_t>(random.uniform() * static_cast<double>(reach))] =
+          static_cast<char>(random.uniform() * 256);
+    put(file, bytes);
+    try {
+      read_level_sets(file);
+    } catch (const InputError&) {
+    }
+  }
+}
+
+TEST_F(VdbFiles, CannotBeWritten) {
+  EXPECT_THROW(write_sphere(path("missing/a.vdb"), "b", 1, Vec3::Zero(), 0.1), OutputError);
+  EXPECT_THROW(write_sphere(path("a.vdb"), "b", 1e-5, Vec3::Zero(), 1e-6), OutputError);
+}
+
+}  // namespace
+}  // namespace tetwright
