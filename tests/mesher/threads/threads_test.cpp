@@ -1,0 +1,51 @@
+// The parallel stages from field to cut mesh on many threads, for the thread sanitizer.
+#include <gtest/gtest.h>
+
+#include "common/parallel.h"
+#include "mesher/cutting.h"
+#include "mesher/point_mover.h"
+#include "mesher/thin_parts.h"
+
+namespace tetwright {
+namespace {
+
+PreparedSurface ball(const Vec3& centre, double radius) {
+  PreparedSurface s;
+  s.low = centre - Vec3::Constant(radius);
+  s.high = centre + Vec3::Constant(radius);
+  return s;
+}
+
+CutMesh mesh_with(unsigned threads) {
+  const ThreadLimit limit(threads);
+  const GridFrame frame = make_grid_frame(Vec3::Constant(-1.5), Vec3::Constant(1.5), 0.08, false);
+  const auto first = LevelSet::of_surface(ball(Vec3::Zero(), 1), frame, nullptr);
+  const auto second = LevelSet::of_surface(ball({0.7, 0.1, 0}, 0.8), frame, nullptr);
+  const MaterialField field(frame, {first, second},
+                            {{"", 0, {{0, true, 0}, {1, true, 1}}},
+                             {"a", 1, {{0, false, 0}, {1, true, 1}}},
+                             {"b", 2, {{1, false, 1}}}});
+  const std::vector<MortonKey> interfaces = field.interface_voxels();
+  find_thin_parts(field, interfaces);
+  const Octree octree =
+      build_octree(field, {false, 0.05}, interfaces, find_thin_sheets(field, interfaces).cells, nullptr);
+  LatticePoints points = lattice_points(octree);
+  std::vector<NearestRegion> regions = lattice_regions(points, field);
+  std::vector<Tet> tets = lattice_tets(octree, points);
+  LabelledLattice lattice =
+      label_lattice(std::move(points), std::move(regions), std::move(tets), 3, false, nullptr);
+  read_star_values(lattice, field);
+  EXPECT_GT(move_points(lattice, field, nullptr).moved, 1000u);
+  return cut_lattice(lattice);
+}
+
+TEST(MesherThreads, TheSameOnOneAndOnEight) {
+  const CutMesh one = mesh_with(1), eight = mesh_with(8);
+  EXPECT_GT(one.tets.size(), 10000u);
+  EXPECT_EQ(one.points, eight.points);
+  EXPECT_EQ(one.tets, eight.tets);
+  EXPECT_EQ(one.regions, eight.regions);
+}
+
+}  // namespace
+}  // namespace tetwright
