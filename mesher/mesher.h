@@ -100,7 +100,7 @@ void write_fields(const MaterialField& field, const std::string& path);
 
 /// What meshing would take.
 struct MesherEstimate {
-  std::size_t tets = 0;   ///< of the dense mesh, within a third or so
+  std::size_t tets = 0;   ///< of the dense mesh, within a third or so; of several materials a factor of two
   std::size_t bytes = 0;  ///< largest memory while it is made, on the high side
 };
 

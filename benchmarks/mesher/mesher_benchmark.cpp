@@ -9,7 +9,14 @@
 namespace tetwright {
 namespace {
 
-void report(benchmark::State& state, const MeshedSurface& meshed) {
+/// Meshes again and again; seconds of each stage as counters.
+void run(benchmark::State& state, const PreparedInput& input, bool uniform) {
+  MesherOptions options;
+  options.resolution = static_cast<int>(state.range(0));
+  options.uniform = uniform;
+  const ThreadLimit limit(static_cast<unsigned>(state.range(1)));
+  MeshedSurface meshed;
+  for (auto _ : state) meshed = mesh_surfaces(input, options, nullptr);
   const MesherReport& r = meshed.report;
   const double tets = static_cast<double>(meshed.mesh.tets.size());
   rusage usage{};
@@ -26,17 +33,8 @@ void report(benchmark::State& state, const MeshedSurface& meshed) {
   state.counters["peak_MB"] = static_cast<double>(usage.ru_maxrss) / 1e3;
 }
 
-/// Surface to dense mesh; seconds of each stage as counters. Doubling the cells should take about four times
-/// as long and as much memory.
-void adaptive(benchmark::State& state) {
-  const PreparedInput input = benchmark_input();
-  MesherOptions options;
-  options.resolution = static_cast<int>(state.range(0));
-  const ThreadLimit limit(static_cast<unsigned>(state.range(1)));
-  MeshedSurface meshed;
-  for (auto _ : state) meshed = mesh_surfaces(input, options, nullptr);
-  report(state, meshed);
-}
+/// Doubling the cells should take about four times as long and as much memory.
+void adaptive(benchmark::State& state) { run(state, benchmark_input(), false); }
 BENCHMARK(adaptive)
     ->Name("mesh_surfaces/adaptive")
     ->ArgNames({"cells", "threads"})
@@ -44,16 +42,7 @@ BENCHMARK(adaptive)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
-void uniform(benchmark::State& state) {
-  const PreparedInput input = benchmark_input();
-  MesherOptions options;
-  options.resolution = static_cast<int>(state.range(0));
-  options.uniform = true;
-  const ThreadLimit limit(static_cast<unsigned>(state.range(1)));
-  MeshedSurface meshed;
-  for (auto _ : state) meshed = mesh_surfaces(input, options, nullptr);
-  report(state, meshed);
-}
+void uniform(benchmark::State& state) { run(state, benchmark_input(), true); }
 BENCHMARK(uniform)
     ->Name("mesh_surfaces/uniform")
     ->ArgNames({"cells", "threads"})
@@ -66,12 +55,7 @@ void layered(benchmark::State& state) {
   PreparedInput input = benchmark_input();
   const double size = (input.high - input.low).maxCoeff();
   input.layers = {{"skin", 2, 0.02 * size}, {"fat", 3, 0.04 * size}};
-  MesherOptions options;
-  options.resolution = static_cast<int>(state.range(0));
-  const ThreadLimit limit(static_cast<unsigned>(state.range(1)));
-  MeshedSurface meshed;
-  for (auto _ : state) meshed = mesh_surfaces(input, options, nullptr);
-  report(state, meshed);
+  run(state, input, false);
 }
 BENCHMARK(layered)
     ->Name("mesh_surfaces/layered")
