@@ -74,11 +74,11 @@ TEST(Materials, NestedSpheres) {
 }
 
 TEST(Materials, LayersHaveTheirThickness) {
-  const auto meshed = mesh_of(make_input({make_sphere(1, Vec3::Zero(), 6)}, {0.1, 0.25}), 48);
+  const auto meshed = mesh_of(make_input({make_sphere(1, Vec3::Zero(), 5)}, {0.2, 0.25}), 24);
   const TetMesh& mesh = meshed.mesh;
-  EXPECT_NEAR(volume_of(mesh, 2), ball_volume(1) - ball_volume(0.9), 0.006 * ball_volume(1));
-  EXPECT_NEAR(volume_of(mesh, 3), ball_volume(0.9) - ball_volume(0.65), 0.006 * ball_volume(0.9));
-  EXPECT_NEAR(volume_of(mesh, 1), ball_volume(0.65), 0.006 * ball_volume(0.65));
+  EXPECT_NEAR(volume_of(mesh, 2), ball_volume(1) - ball_volume(0.8), 0.015 * ball_volume(1));
+  EXPECT_NEAR(volume_of(mesh, 3), ball_volume(0.8) - ball_volume(0.55), 0.015 * ball_volume(0.8));
+  EXPECT_NEAR(volume_of(mesh, 1), ball_volume(0.55), 0.03 * ball_volume(0.55));
   expect_line(mesh, "interface 2|outside: components 1, euler 2");
   expect_line(mesh, "interface 2|3: components 1, euler 2");
   expect_line(mesh, "interface 1|3: components 1, euler 2");
@@ -87,10 +87,10 @@ TEST(Materials, LayersHaveTheirThickness) {
 }
 
 TEST(Materials, ThinLayersStayWhole) {
-  // Voxels of 2 / 14: layers of 1.6, 0.8 and 0.32 of them.
+  // Voxels of 2 / 8: layers of 1.6, 0.8 and 0.32 of them.
   for (double voxels : {1.6, 0.8, 0.32}) {
-    const double thickness = voxels * 2 / 14;
-    const auto meshed = mesh_of(make_input({make_sphere(1, {0.003, 0.002, 0.001}, 6)}, {thickness}), 14);
+    const double thickness = voxels * 2 / 8;
+    const auto meshed = mesh_of(make_input({make_sphere(1, {0.003, 0.002, 0.001}, 5)}, {thickness}), 8);
     expect_line(meshed.mesh, "material 2: components 1, euler 2, boundary components 2, boundary euler 4");
     expect_line(meshed.mesh, "interface 1|2: components 1, euler 2");
     EXPECT_NEAR(volume_of(meshed.mesh, 2) / (ball_volume(1) - ball_volume(1 - thickness)), 1, 0.1) << voxels;
@@ -144,7 +144,7 @@ TEST(Materials, TheSameBytesForAnyNumberOfThreads) {
   const PreparedInput input = make_input({make_sphere(1), make_sphere(0.7, {0.6, 0.1, 0})}, {0.15});
   const auto mesh_with = [&](unsigned threads) {
     const ThreadLimit limit(threads);
-    return mesh_of(input, 32).mesh;
+    return mesh_of(input, 20).mesh;
   };
   const TetMesh one = mesh_with(1), three = mesh_with(3);
   EXPECT_EQ(one.points, three.points);

@@ -119,7 +119,7 @@ TEST(Mesher, SameBytesForAnyNumberOfThreads) {
 
 TEST(Mesher, AdaptiveTakesFarFewerThanUniform) {
   const TriangleMesh ball = make_sphere(1);
-  MesherOptions options = resolution(48);
+  MesherOptions options = resolution(32);
   const TetMesh adaptive = mesh_of(ball, options).mesh;
   options.uniform = true;
   const TetMesh uniform = mesh_of(ball, options).mesh;
@@ -180,7 +180,7 @@ TEST(Mesher, RefusesWhatDoesNotFitInMemory) {
 TEST(Mesher, EstimatesWithinAFactor) {
   for (const TriangleMesh& surface : {make_sphere(1), make_torus(1, 0.3)})
     for (bool uniform : {false, true}) {
-      MesherOptions options = resolution(64);
+      MesherOptions options = resolution(40);
       options.uniform = uniform;
       const auto estimated =
           static_cast<double>(estimate_mesh(prepare_input({{"", 1, surface, ""}}), options).tets);
