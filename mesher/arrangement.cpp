@@ -1,7 +1,10 @@
 #include "mesher/arrangement.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
+#include <utility>
 
 namespace tetwright {
 
@@ -96,6 +99,41 @@ struct Link {
     return std::popcount(mask) - twice_edges / 2 + triangles == 1;
   }
 
+  /// True if no region shows twice around the edge from the centre to neighbour i: the points of its link are
+  /// a cycle, in which each region must have one stretch (points on interfaces between do not part it).
+  /// Otherwise two regions could touch along the edge alone, with a third one on either side.
+  bool one_stretch_each(int i) {
+    // The two neighbours of each point of the cycle.
+    std::array<std::array<int, 2>, capacity> beside;
+    std::array<int, capacity> known{};
+    int first = -1;
+    for (Index t : lattice.stars.tets(centre)) {
+      std::array<int, 3> c = opposite(t);
+      const auto at = std::find(c.begin(), c.end(), i);
+      if (at == c.end()) continue;
+      std::swap(*at, c[2]);
+      for (const auto& [a, b] : {std::pair(c[0], c[1]), std::pair(c[1], c[0])}) {
+        if (known[a] == 2) return false;
+        beside[a][known[a]++] = b;
+      }
+      first = c[0];
+    }
+    std::array<RegionIndex, capacity> stretches;
+    int count = 0;
+    for (int previous = -1, now = first, steps = 0; steps < size && known[now] == 2; ++steps) {
+      if (const RegionIndex r = lattice.region(points[now]);
+          r != on_interface && (count == 0 || stretches[count - 1] != r))
+        stretches[count++] = r;
+      const int next = beside[now][0] == previous ? beside[now][1] : beside[now][0];
+      previous = now;
+      now = next;
+      if (now == first) break;
+    }
+    if (count > 1 && stretches[count - 1] == stretches[0]) --count;  // the cycle closes
+    std::sort(stretches.begin(), stretches.begin() + count);
+    return std::adjacent_find(stretches.begin(), stretches.begin() + count) == stretches.begin() + count;
+  }
+
   /// Every region of the set shows in the points of the mask as it must around a point on an interface.
   bool regular(const RegionSet& regions, Mask keep) {
     for (RegionIndex r : regions) {
@@ -141,6 +179,8 @@ std::optional<RegionSet> regions_if_moved(const LabelledLattice& lattice, Index 
       if (tips & on) return std::nullopt;
       if (same_origin && lattice.first_region[link.points[j]] == region && !(tips & own)) return std::nullopt;
     }
+    // Two regions cannot alternate around an edge where both ends see each as one piece.
+    if (regions->size() > 2 && !link.one_stretch_each(i)) return std::nullopt;
     // What meets at u is what shows around it now, the point itself among it.
     Link around_u(lattice, u);
     const std::optional<RegionSet> at_u = around_u.pure();

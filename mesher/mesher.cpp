@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ranges>
 
 #include "common/error.h"
 #include "common/interfaces.h"
@@ -198,11 +199,12 @@ TetMesh to_input_units(CutMesh cut, const MaterialField& field) {
   return mesh;
 }
 
-/// A material none of whose lattice points is left: which one, and what to do about it.
-void check_all_there(const PreparedInput& input, const MaterialField& field,
-                     const std::vector<NearestRegion>& points) {
+/// Refuses an input of which a material has nothing left: which one, and what to do about it. `regions` are
+/// those of all lattice points, or of all tets.
+template <class Regions>
+void check_all_there(const PreparedInput& input, const MaterialField& field, const Regions& regions) {
   std::vector<std::uint8_t> there(field.regions().size(), 0);
-  for (const NearestRegion& p : points) there[p.region] = 1;
+  for (RegionIndex r : regions) there[r] = 1;
   if (std::count(there.begin() + 1, there.end(), 1) == 0)
     throw NothingToMeshError(
         input.bodies[0].file +
@@ -332,7 +334,7 @@ MeshedSurface mesh_surfaces(const PreparedInput& input, const MesherOptions& opt
   stages.begin("lattice");
   LatticePoints points = lattice_points(octree);
   std::vector<NearestRegion> regions = lattice_regions(points, *field);
-  check_all_there(input, *field, regions);
+  check_all_there(input, *field, regions | std::views::transform(&NearestRegion::region));
   std::vector<Tet> tets;
   if (options.keep_outside) {
     tets = lattice_tets(octree, points);
@@ -352,10 +354,8 @@ MeshedSurface mesh_surfaces(const PreparedInput& input, const MesherOptions& opt
 
   stages.begin("cutting");
   CutMesh cut = cut_lattice(lattice);
-  if (cut.tets.empty())
-    throw NothingToMeshError(
-        input.bodies[0].file +
-        ": the surface is smaller than a cell; use a higher resolution or a smaller voxel size");
+  // Moves and specks may have taken what had few lattice points.
+  check_all_there(input, *field, cut.regions);
   result.mesh = to_input_units(std::move(cut), *field);
   report.seconds_cut = stages.seconds();
   if (progress) progress->throw_if_cancelled();

@@ -72,6 +72,22 @@ TEST(Arrangement, ARingAroundThePointIsNoDisc) {
   EXPECT_EQ(meeting(lattice, {3, 3, 3}), Regions{});
 }
 
+TEST(Arrangement, RegionsDoNotAlternateAroundAnEdge) {
+  // Around the edge between two points on interfaces: 1, outside, 2 and outside again, or a fourth region.
+  const auto meeting_with = [](RegionIndex fourth) {
+    LabelledLattice lattice = make_lattice([&](const Vec3& p) -> RegionIndex {
+      if (p.z() >= 4 || p.z() <= 1 || (p.x() == 3 && p.y() == 3)) return 0;
+      if (p.x() >= 3 && p.y() >= 3) return 1;
+      if (p.x() <= 3 && p.y() <= 3) return 2;
+      return p.x() > 3 ? 0 : fourth;
+    });
+    lattice.is_on[point_at(lattice, {3, 3, 2})] = 1;
+    return meeting(lattice, {3, 3, 3});
+  };
+  EXPECT_EQ(meeting_with(0), Regions{});
+  EXPECT_EQ(meeting_with(3), (Regions{0, 1, 2, 3}));
+}
+
 TEST(Arrangement, PureRegionsOfTheClosedStar) {
   LabelledLattice lattice = make_lattice([](const Vec3& p) { return p.z() < 2.75 ? 1 : 0; });
   const Index p = point_at(lattice, {3, 3, 3});

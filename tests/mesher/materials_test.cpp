@@ -156,6 +156,16 @@ TEST(Materials, TheSameBytesForAnyNumberOfThreads) {
 TEST(Materials, RefusesWhatIsCarvedAwayOrTooDeep) {
   // The outermost last covers all.
   EXPECT_THROW(mesh_of(make_input({make_sphere(0.5), make_sphere(1)}), 24), InputError);
+  // A few lattice points are in it, or one, or none: it is there or refused, never lost.
+  for (double radius : {0.02, 0.04, 0.06, 0.08, 0.1, 0.12}) {
+    try {
+      const TetMesh mesh =
+          mesh_of(make_input({make_sphere(1), make_sphere(radius, {0.31, 0.27, 0.22})}), 16).mesh;
+      EXPECT_GT(volume_of(mesh, 2), 0) << radius;
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find("m2"), std::string::npos);
+    }
+  }
   EXPECT_THROW(mesh_of(make_input({make_sphere(1)}, {1.2}), 24), InputError);
   EXPECT_THROW(mesh_of(make_input({make_sphere(1)}, {0.5, 0.6}), 24), InputError);
 }
