@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "common/error.h"
 #include "common/parallel_sort.h"
 #include "common/quality.h"
 #include "mesher/cut_tet.h"
@@ -50,8 +51,8 @@ Fate fate(const LabelledLattice& lattice, const Tet& t, RegionIndex& region) {
     if (region != on_interface && r != region) return Fate::cut;
     region = r;
   }
-  return region == on_interface || (region == outside_region && !lattice.keep_outside) ? Fate::dropped
-                                                                                       : Fate::whole;
+  TETWRIGHT_CHECK(region != on_interface);  // moves leave no tet with all points on interfaces
+  return (region == outside_region && !lattice.keep_outside) ? Fate::dropped : Fate::whole;
 }
 
 bool pure(const LabelledLattice& lattice, Index v) { return !lattice.is_on[v]; }

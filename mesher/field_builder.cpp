@@ -6,12 +6,6 @@
 
 namespace tetwright {
 
-namespace {
-
-constexpr MaterialTag outside_tag = 0;
-
-}  // namespace
-
 std::shared_ptr<const MaterialField> build_field(const PreparedInput& input, const GridFrame& voxels,
                                                  bool keep_outside, Progress* progress) {
   std::vector<std::shared_ptr<const LevelSet>> level_sets;
@@ -20,7 +14,7 @@ std::shared_ptr<const MaterialField> build_field(const PreparedInput& input, con
     return static_cast<std::uint16_t>(level_sets.size() - 1);
   };
   // Outside is where no body is: the largest of their negatives.
-  std::vector<FieldRegion> regions{{keep_outside ? "outside" : "", outside_tag, {}}};
+  std::vector<FieldRegion> regions{{keep_outside ? outside_name : "", outside_tag, {}}};
   for (std::size_t b = 0; b < input.bodies.size(); ++b) {
     const PreparedInput::Body& body = input.bodies[b];
     const auto number = static_cast<std::uint16_t>(b);

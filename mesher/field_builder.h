@@ -8,6 +8,10 @@
 
 namespace tetwright {
 
+/// What the outside is called where it is meshed.
+inline constexpr MaterialTag outside_tag = 0;
+inline constexpr const char* outside_name = "outside";
+
 /// The regions of an input on the voxels of a frame: a level set for each body and one for each layer's inner
 /// side. A body is carved by all later ones; layers are cut from the first body by depth.
 ///

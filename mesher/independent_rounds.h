@@ -38,8 +38,9 @@ class IndependentRounds {
   }
 
   /// Block b has the points [starts[b], starts[b + 1]) of the list. Calls `body(blocks)`, concurrently, with
-  /// lists of blocks; it may write what belongs to their points, and read what belongs to points at most two
-  /// edges from them. After each round `between_rounds(done)` with the number of blocks done so far.
+  /// lists of blocks; it may write what belongs to their points, and read what belongs to points one edge
+  /// away, and two edges away by way of a point near an interface. The points are near interfaces, each there
+  /// once. After each round `between_rounds(done)` with the number of blocks done so far.
   template <class Body, class BetweenRounds>
   void run(std::span<const Index> points, std::span<const std::size_t> starts, Body&& body,
            BetweenRounds&& between_rounds) {

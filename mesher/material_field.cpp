@@ -278,7 +278,8 @@ std::optional<FieldSampler::Sheet> FieldSampler::thinnest_sheet(const Vec3& poin
 
 std::optional<RegionIndex> MaterialField::find(Region region) const {
   if (!region) return outside_region;
-  for (std::size_t r = 1; r < regions_.size(); ++r)
+  // A kept outside has a name and a tag, else region 0 has neither.
+  for (std::size_t r = regions_[outside_region].name.empty() ? 1 : 0; r < regions_.size(); ++r)
     if (regions_[r].tag == *region) return static_cast<RegionIndex>(r);
   return std::nullopt;
 }

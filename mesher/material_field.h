@@ -32,7 +32,8 @@ struct FieldRegion {
 ///
 /// Level sets are read on their voxels, one finest cell each. The lattice may be finer than that: its unit is
 /// a voxel divided by 2^refinement, and everything here is in lattice units unless it says voxels.
-/// Immutable after construction; all functions may be called concurrently.
+/// Immutable after construction; all functions may be called concurrently. signed_distance() and project()
+/// set up a FieldSampler for each call: who reads much makes one of his own.
 class MaterialField final : public ReferenceSurface {
  public:
   /// `regions[0]` is outside. `voxels` is the frame of the level sets.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <ranges>
+#include <set>
 
 #include "common/error.h"
 #include "common/interfaces.h"
@@ -45,11 +46,15 @@ constexpr double most_lattice_per_dense = 4;
 constexpr double tets_per_volume_uniform = 12;
 /// Peak memory for each dense tet, with the lattice outside; measured on scans, rounded up.
 constexpr double bytes_per_tet = 140;
+/// As thin_parts.h refines for sheets.
+constexpr double cells_per_sheet = 1.5, smallest_refined = 0.125;
 /// Numbers have 32 bits, and a lattice has some tets that no mesh keeps.
 constexpr double most_tets = 2e9;
 /// Tets of the lattice for each leaf of an octree.
 constexpr double tets_per_leaf = 12;
-constexpr double bytes_per_lattice_tet = 40;
+/// Measured: 40 bytes where most leaves are outside (uniform), 100 where sheets are refined for.
+constexpr double bytes_per_lattice_tet = 40, bytes_per_refined_tet = 100;
+constexpr std::size_t most_materials = 60000;
 /// A uniform grid has leaves and lattice points all over its box.
 constexpr double bytes_per_cell_uniform = 150;
 /// What the program takes anyhow, libraries and the surface included.
@@ -114,12 +119,19 @@ MesherEstimate estimate(const PreparedInput& input, double h, bool uniform, bool
       const double thickness = volume / area;
       tets += sides * tets_per_area_thick * area * thickness / (thickness + half_full_thickness);
     }
-    cells += area;
+    cells += sides * area / 2;
   };
   // On a surface within another body there are tets on both sides.
   for (std::size_t b = 0; b < input.bodies.size(); ++b)
     add(input.bodies[b].surface, b == 0 && !keep_outside ? 1 : 2);
-  for (std::size_t l = 0; l < input.layers.size(); ++l) add(input.bodies[0].surface, 2);
+  for (const MaterialLayer& layer : input.layers) {
+    // A thin one takes cells of half the size, or a quarter, ...
+    double sides = 2;
+    for (double side = h; !uniform && side > smallest_refined * h && layer.thickness < cells_per_sheet * side;
+         side /= 2)
+      sides *= 4;
+    add(input.bodies[0].surface, sides);
+  }
   if (uniform) {
     const double box = ((input.high - input.low) / h).prod();
     bytes += bytes_per_cell_uniform * box;
@@ -232,9 +244,19 @@ void check_all_there(const PreparedInput& input, const MaterialField& field, con
   }
 }
 
+void check_outside_is_free(const PreparedInput& input) {
+  const auto taken = [](const std::string& name, MaterialTag tag) {
+    if (name == outside_name || tag == outside_tag)
+      throw UsageError("the material '" + name + "' of tag " + std::to_string(tag) +
+                       " would be taken for the outside that is kept; give it another name or tag");
+  };
+  for (const PreparedInput::Body& b : input.bodies) taken(b.name, b.tag);
+  for (const MaterialLayer& l : input.layers) taken(l.name, l.tag);
+}
+
 ThinPartReport thin_part_report(const ThinPart& part, const MaterialField& field, bool refined) {
   const std::string& name = field.regions()[part.region].name;
-  return {part.region == outside_region ? "outside" : name, part.places, field.voxels().to_input(part.first),
+  return {part.region == outside_region ? "" : name, part.places, field.voxels().to_input(part.first),
           refined};
 }
 
@@ -244,22 +266,25 @@ PreparedInput prepare_input(std::vector<MaterialSurface> surfaces, std::vector<M
                             NestedRule nested) {
   if (surfaces.empty()) throw UsageError("there is no surface to mesh");
   PreparedInput input;
-  MaterialTag next_tag = 0;
-  for (const MaterialSurface& s : surfaces) next_tag = std::max(next_tag, s.tag);
+  std::set<MaterialTag> tags;
+  for (const MaterialSurface& s : surfaces) tags.insert(s.tag);
   for (const MaterialLayer& l : layers) {
     if (!(l.thickness > 0 && std::isfinite(l.thickness)))
       throw UsageError("the layer '" + l.name + "' must have a thickness above 0, not " +
                        number_text(l.thickness));
-    next_tag = std::max(next_tag, l.tag);
+    tags.insert(l.tag);
   }
+  MaterialTag next_tag = 1;
   for (MaterialSurface& s : surfaces) {
     SurfaceInput prepared = prepare_surface(s.surface, s.file, nested);
     s.surface = {};
     for (SurfaceFinding& f : prepared.findings) input.findings.push_back({s.file, std::move(f)});
     input.bodies.push_back({s.name, s.tag, s.file, std::move(prepared.surface)});
-    for (std::size_t k = 0; k < prepared.nested.size(); ++k)
+    for (std::size_t k = 0; k < prepared.nested.size(); ++k) {
+      while (!tags.insert(next_tag).second) ++next_tag;
       input.bodies.push_back(
-          {s.name + "_" + std::to_string(k + 1), ++next_tag, s.file, std::move(prepared.nested[k])});
+          {s.name + "_" + std::to_string(k + 1), next_tag, s.file, std::move(prepared.nested[k])});
+    }
   }
   input.layers = std::move(layers);
   input.low = input.bodies[0].surface.low;
@@ -268,6 +293,10 @@ PreparedInput prepare_input(std::vector<MaterialSurface> surfaces, std::vector<M
     input.low = input.low.cwiseMin(b.surface.low);
     input.high = input.high.cwiseMax(b.surface.high);
   }
+  if (input.bodies.size() + input.layers.size() > most_materials)
+    throw UsageError(std::to_string(input.bodies.size() + input.layers.size()) +
+                     " materials are too many; at most " + std::to_string(most_materials) +
+                     " can be meshed at a time");
   std::vector<std::pair<std::string, MaterialTag>> all;
   for (const PreparedInput::Body& b : input.bodies) all.emplace_back(b.name, b.tag);
   for (const MaterialLayer& l : input.layers) all.emplace_back(l.name, l.tag);
@@ -299,6 +328,7 @@ MeshedSurface mesh_surfaces(const PreparedInput& input, const MesherOptions& opt
 
   stages.begin("signed distances");
   report.cell_size = cell_size(input, options);
+  if (options.keep_outside) check_outside_is_free(input);
   // So much smaller that no lattice could be laid out in numbers that are still exact; a little smaller is
   // found out by the lattice itself.
   if (longest_side(input) < report.cell_size * smallest_in_cells)
@@ -327,8 +357,10 @@ MeshedSurface mesh_surfaces(const PreparedInput& input, const MesherOptions& opt
   report.cells = octree.size();
   // Thin sheets may have taken far more cells than the surface alone.
   const double lattice_tets_expected = tets_per_leaf * static_cast<double>(octree.size());
-  check_memory({static_cast<std::size_t>(lattice_tets_expected),
-                static_cast<std::size_t>(bytes_per_lattice_tet * lattice_tets_expected)});
+  check_memory(
+      {static_cast<std::size_t>(lattice_tets_expected),
+       static_cast<std::size_t>((report.refinement > 0 ? bytes_per_refined_tet : bytes_per_lattice_tet) *
+                                lattice_tets_expected)});
   report.seconds_octree = stages.seconds();
 
   stages.begin("lattice");

@@ -59,16 +59,16 @@ struct PreparedInput {
 };
 
 /// Checks and mends the surfaces, see prepare_surface(); with NestedRule::material what is enclosed becomes a
-/// body of its own right after its encloser, with tags above all others. Names must be different.
+/// body of its own right after its encloser, with the smallest free tags from 1 up. Names must be different.
 ///
 /// Throws InputError (see prepare_surface(); a size beyond what can be measured), UsageError (no surface, two
-/// materials of one name or tag, a layer that is not thicker than 0).
+/// materials of one name or tag, a layer that is not thicker than 0, more than 60,000 materials).
 PreparedInput prepare_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers = {},
                             NestedRule nested = NestedRule::automatic);
 
 /// A material, or the outside, that is too thin for the cells somewhere.
 struct ThinPartReport {
-  std::string name;
+  std::string name;  ///< empty for the outside: a gap
   std::size_t places = 0;
   Vec3 first = Vec3::Zero();  ///< one of them, input units
   /// True if it is a sheet between two surfaces for which the cells were refined as far as they go.
@@ -94,8 +94,8 @@ struct MeshedSurface {
   MesherReport report;
 };
 
-/// Writes the signed distances of each material as a level set of its name to a .vdb file. Throws
-/// OutputError.
+/// Writes the signed distances of each material (not of a kept outside) as a level set of its name to a .vdb
+/// file. Throws OutputError.
 void write_fields(const MaterialField& field, const std::string& path);
 
 /// What meshing would take.
@@ -112,7 +112,8 @@ MesherEstimate estimate_mesh(const PreparedInput& input, const MesherOptions& op
 ///
 /// `progress` may be null. Throws UsageError (option values), InputError (too far from the origin for cells
 /// this small, a material carved away entirely, a layer thicker than the body), NothingToMeshError (no
-/// lattice point is inside), OutputError (the mesh would not fit in memory), Interrupted.
+/// lattice point is inside), OutputError (the mesh would not fit in memory), Interrupted. Time grows with the
+/// square of the number of materials where there are many: every body may carve every earlier one.
 MeshedSurface mesh_surfaces(const PreparedInput& input, const MesherOptions& options, Progress* progress);
 
 /// The resolution that gives about 40 dense tets for each of `target_tets`, which is what a simplification

@@ -99,15 +99,21 @@ void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) 
          "A shell of the first surface, NAME=THICKNESS in input units; repeatable, outermost first")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  app.add_option("--nested", c.nested,
-                 "What closed parts inside others are: auto (wound against them: cavities; alike: solid), "
-                 "cavity, solid, or material (of their own)")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, NestedRule>{{"auto", NestedRule::automatic},
-                                                                    {"cavity", NestedRule::cavity},
-                                                                    {"solid", NestedRule::solid},
-                                                                    {"material", NestedRule::material}},
-                                  CLI::ignore_case));
+  static const std::map<std::string, NestedRule> nested_rules{{"auto", NestedRule::automatic},
+                                                              {"cavity", NestedRule::cavity},
+                                                              {"solid", NestedRule::solid},
+                                                              {"material", NestedRule::material}};
+  app.add_option_function<std::string>(
+      "--nested",
+      [&c](const std::string& text) {
+        const auto rule = nested_rules.find(text);
+        if (rule == nested_rules.end())
+          throw CLI::ValidationError("--nested", "'" + text + "' is none of auto, cavity, solid, material");
+        c.nested = rule->second;
+      },
+      "What closed parts inside others are: auto (wound against them: cavities; alike: solid), cavity, "
+      "solid, "
+      "or material (of their own)");
   app.add_flag("--keep-outside", c.keep_outside,
                "Mesh the outside too, in a box, as the material 'outside' with tag 0");
   app.add_option("--write-sdf", c.write_sdf, "Write the signed distances that were meshed to this .vdb file");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -26,6 +27,12 @@ namespace tetwright {
 
 namespace {
 
+std::vector<std::string> all_inputs(const CommandLine& line) {
+  std::vector<std::string> inputs = line.inputs;
+  for (const NamedValue& m : line.materials) inputs.push_back(m.value);
+  return inputs;
+}
+
 /// --stats must not take the place of a mesh: it is a .json file, and none of the others.
 void check_stats_path(const CommandLine& line) {
   if (line.stats.empty()) return;
@@ -33,7 +40,8 @@ void check_stats_path(const CommandLine& line) {
   if (fs::path(line.stats).extension() != ".json")
     throw UsageError("--stats " + line.stats + ": the statistics are JSON; give a name that ends in .json");
   std::vector<std::string> others =
-      line.command == Command::sample ? std::vector<std::string>() : line.inputs;
+      line.command == Command::sample ? std::vector<std::string>() : all_inputs(line);
+  others.push_back(line.write_sdf);
   others.push_back(line.output);
   others.push_back(line.before);
   std::error_code ignored;
@@ -44,7 +52,19 @@ void check_stats_path(const CommandLine& line) {
   check_output_file(line.stats);
 }
 
-bool is_vdb(const std::string& path) { return std::filesystem::path(path).extension() == ".vdb"; }
+/// A surface must not be replaced by its mesh, by way of a link either.
+void check_output_is_no_input(const CommandLine& line) {
+  std::error_code ignored;
+  for (const std::string& input : all_inputs(line))
+    if (std::filesystem::equivalent(input, line.output, ignored))
+      throw UsageError("-o " + line.output + " is also an input; give the mesh a name of its own");
+}
+
+bool is_vdb(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension == ".vdb";
+}
 
 /// --write-sdf must not take the place of another file either.
 void check_sdf_path(const CommandLine& line) {
@@ -53,9 +73,7 @@ void check_sdf_path(const CommandLine& line) {
     throw UsageError("--write-sdf " + line.write_sdf +
                      ": signed distances are written for OpenVDB; give a name that ends in .vdb");
   std::error_code ignored;
-  std::vector<std::string> inputs = line.inputs;
-  for (const NamedValue& m : line.materials) inputs.push_back(m.value);
-  for (const std::string& input : inputs)
+  for (const std::string& input : all_inputs(line))
     if (input == line.write_sdf || std::filesystem::equivalent(input, line.write_sdf, ignored))
       throw UsageError("--write-sdf " + line.write_sdf + " is also an input; give it another name");
   check_output_file(line.write_sdf);
@@ -108,8 +126,8 @@ class Run {
     check_output_path(line.output);
     check_stats_path(line);
     check_sdf_path(line);
-    report_.inputs = line.inputs;
-    for (const NamedValue& m : line.materials) report_.inputs.push_back(m.value);
+    report_.inputs = all_inputs(line);
+    if (line.command != Command::simplify) check_output_is_no_input(line);
   }
 
   void read_surfaces() {
@@ -123,7 +141,9 @@ class Run {
     };
     for (const std::string& file : line_.inputs) {
       if (is_vdb(file))
-        for (NamedSurface& s : read_level_sets(file)) add(s.name, file, std::move(s.surface));
+        for (NamedSurface& s : read_level_sets(file))
+          add(s.name.empty() ? std::filesystem::path(file).stem().string() : s.name, file,
+              std::move(s.surface));
       else
         add(std::filesystem::path(file).stem().string(), file, read_surface(file));
     }
@@ -161,7 +181,7 @@ class Run {
       options.resolution = resolution_for_target(input_, line_.target_tets);
     }
     MeshedSurface dense = mesh_surfaces(input_, options, &progress_);
-    if (!line_.write_sdf.empty()) write_fields(*dense.field, line_.write_sdf);
+    if (!line_.write_sdf.empty()) field_ = dense.field;
     mesh_ = std::move(dense.mesh);
     report_.mesher = dense.report;
     report_.seconds_mesh = watch.seconds();
@@ -192,7 +212,7 @@ class Run {
     options.gamma = line_.gamma;
     options.max_iterations = line_.max_iterations;
     options.seed = line_.seed;
-    options.name = line_.inputs.front();
+    options.name = report_.inputs.front();
     report_.simplify.emplace();
     mesh_ = simplify(std::move(mesh_), options, &*report_.simplify, &progress_);
   }
@@ -204,10 +224,12 @@ class Run {
     const Stopwatch watch;
     progress_.throw_if_cancelled();
     progress_.begin_stage("write");
+    if (field_) write_fields(*field_, line_.write_sdf);
     write_tet_mesh(mesh_, line_.output);
     report_.seconds_write = watch.seconds();
     report_.seconds_total = total_.seconds();
-    if (!line_.stats.empty()) write_file_atomically(line_.stats, stats_json(line_, report_).dump(1) + "\n");
+    if (!line_.stats.empty())
+      write_file_atomically(line_.stats, json_text(stats_json(line_, report_)) + "\n");
     progress_.clear();
     if (!line_.quiet) print_notes(report_);
     if (!line_.quiet) print_report(line_, report_);
@@ -252,6 +274,7 @@ class Run {
   InterruptHandler handler_;
   RunReport report_;
   PreparedInput input_;
+  std::shared_ptr<const MaterialField> field_;  ///< only where it is to be written
   TetMesh mesh_;
 };
 
@@ -311,9 +334,9 @@ ExitStatus check(const CommandLine& line) {
   if (!line.before.empty()) json["topology_differences"] = differences;
   const bool kept = differences.empty();
   run.seconds_total = total.seconds();
-  if (!line.stats.empty()) write_file_atomically(line.stats, stats_json(line, run).dump(1) + "\n");
+  if (!line.stats.empty()) write_file_atomically(line.stats, json_text(stats_json(line, run)) + "\n");
   if (line.json) {
-    std::printf("%s\n", json.dump(1).c_str());
+    std::printf("%s\n", json_text(json).c_str());
   } else if (!line.quiet) {
     for (const MeshFinding& f : findings)
       std::printf("finding %d, %s\n", static_cast<int>(f.fault), mesh_finding_line(f).c_str());
@@ -336,7 +359,7 @@ ExitStatus sample(const CommandLine& line) {
   if (!line.stats.empty()) {
     RunReport run;
     run.seconds_total = total.seconds();
-    write_file_atomically(line.stats, stats_json(line, run).dump(1) + "\n");
+    write_file_atomically(line.stats, json_text(stats_json(line, run)) + "\n");
   }
   return ExitStatus::done;
 }

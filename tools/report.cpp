@@ -17,6 +17,13 @@ std::string text(const char* format, ...) {
   return buffer;
 }
 
+/// Names may hold anything; a note is one line.
+std::string printable(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ') c = '?';
+  return text;
+}
+
 }  // namespace
 
 void print_report(const CommandLine& line, const RunReport& run) {
@@ -63,12 +70,12 @@ void print_notes(const RunReport& run) {
     file = f.file;
     line += std::to_string(f.finding.count) + " " + f.finding.what + " (" + f.finding.done + ")";
   }
-  if (!line.empty()) std::fprintf(stderr, "tetwright: note: %s\n", line.c_str());
+  if (!line.empty()) std::fprintf(stderr, "tetwright: note: %s\n", printable(line).c_str());
   if (!run.mesher) return;
   for (const ThinPartReport& t : run.mesher->thin_parts)
     std::fprintf(stderr,
                  "tetwright: note: %s is thinner than %s at %zu places, the first at (%g, %g, %g): %s\n",
-                 t.name == "outside" ? "a gap" : ("'" + t.name + "'").c_str(),
+                 t.name.empty() ? "a gap" : printable("'" + t.name + "'").c_str(),
                  t.refined ? "the smallest cells can hold" : "two cells", t.places, t.first.x(), t.first.y(),
                  t.first.z(), "parts may tear or join there; a higher resolution keeps them");
 }

@@ -53,6 +53,10 @@ std::size_t peak_bytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
 }
 
+std::string json_text(const nlohmann::json& json) {
+  return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 nlohmann::json mesh_json(const MeshStatistics& m, const std::map<MaterialTag, std::string>& names,
                          double threshold) {
   nlohmann::json materials = nlohmann::json::array();
@@ -97,8 +101,10 @@ nlohmann::json stats_json(const CommandLine& line, const RunReport& run) {
     j["dense"]["specks"] = m.specks;
     j["dense"]["thin_parts"] = nlohmann::json::array();
     for (const ThinPartReport& t : m.thin_parts)
-      j["dense"]["thin_parts"].push_back(
-          {{"name", t.name}, {"places", t.places}, {"first", place_json(t.first)}, {"refined", t.refined}});
+      j["dense"]["thin_parts"].push_back({{"name", t.name.empty() ? "outside" : t.name},
+                                          {"places", t.places},
+                                          {"first", place_json(t.first)},
+                                          {"refined", t.refined}});
     j["input"]["findings"] = nlohmann::json::array();
     for (const InputFinding& f : run.findings) {
       nlohmann::json finding = {

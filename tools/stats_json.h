@@ -38,6 +38,8 @@ std::size_t peak_bytes();
 
 /// The keys that data/stats.schema.json fixes.
 nlohmann::json stats_json(const CommandLine& line, const RunReport& run);
+/// As it is written and printed; bytes that are no UTF-8 (names may have any) become replacement characters.
+std::string json_text(const nlohmann::json& json);
 /// `names` of materials that have one; `threshold` is what the statistics were made with, steradians.
 nlohmann::json mesh_json(const MeshStatistics& mesh, const std::map<MaterialTag, std::string>& names,
                          double threshold);

@@ -184,7 +184,7 @@ void append_name(std::string& out, int dimension, std::int64_t group, const std:
   out += ' ';
   append_number(out, group);
   out += " \"";
-  for (char c : name) out += c == '"' || static_cast<unsigned char>(c) < ' ' ? '_' : c;
+  for (char c : name) out += c == '"' || c == '\\' || static_cast<unsigned char>(c) < ' ' ? '_' : c;
   out += "\"\n";
 }
 

@@ -269,6 +269,18 @@ TEST(Program, MaterialsThatMakeNoSense) {
   expect_refused(ball + " --layer skin=50" + out, 3, {"skin", "thicker"});
   expect_refused(ball + " --nested never" + out, 2, {"never"});
   expect_refused(ball + " --write-sdf " + (f / "fields.txt") + out, 2, {".vdb"});
+  expect_refused(ball + " --nested 1" + out, 2, {"cavity"});
+  expect_refused(ball + " --material outside=" + (f / "cube.off") + " --keep-outside" + out, 2,
+                 {"'outside'"});
+  // A link to an input, and a name that is no text.
+  ASSERT_EQ(std::system(("ln -s ball.off " + (f / "link.vtu")).c_str()), 0);
+  expect_refused(ball + " --resolution 16 -o " + (f / "link.vtu"), 2, {"link.vtu"});
+  EXPECT_EQ(contents(f / "ball.off").substr(0, 3), "OFF");
+  EXPECT_EQ(run("prepare --material \"$(printf '\\377')=" + (f / "ball.off") + "\" --target-tets 500 -o " +
+                (f / "odd.vtu") + " --stats " + (f / "odd.json"))
+                .status,
+            0);
+  EXPECT_EQ(nlohmann::json::parse(contents(f / "odd.json"))["result"]["materials"].size(), 1u);
   // The outermost last covers what was before.
   expect_refused("mesh " + (f / "cube.off") + " --voxel-size 0.1 --material shell=" + (f / "ball.off") +
                      " --layer hull=0.01 -o " + (f / "out.vtu"),
