@@ -24,6 +24,15 @@ struct InterfaceTriangle {
   bool operator==(const InterfaceTriangle&) const = default;
 };
 
+/// Numbers that a file gives to each point or tet: `components` for each, one after the other.
+struct MeshField {
+  std::string name;
+  int components = 1;
+  bool integer = false;        ///< whole numbers, to be written as such
+  std::vector<double> values;  ///< size: components * number of points or tets
+  bool operator==(const MeshField&) const = default;
+};
+
 /// A tetrahedral mesh of one or more materials: a plain value, the currency between all parts.
 ///
 /// A tet (a, b, c, d) is positive when (b-a) x (c-a) . (d-a) > 0. Readers hand over what the file says;
@@ -36,6 +45,9 @@ struct TetMesh {
   /// What find_interfaces() of interfaces.h finds in this mesh, or empty: readers leave it so, mesher/ and
   /// simplify/ fill it. Who changes points' numbers, tets or materials clears it or fills it anew.
   std::vector<InterfaceTriangle> interfaces = {};
+  /// What else a file says of points and tets; materials are not among them.
+  std::vector<MeshField> point_fields = {};
+  std::vector<MeshField> cell_fields = {};
 };
 
 }  // namespace tetwright

@@ -305,4 +305,17 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
   return Simplifier(std::move(mesh), options, report, progress).run();
 }
 
+TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* report, Progress* progress) {
+  if (options.chunk_size == 0) throw UsageError("a chunk must hold at least one item");
+  if (mesh.tets.empty()) throw InputError(options.name, 0, "no tets in it");
+  SimplifyOptions o;
+  o.target_tets = mesh.tets.size();
+  o.min_solid_angle = options.min_solid_angle;
+  o.max_iterations = 0;
+  o.seed = options.seed;
+  o.chunk_size = options.chunk_size;
+  o.name = options.name;
+  return Simplifier(std::move(mesh), o, report, progress).run();
+}
+
 }  // namespace tetwright

@@ -11,12 +11,30 @@
 
 namespace tetwright {
 
+/// The order and the schedule of the block loop.
+enum class Schedule : std::uint8_t {
+  tuned,  ///< README.md, Schedule: what was found best by trying; closes with improvement
+  paper   ///< Figure 3 of the paper, its operations in its order, nothing after it
+};
+
+/// What makes a shape good when meshes are improved; all are scaled so that the regular tet has 1.
+enum class ShapeObjective : std::uint8_t {
+  both,         ///< the smaller of: smallest solid angle, 0.3 sr times the smallest sine of a dihedral angle
+  solid_angle,  ///< smallest solid angle
+  dihedral      ///< smallest sine of a dihedral angle: against small and large angles alike
+};
+
 struct SimplifyOptions {
   std::size_t target_tets = 10000;  ///< at least 1
   double min_solid_angle = 0.1;     ///< steradians; tets below it are what the closing rounds work on
   double beta = 5;           ///< the paper's: largest edge, in ideal edges, that Quality does not penalise
   double gamma = 10;         ///< the paper's: weight of the volume error against the length of an edge
   int max_iterations = 100;  ///< of the block loop
+  Schedule schedule = Schedule::tuned;
+  ShapeObjective objective = ShapeObjective::both;  ///< of the closing improvement
+  /// What boundary and interface points slide along; nothing: the planes of constant volume at each point.
+  /// Must outlive the call.
+  const ReferenceSurface* reference = nullptr;
   std::uint64_t seed = 1;
   /// Points or tets that one task takes at a time: large enough to be random within, small enough to stay in
   /// a core's cache (a star takes about 1.5 KB). Results depend on it, not on the number of threads; small
@@ -25,9 +43,23 @@ struct SimplifyOptions {
   std::string name = "mesh";  ///< what messages call the mesh
 };
 
-/// What one round of the block loop, or of the closing, did.
+/// Shape only; the count stays within 5 %.
+struct ImproveOptions {
+  /// Only tets whose smallest solid angle is below this (steradians) are worked on, with what stands around
+  /// them: the time follows their number, not the mesh's. 0: all.
+  double only_below = 0;
+  double min_solid_angle = 0.1;  ///< steradians; the work ends early once all are well above it
+  ShapeObjective objective = ShapeObjective::both;
+  int max_iterations = 100;  ///< rounds
+  std::uint64_t seed = 1;
+  std::size_t chunk_size = 2000;  ///< as in SimplifyOptions
+  const ReferenceSurface* reference = nullptr;
+  std::string name = "mesh";
+};
+
+/// What one round of the block loop, or of the improvement, did.
 struct IterationReport {
-  std::string kind;  ///< "simplify" or "close"
+  std::string kind;  ///< "simplify", "close" (what ends simplify()) or "improve"
   std::size_t tets_before = 0, tets_after = 0;
   double cutoff =
       0;  ///< Quality(t) below which tets were taken up; in the closing, the solid angle in steradians
@@ -54,5 +86,10 @@ struct SimplifyReport {
 /// over-shared tets, UsageError for impossible options, Interrupted when cancelled.
 TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report = nullptr,
                  Progress* progress = nullptr);
+
+/// Improves the shapes of a mesh at about its count: what closes simplify(), by itself. The same guarantees,
+/// threads and errors.
+TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* report = nullptr,
+                Progress* progress = nullptr);
 
 }  // namespace tetwright
