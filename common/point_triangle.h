@@ -4,8 +4,11 @@
 
 namespace tetwright {
 
-/// Squared distance of a point from a triangle (Ericson 2005, section 5.1.5). A degenerate triangle counts as
-/// the segment or point it is.
+/// The point of a triangle that is nearest to `point` (Ericson 2005, section 5.1.5). A degenerate triangle
+/// counts as the segment or point it is.
+Vec3 closest_point(const Vec3& point, const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// Squared distance of a point from a triangle, as for closest_point().
 double squared_distance(const Vec3& point, const Vec3& a, const Vec3& b, const Vec3& c);
 
 }  // namespace tetwright

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "common/types.h"
 
@@ -26,6 +27,20 @@ std::array<double, 6> dihedral_angles(const std::array<Vec3, 4>& tet);
 /// Signed volume, input units cubed.
 double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
+/// What makes a shape good when meshes are improved. Each is a number in [0, 1], 1 for the regular tet.
+enum class ShapeObjective : std::uint8_t {
+  /// The smaller of the smallest solid angle in steradians and 0.3 times the smallest sine of a dihedral
+  /// angle:
+  /// against slivers, needles and flat tets alike.
+  both,
+  solid_angle,  ///< the smallest solid angle
+  dihedral      ///< the smallest sine of a dihedral angle: against small and large ones alike
+};
+
+/// Weight of a sine against a solid angle in steradians in ShapeObjective::both: 0.1 sr then stands for
+/// dihedral angles of 19.5 and 160.5 degrees.
+inline constexpr double sine_weight = 0.3;
+
 /// Quality(t) of Cutler, Dorsey & McMillan 2004, section 3: the geometric mean of three factors in [0, 1]
 /// that reward solid angles near the regular tet's, a volume of at least the ideal one and edges no longer
 /// than beta ideal edges.
@@ -40,11 +55,15 @@ struct TetQuality {
   /// Quality(t)^3 in [0, 1], which orders tets as Quality(t) does without the cube root; 0 for a tet that is
   /// negative or so flat that rounding may have decided its sign: more than 0 means positive by exact sign.
   double cubed(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const;
-  /// Shape alone, whatever the size: the smallest solid angle over the regular tet's, in [0, 1]; 0 as for
-  /// cubed().
-  double shape(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const;
   /// Quality(t) in [0, 1].
   double operator()(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const;
 };
+
+/// Shape alone, whatever the size: the objective's value over the regular tet's, in [0, 1]; 0 as for
+/// TetQuality::cubed().
+double shape_quality(ShapeObjective objective, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+/// shape_quality() of a tet whose smallest solid angle is `solid_angle` and whose dihedral angles are no
+/// worse than the objective wants them beside it; what bounds on angles mean in terms of the objective.
+double shape_quality_bound(ShapeObjective objective, double solid_angle);
 
 }  // namespace tetwright

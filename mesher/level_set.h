@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
+#include "common/morton.h"
 #include "common/progress.h"
 #include "mesher/grid_frame.h"
-#include "mesher/morton.h"
 #include "mesher/surface_input.h"
 
 namespace tetwright {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "common/morton.h"
 #include "common/reference_surface.h"
 #include "mesher/grid_frame.h"
 #include "mesher/level_set.h"
-#include "mesher/morton.h"
 #include "mesher/regions.h"
 
 namespace tetwright {

@@ -5,9 +5,9 @@
 #include <functional>
 #include <vector>
 
+#include "common/morton.h"
 #include "common/progress.h"
 #include "mesher/material_field.h"
-#include "mesher/morton.h"
 
 namespace tetwright {
 

@@ -11,6 +11,9 @@ namespace {
 /// How often an item that met a taken lock is tried again before it is counted as skipped.
 constexpr int most_retries = 8;
 
+/// Items of a chunk that is taken in order: few, so that all workers are near the front.
+constexpr std::size_t ordered_chunk = 64;
+
 }  // namespace
 
 void BlockRunner::reset_tasks() {
@@ -19,21 +22,21 @@ void BlockRunner::reset_tasks() {
 }
 
 template <class Item, class Attempt>
-void BlockRunner::run(const std::vector<Item>& items, const Attempt& attempt,
-                      const std::function<bool()>& stop) {
+void BlockRunner::run(const std::vector<Item>& items, std::size_t chunk_size, bool shuffled,
+                      const Attempt& attempt, const std::function<bool()>& stop) {
   const std::uint64_t block = block_++;
-  const std::size_t chunks = (items.size() + chunk_size_ - 1) / chunk_size_;
+  const std::size_t chunks = (items.size() + chunk_size - 1) / chunk_size;
   std::vector<std::uint32_t> order(chunks);
   std::iota(order.begin(), order.end(), 0u);
-  Random(seed_, block, ~std::uint64_t{0}).shuffle(std::span(order));
+  if (shuffled) Random(seed_, block, ~std::uint64_t{0}).shuffle(std::span(order));
   parallel_chunks(chunks, [&](std::size_t k, unsigned worker) {
     const std::uint32_t chunk = order[k];
     Task& task = *tasks_[worker];
     task.random = Random(seed_, block, chunk);
-    const std::size_t begin = chunk * chunk_size_, end = std::min(items.size(), begin + chunk_size_);
+    const std::size_t begin = chunk * chunk_size, end = std::min(items.size(), begin + chunk_size);
     std::vector<Item> left(items.begin() + static_cast<std::ptrdiff_t>(begin),
                            items.begin() + static_cast<std::ptrdiff_t>(end));
-    task.random.shuffle(std::span(left));
+    if (shuffled) task.random.shuffle(std::span(left));
     for (int round = 0; !left.empty(); ++round) {
       std::size_t again = 0;
       for (const Item& item : left) {
@@ -56,13 +59,18 @@ void BlockRunner::run(const std::vector<Item>& items, const Attempt& attempt,
 
 void BlockRunner::points(const std::vector<Index>& items, const std::function<Outcome(Task&, Index)>& attempt,
                          const std::function<bool()>& stop) {
-  run(items, attempt, stop);
+  run(items, chunk_size_, true, attempt, stop);
 }
 
 void BlockRunner::tets(const std::vector<ListedTet>& items,
                        const std::function<Outcome(Task&, const ListedTet&)>& attempt,
                        const std::function<bool()>& stop) {
-  run(items, attempt, stop);
+  run(items, chunk_size_, true, attempt, stop);
+}
+
+void BlockRunner::tets_in_order(const std::vector<ListedTet>& items,
+                                const std::function<Outcome(Task&, const ListedTet&)>& attempt) {
+  run(items, std::min(chunk_size_, ordered_chunk), false, attempt, [] { return false; });
 }
 
 BlockRunner::Totals BlockRunner::take_totals() {

@@ -38,6 +38,10 @@ class BlockRunner {
             const std::function<Outcome(Task&, const ListedTet&)>& attempt,
             const std::function<bool()>& stop);
 
+  /// The same in the order given, without shuffling, in small chunks: what comes first is begun first.
+  void tets_in_order(const std::vector<ListedTet>& items,
+                     const std::function<Outcome(Task&, const ListedTet&)>& attempt);
+
   /// What the tasks counted since the last call.
   struct Totals {
     OperationCounts counts;
@@ -48,7 +52,8 @@ class BlockRunner {
 
  private:
   template <class Item, class Attempt>
-  void run(const std::vector<Item>& items, const Attempt& attempt, const std::function<bool()>& stop);
+  void run(const std::vector<Item>& items, std::size_t chunk_size, bool shuffled, const Attempt& attempt,
+           const std::function<bool()>& stop);
 
   EditableMesh& mesh_;
   SurfaceGrid& grid_;

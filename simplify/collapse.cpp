@@ -6,6 +6,7 @@
 
 #include "common/point_triangle.h"
 #include "simplify/link_condition.h"
+#include "simplify/refill.h"
 
 namespace tetwright {
 
@@ -13,16 +14,6 @@ namespace {
 
 /// Targets that are tried: the design's measured best; more cost time and hardly succeed.
 constexpr std::size_t most_targets = 4;
-
-/// What annealing must leave of the poorest Quality^3. Below it (0: anything positive) the loop ends with
-/// 5-10 % of tets under 0.1 sr instead of 2-3 %; larger ones need a larger E to reach the target, which costs
-/// surface and volume.
-constexpr float annealing_floor = 0.1f;
-
-/// E over the distance that a surface may move at a point that goes. On five scans (10,000 tets) the largest
-/// distance ended at 1.3-2.2 % of the diagonal without it, at 1.0-1.7 % with it; larger ones drive E up
-/// instead.
-constexpr double distance_weight = 50;
 
 /// How far a refusal got, for reporting the most telling one.
 int depth(Outcome o) {
@@ -108,14 +99,82 @@ void carry_out(Task& task, std::size_t b, const std::vector<float>& qualities) {
     task.slots.give_back(t.tet);
   }
   mesh.set_hint(star.centre, no_index);
+  task.point_slots.give_back(star.centre);
 }
 
+/// Everything but the weight, for the target with local number b.
+Outcome try_target(Task& task, const BlockRules& rules, std::size_t b) {
+  Star& star = task.star;
+  thread_local std::vector<float> qualities;
+  const Vec3& to = star.positions[b];
+  // Signs first: they are cheap and refuse most.
+  std::size_t left = 0;
+  for (const Star::StarTet& t : star.tets) {
+    if (has(t, b)) continue;
+    ++left;
+    const Vec3 &x = star.positions[t.link[0]], &y = star.positions[t.link[1]], &z = star.positions[t.link[2]];
+    if (!((x - to).dot((y - x).cross(z - x)) > 0)) return Outcome::inverts;
+  }
+  if (left == 0) return Outcome::link_condition;  // nothing would be left of the star
+  const float limit = acceptance_limit(task, rules, star.poorest);
+  qualities.resize(star.tets.size());
+  for (std::size_t k = 0; k < star.tets.size(); ++k) {
+    const Star::StarTet& t = star.tets[k];
+    if (has(t, b)) continue;
+    qualities[k] =
+        rules.objective(to, star.positions[t.link[0]], star.positions[t.link[1]], star.positions[t.link[2]]);
+    if (!(qualities[k] > limit)) return Outcome::quality;
+  }
+  // Beside the paper's volumes: the tip of a spike has next to none.
+  if (!star.sheets.empty() && rules.distance_weight > 0 &&
+      rules.distance_weight * distance_left(star, b) > rules.largest_error)
+    return Outcome::surface_error;
+  if (!link_condition(task.mesh, star, b, task.numbers)) return Outcome::link_condition;
+  if (!star.sheets.empty()) {
+    surface_edit(task, b);
+    const Outcome o = task.grid.prepare(task.edit, task.grid_task, task.cells);
+    if (o != Outcome::done) {
+      task.cells.release();
+      return o;
+    }
+  }
+  // Last of all, since what is taken off the count here is not put back.
+  const auto change = static_cast<std::int64_t>(left) - static_cast<std::int64_t>(star.tets.size());
+  if (!task.mesh.change_count(change, rules.fewest_tets, rules.most_tets)) {
+    task.cells.release();
+    return Outcome::count;
+  }
+  carry_out(task, b, qualities);
+  if (!star.sheets.empty()) {
+    task.grid.commit(task.edit, task.grid_task);
+    task.cells.release();
+  }
+  return Outcome::done;
+}
+
+/// What touches in a point only stays as it is.
+bool may_go(const Star& star, int dimension) { return dimension > 0 && !star.near_pinned; }
+
 }  // namespace
+
+double collapse_weight(Star& star, std::size_t b, const BlockRules& rules) {
+  const Vec3 step = star.positions[b] - star.centre_position;
+  return step.norm() + (star.sheets.empty() ? 0 : star.surface_error(step, rules.gamma));
+}
+
+Outcome collapse_onto(Task& task, const BlockRules& rules, std::size_t b) {
+  Star& star = task.star;
+  const int dimension = star.dimension();
+  if (!may_go(star, dimension) || star.edge_dimension(b) != dimension) return Outcome::material_rule;
+  star.compute_gradients();
+  if (collapse_weight(star, b, rules) > rules.largest_error) return Outcome::surface_error;
+  return try_target(task, rules, b);
+}
 
 Outcome collapse(Task& task, const BlockRules& rules) {
   Star& star = task.star;
   const int dimension = star.dimension();
-  if (dimension == 0) return Outcome::material_rule;
+  if (!may_go(star, dimension)) return Outcome::material_rule;
   star.compute_gradients();
 
   struct Target {
@@ -127,8 +186,7 @@ Outcome collapse(Task& task, const BlockRules& rules) {
   Outcome refusal = Outcome::material_rule;
   for (std::size_t p = 0; p < star.points.size(); ++p) {
     if (star.edge_dimension(p) != dimension) continue;
-    const Vec3 step = star.positions[p] - star.centre_position;
-    const double weight = step.norm() + (dimension == 3 ? 0 : star.surface_error(step, rules.gamma));
+    const double weight = collapse_weight(star, p, rules);
     if (weight > rules.largest_error) {
       refusal = Outcome::surface_error;
       continue;
@@ -140,80 +198,10 @@ Outcome collapse(Task& task, const BlockRules& rules) {
                     [](const Target& x, const Target& y) {
                       return x.weight != y.weight ? x.weight < y.weight : x.point < y.point;
                     });
-
-  thread_local std::vector<float> qualities;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t b = targets[i].point;
-    const Vec3& to = star.positions[b];
-    const auto refuse = [&](Outcome o) {
-      if (depth(o) > depth(refusal)) refusal = o;
-    };
-    // Signs first: they are cheap and refuse most.
-    bool inverts = false;
-    std::size_t left = 0;
-    for (const Star::StarTet& t : star.tets) {
-      if (has(t, b)) continue;
-      ++left;
-      const Vec3 &x = star.positions[t.link[0]], &y = star.positions[t.link[1]],
-                 &z = star.positions[t.link[2]];
-      if (!((x - to).dot((y - x).cross(z - x)) > 0)) {
-        inverts = true;
-        break;
-      }
-    }
-    if (inverts) {
-      refuse(Outcome::inverts);
-      continue;
-    }
-    if (left == 0) {  // nothing would be left of the star
-      refuse(Outcome::link_condition);
-      continue;
-    }
-    // Annealing: an action that leaves a poorer tet passes with the given probability, one draw for each
-    // target.
-    const bool may_worsen = rules.accept_worse > 0 && task.random.uniform() < rules.accept_worse;
-    const float limit = may_worsen ? annealing_floor * star.poorest : star.poorest;
-    qualities.resize(star.tets.size());
-    bool poor = false;
-    for (std::size_t k = 0; k < star.tets.size() && !poor; ++k) {
-      const Star::StarTet& t = star.tets[k];
-      if (has(t, b)) continue;
-      qualities[k] = rules.objective(to, star.positions[t.link[0]], star.positions[t.link[1]],
-                                     star.positions[t.link[2]]);
-      poor = !(qualities[k] > limit);
-    }
-    if (poor) {
-      refuse(Outcome::quality);
-      continue;
-    }
-    // Beside the paper's volumes: the tip of a spike has next to none.
-    if (!star.sheets.empty() && distance_weight * distance_left(star, b) > rules.largest_error) {
-      refuse(Outcome::surface_error);
-      continue;
-    }
-    if (!link_condition(task.mesh, star, b, task.numbers)) {
-      refuse(Outcome::link_condition);
-      continue;
-    }
-    if (!star.sheets.empty()) {
-      surface_edit(task, b);
-      const Outcome o = task.grid.prepare(task.edit, task.grid_task, task.cells);
-      if (o != Outcome::done) {
-        task.cells.release();
-        if (o == Outcome::lock_taken) return o;
-        refuse(o);
-        continue;
-      }
-    }
-    // Last of all, since what is taken off the count here is not put back.
-    if (!task.mesh.count_down(star.tets.size() - left, rules.fewest_tets)) {
-      task.cells.release();
-      refuse(Outcome::count);
-      continue;
-    }
-    carry_out(task, b, qualities);
-    if (!star.sheets.empty()) task.grid.commit(task.edit, task.grid_task);
-    return Outcome::done;
+    const Outcome o = try_target(task, rules, targets[i].point);
+    if (o == Outcome::done || o == Outcome::lock_taken) return o;
+    if (depth(o) > depth(refusal)) refusal = o;
   }
   return refusal;
 }

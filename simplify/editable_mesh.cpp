@@ -6,10 +6,10 @@
 #include <numeric>
 
 #include "common/error.h"
+#include "common/morton.h"
 #include "common/parallel.h"
 #include "common/parallel_sort.h"
 #include "common/predicates.h"
-#include "simplify/local_numbers.h"
 
 namespace tetwright {
 
@@ -38,15 +38,10 @@ bool even_face(const Tet& t, int f) {
   return (a < b) + (b < d) + (d < a) == 2;
 }
 
-/// Spreads the low 21 bits so that two zero bits follow each (Morton order).
-std::uint64_t spread(std::uint64_t x) {
-  x &= 0x1fffff;
-  x = (x | x << 32) & 0x1f00000000ffffu;
-  x = (x | x << 16) & 0x1f0000ff0000ffu;
-  x = (x | x << 8) & 0x100f00f00f00f00fu;
-  x = (x | x << 4) & 0x10c30c30c30c30c3u;
-  x = (x | x << 2) & 0x1249249249249249u;
-  return x;
+/// Whether a - b is exact (the error term of Knuth's two-sum).
+bool exact_difference(double a, double b) {
+  const double x = a - b, b_virtual = a - x, a_virtual = x + b_virtual;
+  return (b_virtual - b) + (a - a_virtual) == 0;
 }
 
 /// The first place in the file is named, whichever thread finds it.
@@ -70,11 +65,23 @@ EditableMesh::EditableMesh(TetMesh&& mesh, const std::string& name) {
   names_ = std::move(mesh.material_names);
   positions_ = std::move(mesh.points);
 
+  for (const Vec3& p : positions_)
+    if (!p.allFinite()) throw InputError(name, 0, "a coordinate is not finite");
+  // Shifted to the lowest corner along each axis where no point loses a bit by it: a body far away then has
+  // as many bits to move in as one at the origin, and one that was moved exactly gets the same working
+  // coordinates.
+  for (int axis = 0; axis < 3; ++axis) {
+    double low = std::numeric_limits<double>::infinity();
+    for (const Vec3& p : positions_) low = std::min(low, p[axis]);
+    if (std::isfinite(low) && std::all_of(positions_.begin(), positions_.end(),
+                                          [&](const Vec3& p) { return exact_difference(p[axis], low); }))
+      shift_[axis] = low;
+  }
   double largest = 0;
-  for (const Vec3& p : positions_) largest = std::max(largest, p.cwiseAbs().maxCoeff());
-  if (!std::isfinite(largest)) throw InputError(name, 0, "a coordinate is not finite");
+  for (const Vec3& p : positions_) largest = std::max(largest, (p - shift_).cwiseAbs().maxCoeff());
+  if (!std::isfinite(largest)) throw InputError(name, 0, "coordinates are too far apart");
   if (largest > 0) scale_ = std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1000, 1000));
-  for (Vec3& p : positions_) p *= scale_;
+  for (Vec3& p : positions_) p = (p - shift_) * scale_;
 
   tags_ = mesh.materials;
   std::sort(tags_.begin(), tags_.end());
@@ -87,22 +94,24 @@ EditableMesh::EditableMesh(TetMesh&& mesh, const std::string& name) {
       const Tet& t = mesh.tets[i];
       const auto region = std::lower_bound(tags_.begin(), tags_.end(), mesh.materials[i]) - tags_.begin();
       tets_[i] = {t, {no_index, no_index, no_index, no_index}, static_cast<Region>(region), 0};
-      if (orient3d(positions_[t[0]], positions_[t[1]], positions_[t[2]], positions_[t[3]]) > 0) continue;
-      lower(first_bad, static_cast<Index>(i));
+      for (int k = 0; k < 4; ++k)
+        for (int l = 0; l < k; ++l)
+          if (t[k] == t[l]) lower(first_bad, static_cast<Index>(i));
     }
   });
   if (const Index bad = first_bad.load(); bad != no_index)
     throw InputError(name, 0,
-                     "tet " + std::to_string(bad) + " is flat, inverted or listed the other way round, at " +
-                         place(positions_[mesh.tets[bad][0]] / scale_) +
+                     "tet " + std::to_string(bad) + " has a point twice, at " +
+                         place(to_input(positions_[mesh.tets[bad][0]])) +
                          "; `tetwright check` lists all of them");
   mesh = TetMesh();
   live_ = static_cast<std::int64_t>(tets);
   next_spare_ = tets;
   locks_.reset(positions_.size());
+  next_spare_point_ = positions_.size();
   link_faces(name);
   set_hints();
-  check_stars(name);
+  split_stars();
 }
 
 /// Faces are put into buckets by their smallest point and paired within each: 16 bytes a tet at peak, where a
@@ -156,7 +165,7 @@ void EditableMesh::link_faces(const std::string& name) {
     const Triangle s = sorted_face(tets_[face / 4].points, face % 4);
     throw InputError(name, 0,
                      "the face of points " + std::to_string(s[0]) + ", " + std::to_string(s[1]) + ", " +
-                         std::to_string(s[2]) + " at " + place(positions_[s[0]] / scale_) +
+                         std::to_string(s[2]) + " at " + place(to_input(positions_[s[0]])) +
                          " has more than two tets, or two on one side; `tetwright check` lists all of them");
   }
 }
@@ -168,35 +177,71 @@ void EditableMesh::set_hints() {
       for (Index p : tets_[t].points) hints_[p] = static_cast<Index>(t);
 }
 
-void EditableMesh::check_stars(const std::string& name) const {
-  std::vector<Index> tets_at(positions_.size(), 0);
-  for (const TetRecord& t : tets_)
-    for (Index p : t.points) ++tets_at[p];
-  std::atomic<Index> bad{no_index};
-  parallel_for(0, positions_.size(), grain, [&](std::size_t begin, std::size_t end) {
-    LocalNumbers seen;
-    std::vector<Index> walk;
-    for (std::size_t p = begin; p < end; ++p) {
-      if (hints_[p] == no_index) continue;
-      seen.clear();
-      walk.assign(1, hints_[p]);
-      bool added;
-      seen.number(hints_[p], added);
-      for (std::size_t i = 0; i < walk.size(); ++i)
-        for (int k = 0; k < 4; ++k) {
-          const TetRecord& t = tets_[walk[i]];
-          if (t.points[k] == p || t.neighbours[k] == no_index) continue;
-          seen.number(t.neighbours[k], added);
-          if (added) walk.push_back(t.neighbours[k]);
-        }
-      if (walk.size() != tets_at[p]) lower(bad, static_cast<Index>(p));
+void EditableMesh::split_stars() {
+  std::vector<Index> split;  // points whose hint's part is not the whole star
+  {
+    std::vector<Index> tets_at(positions_.size(), 0);
+    for (const TetRecord& t : tets_)
+      for (Index p : t.points) ++tets_at[p];
+    split = parallel_collect<Index>(0, positions_.size(), grain,
+                                    [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+                                      LocalNumbers seen;
+                                      std::vector<Index> part;
+                                      for (std::size_t p = begin; p < end; ++p) {
+                                        if (hints_[p] == no_index) continue;
+                                        part_of_star(static_cast<Index>(p), hints_[p], seen, part);
+                                        if (part.size() != tets_at[p]) out.push_back(static_cast<Index>(p));
+                                      }
+                                    });
+  }
+  if (split.empty()) return;
+  std::vector<std::vector<Index>> stars(split.size());
+  for (std::size_t t = 0; t < tets_.size(); ++t)
+    for (Index p : tets_[t].points) {
+      const auto at = std::lower_bound(split.begin(), split.end(), p);
+      if (at != split.end() && *at == p) stars[at - split.begin()].push_back(static_cast<Index>(t));
     }
-  });
-  if (const Index p = bad.load(); p != no_index)
-    throw InputError(name, 0,
-                     "parts touch only in point " + std::to_string(p) + " at " +
-                         place(positions_[p] / scale_) +
-                         ", without a common face; `tetwright check` lists all such points");
+  LocalNumbers seen;
+  std::vector<Index> part, pins = split;
+  for (std::size_t i = 0; i < split.size(); ++i) {
+    std::vector<Index>& left = stars[i];
+    Index name = split[i];
+    while (!left.empty()) {
+      part_of_star(split[i], left.front(), seen, part);
+      std::sort(part.begin(), part.end());
+      std::vector<Index> others;
+      std::set_difference(left.begin(), left.end(), part.begin(), part.end(), std::back_inserter(others));
+      if (name != split[i]) {
+        twins_.push_back({name, split[i]});
+        pins.push_back(name);
+        positions_.push_back(positions_[split[i]]);
+        hints_.push_back(no_index);
+        for (Index t : part) tets_[t].points[slot_of(t, split[i])] = name;
+      }
+      hints_[name] = part.front();
+      left = std::move(others);
+      name = static_cast<Index>(positions_.size());
+    }
+  }
+  pinned_.assign(positions_.size(), 0);
+  for (Index p : pins) pinned_[p] = 1;
+  locks_.reset(positions_.size());
+  next_spare_point_ = positions_.size();
+}
+
+void EditableMesh::part_of_star(Index point, Index first, LocalNumbers& seen,
+                                std::vector<Index>& part) const {
+  seen.clear();
+  part.assign(1, first);
+  bool added;
+  seen.number(first, added);
+  for (std::size_t i = 0; i < part.size(); ++i)
+    for (int k = 0; k < 4; ++k) {
+      const TetRecord& t = tets_[part[i]];
+      if (t.points[k] == point || t.neighbours[k] == no_index) continue;
+      seen.number(t.neighbours[k], added);
+      if (added) part.push_back(t.neighbours[k]);
+    }
 }
 
 bool EditableMesh::SlotStock::reserve(std::size_t count) {
@@ -220,7 +265,23 @@ Index EditableMesh::SlotStock::take() {
   return slot;
 }
 
-void EditableMesh::compact(std::size_t spare) {
+Index EditableMesh::PointStock::take() {
+  if (free_.empty()) {
+    const std::size_t total = mesh_->positions_.size();
+    const std::size_t first = mesh_->next_spare_point_.fetch_add(slot_lot, std::memory_order_relaxed);
+    if (first >= total) {
+      mesh_->next_spare_point_.store(total, std::memory_order_relaxed);
+      return no_index;
+    }
+    for (std::size_t i = std::min(total, first + slot_lot); i-- > first;)
+      free_.push_back(static_cast<Index>(i));
+  }
+  const Index slot = free_.back();
+  free_.pop_back();
+  return slot;
+}
+
+void EditableMesh::compact(std::size_t spare, std::size_t spare_points) {
   // Points in Morton order of their place in the bounding box; those without a tet go.
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (std::size_t p = 0; p < positions_.size(); ++p)
@@ -228,8 +289,7 @@ void EditableMesh::compact(std::size_t spare) {
       low = low.cwiseMin(positions_[p]);
       high = high.cwiseMax(positions_[p]);
     }
-  const double extent = std::max((high - low).maxCoeff(), std::numeric_limits<double>::min());
-  const double to_cell = 0x1p21 * (1 - 0x1p-21) / extent;
+  const MortonGrid grid(low, high);
   struct Key {
     std::uint64_t morton;
     Index point;
@@ -237,24 +297,29 @@ void EditableMesh::compact(std::size_t spare) {
   std::vector<Key> keys;
   keys.reserve(positions_.size());
   for (std::size_t p = 0; p < positions_.size(); ++p)
-    if (hints_[p] != no_index) {
-      const Vec3 cell = (positions_[p] - low) * to_cell;
-      const auto at = [&](int axis) { return spread(static_cast<std::uint64_t>(cell[axis])) << axis; };
-      keys.push_back({at(0) | at(1) | at(2), static_cast<Index>(p)});
-    }
+    if (hints_[p] != no_index) keys.push_back({grid.key(positions_[p]), static_cast<Index>(p)});
   parallel_sort(keys, [](const Key& a, const Key& b) {
     return a.morton != b.morton ? a.morton < b.morton : a.point < b.point;
   });
   std::vector<Index> new_point(positions_.size(), no_index);
   {
-    std::vector<Vec3> positions(keys.size());
+    std::vector<Vec3> positions(keys.size() + spare_points, Vec3::Zero());
     for (std::size_t i = 0; i < keys.size(); ++i) {
       new_point[keys[i].point] = static_cast<Index>(i);
       positions[i] = positions_[keys[i].point];
     }
     positions_ = std::move(positions);
   }
+  const std::size_t points = keys.size();
   keys = {};
+  if (any_pinned()) {
+    std::vector<std::uint8_t> pinned(positions_.size(), 0);
+    for (std::size_t p = 0; p < new_point.size(); ++p)
+      if (new_point[p] != no_index) pinned[new_point[p]] = pinned_[p];
+    pinned_ = std::move(pinned);
+    for (auto& twin : twins_)  // pinned points never go
+      for (Index& p : twin) p = new_point[p];
+  }
 
   // Tets by their first point in the new order: a counting sort.
   std::vector<Index> next(positions_.size() + 1, 0);
@@ -289,6 +354,7 @@ void EditableMesh::compact(std::size_t spare) {
   tets_ = std::move(tets);
   live_ = static_cast<std::int64_t>(live);
   next_spare_ = live;
+  next_spare_point_ = points;
   locks_.reset(positions_.size());
   set_hints();
 }
@@ -306,14 +372,28 @@ double EditableMesh::total_volume() const {
 }
 
 TetMesh EditableMesh::to_mesh() && {
-  compact(0);
+  compact(0, 0);
+  std::vector<Index> number(positions_.size());
+  {
+    std::vector<std::uint8_t> copy(positions_.size(), 0);
+    for (const auto& twin : twins_) copy[twin[0]] = 1;
+    Index next = 0;
+    for (std::size_t p = 0; p < positions_.size(); ++p) number[p] = copy[p] ? no_index : next++;
+    for (const auto& [from, to] : twins_) number[from] = number[to];
+  }
   TetMesh mesh;
   mesh.points = std::move(positions_);
-  for (Vec3& p : mesh.points) p /= scale_;
+  {
+    std::size_t kept = 0;
+    // A copy that comes before its original stands in for it: they are at one place.
+    for (std::size_t p = 0; p < number.size(); ++p)
+      if (number[p] == kept) mesh.points[kept++] = to_input(mesh.points[p]);
+    mesh.points.resize(kept);
+  }
   mesh.tets.reserve(tets_.size());
   mesh.materials.reserve(tets_.size());
   for (const TetRecord& t : tets_) {
-    mesh.tets.push_back(t.points);
+    mesh.tets.push_back({number[t.points[0]], number[t.points[1]], number[t.points[2]], number[t.points[3]]});
     mesh.materials.push_back(tags_[t.region]);
   }
   mesh.material_names = std::move(names_);

@@ -8,6 +8,7 @@
 
 #include "common/tet_mesh.h"
 #include "common/types.h"
+#include "simplify/local_numbers.h"
 #include "simplify/locks.h"
 
 namespace tetwright {
@@ -39,9 +40,12 @@ static_assert(sizeof(TetRecord) <= 48);
 /// whether the tet still lives: `load_points`.
 class EditableMesh {
  public:
-  /// Takes a mesh over. Coordinates are scaled by a power of two, which is exact, and come back by `to_mesh`.
-  /// Throws InputError (with `name` in the message) where tets repeat a point, are flat or negative, or more
-  /// than two share a face: such a mesh has no neighbours to walk by.
+  /// Takes a mesh over. Working coordinates are shifted along each axis on which that is exact for every
+  /// point, and scaled by a power of two; they come back bit by bit by `to_mesh`. Flat and negative tets are
+  /// taken as they are. A point whose star falls into parts that no face joins becomes one pinned point for
+  /// each part, and one again in to_mesh. Throws InputError (with `name` in the message) where a coordinate
+  /// is not finite, a tet repeats a point, or a face has more than two tets or two on one side: such a mesh
+  /// has no neighbours to walk by.
   EditableMesh(TetMesh&& mesh, const std::string& name);
 
   /// The mesh as a plain value, without dead tets and unused points, in input units; what this holds is given
@@ -54,8 +58,15 @@ class EditableMesh {
   std::size_t point_slots() const { return positions_.size(); }
   std::size_t region_count() const { return tags_.size(); }
   MaterialTag tag(Region region) const { return tags_[region]; }
-  /// Working coordinates are input coordinates times this power of two.
+  /// Lengths in working coordinates are input lengths times this power of two.
   double scale() const { return scale_; }
+  Vec3 to_input(const Vec3& working) const { return working / scale_ + shift_; }
+  Vec3 to_working(const Vec3& input) const { return (input - shift_) * scale_; }
+  /// The place nearest to `working` that has exact input coordinates: signs are to hold for what is written.
+  Vec3 snap(const Vec3& working) const { return to_working(to_input(working)); }
+  /// A point where parts of the mesh touch without a common face: it stays as it is with all its tets.
+  bool pinned(Index point) const { return any_pinned() && pinned_[point] != 0; }
+  bool any_pinned() const { return !pinned_.empty(); }
 
   // Access under the protocol above.
   const Vec3& position(Index point) const { return positions_[point]; }
@@ -114,25 +125,37 @@ class EditableMesh {
     EditableMesh* mesh_;
     std::vector<Index> free_;
   };
-  void count_tets(std::int64_t change) { live_.fetch_add(change, std::memory_order_relaxed); }
-  /// Takes `gone` tets off the count unless fewer than `fewest` would be left: then false, and nothing
-  /// changed.
-  bool count_down(std::size_t gone, std::size_t fewest) {
+  /// A task's own stock of free point slots.
+  class PointStock {
+   public:
+    explicit PointStock(EditableMesh& mesh) : mesh_(&mesh) {}
+    /// A free slot, or no_index. Another task may hold its lock for a moment, having it on an old list.
+    Index take();
+    void give_back(Index slot) { free_.push_back(slot); }
+
+   private:
+    EditableMesh* mesh_;
+    std::vector<Index> free_;
+  };
+
+  /// Changes the number of living tets unless it would leave [fewest, most] or get farther away from it: then
+  /// false, and nothing changed.
+  bool change_count(std::int64_t change, std::size_t fewest, std::size_t most) {
     std::int64_t now = live_.load(std::memory_order_relaxed);
     do {
-      if (now < static_cast<std::int64_t>(fewest + gone)) return false;
+      if (change < 0 && now + change < static_cast<std::int64_t>(fewest)) return false;
+      if (change > 0 && now + change > static_cast<std::int64_t>(most)) return false;
       // Relaxed: the number carries no other data.
-    } while (
-        !live_.compare_exchange_weak(now, now - static_cast<std::int64_t>(gone), std::memory_order_relaxed));
+    } while (!live_.compare_exchange_weak(now, now + change, std::memory_order_relaxed));
     return true;
   }
 
   // Only while no task runs.
 
   /// Squeezes out dead tets and points and renumbers both along a space-filling curve, so that what is near
-  /// in space is near in memory; leaves `spare` free slots at the end for operations that add tets.
-  void compact(std::size_t spare);
-  /// In working coordinates cubed.
+  /// in space is near in memory; leaves free slots at the end for operations that add tets and points.
+  void compact(std::size_t spare_tets, std::size_t spare_points);
+  /// In working coordinates cubed; flat and negative tets count as they are.
   double total_volume() const;
   /// Every invariant of the links: neighbours mutual, hints right, faces equal, live count right. For tests.
   bool links_consistent() const;
@@ -140,7 +163,9 @@ class EditableMesh {
  private:
   void link_faces(const std::string& name);
   void set_hints();
-  void check_stars(const std::string& name) const;
+  void split_stars();
+  /// The tets at `point` that faces join with the tet `first`.
+  void part_of_star(Index point, Index first, LocalNumbers& seen, std::vector<Index>& part) const;
 
   std::vector<TetRecord> tets_;
   std::vector<Vec3> positions_;
@@ -148,9 +173,13 @@ class EditableMesh {
   TryLocks locks_;
   std::atomic<std::int64_t> live_{0};
   std::atomic<std::size_t> next_spare_{0};  ///< first slot of the reserve that nobody took
-  std::vector<MaterialTag> tags_;           ///< of each region
+  std::atomic<std::size_t> next_spare_point_{0};
+  std::vector<std::uint8_t> pinned_;         ///< by point; empty if none is
+  std::vector<std::array<Index, 2>> twins_;  ///< copies of split points and what they were split off from
+  std::vector<MaterialTag> tags_;            ///< of each region
   std::map<MaterialTag, std::string> names_;
   double scale_ = 1;
+  Vec3 shift_ = Vec3::Zero();  ///< input coordinates
 };
 
 }  // namespace tetwright

@@ -33,10 +33,24 @@ inline constexpr std::array<std::string_view, outcome_count> outcome_names{
     "no_room",       "count",      "too_large"};
 
 /// The kinds of operation that are counted.
-enum class Operation : std::uint8_t { collapse, flip23, flip32, smooth, optimise };
-inline constexpr std::size_t operation_count = 5;
-inline constexpr std::array<std::string_view, operation_count> operation_names{"collapse", "flip23", "flip32",
-                                                                               "smooth", "optimise"};
+enum class Operation : std::uint8_t {
+  flip23,
+  flip32,
+  flip22,
+  flip44,
+  collapse,
+  smooth,
+  insert_in_tet,
+  insert_in_face,
+  insert_in_edge,
+  optimise,
+  edge_removal,
+  face_removal
+};
+inline constexpr std::size_t operation_count = 12;
+inline constexpr std::array<std::string_view, operation_count> operation_names{
+    "flip23",        "flip32",         "flip22",         "flip44",   "collapse",     "smooth",
+    "insert_in_tet", "insert_in_face", "insert_in_edge", "optimise", "edge_removal", "face_removal"};
 
 /// How often each operation had each outcome.
 struct OperationCounts {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/progress.h"
+#include "common/quality.h"
 #include "common/reference_surface.h"
 #include "common/tet_mesh.h"
 #include "simplify/outcome.h"
@@ -15,13 +16,6 @@ namespace tetwright {
 enum class Schedule : std::uint8_t {
   tuned,  ///< README.md, Schedule: what was found best by trying; closes with improvement
   paper   ///< Figure 3 of the paper, its operations in its order, nothing after it
-};
-
-/// What makes a shape good when meshes are improved; all are scaled so that the regular tet has 1.
-enum class ShapeObjective : std::uint8_t {
-  both,         ///< the smaller of: smallest solid angle, 0.3 sr times the smallest sine of a dihedral angle
-  solid_angle,  ///< smallest solid angle
-  dihedral      ///< smallest sine of a dihedral angle: against small and large angles alike
 };
 
 struct SimplifyOptions {

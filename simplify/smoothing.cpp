@@ -3,15 +3,27 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include "simplify/refill.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr int step_halvings = 3;     ///< whole, half and quarter step
-constexpr double first_step = 0.5;   ///< of the compass search, in shortest edges
-constexpr int search_halvings = 6;   ///< after which a step is a hundredth of the shortest edge
-constexpr float least_gain = 1.01f;  ///< factor on the poorest quality
+constexpr int step_halvings = 3;  ///< of smooth(): whole, half and quarter step
+
+// The ascent of find_place().
+constexpr int most_ascents = 8;           ///< steps uphill
+constexpr int most_backsteps = 4;         ///< halvings of a step that leads nowhere
+constexpr double first_step = 0.3;        ///< in shortest edges
+constexpr double difference_step = 1e-5;  ///< for gradients, in shortest edges
+constexpr float active_within = 1.15f;    ///< times the poorest quality: tets whose gradients count
+constexpr std::size_t most_active = 8;
+constexpr int hull_steps = 12;       ///< for the shortest vector of the gradients' hull
+constexpr float least_gain = 1.01f;  ///< factor on the poorest quality that is worth another round's work
+/// How far from its surface a point may be to be brought back onto it, in shortest edges.
+constexpr double slide_reach = 0.5;
 
 /// The centroid of the neighbours that the centre may follow.
 Vec3 centroid(const Star& star, int dimension) {
@@ -105,7 +117,134 @@ std::array<Vec3, 3> free_directions(const Star& star, int dimension, int& count)
   return {along.normalized(), Vec3::Zero(), Vec3::Zero()};
 }
 
+/// The shortest vector of the convex hull of some gradients, by Gilbert's iteration (1966): uphill for all of
+/// them, or next to nothing.
+Vec3 shortest_of_hull(const std::array<Vec3, most_active>& gradients, std::size_t count) {
+  Vec3 v = gradients[0];
+  for (int i = 0; i < hull_steps; ++i) {
+    std::size_t least = 0;
+    for (std::size_t k = 1; k < count; ++k)
+      if (gradients[k].dot(v) < gradients[least].dot(v)) least = k;
+    const Vec3 across = gradients[least] - v;
+    const double a2 = across.squaredNorm();
+    if (!(a2 > 0)) break;
+    const double t = -v.dot(across) / a2;
+    if (!(t > 1e-6)) break;
+    v += std::min(1.0, t) * across;
+  }
+  return v;
+}
+
+/// Puts the poorest tets first: most places are refused for their sake.
+void sort_by_quality(Star& star) {
+  std::sort(star.tets.begin(), star.tets.end(), [](const Star::StarTet& x, const Star::StarTet& y) {
+    return x.quality != y.quality ? x.quality < y.quality : x.tet < y.tet;
+  });
+}
+
 }  // namespace
+
+bool find_place(Star& star, const EditableMesh& mesh, const BlockRules& rules, int dimension, float limit,
+                Placement& found) {
+  sort_by_quality(star);
+  int directions_count;
+  const std::array<Vec3, 3> directions = free_directions(star, dimension, directions_count);
+  double shortest2 = std::numeric_limits<double>::infinity();
+  for (const Vec3& p : star.positions)
+    shortest2 = std::min(shortest2, (p - star.centre_position).squaredNorm());
+  const double shortest = std::sqrt(shortest2);
+
+  /// Where a step leads: back onto the surface or curve.
+  const auto placed = [&](Vec3 to) -> std::optional<Vec3> {
+    if (rules.slide && dimension < 3) {
+      const auto on = dimension == 2
+                          ? rules.slide->onto_surface(to, star.sheets[0].inside, star.sheets[0].across,
+                                                      slide_reach * shortest)
+                          : rules.slide->onto_curve(to, slide_reach * shortest);
+      if (!on) return {};
+      to = *on;
+    }
+    return mesh.snap(to);
+  };
+
+  const auto value = [&](const Star::StarTet& t, const Vec3& to) {
+    return rules.objective.signed_value(to, star.positions[t.link[0]], star.positions[t.link[1]],
+                                        star.positions[t.link[2]]);
+  };
+  /// The poorest value at `to`, all values in `values`; nothing where one is not above `above` or E forbids
+  /// it.
+  const auto poorest_at = [&](const Vec3& to, float above,
+                              std::vector<float>& values) -> std::optional<float> {
+    if (!star.sheets.empty() &&
+        star.surface_error(to - star.centre_position, rules.gamma) > rules.largest_error)
+      return {};
+    float least = 1;
+    for (std::size_t k = 0; k < star.tets.size(); ++k) {
+      values[k] = value(star.tets[k], to);
+      if (!(values[k] > above)) return {};
+      least = std::min(least, values[k]);
+    }
+    return least;
+  };
+
+  thread_local std::vector<float> here, there;
+  here.resize(star.tets.size());
+  there.resize(star.tets.size());
+  Vec3 at = star.centre_position;
+  float poorest = star.poorest;
+  for (std::size_t k = 0; k < star.tets.size(); ++k) {
+    here[k] = star.tets[k].quality;
+    if (here[k] > 0) continue;
+    here[k] = value(star.tets[k], at);
+    poorest = std::min(poorest, here[k]);
+  }
+  bool moved = false;
+  double length = first_step * shortest;
+  std::array<Vec3, most_active> gradients;
+  for (int ascent = 0; ascent < most_ascents; ++ascent) {
+    std::size_t active = 0;
+    const double h = difference_step * shortest;
+    for (std::size_t k = 0; k < star.tets.size() && active < most_active; ++k) {
+      if (here[k] > (poorest > 0 ? active_within * poorest : 0)) continue;
+      Vec3 g = Vec3::Zero();
+      // In double precision: the differences are small.
+      const auto exact = [&](const Vec3& p) {
+        const Star::StarTet& t = star.tets[k];
+        return rules.objective.precise_signed(p, star.positions[t.link[0]], star.positions[t.link[1]],
+                                              star.positions[t.link[2]]);
+      };
+      const double base = exact(at);
+      for (int d = 0; d < directions_count; ++d)
+        g += directions[d] * ((exact(at + h * directions[d]) - base) / h);
+      gradients[active++] = g;
+    }
+    if (active == 0) break;
+    const Vec3 uphill = shortest_of_hull(gradients, active);
+    const double steep = uphill.norm();
+    // Less than a thousandth of the regular tet's quality over a whole edge: at the top.
+    if (!(steep * shortest > 1e-3 * std::fabs(poorest) + 1e-9)) break;
+    bool better = false;
+    for (int back = 0; back < most_backsteps; ++back, length *= 0.5) {
+      const auto to = placed(at + uphill * (length / steep));
+      if (!to) continue;
+      const auto lowest = poorest_at(*to, poorest, there);
+      if (!lowest) continue;
+      better = *lowest > poorest + 1e-3f * std::fabs(poorest);
+      at = *to;
+      poorest = *lowest;
+      here.swap(there);
+      moved = true;
+      break;
+    }
+    if (!better) break;
+    length = std::min(2 * length, first_step * shortest);
+  }
+  if (!moved || !(poorest > std::max(limit, 0.0f))) return false;
+  found.position = at;
+  found.poorest = poorest;
+  found.qualities.assign(here.begin(), here.end());
+  return true;
+}
 
 Outcome smooth(Task& task, const BlockRules& rules) {
   Star& star = task.star;
@@ -115,17 +254,15 @@ Outcome smooth(Task& task, const BlockRules& rules) {
   Vec3 step = centroid(star, dimension) - star.centre_position;
   if (dimension == 2) step = keep_volumes(star, step);
 
-  // The poorest tets first: most places are refused for their sake.
-  std::sort(star.tets.begin(), star.tets.end(), [](const Star::StarTet& x, const Star::StarTet& y) {
-    return x.quality != y.quality ? x.quality < y.quality : x.tet < y.tet;
-  });
+  sort_by_quality(star);
   thread_local std::vector<float> qualities;
   qualities.resize(star.tets.size());
+  const float limit = acceptance_limit(task, rules, star.poorest);
   Outcome refusal = Outcome::quality;
   float poorest;
   for (int i = 0; i < step_halvings; ++i, step *= 0.5) {
-    const Vec3 to = star.centre_position + step;
-    refusal = rate(star, rules, to, star.poorest, qualities, poorest);
+    const Vec3 to = task.mesh.snap(star.centre_position + step);
+    refusal = rate(star, rules, to, limit, qualities, poorest);
     if (refusal != Outcome::done) continue;
     refusal = move_to(task, to, qualities);
     if (refusal == Outcome::done || refusal == Outcome::lock_taken) return refusal;
@@ -138,40 +275,10 @@ Outcome optimise(Task& task, const BlockRules& rules) {
   const int dimension = star.dimension();
   if (dimension == 0) return Outcome::material_rule;
   star.compute_gradients();
-  std::sort(star.tets.begin(), star.tets.end(), [](const Star::StarTet& x, const Star::StarTet& y) {
-    return x.quality != y.quality ? x.quality < y.quality : x.tet < y.tet;
-  });
-  int count;
-  const std::array<Vec3, 3> directions = free_directions(star, dimension, count);
-  double shortest = std::numeric_limits<double>::infinity();
-  for (const Vec3& p : star.positions)
-    shortest = std::min(shortest, (p - star.centre_position).squaredNorm());
-
-  thread_local std::vector<float> qualities, best_qualities;
-  qualities.resize(star.tets.size());
-  Vec3 best = star.centre_position;
-  float best_poorest = star.poorest;
-  double length = first_step * std::sqrt(shortest);
-  for (int halving = 0; halving < search_halvings;) {
-    bool better = false;
-    for (int d = 0; d < 2 * count; ++d) {
-      const Vec3 to = best + (d % 2 ? -length : length) * directions[d / 2];
-      float poorest;
-      if (rate(star, rules, to, best_poorest, qualities, poorest) != Outcome::done) continue;
-      best = to;
-      best_poorest = poorest;
-      best_qualities.swap(qualities);
-      qualities.resize(star.tets.size());
-      better = true;
-      break;
-    }
-    if (better) continue;  // every success raises the poorest quality, which is bounded: the search ends
-    length *= 0.5;
-    ++halving;
-  }
-  // A gain too small to matter is not worth another round's work.
-  if (!(best_poorest > least_gain * star.poorest)) return Outcome::quality;
-  return move_to(task, best, best_qualities);
+  thread_local Placement place;
+  if (!find_place(star, task.mesh, rules, dimension, least_gain * star.poorest, place))
+    return Outcome::quality;
+  return move_to(task, place.position, place.qualities);
 }
 
 }  // namespace tetwright

@@ -1,23 +1,34 @@
 #pragma once
 
+#include <vector>
+
 #include "simplify/task.h"
 
 namespace tetwright {
 
-/// Moves the star's centre towards the centroid of its neighbours (Cutler, Dorsey & McMillan 2004, section
-/// 4): of all inside a material, of those on the same interface for a point of one, of the two on the same
-/// junction curve for a point of one; corners stay. A point of an interface slides within the plane in which
-/// no volume changes (exact for a single material's boundary: its volume is linear in the point). Half and
-/// quarter steps are tried where the whole one does not help.
-///
-/// The task holds the closed star that `task.star` was gathered from. done: the point was moved and its
-/// poorest tet is better than before. Otherwise nothing was changed.
+/// A place that was found for the centre of a star, and what its tets are worth there, in the star's order.
+struct Placement {
+  Vec3 position = Vec3::Zero();
+  float poorest = 0;
+  std::vector<float> qualities;
+};
+
+/// Looks for the place of a star's centre at which its poorest tet is best, from where it stands: steepest
+/// ascent of the poorest by the active-set method (Freitag, Jones & Plassmann 1995; Freitag & Ollivier-Gooch
+/// 1997), gradients by differences. A point of an interface (dimension 2) moves in the tangent plane and is
+/// brought back onto the surface (BlockRules::slide), one of a junction curve (1) along it; without a slide
+/// they keep the volumes of both sides. Error(op) stays within E. True if a place better than `limit` was
+/// found; the star is not changed but for the order of its tets. gradients must be computed.
+bool find_place(Star& star, const EditableMesh& mesh, const BlockRules& rules, int dimension, float limit,
+                Placement& found);
+
+/// Moves the centre of the gathered star towards the centroid of its neighbours (section 4 of the paper): of
+/// all of them within a material, of those on the same interface, of the two on a junction curve; whole, half
+/// or quarter way. Answers done, lock_taken, material_rule (a corner), quality, surface_error,
+/// self_intersection. The star is used up.
 Outcome smooth(Task& task, const BlockRules& rules);
 
-/// Moves the centre to where its poorest tet is best, as a compass search finds it (Kolda, Lewis & Torczon
-/// 2003, section 1.1): along the axes inside a material, in the plane of constant volume on an interface,
-/// along the curve on a junction. Slower than smooth() and better: Freitag & Ollivier-Gooch 1997 show that
-/// optimising the worst shape beats centroids. Same contract.
+/// Moves the centre of the gathered star where find_place() says. Same answers.
 Outcome optimise(Task& task, const BlockRules& rules);
 
 }  // namespace tetwright

@@ -8,20 +8,12 @@
 namespace tetwright {
 
 Outcome Star::gather(const EditableMesh& mesh, Index centre_point, HeldLocks& held) {
-  centre = centre_point;
-  tets.clear();
-  points.clear();
-  positions.clear();
-  sheets.clear();
-  sheet_count.clear();
-  gradients.clear();
-  point_numbers_.clear();
+  begin(centre_point, mesh.position(centre_point));
   tet_numbers_.clear();
-  poorest = 1;
+  pinned = mesh.pinned(centre);
 
   const Index first = mesh.hint(centre);
   if (first == no_index) return Outcome::stale;
-  centre_position = mesh.position(centre);
   bool added;
   tet_numbers_.number(first, added);
   tets.push_back({first, {}, 0, 0, 0});
@@ -44,6 +36,7 @@ Outcome Star::gather(const EditableMesh& mesh, Index centre_point, HeldLocks& he
         points.push_back(p);
         positions.push_back(mesh.position(p));
         sheet_count.push_back(0);
+        near_pinned |= mesh.pinned(p);
       }
       s.link[k] = static_cast<std::uint16_t>(n);
     }
@@ -69,7 +62,42 @@ Outcome Star::gather(const EditableMesh& mesh, Index centre_point, HeldLocks& he
   return Outcome::done;
 }
 
+void Star::begin(Index centre_point, const Vec3& position) {
+  centre = centre_point;
+  centre_position = position;
+  tets.clear();
+  points.clear();
+  positions.clear();
+  sheets.clear();
+  sheet_count.clear();
+  gradients.clear();
+  point_numbers_.clear();
+  poorest = 1;
+  pinned = false;
+  near_pinned = false;
+}
+
+std::uint16_t Star::add_point(Index p, const Vec3& position) {
+  bool added;
+  const std::uint32_t n = point_numbers_.number(p, added);
+  if (added) {
+    points.push_back(p);
+    positions.push_back(position);
+    sheet_count.push_back(0);
+  }
+  return static_cast<std::uint16_t>(n);
+}
+
+void Star::add_sheet(Index first, Index second, Region inside, Region across) {
+  const auto a = static_cast<std::uint16_t>(point_numbers_.find(first)),
+             b = static_cast<std::uint16_t>(point_numbers_.find(second));
+  sheets.push_back({a, b, inside, across});
+  ++sheet_count[a];
+  ++sheet_count[b];
+}
+
 int Star::dimension() const {
+  if (pinned) return 0;
   if (sheets.empty()) return 3;
   // The sheets at the centre are the edges of a graph on the link's points; a dimension-2 edge of the centre
   // is a node of degree 2. Walk from sheet to sheet across such nodes.

@@ -35,11 +35,22 @@ struct Star {
   std::vector<Vec3> positions;             ///< of the link's points
   std::vector<Sheet> sheets;               ///< each once
   std::vector<std::uint16_t> sheet_count;  ///< for each link point: sheets at the edge from the centre to it
-  float poorest;                           ///< smallest quality of the tets
+  float poorest = 1;                       ///< smallest quality of the tets
+  bool pinned = false;                     ///< the centre may not move or go (EditableMesh::pinned)
+  bool near_pinned = false;                ///< a point of the link is pinned
 
   /// Locks the whole closed star of `centre`, which the task holds already, and copies it. done, lock_taken,
   /// or too_large; `held` has all that was locked in any case.
   Outcome gather(const EditableMesh& mesh, Index centre, HeldLocks& held);
+
+  // For the star that a point would have if it were inserted.
+
+  /// An empty star.
+  void begin(Index centre, const Vec3& position);
+  /// The local number of a point of the link, which is added unless it is there.
+  std::uint16_t add_point(Index p, const Vec3& position);
+  /// An interface triangle (centre, first, second), both added before.
+  void add_sheet(Index first, Index second, Region inside, Region across);
 
   /// Dimension of the edge from the centre to a link point: 3 within a material, 2 on an interface, 1 on a
   /// junction curve.

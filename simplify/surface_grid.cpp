@@ -53,7 +53,7 @@ void SurfaceGrid::for_cells(const MeshTriangle& t, const F& f) const {
       for (std::int32_t z = low.z; z <= high.z; ++z) f(Cell3{x, y, z});
 }
 
-void SurfaceGrid::build(const EditableMesh& mesh, double smallest_cell) {
+void SurfaceGrid::build(const EditableMesh& mesh, double smallest_cell, std::size_t spare) {
   records_.clear();
   for (Index t = 0; t < mesh.tet_slots(); ++t) {
     const TetRecord& r = mesh.tet(t);
@@ -97,6 +97,8 @@ void SurfaceGrid::build(const EditableMesh& mesh, double smallest_cell) {
       auto& list = cells_[slot(c)];
       if (list.empty() || list.back() != i) list.push_back(i);
     });
+  next_spare_ = records_.size();
+  records_.resize(records_.size() + spare);
 }
 
 bool SurfaceGrid::hits_standing(const MeshTriangle& t, const Task& task) const {
@@ -147,6 +149,14 @@ Outcome SurfaceGrid::prepare(Edit& edit, Task& task, HeldLocks& held) {
   for (std::size_t i = 0; i < edit.added.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (triangles_intersect(edit.added[i], edit.added[j])) return Outcome::self_intersection;
+  while (task.free_records.size() + edit.removed.size() < edit.added.size()) {
+    const std::size_t record = next_spare_.fetch_add(1, std::memory_order_relaxed);
+    if (record >= records_.size()) {
+      next_spare_.store(records_.size(), std::memory_order_relaxed);
+      return Outcome::no_room;
+    }
+    task.free_records.push_back(static_cast<std::uint32_t>(record));
+  }
   return Outcome::done;
 }
 
@@ -163,8 +173,7 @@ void SurfaceGrid::commit(const Edit& edit, Task& task) {
     task.free_records.push_back(record);
   }
   for (const MeshTriangle& t : edit.added) {
-    // No operation adds more triangles than it takes away, so the task's stock suffices.
-    TETWRIGHT_CHECK(!task.free_records.empty());
+    TETWRIGHT_CHECK(!task.free_records.empty());  // prepare() saw to it
     const std::uint32_t record = task.free_records.back();
     task.free_records.pop_back();
     records_[record] = t;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -36,13 +37,14 @@ class SurfaceGrid {
   };
 
   /// All interface triangles of the mesh; while no task runs. `smallest_cell` (working coordinates) is the
-  /// size that triangles are about to grow to.
-  void build(const EditableMesh& mesh, double smallest_cell);
+  /// size that triangles are about to grow to; `spare`: how many triangles may be added beyond those taken
+  /// away.
+  void build(const EditableMesh& mesh, double smallest_cell, std::size_t spare = 0);
 
   /// Locks every cell that the edit touches and tests each added triangle against those that stand and
-  /// against the other added ones. done: the cells stay held, and commit() may follow. lock_taken or
-  /// self_intersection: nothing was changed; `held` has what was locked. The task must hold all points of the
-  /// edit's triangles.
+  /// against the other added ones. done: the cells stay held, and commit() may follow. lock_taken,
+  /// self_intersection or no_room: nothing was changed; `held` has what was locked. The task must hold all
+  /// points of the edit's triangles.
   Outcome prepare(Edit& edit, Task& task, HeldLocks& held);
   /// Carries out what prepare() allowed.
   void commit(const Edit& edit, Task& task);
@@ -69,6 +71,7 @@ class SurfaceGrid {
   std::vector<std::vector<std::uint32_t>> cells_;  ///< records, by slot
   std::vector<MeshTriangle> records_;              ///< ids ascending, points in the same order
   TryLocks locks_;
+  std::atomic<std::size_t> next_spare_{0};  ///< the first record that nobody took
 };
 
 }  // namespace tetwright

@@ -1,12 +1,19 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
+#include "common/predicates.h"
 #include "common/quality.h"
 #include "common/random.h"
+#include "simplify/cavity.h"
+#include "simplify/edge_ring.h"
 #include "simplify/editable_mesh.h"
 #include "simplify/outcome.h"
+#include "simplify/slide.h"
 #include "simplify/star.h"
 #include "simplify/surface_grid.h"
 
@@ -16,38 +23,67 @@ namespace tetwright {
 struct Objective {
   enum class Kind : std::uint8_t {
     paper,  ///< Quality(t)^3: angle, volume and longest edge, with the target count in view
-    shape   ///< the smallest solid angle over the regular tet's: for improving at a count that is reached
+    shape   ///< shape alone: for improving at a count that is reached
   };
   Kind kind = Kind::paper;
   TetQuality quality{1, 1, 5};
+  ShapeObjective shape = ShapeObjective::both;
 
   float operator()(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
-    return static_cast<float>(kind == Kind::paper ? quality.cubed(a, b, c, d) : quality.shape(a, b, c, d));
+    return static_cast<float>(precise(a, b, c, d));
+  }
+  /// Below 0 for a flat or negative tet, the more so the worse it is: what shows the way out.
+  float signed_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
+    return static_cast<float>(precise_signed(a, b, c, d));
+  }
+  /// signed_value() unrounded, for gradients by differences.
+  double precise_signed(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
+    const double value = precise(a, b, c, d);
+    if (value > 0) return value;
+    const double longest2 = std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (d - a).squaredNorm(),
+                                      (c - b).squaredNorm(), (d - b).squaredNorm(), (d - c).squaredNorm()});
+    return std::min(0.0, orient3d_value(a, b, c, d) / (longest2 * std::sqrt(longest2)) - 1e-9);
+  }
+
+ private:
+  double precise(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
+    return kind == Kind::paper ? quality.cubed(a, b, c, d) : shape_quality(shape, a, b, c, d);
   }
 };
 
 /// What all operations of a block go by.
 struct BlockRules {
   Objective objective;
-  double largest_error = 0;     ///< E, working coordinates
-  double gamma = 10;            ///< weight of the volume error
-  std::size_t fewest_tets = 0;  ///< that an operation may leave
-  double accept_worse = 0;      ///< annealing: probability of an action that leaves a poorer tet than before
+  double largest_error = 0;  ///< E, working coordinates
+  double gamma = 10;         ///< weight of the volume error
+  /// An operation may not leave fewer tets, nor, where it adds some, more.
+  std::size_t fewest_tets = 0, most_tets = std::numeric_limits<std::size_t>::max();
+  double accept_worse = 0;    ///< annealing: probability of an action that leaves a poorer tet than before
+  float annealing_floor = 0;  ///< share of the poorest quality that such an action must keep
+  /// Weight of the distance that a collapse may move the surface at the point that goes, against E; 0: the
+  /// volume alone decides, as in the paper.
+  double distance_weight = 0;
+  const Slide* slide = nullptr;  ///< what surface points slide along; null: planes of constant volume
 };
 
 /// One task's own things: what it holds, what it reuses, what it counted.
 struct Task {
-  Task(EditableMesh& m, SurfaceGrid& g) : mesh(m), grid(g), points(m.locks()), cells(g.locks()), slots(m) {}
+  Task(EditableMesh& m, SurfaceGrid& g)
+      : mesh(m), grid(g), points(m.locks()), cells(g.locks()), slots(m), point_slots(m) {}
 
   EditableMesh& mesh;
   SurfaceGrid& grid;
   HeldLocks points;  ///< of the mesh's points
   HeldLocks cells;   ///< of the grid's cells
   EditableMesh::SlotStock slots;
+  EditableMesh::PointStock point_slots;
   SurfaceGrid::Task grid_task;
   SurfaceGrid::Edit edit;
   Star star;
+  EdgeRing ring;
+  Cavity cavity;
   LocalNumbers numbers;
+  std::vector<Index> walk;
   Random random{0};
   OperationCounts counts;
   std::uint64_t lock_conflicts = 0;

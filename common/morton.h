@@ -4,7 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
+
+#include "common/types.h"
 
 namespace tetwright {
 
@@ -50,6 +53,24 @@ constexpr std::array<int, 3> morton_decode(MortonKey key) {
   return {static_cast<int>(detail::gather_bits(key)), static_cast<int>(detail::gather_bits(key >> 1)),
           static_cast<int>(detail::gather_bits(key >> 2))};
 }
+
+/// Morton keys of places in a box, 2^21 cells to its longest side.
+class MortonGrid {
+ public:
+  MortonGrid(const Vec3& low, const Vec3& high) : low_(low) {
+    const double extent = std::max((high - low).maxCoeff(), std::numeric_limits<double>::min());
+    to_cell_ = (0x1p21 - 1) / extent;
+  }
+  /// `p` is in the box.
+  MortonKey key(const Vec3& p) const {
+    const Vec3 c = (p - low_) * to_cell_;
+    return morton_encode(static_cast<int>(c.x()), static_cast<int>(c.y()), static_cast<int>(c.z()));
+  }
+
+ private:
+  Vec3 low_;
+  double to_cell_;
+};
 
 /// std::lower_bound in an ascending list, from a place that is likely not far from the result: its time grows
 /// with the logarithm of the way (Bentley & Yao 1976).

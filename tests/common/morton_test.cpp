@@ -1,4 +1,4 @@
-#include "mesher/morton.h"
+#include "common/morton.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,159 @@
+#include "simplify/engine.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+
+#include "common/interfaces.h"
+#include "common/parallel.h"
+#include "common/parallel_sort.h"
+#include "common/portable_math.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::size_t grain = 8192;  ///< tets or points a parallel loop hands out at a time
+/// The mesh is squeezed and renumbered when fewer than this share of its slots are alive.
+constexpr double squeeze_below = 0.7;
+/// Free slots left for operations that add, as shares of what is alive; flips 2-3 add tets where collapses
+/// take away more, so that this is never used up before the next squeeze.
+constexpr std::size_t spare_share = 16;
+constexpr std::size_t least_spare = 4096;
+
+}  // namespace
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, Progress* progress)
+    : report_(report),
+      progress_(progress),
+      mesh_(std::move(mesh), options.name),
+      slide_(mesh_, options.reference),
+      runner_(mesh_, grid_, options.seed, options.chunk_size, progress) {
+  rules.objective.quality = TetQuality::for_target(mesh_.total_volume(), options.target_tets, options.beta);
+  rules.objective.shape = options.objective;
+  rules.gamma = options.gamma;
+}
+
+TetMesh Engine::take() && {
+  TetMesh mesh = std::move(mesh_).to_mesh();
+  mesh.interfaces = find_interfaces(mesh);
+  return mesh;
+}
+
+void Engine::begin_stage(const char* name) {
+  if (!progress_) return;
+  progress_->throw_if_cancelled();
+  progress_->begin_stage(name);
+}
+
+void Engine::squeeze() {
+  const std::size_t spare = mesh_.live_tets() / spare_share + least_spare;
+  mesh_.compact(spare, spare / 2);
+  grid_.build(mesh_, rules.objective.quality.ideal_edge / 2, spare / 2);
+  runner_.reset_tasks();
+  rate_all();
+}
+
+void Engine::squeeze_if_sparse() {
+  if (static_cast<double>(mesh_.live_tets()) < squeeze_below * static_cast<double>(mesh_.tet_slots()))
+    squeeze();
+}
+
+void Engine::rate_all() {
+  parallel_for(0, mesh_.tet_slots(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto t = static_cast<Index>(i);
+      const Tet& p = mesh_.tet(t).points;
+      if (p[0] == no_index) continue;
+      mesh_.set_quality(t, rules.objective(mesh_.position(p[0]), mesh_.position(p[1]), mesh_.position(p[2]),
+                                           mesh_.position(p[3])));
+    }
+  });
+}
+
+float Engine::cutoff(double percent) const {
+  // Bit patterns of floats in [0, 1] ascend with their values: a histogram of their upper halves finds the
+  // bin, and only its tets are looked at again.
+  constexpr std::size_t bins = 1 << 14;
+  const auto bin = [](float q) { return std::bit_cast<std::uint32_t>(q) >> 16; };
+  std::vector<std::atomic<std::uint32_t>> shared(bins);
+  std::atomic<std::size_t> alive{0};
+  parallel_for(0, mesh_.tet_slots(), 16 * grain, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> counts(bins, 0);
+    std::size_t count = 0;
+    for (std::size_t t = begin; t < end; ++t) {
+      const TetRecord& r = mesh_.tet(static_cast<Index>(t));
+      if (r.points[0] == no_index) continue;
+      ++counts[bin(r.quality)];
+      ++count;
+    }
+    for (std::size_t b = 0; b < bins; ++b)
+      if (counts[b]) shared[b].fetch_add(counts[b], std::memory_order_relaxed);
+    alive.fetch_add(count, std::memory_order_relaxed);
+  });
+  if (alive == 0) return 0;
+  auto wanted = static_cast<std::size_t>(percent / 100 * static_cast<double>(alive));
+  if (wanted >= alive) return 1;
+  std::size_t b = 0;
+  while (wanted >= shared[b]) wanted -= shared[b++];
+  std::vector<float> in_bin = parallel_collect<float>(
+      0, mesh_.tet_slots(), grain, [&](std::size_t begin, std::size_t end, std::vector<float>& out) {
+        for (std::size_t t = begin; t < end; ++t) {
+          const TetRecord& r = mesh_.tet(static_cast<Index>(t));
+          if (r.points[0] != no_index && bin(r.quality) == b) out.push_back(r.quality);
+        }
+      });
+  std::nth_element(in_bin.begin(), in_bin.begin() + static_cast<std::ptrdiff_t>(wanted), in_bin.end());
+  return in_bin[wanted];
+}
+
+std::vector<ListedTet> Engine::poor_tets(float limit) const {
+  return parallel_collect<ListedTet>(0, mesh_.tet_slots(), grain,
+                                     [&](std::size_t begin, std::size_t end, std::vector<ListedTet>& out) {
+                                       for (std::size_t t = begin; t < end; ++t) {
+                                         const TetRecord& r = mesh_.tet(static_cast<Index>(t));
+                                         if (r.points[0] != no_index && r.quality <= limit)
+                                           out.push_back({static_cast<Index>(t), r.points});
+                                       }
+                                     });
+}
+
+std::vector<Index> Engine::poor_points(float limit) const {
+  std::vector<std::uint8_t> poor(mesh_.point_slots(), 0);
+  parallel_for(0, mesh_.tet_slots(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const TetRecord& r = mesh_.tet(static_cast<Index>(t));
+      if (r.points[0] == no_index || r.quality > limit) continue;
+      // Relaxed: the same value whoever writes it, and read after the loop.
+      for (Index p : r.points) std::atomic_ref<std::uint8_t>(poor[p]).store(1, std::memory_order_relaxed);
+    }
+  });
+  return parallel_collect<Index>(0, poor.size(), grain,
+                                 [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+                                   for (std::size_t p = begin; p < end; ++p)
+                                     if (poor[p]) out.push_back(static_cast<Index>(p));
+                                 });
+}
+
+Engine::Round::Round(Engine& engine, const char* kind) : engine_(engine) {
+  report_.kind = kind;
+  report_.tets_before = engine.mesh_.live_tets();
+  report_.largest_error = engine.rules.largest_error / engine.mesh_.scale();
+}
+
+void Engine::Round::finish() {
+  const BlockRunner::Totals totals = engine_.runner_.take_totals();
+  report_.counts = totals.counts;
+  report_.lock_conflicts = totals.lock_conflicts;
+  report_.skipped = totals.skipped;
+  report_.tets_after = engine_.mesh_.live_tets();
+  report_.seconds = seconds_since(start_);
+  if (engine_.report_) engine_.report_->iterations.push_back(report_);
+}
+
+}  // namespace tetwright

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "simplify/block.h"
+#include "simplify/simplify.h"
+
+namespace tetwright {
+
+/// What the schedules share: the mesh with its grid and tasks, the choice of the poor, the report.
+class Engine {
+ public:
+  struct Options {
+    std::string name;
+    double target_tets;  ///< for the ideal sizes of Quality(t)
+    double beta, gamma;
+    std::uint64_t seed;
+    std::size_t chunk_size;
+    ShapeObjective objective;
+    const ReferenceSurface* reference;
+  };
+  Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, Progress* progress);
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  /// Ends the work; the mesh with its interface triangles.
+  TetMesh take() &&;
+
+  EditableMesh& mesh() { return mesh_; }
+  BlockRunner& runner() { return runner_; }
+  const Slide& slide() const { return slide_; }
+  Progress* progress() { return progress_; }
+  BlockRules rules;
+
+  void begin_stage(const char* name);
+  /// Compaction, and all that holds indices anew; slots are left for operations that add.
+  void squeeze();
+  /// squeeze() where so many slots are dead that it pays.
+  void squeeze_if_sparse();
+  /// Every tet's quality by rules.objective.
+  void rate_all();
+
+  // Only while no task runs. Parallel; the results do not depend on the threads.
+
+  /// The quality below which `percent` of the tets lie; 1 if all.
+  float cutoff(double percent) const;
+  /// The tets of at most that quality, in the order of the curve.
+  std::vector<ListedTet> poor_tets(float limit) const;
+  /// The points of these tets, each once, in the order of the curve.
+  std::vector<Index> poor_points(float limit) const;
+
+  /// Times a round of the schedule and takes down what its tasks counted.
+  class Round {
+   public:
+    Round(Engine& engine, const char* kind);
+    IterationReport& report() { return report_; }
+    /// Into the engine's report.
+    void finish();
+
+   private:
+    Engine& engine_;
+    IterationReport report_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  };
+
+ private:
+  SimplifyReport* report_;
+  Progress* progress_;
+  EditableMesh mesh_;
+  SurfaceGrid grid_;
+  Slide slide_;
+  BlockRunner runner_;
+};
+
+double seconds_since(std::chrono::steady_clock::time_point start);
+
+/// Share of the tets by which the block loop stops above the target, and by which the closing may end below
+/// it: collapses are what removes the last slivers on flat boundaries. Together they keep the count well
+/// within 1 %.
+inline constexpr double closing_slack = 0.006;
+
+/// The block loop with the tuned schedule (README.md, Schedule), down to the target.
+void run_tuned_schedule(Engine& engine, const SimplifyOptions& options);
+
+/// Figure 3 of the paper.
+void run_paper_schedule(Engine& engine, const SimplifyOptions& options);
+
+/// How improvement works.
+struct ImprovementPlan {
+  const char* kind;  ///< of its rounds in the report
+  float only_below;  ///< quality (shape_quality()) of the tets that are worked on
+  std::size_t fewest_tets, most_tets;
+  int most_rounds;
+};
+
+/// Improves the shapes of the poorest tets, worst first (README.md, Improvement).
+void run_improvement(Engine& engine, const ImprovementPlan& plan);
+
+}  // namespace tetwright

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "simplify/task.h"
+
+namespace tetwright {
+
+/// How an inserted point finds its place.
+enum class InsertionPlace {
+  centre,  ///< as in section 4 of the paper: the centre of the tet, face or edge
+  best     ///< from there where find_place() leads
+};
+
+/// Adds a point in a tet whose points are held, at its centre: one tet becomes four. What comes out decides:
+/// the poorest new tet must be better than the old one (or pass the annealing). Counted as insert_in_tet.
+///
+/// These three answer done, lock_taken, no_candidate, too_large, material_rule, quality (also: would invert),
+/// surface_error, self_intersection, no_room, count.
+Outcome insert_in_tet(Task& task, const BlockRules& rules, Index tet, InsertionPlace place);
+
+/// Adds a point in a face of the boundary or of an interface, whose one or two tets become three each.
+/// Counted as insert_in_face.
+Outcome insert_in_face(Task& task, const BlockRules& rules, Index tet, int face, InsertionPlace place);
+
+/// Adds a point in an edge (of tet_edges), which halves all tets around it: edges of the boundary, of
+/// interfaces and junction curves, and with `interior` all. Counted as insert_in_edge.
+Outcome insert_in_edge(Task& task, const BlockRules& rules, Index tet, int edge, InsertionPlace place,
+                       bool interior);
+
+}  // namespace tetwright

@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <cmath>
+
+#include "common/portable_math.h"
+#include "simplify/collapse.h"
+#include "simplify/engine.h"
+#include "simplify/face_removal.h"
+#include "simplify/smoothing.h"
+
+namespace tetwright {
+
+namespace {
+
+// Found by trying on scans (README.md, Schedule).
+constexpr double first_error_edges = 4;  ///< E at first, in ideal edges
+constexpr double error_growth = 1.3;     ///< E's factor after an iteration that removed too little
+constexpr double least_removed = 0.15;   ///< of the tets: less than that is too little
+constexpr double percent_step = 10;      ///< the paper's: the share of poor tets grows by this each iteration
+constexpr double first_annealing = 0.3;  ///< probability at first of an action that leaves a poorer tet
+constexpr double swaps_below = 10;       ///< times the target: above it swaps and smoothing are wasted work
+/// What annealing must leave of the poorest Quality^3. Below it (0: anything positive) the loop ends with
+/// 5-10 % of tets under 0.1 sr instead of 2-3 %; larger ones need a larger E to reach the target, which costs
+/// surface and volume.
+constexpr float annealing_floor = 0.1f;
+/// E over the distance that a surface may move at a point that goes. On five scans (10,000 tets) the largest
+/// distance ended at 1.3-2.2 % of the diagonal without it, at 1.0-1.7 % with it; larger ones drive E up
+/// instead.
+constexpr double distance_weight = 50;
+/// Iterations in a row that remove next to nothing before the loop gives up.
+constexpr int most_idle_iterations = 3;
+constexpr double idle_below = 0.003;  ///< of the tets
+/// E stops growing here, in working coordinates, of which the farthest is below 2, for gamma 10: beyond it
+/// nothing is refused any more.
+constexpr double largest_useful_error = 200;
+
+void collapse_block(Engine& engine, float limit, std::size_t target) {
+  EditableMesh& mesh = engine.mesh();
+  engine.runner().points(
+      engine.poor_points(limit),
+      [&](Task& task, Index p) {
+        if (!task.points.try_lock(p)) return Outcome::lock_taken;
+        Outcome o = task.star.gather(mesh, p, task.points);
+        if (o == Outcome::done) o = collapse(task, engine.rules);
+        task.counts.add(Operation::collapse, o);
+        return o;
+      },
+      [&] { return mesh.live_tets() <= target; });
+}
+
+/// Flips and smoothing of what is still poor.
+void flip_and_smooth_block(Engine& engine, float limit) {
+  EditableMesh& mesh = engine.mesh();
+  const FlipReach basic{3, 1};
+  engine.runner().tets(
+      engine.poor_tets(limit),
+      [&](Task& task, const ListedTet& item) {
+        if (const Outcome o = hold(task, item); o != Outcome::done) return o;
+        // The tet may have been improved by a neighbour's operation since it was listed.
+        if (mesh.tet(item.tet).quality > limit) return Outcome::stale;
+        for (int f = 0; f < 4; ++f) {
+          const Outcome o = remove_face(task, engine.rules, item.tet, f, basic);
+          if (o == Outcome::done || o == Outcome::lock_taken) return o;
+        }
+        for (int e = 0; e < 6; ++e) {
+          const Outcome o = remove_edge(task, engine.rules, item.tet, e, basic);
+          if (o == Outcome::done || o == Outcome::lock_taken) return o;
+        }
+        for (Index p : item.points) {
+          Outcome o = task.star.gather(mesh, p, task.points);
+          if (o == Outcome::done) o = smooth(task, engine.rules);
+          task.counts.add(Operation::smooth, o);
+          if (o == Outcome::done || o == Outcome::lock_taken) return o;
+        }
+        return Outcome::no_candidate;
+      },
+      [] { return false; });
+}
+
+}  // namespace
+
+void run_tuned_schedule(Engine& engine, const SimplifyOptions& options) {
+  EditableMesh& mesh = engine.mesh();
+  BlockRules& rules = engine.rules;
+  const auto target = static_cast<double>(options.target_tets);
+  // A little above the target, to leave the closing some collapses.
+  const auto loop_target = static_cast<std::size_t>(target * (1 + closing_slack));
+  const double log_first = portable_log(std::max(static_cast<double>(mesh.live_tets()) / target, 1 + 1e-9));
+  const double largest_error = largest_useful_error * std::max(1.0, options.gamma / 10);
+  rules.objective.kind = Objective::Kind::paper;
+  rules.largest_error = first_error_edges * rules.objective.quality.ideal_edge;
+  rules.annealing_floor = annealing_floor;
+  rules.distance_weight = distance_weight;
+  // Rounded up: for small targets the slack is less than one tet.
+  rules.fewest_tets = static_cast<std::size_t>(std::ceil(target * (1 - closing_slack)));
+  engine.rate_all();
+  double percent = percent_step;
+  int idle = 0;
+  for (int i = 0; i < options.max_iterations && mesh.live_tets() > loop_target; ++i) {
+    engine.squeeze_if_sparse();
+    Engine::Round round(engine, "simplify");
+    IterationReport& it = round.report();
+    it.percent = percent;
+    const double log_now = portable_log(static_cast<double>(it.tets_before) / target);
+    rules.accept_worse = first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
+    const float limit = engine.cutoff(percent);
+    it.cutoff = portable_cbrt(limit);
+    collapse_block(engine, limit, loop_target);
+    const std::size_t collapsed = mesh.live_tets();
+    const double removed = 1 - static_cast<double>(collapsed) / static_cast<double>(it.tets_before);
+    // Where collapses stall, other connectivity and places may let them go on.
+    if (collapsed > loop_target && (static_cast<double>(collapsed) < swaps_below * target ||
+                                    (removed < least_removed && percent >= 100)))
+      flip_and_smooth_block(engine, limit);
+    round.finish();
+    // A larger E helps as long as E is what refuses.
+    const bool error_refuses =
+        rules.largest_error < largest_error &&
+        10 * it.counts.of(Operation::collapse, Outcome::surface_error) > it.counts.tried(Operation::collapse);
+    if (removed < least_removed)
+      rules.largest_error = std::min(largest_error, error_growth * rules.largest_error);
+    idle = removed < idle_below && percent >= 100 && !error_refuses ? idle + 1 : 0;
+    if (idle == most_idle_iterations) break;
+    percent = std::min(100.0, percent + percent_step);
+    if (engine.progress()) engine.progress()->update(1 - log_now / log_first);
+  }
+  rules.accept_worse = 0;
+}
+
+}  // namespace tetwright
