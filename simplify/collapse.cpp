@@ -12,9 +12,6 @@ namespace tetwright {
 
 namespace {
 
-/// Targets that are tried: the design's measured best; more cost time and hardly succeed.
-constexpr std::size_t most_targets = 4;
-
 /// How far a refusal got, for reporting the most telling one.
 int depth(Outcome o) {
   switch (o) {
@@ -51,17 +48,19 @@ double distance_left(const Star& star, std::size_t b) {
   return std::sqrt(nearest);
 }
 
-/// Fills task.edit with the interface triangles before and after.
-void surface_edit(Task& task, std::size_t b) {
+/// Fills task.edit with the interface triangles before and after; false if one is too far from the reference.
+bool surface_edit(Task& task, const BlockRules& rules, std::size_t b) {
   const Star& star = task.star;
   task.edit.clear();
   for (const Star::Sheet& s : star.sheets) {
     const Triangle ids{star.centre, star.points[s.first], star.points[s.second]};
     const Vec3 &p = star.positions[s.first], &q = star.positions[s.second];
     task.edit.removed.push_back({ids, {star.centre_position, p, q}});
-    if (s.first != b && s.second != b)
-      task.edit.added.push_back({{star.points[b], ids[1], ids[2]}, {star.positions[b], p, q}});
+    if (s.first == b || s.second == b) continue;
+    task.edit.added.push_back({{star.points[b], ids[1], ids[2]}, {star.positions[b], p, q}});
+    if (!near_reference(rules, task.edit.added.back(), s.inside, s.across)) return false;
   }
+  return true;
 }
 
 /// Joins the two outer neighbours of a tet that vanishes, across its faces opposite the ends of the collapsed
@@ -115,7 +114,10 @@ Outcome try_target(Task& task, const BlockRules& rules, std::size_t b) {
     const Vec3 &x = star.positions[t.link[0]], &y = star.positions[t.link[1]], &z = star.positions[t.link[2]];
     if (!((x - to).dot((y - x).cross(z - x)) > 0)) return Outcome::inverts;
   }
-  if (left == 0) return Outcome::link_condition;  // nothing would be left of the star
+  // The whole star vanishes where each of its tets stands on another: an ear of the boundary is cut off.
+  if (left == 0)
+    for (const Star::StarTet& t : star.tets)
+      if (task.mesh.neighbour(t.tet, t.slot) == no_index) return Outcome::link_condition;
   const float limit = acceptance_limit(task, rules, star.poorest);
   qualities.resize(star.tets.size());
   for (std::size_t k = 0; k < star.tets.size(); ++k) {
@@ -131,7 +133,7 @@ Outcome try_target(Task& task, const BlockRules& rules, std::size_t b) {
     return Outcome::surface_error;
   if (!link_condition(task.mesh, star, b, task.numbers)) return Outcome::link_condition;
   if (!star.sheets.empty()) {
-    surface_edit(task, b);
+    if (!surface_edit(task, rules, b)) return Outcome::surface_error;
     const Outcome o = task.grid.prepare(task.edit, task.grid_task, task.cells);
     if (o != Outcome::done) {
       task.cells.release();
@@ -193,7 +195,7 @@ Outcome collapse(Task& task, const BlockRules& rules) {
     }
     targets.push_back({weight, static_cast<std::uint16_t>(p)});
   }
-  const std::size_t count = std::min(most_targets, targets.size());
+  const std::size_t count = std::min(rules.most_targets, targets.size());
   std::partial_sort(targets.begin(), targets.begin() + static_cast<std::ptrdiff_t>(count), targets.end(),
                     [](const Target& x, const Target& y) {
                       return x.weight != y.weight ? x.weight < y.weight : x.point < y.point;

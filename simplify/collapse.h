@@ -8,9 +8,9 @@ namespace tetwright {
 ///
 /// Of the allowed targets (the edge has the dimension of the centre: an interior point goes anywhere, a point
 /// of an interface stays on it, one of a junction curve too; spanning edges never collapse) the
-/// `most_targets` of least Weight = length + Error (Cutler, Dorsey & McMillan 2004, section 4) are tried and
-/// the first that passes every test is carried out. Tests come in the order of their cost: E, signs, quality,
-/// link condition, self-intersection.
+/// BlockRules::most_targets of least Weight = length + Error (Cutler, Dorsey & McMillan 2004, section 4) are
+/// tried and the first that passes every test is carried out. Tests come in the order of their cost: E,
+/// signs, quality, link condition, self-intersection.
 ///
 /// The task holds the closed star that `task.star` was gathered from, and nothing of the grid. done: the mesh
 /// was changed. Otherwise the mesh is as it was, and the outcome is that of the target that got farthest.

@@ -68,12 +68,13 @@ class RingTriangulation {
 Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
 
 /// The interface triangles of an edge (a, b) with sheets to s and t, turned to the edge (s, t).
-Outcome prepare_surface(Task& task, const BlockRules& rules, Index s, Index t, int materials) {
+Outcome prepare_surface(Task& task, const BlockRules& rules, Index s, Index t, Region inside, Region across) {
   const EditableMesh& mesh = task.mesh;
   const EdgeRing& ring = task.ring;
   const Vec3 &a = mesh.position(ring.a), &b = mesh.position(ring.b), &ps = mesh.position(s),
              &pt = mesh.position(t);
   const double swept = std::fabs(orient3d_value(a, b, ps, pt)) / 6;
+  const int materials = across == outside_region ? 1 : 2;
   if (rules.gamma * materials * portable_cbrt(swept) > rules.largest_error) return Outcome::surface_error;
   // No fold: every new triangle looks the way both old ones look.
   const std::array<Vec3, 2> before{normal_of(a, ps, b), normal_of(a, b, pt)};
@@ -84,6 +85,8 @@ Outcome prepare_surface(Task& task, const BlockRules& rules, Index s, Index t, i
   task.edit.clear();
   task.edit.removed = {{{ring.a, ring.b, s}, {a, b, ps}}, {{ring.a, ring.b, t}, {a, b, pt}}};
   task.edit.added = {{{ring.a, s, t}, {a, ps, pt}}, {{ring.b, s, t}, {b, ps, pt}}};
+  for (const MeshTriangle& n : task.edit.added)
+    if (!near_reference(rules, n, inside, across)) return Outcome::surface_error;
   return task.grid.prepare(task.edit, task.grid_task, task.cells);
 }
 
@@ -153,7 +156,8 @@ Outcome try_remove(Task& task, const BlockRules& rules, const FlipReach& reach, 
   if (present) return Outcome::link_condition;
   if (cavity.added.size() > n && !task.slots.reserve(cavity.added.size() - n)) return Outcome::no_room;
   if (dimension == 2) {
-    const Outcome o = prepare_surface(task, rules, chains[0].front(), chains[0].back(), ring.closed ? 2 : 1);
+    const Outcome o = prepare_surface(task, rules, chains[0].front(), chains[0].back(), regions[0],
+                                      ring.closed ? regions[1] : outside_region);
     if (o != Outcome::done) {
       task.cells.release();
       return o;

@@ -112,32 +112,73 @@ float Engine::cutoff(double percent) const {
   return in_bin[wanted];
 }
 
-std::vector<ListedTet> Engine::poor_tets(float limit) const {
+template <class Test>
+std::vector<ListedTet> Engine::tets_where(const Test& test) const {
   return parallel_collect<ListedTet>(0, mesh_.tet_slots(), grain,
                                      [&](std::size_t begin, std::size_t end, std::vector<ListedTet>& out) {
                                        for (std::size_t t = begin; t < end; ++t) {
                                          const TetRecord& r = mesh_.tet(static_cast<Index>(t));
-                                         if (r.points[0] != no_index && r.quality <= limit)
+                                         if (r.points[0] != no_index && test(r))
                                            out.push_back({static_cast<Index>(t), r.points});
                                        }
                                      });
 }
 
-std::vector<Index> Engine::poor_points(float limit) const {
-  std::vector<std::uint8_t> poor(mesh_.point_slots(), 0);
+std::vector<ListedTet> Engine::poor_tets(float limit) const {
+  return tets_where([&](const TetRecord& r) { return r.quality <= limit; });
+}
+
+template <class Mark>
+std::vector<Index> Engine::marked_points(const Mark& mark) const {
+  std::vector<std::uint8_t> marks(mesh_.point_slots(), 0);
   parallel_for(0, mesh_.tet_slots(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const TetRecord& r = mesh_.tet(static_cast<Index>(t));
-      if (r.points[0] == no_index || r.quality > limit) continue;
+      if (r.points[0] == no_index) continue;
       // Relaxed: the same value whoever writes it, and read after the loop.
-      for (Index p : r.points) std::atomic_ref<std::uint8_t>(poor[p]).store(1, std::memory_order_relaxed);
+      for (int k = 0; k < 4; ++k)
+        if (mark(static_cast<Index>(t), r, k))
+          std::atomic_ref<std::uint8_t>(marks[r.points[k]]).store(1, std::memory_order_relaxed);
     }
   });
-  return parallel_collect<Index>(0, poor.size(), grain,
+  return parallel_collect<Index>(0, marks.size(), grain,
                                  [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
                                    for (std::size_t p = begin; p < end; ++p)
-                                     if (poor[p]) out.push_back(static_cast<Index>(p));
+                                     if (marks[p]) out.push_back(static_cast<Index>(p));
                                  });
+}
+
+std::vector<Index> Engine::poor_points(float limit) const {
+  return marked_points([&](Index, const TetRecord& r, int) { return r.quality <= limit; });
+}
+
+std::vector<std::uint8_t> Engine::points_of(const std::vector<ListedTet>& tets) const {
+  std::vector<std::uint8_t> listed(mesh_.point_slots(), 0);
+  for (const ListedTet& t : tets)
+    for (Index p : t.points) listed[p] = 1;
+  return listed;
+}
+
+std::vector<ListedTet> Engine::tets_around(const std::vector<ListedTet>& tets) const {
+  const std::vector<std::uint8_t> listed = points_of(tets);
+  return tets_where([&](const TetRecord& r) {
+    return std::any_of(r.points.begin(), r.points.end(), [&](Index p) { return listed[p] != 0; });
+  });
+}
+
+std::vector<Index> Engine::points_around(const std::vector<ListedTet>& tets) const {
+  const std::vector<std::uint8_t> listed = points_of(tets);
+  return marked_points([&](Index, const TetRecord& r, int) {
+    return std::any_of(r.points.begin(), r.points.end(), [&](Index p) { return listed[p] != 0; });
+  });
+}
+
+std::vector<Index> Engine::interface_points() const {
+  return marked_points([&](Index t, const TetRecord& r, int k) {
+    for (int f = 0; f < 4; ++f)
+      if (f != k && mesh_.region_across(t, f) != r.region) return true;
+    return false;
+  });
 }
 
 Engine::Round::Round(Engine& engine, const char* kind) : engine_(engine) {

@@ -50,6 +50,11 @@ class Engine {
   std::vector<ListedTet> poor_tets(float limit) const;
   /// The points of these tets, each once, in the order of the curve.
   std::vector<Index> poor_points(float limit) const;
+  /// The tets that share a point with a listed one, in the order of the curve, and their points, each once.
+  std::vector<ListedTet> tets_around(const std::vector<ListedTet>& tets) const;
+  std::vector<Index> points_around(const std::vector<ListedTet>& tets) const;
+  /// The points of boundary and interfaces, in the order of the curve.
+  std::vector<Index> interface_points() const;
 
   /// Times a round of the schedule and takes down what its tasks counted.
   class Round {
@@ -66,6 +71,15 @@ class Engine {
   };
 
  private:
+  /// The points for which mark(tet, its record, place in it) holds for some tet.
+  template <class Mark>
+  std::vector<Index> marked_points(const Mark& mark) const;
+  /// The living tets whose record passes the test, in the order of the curve.
+  template <class Test>
+  std::vector<ListedTet> tets_where(const Test& test) const;
+  /// 1 for the points of the listed tets.
+  std::vector<std::uint8_t> points_of(const std::vector<ListedTet>& tets) const;
+
   SimplifyReport* report_;
   Progress* progress_;
   EditableMesh mesh_;
@@ -91,8 +105,9 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options);
 struct ImprovementPlan {
   const char* kind;  ///< of its rounds in the report
   float only_below;  ///< quality (shape_quality()) of the tets that are worked on
-  std::size_t fewest_tets, most_tets;
+  std::size_t target_tets, fewest_tets, most_tets;
   int most_rounds;
+  int fit_sweeps;  ///< over all interface points, before (fit_to_surface())
 };
 
 /// Improves the shapes of the poorest tets, worst first (README.md, Improvement).

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <functional>
+#include <limits>
 
 #include "simplify/collapse.h"
 #include "simplify/engine.h"
@@ -11,9 +13,22 @@ namespace tetwright {
 namespace {
 
 const FlipReach full_reach{7, 5};
+/// A round that leaves more than this share of the poor tets is followed by one that moves all points around
+/// them too, for the tets that stand in their way.
+constexpr double stuck_above = 0.8;
+/// What collapses that make room for insertions must leave, over the quality that is aimed at.
+constexpr float thinning_margin = 1.1f;
+/// E of collapses and edge removals, and how far they may leave the surface from the reference, in ideal
+/// edges.
+constexpr double surgery_error_edges = 12;
+constexpr double surgery_distance_edges = 0.3;
+constexpr std::size_t surgery_targets = 30;  ///< all neighbours of nearly every point
+/// Rounds without gain before the work ends.
+constexpr int most_idle_rounds = 6;
 
 /// One tet's turn: the first action that makes the poorest tet around better ends it.
-Outcome improve_tet(Task& task, const BlockRules& rules, const ListedTet& item, float limit) {
+Outcome improve_tet(Task& task, const BlockRules& rules, const BlockRules& surgery, const ListedTet& item,
+                    float limit) {
   EditableMesh& mesh = task.mesh;
   if (const Outcome o = hold(task, item); o != Outcome::done) return o;
   if (mesh.tet(item.tet).quality > limit) return Outcome::stale;
@@ -25,13 +40,13 @@ Outcome improve_tet(Task& task, const BlockRules& rules, const ListedTet& item, 
     if (ends(o)) return o;
   }
   for (int e = 0; e < 6; ++e)
-    if (const Outcome o = remove_edge(task, rules, item.tet, e, full_reach); ends(o)) return o;
+    if (const Outcome o = remove_edge(task, surgery, item.tet, e, full_reach); ends(o)) return o;
   for (int f = 0; f < 4; ++f)
     if (const Outcome o = remove_face(task, rules, item.tet, f, full_reach); ends(o)) return o;
   for (Index p : item.points) {
     if (mesh.live_tets() <= rules.fewest_tets) break;
     Outcome o = task.star.gather(mesh, p, task.points);
-    if (o == Outcome::done) o = collapse(task, rules);
+    if (o == Outcome::done) o = collapse(task, surgery);
     task.counts.add(Operation::collapse, o);
     if (ends(o)) return o;
   }
@@ -42,6 +57,15 @@ Outcome improve_tet(Task& task, const BlockRules& rules, const ListedTet& item, 
   for (int f = 0; f < 4; ++f)
     if (const Outcome o = insert_in_face(task, rules, item.tet, f, InsertionPlace::best); ends(o)) return o;
   return insert_in_tet(task, rules, item.tet, InsertionPlace::best);
+}
+
+/// A flip of the tet that leaves nothing poor, chosen at random, whether it is better or not: other
+/// connectivity near a tet that nothing helps.
+Outcome shake_tet(Task& task, const BlockRules& shaking, const ListedTet& item) {
+  if (const Outcome o = hold(task, item); o != Outcome::done) return o;
+  const auto pick = static_cast<int>(task.random.below(10));
+  return pick < 6 ? remove_edge(task, shaking, item.tet, pick, full_reach)
+                  : remove_face(task, shaking, item.tet, pick - 6, full_reach);
 }
 
 }  // namespace
@@ -55,25 +79,74 @@ void run_improvement(Engine& engine, const ImprovementPlan& plan) {
   rules.most_tets = plan.most_tets;
   rules.slide = &engine.slide();
   engine.squeeze();
-  for (int i = 0; i < plan.most_rounds; ++i) {
+  /// One try at each of the points with an operation on its star.
+  const auto each_star = [&](
+                             const std::vector<Index>& points, Operation kind, const auto& operation,
+                             const std::function<bool()>& stop = [] { return false; }) {
+    engine.runner().points(
+        points,
+        [&](Task& task, Index p) {
+          if (!task.points.try_lock(p)) return Outcome::lock_taken;
+          Outcome o = task.star.gather(mesh, p, task.points);
+          if (o == Outcome::done) o = operation(task);
+          task.counts.add(kind, o);
+          return o;
+        },
+        stop);
+  };
+  for (int sweep = 0; sweep < plan.fit_sweeps; ++sweep) {
     Engine::Round round(engine, plan.kind);
-    IterationReport& it = round.report();
+    each_star(engine.interface_points(), Operation::fit,
+              [&](Task& task) { return fit_to_surface(task, rules, plan.only_below); });
+    round.finish();
+  }
+  // Cutting off an ear or turning an edge sweeps much volume for the little that the surface moves: there the
+  // distance from the reference decides.
+  BlockRules surgery = rules;
+  const double edge = rules.objective.quality.ideal_edge;
+  surgery.largest_error = std::max(rules.largest_error, surgery_error_edges * edge);
+  surgery.most_targets = surgery_targets;
+  surgery.largest_distance = surgery_distance_edges * edge;
+  std::size_t fewest_poor = std::numeric_limits<std::size_t>::max();
+  int idle = 0;
+  for (int i = 0; i < plan.most_rounds && idle < most_idle_rounds; ++i) {
     std::vector<ListedTet> list = engine.poor_tets(plan.only_below);
     if (list.empty()) break;
+    const bool stuck = static_cast<double>(list.size()) > stuck_above * static_cast<double>(fewest_poor);
+    idle = list.size() < fewest_poor ? 0 : idle + 1;
+    fewest_poor = std::min(fewest_poor, list.size());
+    Engine::Round round(engine, plan.kind);
+    IterationReport& it = round.report();
+    it.cutoff = plan.only_below;
+    it.percent = 100 * static_cast<double>(list.size()) / static_cast<double>(it.tets_before);
+    // Room for insertions: where all is good, points go.
+    if (2 * mesh.live_tets() > plan.target_tets + plan.most_tets) {
+      BlockRules thinning = rules;
+      thinning.good_enough = plan.only_below * thinning_margin;
+      thinning.fewest_tets = plan.target_tets;
+      each_star(
+          engine.poor_points(1), Operation::collapse, [&](Task& task) { return collapse(task, thinning); },
+          [&] { return mesh.live_tets() <= plan.target_tets; });
+    }
+    if (stuck && idle > 0) {
+      BlockRules shaking = surgery;
+      shaking.good_enough = plan.only_below;
+      engine.runner().tets(
+          engine.tets_around(list),
+          [&](Task& task, const ListedTet& item) { return shake_tet(task, shaking, item); },
+          [] { return false; });
+    }
+    if (stuck)
+      each_star(engine.points_around(list), Operation::optimise,
+                [&](Task& task) { return optimise(task, rules); });
     std::sort(list.begin(), list.end(), [&](const ListedTet& a, const ListedTet& b) {
       const float qa = mesh.tet(a.tet).quality, qb = mesh.tet(b.tet).quality;
       return qa != qb ? qa < qb : a.tet < b.tet;
     });
-    it.cutoff = plan.only_below;
-    it.percent = 100 * static_cast<double>(list.size()) / static_cast<double>(it.tets_before);
     engine.runner().tets_in_order(list, [&](Task& task, const ListedTet& item) {
-      return improve_tet(task, rules, item, plan.only_below);
+      return improve_tet(task, rules, surgery, item, plan.only_below);
     });
     round.finish();
-    std::uint64_t done = 0;
-    for (std::size_t o = 0; o < operation_count; ++o)
-      done += it.counts.of(static_cast<Operation>(o), Outcome::done);
-    if (done == 0) break;
     if (engine.progress()) engine.progress()->update(static_cast<double>(i + 1) / plan.most_rounds);
   }
 }

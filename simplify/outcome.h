@@ -45,12 +45,13 @@ enum class Operation : std::uint8_t {
   insert_in_edge,
   optimise,
   edge_removal,
-  face_removal
+  face_removal,
+  fit
 };
-inline constexpr std::size_t operation_count = 12;
+inline constexpr std::size_t operation_count = 13;
 inline constexpr std::array<std::string_view, operation_count> operation_names{
-    "flip23",        "flip32",         "flip22",         "flip44",   "collapse",     "smooth",
-    "insert_in_tet", "insert_in_face", "insert_in_edge", "optimise", "edge_removal", "face_removal"};
+    "flip23",         "flip32",         "flip22",   "flip44",       "collapse",     "smooth", "insert_in_tet",
+    "insert_in_face", "insert_in_edge", "optimise", "edge_removal", "face_removal", "fit"};
 
 /// How often each operation had each outcome.
 struct OperationCounts {

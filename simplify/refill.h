@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "simplify/cavity.h"
 #include "simplify/task.h"
 
@@ -51,7 +53,7 @@ inline float quality_of(const EditableMesh& mesh, const BlockRules& rules, const
 /// (one draw).
 inline float acceptance_limit(Task& task, const BlockRules& rules, float poorest) {
   const bool may_worsen = rules.accept_worse > 0 && task.random.uniform() < rules.accept_worse;
-  return may_worsen ? rules.annealing_floor * poorest : poorest;
+  return std::min(rules.good_enough, may_worsen ? rules.annealing_floor * poorest : poorest);
 }
 
 }  // namespace tetwright

@@ -11,7 +11,7 @@ namespace tetwright {
 namespace {
 
 /// Rounds that close simplify().
-constexpr int most_closing_rounds = 24;
+constexpr int most_closing_rounds = 40;
 /// Tets whose quality is below this many times the bound are worked on, for a margin.
 constexpr double improve_margin = 1.27;
 /// Share of the tets that improve() may add or take away; 5 % are promised.
@@ -53,10 +53,11 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
   if (options.schedule == Schedule::tuned) {
     engine.begin_stage("improve");
     const auto count = static_cast<double>(std::min(options.target_tets, first_count));
-    run_improvement(engine,
-                    {"close", working_limit(options.objective, improve_margin * options.min_solid_angle),
-                     static_cast<std::size_t>(std::ceil(count * (1 - closing_slack))),
-                     static_cast<std::size_t>(count * (1 + closing_slack)), most_closing_rounds});
+    run_improvement(
+        engine,
+        {"close", working_limit(options.objective, improve_margin * options.min_solid_angle),
+         static_cast<std::size_t>(count), static_cast<std::size_t>(std::ceil(count * (1 - closing_slack))),
+         static_cast<std::size_t>(count * (1 + closing_slack)), most_closing_rounds, 2});
   }
   if (report) {
     report->seconds_build = build;
@@ -80,9 +81,10 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
   const double build = seconds_since(start);
   engine.rules.largest_error = improve_error_edges * engine.rules.objective.quality.ideal_edge;
   run_improvement(
-      engine, {"improve", working_limit(options.objective, options.only_below > 0 ? options.only_below : 0.2),
-               static_cast<std::size_t>(std::ceil(count * (1 - improve_slack))),
-               static_cast<std::size_t>(count * (1 + improve_slack)), options.max_iterations});
+      engine,
+      {"improve", working_limit(options.objective, options.only_below > 0 ? options.only_below : 0.2),
+       static_cast<std::size_t>(count), static_cast<std::size_t>(std::ceil(count * (1 - improve_slack))),
+       static_cast<std::size_t>(count * (1 + improve_slack)), options.max_iterations, 0});
   if (report) {
     report->seconds_build = build;
     report->seconds_close = seconds_since(start) - build;

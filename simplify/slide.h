@@ -47,6 +47,8 @@ class Slide {
   /// The nearest point, or one near it, of the interface between two regions within `most`; safe
   /// concurrently.
   std::optional<Vec3> onto_surface(const Vec3& p, Region first, Region second, double most) const;
+  /// True if there is a surface to slide on.
+  bool has_surface() const { return given_ || !surfaces_.empty(); }
   /// The nearest point of a junction curve within `most`; safe concurrently.
   std::optional<Vec3> onto_curve(const Vec3& p, double most) const { return curves_.nearest(p, 0, 0, most); }
 

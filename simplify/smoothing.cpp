@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include "simplify/refill.h"
@@ -24,6 +25,7 @@ constexpr int hull_steps = 12;       ///< for the shortest vector of the gradien
 constexpr float least_gain = 1.01f;  ///< factor on the poorest quality that is worth another round's work
 /// How far from its surface a point may be to be brought back onto it, in shortest edges.
 constexpr double slide_reach = 0.5;
+constexpr double fit_reach = 1;  ///< the same for fit_to_surface()
 
 /// The centroid of the neighbours that the centre may follow.
 Vec3 centroid(const Star& star, int dimension) {
@@ -154,15 +156,25 @@ bool find_place(Star& star, const EditableMesh& mesh, const BlockRules& rules, i
     shortest2 = std::min(shortest2, (p - star.centre_position).squaredNorm());
   const double shortest = std::sqrt(shortest2);
 
+  // A surface point keeps its distance from the reference (fit_to_surface() chose it); farther away than the
+  // reach it stays in its plane.
+  const double reach = slide_reach * shortest;
+  Vec3 offset = Vec3::Zero();
+  if (rules.slide && dimension == 2) {
+    const Star::Sheet& s = star.sheets.front();
+    if (const auto on = rules.slide->onto_surface(star.centre_position, s.inside, s.across, reach)) {
+      const Vec3 normal = star.gradients.front().change.normalized();
+      offset = normal * normal.dot(star.centre_position - *on);
+    }
+  }
   /// Where a step leads: back onto the surface or curve.
   const auto placed = [&](Vec3 to) -> std::optional<Vec3> {
     if (rules.slide && dimension < 3) {
-      const auto on = dimension == 2
-                          ? rules.slide->onto_surface(to, star.sheets[0].inside, star.sheets[0].across,
-                                                      slide_reach * shortest)
-                          : rules.slide->onto_curve(to, slide_reach * shortest);
+      const Star::Sheet& s = star.sheets.front();
+      const auto on = dimension == 2 ? rules.slide->onto_surface(to, s.inside, s.across, reach)
+                                     : rules.slide->onto_curve(to, reach);
       if (!on) return {};
-      to = *on;
+      to = *on + offset;
     }
     return mesh.snap(to);
   };
@@ -279,6 +291,38 @@ Outcome optimise(Task& task, const BlockRules& rules) {
   if (!find_place(star, task.mesh, rules, dimension, least_gain * star.poorest, place))
     return Outcome::quality;
   return move_to(task, place.position, place.qualities);
+}
+
+Outcome fit_to_surface(Task& task, const BlockRules& rules, float floor) {
+  Star& star = task.star;
+  if (!rules.slide || star.dimension() != 2) return Outcome::no_candidate;
+  star.compute_gradients();
+  const Vec3 normal = star.gradients.front().change.normalized();
+  double weights = 0, pull = 0, shortest2 = std::numeric_limits<double>::infinity();
+  for (const Vec3& p : star.positions)
+    shortest2 = std::min(shortest2, (p - star.centre_position).squaredNorm());
+  const double reach = fit_reach * std::sqrt(shortest2);
+  /// A place on the triangles that moves by `weight` of what the centre moves.
+  const auto sample = [&](const Vec3& at, double weight, const Star::Sheet& s) {
+    const auto on = rules.slide->onto_surface(at, s.inside, s.across, reach);
+    if (!on) return;
+    pull += weight * normal.dot(*on - at);
+    weights += weight * weight;
+  };
+  const Vec3& c = star.centre_position;
+  sample(c, 1, star.sheets.front());
+  for (const Star::Sheet& s : star.sheets)
+    sample((c + star.positions[s.first] + star.positions[s.second]) / 3, 1.0 / 3, s);
+  for (std::size_t p = 0; p < star.points.size(); ++p)
+    if (star.sheet_count[p] != 0) sample((c + star.positions[p]) / 2, 0.5, star.sheets.front());
+  if (!(weights > 0)) return Outcome::no_candidate;
+  const Vec3 to = task.mesh.snap(c + normal * (pull / weights));
+  thread_local std::vector<float> qualities;
+  qualities.resize(star.tets.size());
+  float poorest;
+  const float limit = std::min(floor, star.poorest * 0.999f);
+  const Outcome o = rate(star, rules, to, limit, qualities, poorest);
+  return o == Outcome::done ? move_to(task, to, qualities) : o;
 }
 
 }  // namespace tetwright

@@ -60,11 +60,25 @@ struct BlockRules {
   std::size_t fewest_tets = 0, most_tets = std::numeric_limits<std::size_t>::max();
   double accept_worse = 0;    ///< annealing: probability of an action that leaves a poorer tet than before
   float annealing_floor = 0;  ///< share of the poorest quality that such an action must keep
+  float good_enough = 1;      ///< an action that leaves only better tets is accepted whatever was there
+  /// Targets of a collapse that are tried, in the order of their weight.
+  std::size_t most_targets = 4;
   /// Weight of the distance that a collapse may move the surface at the point that goes, against E; 0: the
   /// volume alone decides, as in the paper.
   double distance_weight = 0;
+  /// How far a new surface triangle's centre may lie from the reference (needs slide), working coordinates;
+  /// 0: not looked at. Unlike E it does not add up over several operations.
+  double largest_distance = 0;
   const Slide* slide = nullptr;  ///< what surface points slide along; null: planes of constant volume
 };
+
+/// Whether a triangle that an edit adds stays near the reference, as far as the rules ask for it. `inside`
+/// and `across` are the regions that it separates.
+inline bool near_reference(const BlockRules& rules, const MeshTriangle& t, Region inside, Region across) {
+  if (!rules.slide || !(rules.largest_distance > 0)) return true;
+  const Vec3 centre = (t.points[0] + t.points[1] + t.points[2]) / 3;
+  return rules.slide->onto_surface(centre, inside, across, rules.largest_distance).has_value();
+}
 
 /// One task's own things: what it holds, what it reuses, what it counted.
 struct Task {

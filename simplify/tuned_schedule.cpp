@@ -82,8 +82,7 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options) {
   EditableMesh& mesh = engine.mesh();
   BlockRules& rules = engine.rules;
   const auto target = static_cast<double>(options.target_tets);
-  // A little above the target, to leave the closing some collapses.
-  const auto loop_target = static_cast<std::size_t>(target * (1 + closing_slack));
+  const std::size_t loop_target = options.target_tets;
   const double log_first = portable_log(std::max(static_cast<double>(mesh.live_tets()) / target, 1 + 1e-9));
   const double largest_error = largest_useful_error * std::max(1.0, options.gamma / 10);
   rules.objective.kind = Objective::Kind::paper;
