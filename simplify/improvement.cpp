@@ -27,15 +27,15 @@ constexpr std::size_t surgery_targets = 30;  ///< all neighbours of nearly every
 constexpr int most_idle_rounds = 6;
 
 /// One tet's turn: the first action that makes the poorest tet around better ends it.
-Outcome improve_tet(Task& task, const BlockRules& rules, const BlockRules& surgery, const ListedTet& item,
-                    float limit) {
+Outcome improve_tet(Task& task, const BlockRules& rules, const BlockRules& surgery, bool stuck,
+                    const ListedTet& item, float limit) {
   EditableMesh& mesh = task.mesh;
   if (const Outcome o = hold(task, item); o != Outcome::done) return o;
   if (mesh.tet(item.tet).quality > limit) return Outcome::stale;
   const auto ends = [](Outcome o) { return o == Outcome::done || o == Outcome::lock_taken; };
   for (Index p : item.points) {
     Outcome o = task.star.gather(mesh, p, task.points);
-    if (o == Outcome::done) o = optimise(task, rules);
+    if (o == Outcome::done) o = optimise(task, stuck ? surgery : rules);
     task.counts.add(Operation::optimise, o);
     if (ends(o)) return o;
   }
@@ -105,6 +105,7 @@ void run_improvement(Engine& engine, const ImprovementPlan& plan) {
   BlockRules surgery = rules;
   const double edge = rules.objective.quality.ideal_edge;
   surgery.largest_error = std::max(rules.largest_error, surgery_error_edges * edge);
+  surgery.leave_surface = true;
   surgery.most_targets = surgery_targets;
   surgery.largest_distance = surgery_distance_edges * edge;
   std::size_t fewest_poor = std::numeric_limits<std::size_t>::max();
@@ -144,7 +145,7 @@ void run_improvement(Engine& engine, const ImprovementPlan& plan) {
       return qa != qb ? qa < qb : a.tet < b.tet;
     });
     engine.runner().tets_in_order(list, [&](Task& task, const ListedTet& item) {
-      return improve_tet(task, rules, surgery, item, plan.only_below);
+      return improve_tet(task, rules, surgery, stuck, item, plan.only_below);
     });
     round.finish();
     if (engine.progress()) engine.progress()->update(static_cast<double>(i + 1) / plan.most_rounds);

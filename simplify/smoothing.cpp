@@ -52,7 +52,8 @@ Vec3 keep_volumes(const Star& star, Vec3 step) {
   return step;
 }
 
-void surface_edit(Task& task, const Vec3& to) {
+/// Fills task.edit with the interface triangles before and after; false if one is too far from the reference.
+bool surface_edit(Task& task, const BlockRules& rules, const Vec3& to) {
   const Star& star = task.star;
   task.edit.clear();
   for (const Star::Sheet& s : star.sheets) {
@@ -60,7 +61,9 @@ void surface_edit(Task& task, const Vec3& to) {
     const Vec3 &p = star.positions[s.first], &q = star.positions[s.second];
     task.edit.removed.push_back({ids, {star.centre_position, p, q}});
     task.edit.added.push_back({ids, {to, p, q}});
+    if (!near_reference(rules, task.edit.added.back(), s.inside, s.across)) return false;
   }
+  return true;
 }
 
 /// Whether the centre may stand at `to`: fills `qualities` and answers done, or why not. `limit` is what the
@@ -82,10 +85,10 @@ Outcome rate(Star& star, const BlockRules& rules, const Vec3& to, float limit, s
 }
 
 /// Carries the move out where the surface allows it; `qualities` are those at `to`.
-Outcome move_to(Task& task, const Vec3& to, const std::vector<float>& qualities) {
+Outcome move_to(Task& task, const BlockRules& rules, const Vec3& to, const std::vector<float>& qualities) {
   const Star& star = task.star;
   if (!star.sheets.empty()) {
-    surface_edit(task, to);
+    if (!surface_edit(task, rules, to)) return Outcome::surface_error;
     const Outcome o = task.grid.prepare(task.edit, task.grid_task, task.cells);
     if (o != Outcome::done) {
       task.cells.release();
@@ -99,18 +102,18 @@ Outcome move_to(Task& task, const Vec3& to, const std::vector<float>& qualities)
 }
 
 /// Directions that a point of the given dimension may be moved in without leaving its surface or curve.
-std::array<Vec3, 3> free_directions(const Star& star, int dimension, int& count) {
+std::array<Vec3, 3> free_directions(const Star& star, int dimension, bool leave_surface, int& count) {
   if (dimension == 3) {
     count = 3;
     return {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
   }
   if (dimension == 2) {
-    count = 2;
+    count = leave_surface ? 3 : 2;
     const Vec3 normal = star.gradients.front().change.normalized();
     int axis;
     normal.cwiseAbs().minCoeff(&axis);
     const Vec3 u = normal.cross(Vec3::Unit(axis)).normalized();
-    return {u, normal.cross(u), Vec3::Zero()};
+    return {u, normal.cross(u), normal};
   }
   count = 1;
   Vec3 along = Vec3::Zero();
@@ -149,8 +152,9 @@ void sort_by_quality(Star& star) {
 bool find_place(Star& star, const EditableMesh& mesh, const BlockRules& rules, int dimension, float limit,
                 Placement& found) {
   sort_by_quality(star);
+  const bool leave_surface = rules.leave_surface && rules.slide && dimension == 2;
   int directions_count;
-  const std::array<Vec3, 3> directions = free_directions(star, dimension, directions_count);
+  const std::array<Vec3, 3> directions = free_directions(star, dimension, leave_surface, directions_count);
   double shortest2 = std::numeric_limits<double>::infinity();
   for (const Vec3& p : star.positions)
     shortest2 = std::min(shortest2, (p - star.centre_position).squaredNorm());
@@ -160,7 +164,7 @@ bool find_place(Star& star, const EditableMesh& mesh, const BlockRules& rules, i
   // reach it stays in its plane.
   const double reach = slide_reach * shortest;
   Vec3 offset = Vec3::Zero();
-  if (rules.slide && dimension == 2) {
+  if (rules.slide && dimension == 2 && !leave_surface) {
     const Star::Sheet& s = star.sheets.front();
     if (const auto on = rules.slide->onto_surface(star.centre_position, s.inside, s.across, reach)) {
       const Vec3 normal = star.gradients.front().change.normalized();
@@ -171,10 +175,12 @@ bool find_place(Star& star, const EditableMesh& mesh, const BlockRules& rules, i
   const auto placed = [&](Vec3 to) -> std::optional<Vec3> {
     if (rules.slide && dimension < 3) {
       const Star::Sheet& s = star.sheets.front();
-      const auto on = dimension == 2 ? rules.slide->onto_surface(to, s.inside, s.across, reach)
-                                     : rules.slide->onto_curve(to, reach);
+      const auto on = dimension == 2
+                          ? rules.slide->onto_surface(to, s.inside, s.across,
+                                                      leave_surface ? rules.largest_distance : reach)
+                          : rules.slide->onto_curve(to, reach);
       if (!on) return {};
-      to = *on + offset;
+      if (!leave_surface) to = *on + offset;
     }
     return mesh.snap(to);
   };
@@ -276,7 +282,7 @@ Outcome smooth(Task& task, const BlockRules& rules) {
     const Vec3 to = task.mesh.snap(star.centre_position + step);
     refusal = rate(star, rules, to, limit, qualities, poorest);
     if (refusal != Outcome::done) continue;
-    refusal = move_to(task, to, qualities);
+    refusal = move_to(task, rules, to, qualities);
     if (refusal == Outcome::done || refusal == Outcome::lock_taken) return refusal;
   }
   return refusal;
@@ -290,7 +296,7 @@ Outcome optimise(Task& task, const BlockRules& rules) {
   thread_local Placement place;
   if (!find_place(star, task.mesh, rules, dimension, least_gain * star.poorest, place))
     return Outcome::quality;
-  return move_to(task, place.position, place.qualities);
+  return move_to(task, rules, place.position, place.qualities);
 }
 
 Outcome fit_to_surface(Task& task, const BlockRules& rules, float floor) {
@@ -322,7 +328,7 @@ Outcome fit_to_surface(Task& task, const BlockRules& rules, float floor) {
   float poorest;
   const float limit = std::min(floor, star.poorest * 0.999f);
   const Outcome o = rate(star, rules, to, limit, qualities, poorest);
-  return o == Outcome::done ? move_to(task, to, qualities) : o;
+  return o == Outcome::done ? move_to(task, rules, to, qualities) : o;
 }
 
 }  // namespace tetwright

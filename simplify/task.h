@@ -69,6 +69,8 @@ struct BlockRules {
   /// How far a new surface triangle's centre may lie from the reference (needs slide), working coordinates;
   /// 0: not looked at. Unlike E it does not add up over several operations.
   double largest_distance = 0;
+  /// Interface points may also leave the surface by up to largest_distance where that betters the shapes.
+  bool leave_surface = false;
   const Slide* slide = nullptr;  ///< what surface points slide along; null: planes of constant volume
 };
 
