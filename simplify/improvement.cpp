@@ -145,7 +145,7 @@ void run_improvement(Engine& engine, const ImprovementPlan& plan) {
       return qa != qb ? qa < qb : a.tet < b.tet;
     });
     engine.runner().tets_in_order(list, [&](Task& task, const ListedTet& item) {
-      return improve_tet(task, rules, surgery, stuck, item, plan.only_below);
+      return improve_tet(task, rules, surgery, stuck && idle > 0, item, plan.only_below);
     });
     round.finish();
     if (engine.progress()) engine.progress()->update(static_cast<double>(i + 1) / plan.most_rounds);
