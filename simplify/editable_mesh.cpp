@@ -359,6 +359,23 @@ void EditableMesh::compact(std::size_t spare, std::size_t spare_points) {
   set_hints();
 }
 
+std::vector<EditableMesh::InterfaceFace> EditableMesh::interface_faces() const {
+  return parallel_collect<InterfaceFace>(
+      0, tets_.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<InterfaceFace>& out) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const auto t = static_cast<Index>(i);
+          const TetRecord& r = tets_[t];
+          if (r.points[0] == no_index) continue;
+          for (int f = 0; f < 4; ++f) {
+            const Index other = r.neighbours[f];
+            if (other != no_index && (other < t || tets_[other].region == r.region)) continue;
+            const auto& c = tet_faces[f];
+            out.push_back({{r.points[c[0]], r.points[c[1]], r.points[c[2]]}, r.region, region_across(t, f)});
+          }
+        }
+      });
+}
+
 double EditableMesh::total_volume() const {
   return parallel_sum(0, tets_.size(), grain, [&](std::size_t begin, std::size_t end) {
     double sum = 0;

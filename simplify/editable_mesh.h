@@ -155,6 +155,13 @@ class EditableMesh {
   /// Squeezes out dead tets and points and renumbers both along a space-filling curve, so that what is near
   /// in space is near in memory; leaves free slots at the end for operations that add tets and points.
   void compact(std::size_t spare_tets, std::size_t spare_points);
+  /// A face between two regions, outside being one; the normal points out of `inside`.
+  struct InterfaceFace {
+    Triangle ids;
+    Region inside, across;
+  };
+  /// All of them, each once. Parallel; the order does not depend on the threads.
+  std::vector<InterfaceFace> interface_faces() const;
   /// In working coordinates cubed; flat and negative tets count as they are.
   double total_volume() const;
   /// Every invariant of the links: neighbours mutual, hints right, faces equal, live count right. For tests.

@@ -103,8 +103,9 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options);
 
 /// How improvement works.
 struct ImprovementPlan {
-  const char* kind;  ///< of its rounds in the report
-  float only_below;  ///< quality (shape_quality()) of the tets that are worked on
+  const char* kind;           ///< of its rounds in the report
+  float only_below;           ///< quality (shape_quality()) of the tets that are worked on
+  float leave_surface_below;  ///< of tets for whose sake points of the surface may leave it a little
   std::size_t target_tets, fewest_tets, most_tets;
   int most_rounds;
   int fit_sweeps;  ///< over all interface points, before (fit_to_surface())

@@ -23,19 +23,23 @@ constexpr float thinning_margin = 1.1f;
 constexpr double surgery_error_edges = 12;
 constexpr double surgery_distance_edges = 0.3;
 constexpr std::size_t surgery_targets = 30;  ///< all neighbours of nearly every point
-/// Rounds without gain before the work ends.
-constexpr int most_idle_rounds = 6;
+/// Rounds without gain before the work ends: while some tets are below ImprovementPlan::leave_surface_below,
+/// else.
+constexpr int most_idle_rounds = 8;
+constexpr int most_idle_rounds_when_good = 2;
 
 /// One tet's turn: the first action that makes the poorest tet around better ends it.
-Outcome improve_tet(Task& task, const BlockRules& rules, const BlockRules& surgery, bool stuck,
-                    const ListedTet& item, float limit) {
+Outcome improve_tet(Task& task, const BlockRules& rules, const BlockRules& surgery, bool last_resort,
+                    const ListedTet& item, const ImprovementPlan& plan) {
   EditableMesh& mesh = task.mesh;
   if (const Outcome o = hold(task, item); o != Outcome::done) return o;
-  if (mesh.tet(item.tet).quality > limit) return Outcome::stale;
+  const float quality = mesh.tet(item.tet).quality;
+  if (quality > plan.only_below) return Outcome::stale;
+  const BlockRules& moving = last_resort && quality < plan.leave_surface_below ? surgery : rules;
   const auto ends = [](Outcome o) { return o == Outcome::done || o == Outcome::lock_taken; };
   for (Index p : item.points) {
     Outcome o = task.star.gather(mesh, p, task.points);
-    if (o == Outcome::done) o = optimise(task, stuck ? surgery : rules);
+    if (o == Outcome::done) o = optimise(task, moving);
     task.counts.add(Operation::optimise, o);
     if (ends(o)) return o;
   }
@@ -113,9 +117,14 @@ void run_improvement(Engine& engine, const ImprovementPlan& plan) {
   for (int i = 0; i < plan.most_rounds && idle < most_idle_rounds; ++i) {
     std::vector<ListedTet> list = engine.poor_tets(plan.only_below);
     if (list.empty()) break;
+    const bool bad = std::any_of(list.begin(), list.end(), [&](const ListedTet& t) {
+      return mesh.tet(t.tet).quality < plan.leave_surface_below;
+    });
     const bool stuck = static_cast<double>(list.size()) > stuck_above * static_cast<double>(fewest_poor);
     idle = list.size() < fewest_poor ? 0 : idle + 1;
+    if (!bad && idle >= most_idle_rounds_when_good) break;
     fewest_poor = std::min(fewest_poor, list.size());
+    const bool last_resort = stuck && idle > 0;
     Engine::Round round(engine, plan.kind);
     IterationReport& it = round.report();
     it.cutoff = plan.only_below;
@@ -129,7 +138,7 @@ void run_improvement(Engine& engine, const ImprovementPlan& plan) {
           engine.poor_points(1), Operation::collapse, [&](Task& task) { return collapse(task, thinning); },
           [&] { return mesh.live_tets() <= plan.target_tets; });
     }
-    if (stuck && idle > 0) {
+    if (last_resort) {
       BlockRules shaking = surgery;
       shaking.good_enough = plan.only_below;
       engine.runner().tets(
@@ -145,7 +154,7 @@ void run_improvement(Engine& engine, const ImprovementPlan& plan) {
       return qa != qb ? qa < qb : a.tet < b.tet;
     });
     engine.runner().tets_in_order(list, [&](Task& task, const ListedTet& item) {
-      return improve_tet(task, rules, surgery, stuck && idle > 0, item, plan.only_below);
+      return improve_tet(task, rules, surgery, last_resort, item, plan);
     });
     round.finish();
     if (engine.progress()) engine.progress()->update(static_cast<double>(i + 1) / plan.most_rounds);

@@ -12,11 +12,22 @@ class LocalNumbers {
  public:
   LocalNumbers() { slots_.resize(initial_slots); }
   void clear() {
-    ++epoch_;
     size_ = 0;
+    if (++epoch_ == 0) restart();
   }
   /// The number of `key`; a key not seen since clear() gets the next one and `added` true.
-  std::uint32_t number(Index key, bool& added);
+  std::uint32_t number(Index key, bool& added) {
+    std::size_t i = home(key);
+    for (; slots_[i].epoch == epoch_; i = (i + 1) & (slots_.size() - 1))
+      if (slots_[i].key == key) {
+        added = false;
+        return slots_[i].number;
+      }
+    added = true;
+    if (2 * (size_ + 1) > slots_.size()) i = grow(key);  // at most half full
+    slots_[i] = {key, size_, epoch_};
+    return size_++;
+  }
   /// The number of `key`, or no_index.
   std::uint32_t find(Index key) const {
     for (std::size_t i = home(key);; i = (i + 1) & (slots_.size() - 1)) {
@@ -31,11 +42,16 @@ class LocalNumbers {
   struct Slot {
     Index key = 0;
     std::uint32_t number = 0;
-    std::uint64_t epoch = 0;
+    std::uint32_t epoch = 0;
   };
   std::size_t home(Index key) const { return (key * 0x9e3779b1u >> 7) & (slots_.size() - 1); }
+  /// Doubles the table; the free slot for `key`.
+  std::size_t grow(Index key);
+  /// After 2^32 epochs: nothing of before may look current.
+  void restart();
+
   std::vector<Slot> slots_;
-  std::uint64_t epoch_ = 1;
+  std::uint32_t epoch_ = 1;
   std::uint32_t size_ = 0;
 };
 

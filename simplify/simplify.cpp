@@ -12,8 +12,13 @@ namespace {
 
 /// Rounds that close simplify().
 constexpr int most_closing_rounds = 40;
-/// Tets whose quality is below this many times the bound are worked on, for a margin.
+/// Tets whose quality is below this many times the bound are worked on: dihedral angles up to 25 degrees.
 constexpr double improve_margin = 1.27;
+/// For those below this many times the bound the surface may be left: angles up to 25 degrees.
+constexpr double safety_margin = 1.27;
+constexpr int closing_fit_sweeps = 2;
+/// Where improve() is to better all it can: dihedral angles up to 42 degrees.
+constexpr double improve_all_below = 0.2;
 /// Share of the tets that improve() may add or take away; 5 % are promised.
 constexpr double improve_slack = 0.045;
 /// E of improve(), in edges of a regular mesh of that count: the paper's first E.
@@ -55,9 +60,14 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     const auto count = static_cast<double>(std::min(options.target_tets, first_count));
     run_improvement(
         engine,
-        {"close", working_limit(options.objective, improve_margin * options.min_solid_angle),
-         static_cast<std::size_t>(count), static_cast<std::size_t>(std::ceil(count * (1 - closing_slack))),
-         static_cast<std::size_t>(count * (1 + closing_slack)), most_closing_rounds, 2});
+        {.kind = "close",
+         .only_below = working_limit(options.objective, improve_margin * options.min_solid_angle),
+         .leave_surface_below = working_limit(options.objective, safety_margin * options.min_solid_angle),
+         .target_tets = static_cast<std::size_t>(count),
+         .fewest_tets = static_cast<std::size_t>(std::ceil(count * (1 - closing_slack))),
+         .most_tets = static_cast<std::size_t>(count * (1 + closing_slack)),
+         .most_rounds = most_closing_rounds,
+         .fit_sweeps = closing_fit_sweeps});
   }
   if (report) {
     report->seconds_build = build;
@@ -80,11 +90,16 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
   engine.squeeze();
   const double build = seconds_since(start);
   engine.rules.largest_error = improve_error_edges * engine.rules.objective.quality.ideal_edge;
-  run_improvement(
-      engine,
-      {"improve", working_limit(options.objective, options.only_below > 0 ? options.only_below : 0.2),
-       static_cast<std::size_t>(count), static_cast<std::size_t>(std::ceil(count * (1 - improve_slack))),
-       static_cast<std::size_t>(count * (1 + improve_slack)), options.max_iterations, 0});
+  const double below = options.only_below > 0 ? options.only_below : improve_all_below;
+  run_improvement(engine, {.kind = "improve",
+                           .only_below = working_limit(options.objective, below),
+                           .leave_surface_below =
+                               working_limit(options.objective, safety_margin * options.min_solid_angle),
+                           .target_tets = static_cast<std::size_t>(count),
+                           .fewest_tets = static_cast<std::size_t>(std::ceil(count * (1 - improve_slack))),
+                           .most_tets = static_cast<std::size_t>(count * (1 + improve_slack)),
+                           .most_rounds = options.max_iterations,
+                           .fit_sweeps = 0});
   if (report) {
     report->seconds_build = build;
     report->seconds_close = seconds_since(start) - build;

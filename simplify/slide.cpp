@@ -139,45 +139,40 @@ std::optional<Vec3> NearestTree::nearest(const Vec3& p, Region first, Region sec
 }
 
 Slide::Slide(const EditableMesh& mesh, const ReferenceSurface* given) : given_(given), mesh_(&mesh) {
-  PointCopies surface_points(mesh), curve_points(mesh);
-  std::vector<NearestTree::Item> triangles, segments;
-  struct Edge {
-    Index low, high;
-    bool operator==(const Edge&) const = default;
-    bool operator<(const Edge& o) const { return low != o.low ? low < o.low : high < o.high; }
-  };
-  std::vector<Edge> edges;  // of all interface triangles
-  for (Index t = 0; t < mesh.tet_slots(); ++t) {
-    const TetRecord& r = mesh.tet(t);
-    if (r.points[0] == no_index) continue;
-    for (int f = 0; f < 4; ++f) {
-      const Index other = r.neighbours[f];
-      if (other != no_index && (other < t || mesh.tet(other).region == r.region)) continue;
-      const Region across = mesh.region_across(t, f);
-      const Triangle ids{r.points[tet_faces[f][0]], r.points[tet_faces[f][1]], r.points[tet_faces[f][2]]};
-      if (!given)
-        triangles.push_back(
-            {{surface_points.number(ids[0]), surface_points.number(ids[1]), surface_points.number(ids[2])},
-             std::min(r.region, across),
-             std::max(r.region, across)});
-      // Only where several materials meet, or the input is not manifold, can an edge have other than two of
-      // them.
-      for (int k = 0; k < 3; ++k)
-        edges.push_back({std::min(ids[k], ids[(k + 1) % 3]), std::max(ids[k], ids[(k + 1) % 3])});
-    }
+  const std::vector<EditableMesh::InterfaceFace> faces = mesh.interface_faces();
+  if (!given) {
+    PointCopies points(mesh);
+    std::vector<NearestTree::Item> triangles;
+    triangles.reserve(faces.size());
+    for (const EditableMesh::InterfaceFace& f : faces)
+      triangles.push_back({{points.number(f.ids[0]), points.number(f.ids[1]), points.number(f.ids[2])},
+                           std::min(f.inside, f.across),
+                           std::max(f.inside, f.across)});
+    surfaces_ = NearestTree(std::move(points.points), std::move(triangles));
   }
+  // The edges with other than two of the triangles: junction curves, and where the input is not manifold.
+  std::vector<std::uint64_t> edges(3 * faces.size());
+  parallel_for(0, faces.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (int k = 0; k < 3; ++k) {
+        const Index p = faces[i].ids[k], q = faces[i].ids[(k + 1) % 3];
+        edges[3 * i + k] = std::uint64_t{std::min(p, q)} << 32 | std::max(p, q);
+      }
+  });
   parallel_sort(edges);
+  PointCopies points(mesh);
+  std::vector<NearestTree::Item> segments;
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t j = i + 1;
     while (j < edges.size() && edges[j] == edges[i]) ++j;
     if (j - i != 2) {
-      const Index a = curve_points.number(edges[i].low), b = curve_points.number(edges[i].high);
+      const Index a = points.number(static_cast<Index>(edges[i] >> 32)),
+                  b = points.number(static_cast<Index>(edges[i]));
       segments.push_back({{a, b, b}, 0, 0});
     }
     i = j;
   }
-  surfaces_ = NearestTree(std::move(surface_points.points), std::move(triangles));
-  curves_ = NearestTree(std::move(curve_points.points), std::move(segments));
+  curves_ = NearestTree(std::move(points.points), std::move(segments));
 }
 
 std::optional<Vec3> Slide::onto_surface(const Vec3& p, Region first, Region second, double most) const {

@@ -5,10 +5,13 @@
 #include <cmath>
 
 #include "common/error.h"
+#include "common/parallel.h"
 
 namespace tetwright {
 
 namespace {
+
+constexpr std::size_t grain = 4096;  ///< triangles a parallel loop hands out at a time
 
 /// Cells that the largest triangle may span along an axis: bounds what one operation has to lock.
 constexpr double most_cells_across = 24;
@@ -54,21 +57,17 @@ void SurfaceGrid::for_cells(const MeshTriangle& t, const F& f) const {
 }
 
 void SurfaceGrid::build(const EditableMesh& mesh, double smallest_cell, std::size_t spare) {
-  records_.clear();
-  for (Index t = 0; t < mesh.tet_slots(); ++t) {
-    const TetRecord& r = mesh.tet(t);
-    if (r.points[0] == no_index) continue;
-    for (int f = 0; f < 4; ++f) {
-      const Index other = r.neighbours[f];
-      if (other != no_index && (other < t || mesh.tet(other).region == r.region)) continue;
-      MeshTriangle triangle;
-      for (int k = 0; k < 3; ++k) {
-        triangle.ids[k] = r.points[tet_faces[f][k]];
-        triangle.points[k] = mesh.position(triangle.ids[k]);
+  {
+    const std::vector<EditableMesh::InterfaceFace> faces = mesh.interface_faces();
+    records_.resize(faces.size());
+    parallel_for(0, faces.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        MeshTriangle& triangle = records_[i];
+        triangle.ids = faces[i].ids;
+        for (int k = 0; k < 3; ++k) triangle.points[k] = mesh.position(triangle.ids[k]);
+        sort_ids(triangle);
       }
-      sort_ids(triangle);
-      records_.push_back(triangle);
-    }
+    });
   }
   Vec3 low = Vec3::Zero();
   double sum = 0, largest = 0;
@@ -92,11 +91,18 @@ void SurfaceGrid::build(const EditableMesh& mesh, double smallest_cell, std::siz
   cells_.clear();
   cells_.resize(slots);
   locks_.reset(slots);
-  for (std::uint32_t i = 0; i < records_.size(); ++i)
-    for_cells(records_[i], [&](const Cell3& c) {
-      auto& list = cells_[slot(c)];
-      if (list.empty() || list.back() != i) list.push_back(i);
-    });
+  parallel_for(0, records_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      for_cells(records_[i], [&](const Cell3& c) {
+        const std::uint32_t s = slot(c);
+        while (!locks_.try_lock(s)) {  // for the few instructions that another thread needs to append
+        }
+        auto& list = cells_[s];
+        const auto record = static_cast<std::uint32_t>(i);
+        if (std::find(list.begin(), list.end(), record) == list.end()) list.push_back(record);
+        locks_.unlock(s);
+      });
+  });
   next_spare_ = records_.size();
   records_.resize(records_.size() + spare);
 }

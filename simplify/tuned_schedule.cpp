@@ -17,7 +17,7 @@ constexpr double error_growth = 1.3;     ///< E's factor after an iteration that
 constexpr double least_removed = 0.15;   ///< of the tets: less than that is too little
 constexpr double percent_step = 10;      ///< the paper's: the share of poor tets grows by this each iteration
 constexpr double first_annealing = 0.3;  ///< probability at first of an action that leaves a poorer tet
-constexpr double swaps_below = 10;       ///< times the target: above it swaps and smoothing are wasted work
+constexpr double swaps_below = 3;        ///< times the target: above it flips and smoothing are wasted work
 /// What annealing must leave of the poorest Quality^3. Below it (0: anything positive) the loop ends with
 /// 5-10 % of tets under 0.1 sr instead of 2-3 %; larger ones need a larger E to reach the target, which costs
 /// surface and volume.
