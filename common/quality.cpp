@@ -119,7 +119,9 @@ double TetQuality::cubed(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3
   const double longest = std::sqrt(t.longest_squared);
   if (!surely_positive(t.det, t.longest_squared * longest)) return 0;
   // The paper divides by 0.55, rounded down from the regular tet's angle, and clamps to 1.
-  const double angle = std::min(1.0, smallest_angle_for_comparison(t) / 0.55);
+  const double smallest = smallest_angle_for_comparison(t);
+  const double needle = smallest < needle_angle ? smallest / needle_angle : 1;
+  const double angle = std::min(1.0, smallest / 0.55) * needle * needle;
   const double volume = std::min(1.0, t.det / (6 * ideal_volume));
   const double limit = beta * ideal_edge;
   const double edge = longest > limit ? limit / longest : 1.0;

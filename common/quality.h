@@ -48,6 +48,9 @@ struct TetQuality {
   double ideal_volume;  ///< volume of the model / target count
   double ideal_edge;    ///< cube root of ideal_volume
   double beta;          ///< the paper uses 5
+  /// Tets whose smallest solid angle (steradians) is below this are worth less, by the square of its share:
+  /// else a needle passes for as good as a small but well-shaped tet. 0, as in the paper: not so.
+  double needle_angle = 0;
 
   /// `volume` > 0, `longest_edge` > 0: the model's volume is total_volume and `target` tets are wanted.
   static TetQuality for_target(double total_volume, double target, double beta = 5);

@@ -97,6 +97,7 @@ void carry_out(Task& task, std::size_t b, const std::vector<float>& qualities) {
     mesh.store_points(t.tet, {no_index, no_index, no_index, no_index});
     task.slots.give_back(t.tet);
   }
+  for (Index p : star.points) mesh.touch(p);
   mesh.set_hint(star.centre, no_index);
   task.point_slots.give_back(star.centre);
 }

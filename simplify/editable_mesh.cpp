@@ -109,6 +109,7 @@ EditableMesh::EditableMesh(TetMesh&& mesh, const std::string& name) {
   next_spare_ = tets;
   locks_.reset(positions_.size());
   next_spare_point_ = positions_.size();
+  touched_.assign(positions_.size(), 0);
   link_faces(name);
   set_hints();
   split_stars();
@@ -223,6 +224,7 @@ void EditableMesh::split_stars() {
       name = static_cast<Index>(positions_.size());
     }
   }
+  touched_.assign(positions_.size(), 0);
   pinned_.assign(positions_.size(), 0);
   for (Index p : pins) pinned_[p] = 1;
   locks_.reset(positions_.size());
@@ -356,6 +358,7 @@ void EditableMesh::compact(std::size_t spare, std::size_t spare_points) {
   next_spare_ = live;
   next_spare_point_ = points;
   locks_.reset(positions_.size());
+  touched_.assign(positions_.size(), 0);
   set_hints();
 }
 

@@ -74,6 +74,10 @@ class EditableMesh {
   /// One tet of the point; no_index when the point is no longer there.
   Index hint(Index point) const { return hints_[point]; }
   void set_hint(Index point, Index tet) { hints_[point] = tet; }
+  /// Marks a point whose star an operation changed, with the current round.
+  void touch(Index point) { touched_[point] = round_; }
+  /// Whether it was since the last begin_round().
+  bool touched(Index point) const { return touched_[point] == round_; }
   const TetRecord& tet(Index t) const { return tets_[t]; }
   Index neighbour(Index t, int face) const { return tets_[t].neighbours[face]; }
   void set_neighbour(Index t, int face, Index other) { tets_[t].neighbours[face] = other; }
@@ -152,6 +156,8 @@ class EditableMesh {
 
   // Only while no task runs.
 
+  /// Nothing is touched any more.
+  void begin_round() { ++round_; }
   /// Squeezes out dead tets and points and renumbers both along a space-filling curve, so that what is near
   /// in space is near in memory; leaves free slots at the end for operations that add tets and points.
   void compact(std::size_t spare_tets, std::size_t spare_points);
@@ -177,6 +183,8 @@ class EditableMesh {
   std::vector<TetRecord> tets_;
   std::vector<Vec3> positions_;
   std::vector<Index> hints_;
+  std::vector<std::uint32_t> touched_;  ///< by point: the round of the last change
+  std::uint32_t round_ = 1;
   TryLocks locks_;
   std::atomic<std::int64_t> live_{0};
   std::atomic<std::size_t> next_spare_{0};  ///< first slot of the reserve that nobody took

@@ -23,6 +23,10 @@ constexpr float thinning_margin = 1.1f;
 constexpr double surgery_error_edges = 12;
 constexpr double surgery_distance_edges = 0.3;
 constexpr std::size_t surgery_targets = 30;  ///< all neighbours of nearly every point
+/// Share of the poor tets that a round must get rid of to count as gain.
+constexpr double least_round_gain = 0.02;
+/// Share of all tets; see below.
+constexpr double many_poor = 0.01;
 /// Rounds without gain before the work ends: while some tets are below ImprovementPlan::leave_surface_below,
 /// else.
 constexpr int most_idle_rounds = 8;
@@ -112,17 +116,22 @@ void run_improvement(Engine& engine, const ImprovementPlan& plan) {
   surgery.leave_surface = true;
   surgery.most_targets = surgery_targets;
   surgery.largest_distance = surgery_distance_edges * edge;
-  std::size_t fewest_poor = std::numeric_limits<std::size_t>::max();
+  std::size_t fewest_poor = 4 * mesh.live_tets();
   int idle = 0;
-  for (int i = 0; i < plan.most_rounds && idle < most_idle_rounds; ++i) {
+  std::vector<ListedTet> tried;  // in the last round, by number
+  for (int i = 0; i < plan.most_rounds; ++i) {
     std::vector<ListedTet> list = engine.poor_tets(plan.only_below);
     if (list.empty()) break;
     const bool bad = std::any_of(list.begin(), list.end(), [&](const ListedTet& t) {
       return mesh.tet(t.tet).quality < plan.leave_surface_below;
     });
     const bool stuck = static_cast<double>(list.size()) > stuck_above * static_cast<double>(fewest_poor);
-    idle = list.size() < fewest_poor ? 0 : idle + 1;
-    if (!bad && idle >= most_idle_rounds_when_good) break;
+    const double gain =
+        fewest_poor ? 1 - static_cast<double>(list.size()) / static_cast<double>(fewest_poor) : 1;
+    idle = gain >= least_round_gain ? 0 : idle + 1;
+    // Where very many resist, it is the interfaces that hold them, and more rounds will not help.
+    const bool many = static_cast<double>(list.size()) > many_poor * static_cast<double>(mesh.live_tets());
+    if (idle >= ((bad && !many) ? most_idle_rounds : most_idle_rounds_when_good)) break;
     fewest_poor = std::min(fewest_poor, list.size());
     const bool last_resort = stuck && idle > 0;
     Engine::Round round(engine, plan.kind);
@@ -149,11 +158,26 @@ void run_improvement(Engine& engine, const ImprovementPlan& plan) {
     if (stuck)
       each_star(engine.points_around(list), Operation::optimise,
                 [&](Task& task) { return optimise(task, rules); });
-    std::sort(list.begin(), list.end(), [&](const ListedTet& a, const ListedTet& b) {
+    // What was tried in the last round comes again only where something changed, or where more is allowed.
+    std::vector<ListedTet> tries;
+    if (last_resort) {
+      tries = list;
+    } else {
+      const auto same = [](const ListedTet& a, const ListedTet& b) { return a.tet < b.tet; };
+      for (const ListedTet& t : list) {
+        const auto known = std::lower_bound(tried.begin(), tried.end(), t, same);
+        if (known == tried.end() || known->tet != t.tet || known->points != t.points ||
+            std::any_of(t.points.begin(), t.points.end(), [&](Index p) { return mesh.touched(p); }))
+          tries.push_back(t);
+      }
+    }
+    tried = std::move(list);
+    mesh.begin_round();
+    std::sort(tries.begin(), tries.end(), [&](const ListedTet& a, const ListedTet& b) {
       const float qa = mesh.tet(a.tet).quality, qb = mesh.tet(b.tet).quality;
       return qa != qb ? qa < qb : a.tet < b.tet;
     });
-    engine.runner().tets_in_order(list, [&](Task& task, const ListedTet& item) {
+    engine.runner().tets_in_order(tries, [&](Task& task, const ListedTet& item) {
       return improve_tet(task, rules, surgery, last_resort, item, plan);
     });
     round.finish();

@@ -73,7 +73,10 @@ void refill(Task& task, const Cavity& cavity) {
     }
   }
   for (std::size_t i = 0; i < slots.size(); ++i)
-    for (Index p : cavity.added[i].points) mesh.set_hint(p, slots[i]);
+    for (Index p : cavity.added[i].points) {
+      mesh.set_hint(p, slots[i]);
+      mesh.touch(p);
+    }
   for (std::size_t i = cavity.added.size(); i < cavity.removed.size(); ++i) {
     mesh.store_points(cavity.removed[i], {no_index, no_index, no_index, no_index});
     task.slots.give_back(cavity.removed[i]);

@@ -26,7 +26,7 @@ struct Objective {
     shape   ///< shape alone: for improving at a count that is reached
   };
   Kind kind = Kind::paper;
-  TetQuality quality{1, 1, 5};
+  TetQuality quality{1, 1, 5, 0};
   ShapeObjective shape = ShapeObjective::both;
 
   float operator()(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {

@@ -22,6 +22,9 @@ constexpr double swaps_below = 3;        ///< times the target: above it flips a
 /// 5-10 % of tets under 0.1 sr instead of 2-3 %; larger ones need a larger E to reach the target, which costs
 /// surface and volume.
 constexpr float annealing_floor = 0.1f;
+/// TetQuality::needle_angle, steradians: without it thin layers of tiny tets end in needles of no angle at
+/// all.
+constexpr double needle_angle = 0.02;
 /// E over the distance that a surface may move at a point that goes. On five scans (10,000 tets) the largest
 /// distance ended at 1.3-2.2 % of the diagonal without it, at 1.0-1.7 % with it; larger ones drive E up
 /// instead.
@@ -86,6 +89,7 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options) {
   const double log_first = portable_log(std::max(static_cast<double>(mesh.live_tets()) / target, 1 + 1e-9));
   const double largest_error = largest_useful_error * std::max(1.0, options.gamma / 10);
   rules.objective.kind = Objective::Kind::paper;
+  rules.objective.quality.needle_angle = needle_angle;
   rules.largest_error = first_error_edges * rules.objective.quality.ideal_edge;
   rules.annealing_floor = annealing_floor;
   rules.distance_weight = distance_weight;
