@@ -25,8 +25,9 @@ constexpr double surgery_distance_edges = 0.3;
 constexpr std::size_t surgery_targets = 30;  ///< all neighbours of nearly every point
 /// Share of the poor tets that a round must get rid of to count as gain.
 constexpr double least_round_gain = 0.02;
-/// Share of all tets; see below.
+/// The same where more than this share of all tets is poor.
 constexpr double many_poor = 0.01;
+constexpr double least_gain_of_many = 0.05;
 /// Rounds without gain before the work ends: while some tets are below ImprovementPlan::leave_surface_below,
 /// else.
 constexpr int most_idle_rounds = 8;
@@ -128,9 +129,10 @@ void run_improvement(Engine& engine, const ImprovementPlan& plan) {
     const bool stuck = static_cast<double>(list.size()) > stuck_above * static_cast<double>(fewest_poor);
     const double gain =
         fewest_poor ? 1 - static_cast<double>(list.size()) / static_cast<double>(fewest_poor) : 1;
-    idle = gain >= least_round_gain ? 0 : idle + 1;
-    // Where very many resist, it is the interfaces that hold them, and more rounds will not help.
+    // Where very many resist, it is the interfaces that hold them, and more rounds would take long for
+    // little.
     const bool many = static_cast<double>(list.size()) > many_poor * static_cast<double>(mesh.live_tets());
+    idle = gain >= (many ? least_gain_of_many : least_round_gain) ? 0 : idle + 1;
     if (idle >= ((bad && !many) ? most_idle_rounds : most_idle_rounds_when_good)) break;
     fewest_poor = std::min(fewest_poor, list.size());
     const bool last_resort = stuck && idle > 0;
@@ -155,9 +157,11 @@ void run_improvement(Engine& engine, const ImprovementPlan& plan) {
           [&](Task& task, const ListedTet& item) { return shake_tet(task, shaking, item); },
           [] { return false; });
     }
-    if (stuck)
-      each_star(engine.points_around(list), Operation::optimise,
-                [&](Task& task) { return optimise(task, rules); });
+    if (stuck) {
+      std::vector<Index> around = engine.points_around(list);
+      if (!last_resort) std::erase_if(around, [&](Index p) { return !mesh.touched(p); });
+      each_star(around, Operation::optimise, [&](Task& task) { return optimise(task, rules); });
+    }
     // What was tried in the last round comes again only where something changed, or where more is allowed.
     std::vector<ListedTet> tries;
     if (last_resort) {
