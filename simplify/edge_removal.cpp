@@ -182,6 +182,8 @@ Outcome remove_edge(Task& task, const BlockRules& rules, Index tet, int edge, co
   Operation kind = Operation::edge_removal;
   Outcome o = task.ring.gather(task.mesh, tet, edge, task.points);
   if (o == Outcome::done) o = try_remove(task, rules, reach, kind);
+  if (reach.basic() && kind == Operation::edge_removal)
+    return o;  // none of the three flips: nothing was tried
   task.counts.add(kind, o);
   return o;
 }

@@ -204,6 +204,7 @@ void EditableMesh::split_stars() {
     }
   LocalNumbers seen;
   std::vector<Index> part, pins = split;
+  std::vector<std::array<Index, 2>> copies;  // and what they were split off from
   for (std::size_t i = 0; i < split.size(); ++i) {
     std::vector<Index>& left = stars[i];
     Index name = split[i];
@@ -213,7 +214,7 @@ void EditableMesh::split_stars() {
       std::vector<Index> others;
       std::set_difference(left.begin(), left.end(), part.begin(), part.end(), std::back_inserter(others));
       if (name != split[i]) {
-        twins_.push_back({name, split[i]});
+        copies.push_back({name, split[i]});
         pins.push_back(name);
         positions_.push_back(positions_[split[i]]);
         hints_.push_back(no_index);
@@ -227,6 +228,9 @@ void EditableMesh::split_stars() {
   touched_.assign(positions_.size(), 0);
   pinned_.assign(positions_.size(), 0);
   for (Index p : pins) pinned_[p] = 1;
+  originals_.resize(positions_.size());
+  std::iota(originals_.begin(), originals_.end(), Index{0});
+  for (const auto& [copy, original] : copies) originals_[copy] = original;
   locks_.reset(positions_.size());
   next_spare_point_ = positions_.size();
 }
@@ -319,8 +323,12 @@ void EditableMesh::compact(std::size_t spare, std::size_t spare_points) {
     for (std::size_t p = 0; p < new_point.size(); ++p)
       if (new_point[p] != no_index) pinned[new_point[p]] = pinned_[p];
     pinned_ = std::move(pinned);
-    for (auto& twin : twins_)  // pinned points never go
-      for (Index& p : twin) p = new_point[p];
+    std::vector<Index> originals(positions_.size());
+    std::iota(originals.begin(), originals.end(), Index{0});
+    for (std::size_t p = 0; p < new_point.size(); ++p)
+      if (new_point[p] != no_index)
+        originals[new_point[p]] = new_point[originals_[p]];  // pinned points never go
+    originals_ = std::move(originals);
   }
 
   // Tets by their first point in the new order: a counting sort.
@@ -394,22 +402,15 @@ double EditableMesh::total_volume() const {
 TetMesh EditableMesh::to_mesh() && {
   compact(0, 0);
   std::vector<Index> number(positions_.size());
-  {
-    std::vector<std::uint8_t> copy(positions_.size(), 0);
-    for (const auto& twin : twins_) copy[twin[0]] = 1;
-    Index next = 0;
-    for (std::size_t p = 0; p < positions_.size(); ++p) number[p] = copy[p] ? no_index : next++;
-    for (const auto& [from, to] : twins_) number[from] = number[to];
-  }
+  Index next = 0;
+  for (std::size_t p = 0; p < number.size(); ++p)
+    if (original(static_cast<Index>(p)) == p) number[p] = next++;
+  for (std::size_t p = 0; p < number.size(); ++p) number[p] = number[original(static_cast<Index>(p))];
   TetMesh mesh;
   mesh.points = std::move(positions_);
-  {
-    std::size_t kept = 0;
-    // A copy that comes before its original stands in for it: they are at one place.
-    for (std::size_t p = 0; p < number.size(); ++p)
-      if (number[p] == kept) mesh.points[kept++] = to_input(mesh.points[p]);
-    mesh.points.resize(kept);
-  }
+  for (std::size_t p = 0; p < number.size(); ++p)
+    if (original(static_cast<Index>(p)) == p) mesh.points[number[p]] = to_input(mesh.points[p]);
+  mesh.points.resize(next);
   mesh.tets.reserve(tets_.size());
   mesh.materials.reserve(tets_.size());
   for (const TetRecord& t : tets_) {

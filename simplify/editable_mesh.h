@@ -62,11 +62,18 @@ class EditableMesh {
   double scale() const { return scale_; }
   Vec3 to_input(const Vec3& working) const { return working / scale_ + shift_; }
   Vec3 to_working(const Vec3& input) const { return (input - shift_) * scale_; }
-  /// The place nearest to `working` that has exact input coordinates: signs are to hold for what is written.
-  Vec3 snap(const Vec3& working) const { return to_working(to_input(working)); }
+  /// Where a point that is to stand at `working` is put: on a lattice of 2^-30 (about 1e-9 of the mesh's
+  /// size), and where that has no exact input coordinates, on the nearest place that has. So signs hold for
+  /// what is written, and a mesh that is moved far away comes out the same.
+  Vec3 snap(const Vec3& working) const {
+    const Vec3 on_lattice = (working * 0x1p30).array().round().matrix() * 0x1p-30;
+    return to_working(to_input(on_lattice));
+  }
   /// A point where parts of the mesh touch without a common face: it stays as it is with all its tets.
   bool pinned(Index point) const { return any_pinned() && pinned_[point] != 0; }
   bool any_pinned() const { return !pinned_.empty(); }
+  /// What a pinned point was split off from; the point itself for all others.
+  Index original(Index point) const { return any_pinned() ? originals_[point] : point; }
 
   // Access under the protocol above.
   const Vec3& position(Index point) const { return positions_[point]; }
@@ -189,9 +196,9 @@ class EditableMesh {
   std::atomic<std::int64_t> live_{0};
   std::atomic<std::size_t> next_spare_{0};  ///< first slot of the reserve that nobody took
   std::atomic<std::size_t> next_spare_point_{0};
-  std::vector<std::uint8_t> pinned_;         ///< by point; empty if none is
-  std::vector<std::array<Index, 2>> twins_;  ///< copies of split points and what they were split off from
-  std::vector<MaterialTag> tags_;            ///< of each region
+  std::vector<std::uint8_t> pinned_;  ///< by point; empty if none is
+  std::vector<Index> originals_;      ///< by point; empty if none is pinned
+  std::vector<MaterialTag> tags_;     ///< of each region
   std::map<MaterialTag, std::string> names_;
   double scale_ = 1;
   Vec3 shift_ = Vec3::Zero();  ///< input coordinates

@@ -11,30 +11,109 @@ namespace {
 
 /// A new point must gain this factor: it costs tets.
 constexpr float least_gain = 1.05f;
+/// Tets that a cavity may swallow beyond the first.
+constexpr std::size_t most_grown = 24;
 
-/// Builds task.star of the point that is to be inserted at `at` into the tets of task.cavity.removed, one tet
-/// for each pair of an old tet and its face opposite one of the `apexes` (those of the old tet's points that
-/// the new one takes the place of).
-template <class Apexes>
-void star_of_new_point(Task& task, const BlockRules& rules, const Vec3& at, const Apexes& apexes) {
+/// A new tet: the new point over the face of an old tet opposite its vertex `slot`.
+struct Cone {
+  Index tet;
+  int slot;
+  float quality;
+};
+
+Cone cone(const Task& task, const BlockRules& rules, const Vec3& at, Index tet, int slot) {
+  const EditableMesh& mesh = task.mesh;
+  const Tet& p = mesh.tet(tet).points;
+  const auto& f = tet_faces[slot];
+  return {tet, slot,
+          rules.objective(at, mesh.position(p[f[0]]), mesh.position(p[f[1]]), mesh.position(p[f[2]]))};
+}
+
+/// Builds task.star of the point that is to be inserted at `at`. False if a point of the old tets would be
+/// lost.
+bool star_of_new_point(Task& task, const Vec3& at, const std::vector<Cone>& cones) {
   const EditableMesh& mesh = task.mesh;
   Star& star = task.star;
   star.begin(no_index, at);
-  for (Index t : task.cavity.removed) {
-    const TetRecord& r = mesh.tet(t);
-    for (int slot = 0; slot < 4; ++slot) {
-      if (!apexes(r.points[slot])) continue;
-      std::array<std::uint16_t, 3> link;
-      for (int k = 0; k < 3; ++k) {
-        const Index p = r.points[tet_faces[slot][k]];
-        link[k] = star.add_point(p, mesh.position(p));
-      }
-      const float quality =
-          rules.objective(at, star.positions[link[0]], star.positions[link[1]], star.positions[link[2]]);
-      star.tets.push_back({t, link, static_cast<std::uint8_t>(slot), r.region, quality});
-      star.poorest = std::min(star.poorest, quality);
+  for (const Cone& c : cones) {
+    const TetRecord& r = mesh.tet(c.tet);
+    std::array<std::uint16_t, 3> link;
+    for (int k = 0; k < 3; ++k) {
+      const Index p = r.points[tet_faces[c.slot][k]];
+      link[k] = star.add_point(p, mesh.position(p));
     }
+    star.tets.push_back({c.tet, link, static_cast<std::uint8_t>(c.slot), r.region, c.quality});
+    star.poorest = std::min(star.poorest, c.quality);
   }
+  for (Index t : task.cavity.removed)
+    for (Index p : mesh.tet(t).points)
+      if (std::find(star.points.begin(), star.points.end(), p) == star.points.end()) return false;
+  return true;
+}
+
+/// Lets the cavity grow through the faces of the poorest new tets, where that makes them better: all tets
+/// that the new point sees well may go (as in Klingner & Shewchuk 2007, section 3.3, greedily). False: a lock
+/// was taken.
+bool grow(Task& task, const BlockRules& rules, const Vec3& at, std::vector<Cone>& cones) {
+  const EditableMesh& mesh = task.mesh;
+  std::vector<Index>& removed = task.cavity.removed;
+  std::sort(cones.begin(), cones.end(), [](const Cone& a, const Cone& b) {
+    return a.quality != b.quality ? a.quality > b.quality : a.tet < b.tet;
+  });
+  thread_local std::vector<Cone> fresh;
+  for (std::size_t grown = 0; grown < most_grown && !cones.empty(); ++grown) {
+    const Cone worst = cones.back();
+    const Index beyond = mesh.neighbour(worst.tet, worst.slot);
+    if (beyond == no_index || mesh.tet(beyond).region != mesh.tet(worst.tet).region) return true;
+    const int back = mesh.face_towards(beyond, worst.tet);
+    if (!hold_point(task, mesh.tet(beyond).points[back])) return false;
+    fresh.clear();
+    std::size_t meets = 0;
+    bool better = true;
+    for (int f = 0; f < 4 && better; ++f) {
+      if (f == back) continue;
+      const Index across = mesh.neighbour(beyond, f);
+      if (across != no_index && std::find(removed.begin(), removed.end(), across) != removed.end()) {
+        ++meets;
+        continue;
+      }
+      fresh.push_back(cone(task, rules, at, beyond, f));
+      better = fresh.back().quality > worst.quality;
+    }
+    if (!better || fresh.empty()) return true;
+    cones.pop_back();
+    if (meets > 0)  // those between the cavity and what it swallows now
+      std::erase_if(cones, [&](const Cone& c) { return mesh.neighbour(c.tet, c.slot) == beyond; });
+    removed.push_back(beyond);
+    for (const Cone& c : fresh)
+      cones.insert(std::upper_bound(cones.begin(), cones.end(), c,
+                                    [](const Cone& x, const Cone& y) { return x.quality > y.quality; }),
+                   c);
+  }
+  return true;
+}
+
+/// The star of a point at `at` that takes the place of the `apexes` of the tets of task.cavity.removed, or of
+/// more tets around where the place is free and that is better. done, lock_taken, or link_condition where a
+/// point would be lost.
+template <class Apexes>
+Outcome cone_over(Task& task, const BlockRules& rules, const Vec3& at, InsertionPlace place,
+                  const Apexes& apexes) {
+  thread_local std::vector<Cone> cones, plain;
+  thread_local std::vector<Index> old;
+  cones.clear();
+  for (Index t : task.cavity.removed)
+    for (int slot = 0; slot < 4; ++slot)
+      if (apexes(task.mesh.tet(t).points[slot])) cones.push_back(cone(task, rules, at, t, slot));
+  if (place == InsertionPlace::best) {
+    plain = cones;
+    old = task.cavity.removed;
+    if (!grow(task, rules, at, cones)) return Outcome::lock_taken;
+    if (star_of_new_point(task, at, cones)) return Outcome::done;
+    cones = plain;
+    task.cavity.removed = old;
+  }
+  return star_of_new_point(task, at, cones) ? Outcome::done : Outcome::link_condition;
 }
 
 /// An interface triangle of the mesh as it stands.
@@ -44,8 +123,10 @@ MeshTriangle triangle(const EditableMesh& mesh, Index a, Index b, Index c) {
 
 /// Puts the point of task.star into the place of task.cavity.removed; task.edit.removed holds the interface
 /// triangles that go.
-Outcome carry_out(Task& task, const BlockRules& rules, InsertionPlace place, float before) {
+Outcome carry_out(Task& task, const BlockRules& rules, InsertionPlace place) {
   EditableMesh& mesh = task.mesh;
+  float before = 1;
+  for (Index t : task.cavity.removed) before = std::min(before, mesh.tet(t).quality);
   Star& star = task.star;
   const int dimension = star.dimension();
   // A point on an edge where sheets branch stays in the middle.
@@ -66,7 +147,7 @@ Outcome carry_out(Task& task, const BlockRules& rules, InsertionPlace place, flo
   if (mesh.any_pinned())
     for (Index p : star.points)
       if (mesh.pinned(p)) return Outcome::material_rule;
-  if (!task.slots.reserve(new_count - old_count)) return Outcome::no_room;
+  if (new_count > old_count && !task.slots.reserve(new_count - old_count)) return Outcome::no_room;
   const Index id = task.point_slots.take();
   if (id == no_index) return Outcome::no_room;
   const auto give_up = [&](Outcome o) {
@@ -83,8 +164,8 @@ Outcome carry_out(Task& task, const BlockRules& rules, InsertionPlace place, flo
     const Outcome o = task.grid.prepare(task.edit, task.grid_task, task.cells);
     if (o != Outcome::done) return give_up(o);
   }
-  if (!mesh.change_count(static_cast<std::int64_t>(new_count - old_count), rules.fewest_tets,
-                         rules.most_tets))
+  if (!mesh.change_count(static_cast<std::int64_t>(new_count) - static_cast<std::int64_t>(old_count),
+                         rules.fewest_tets, rules.most_tets))
     return give_up(Outcome::count);
   mesh.set_position(id, placement.position);
   task.cavity.added.clear();
@@ -111,17 +192,17 @@ Outcome try_face(Task& task, const BlockRules& rules, Index tet, int face, Inser
   const Triangle ids{r.points[c[0]], r.points[c[1]], r.points[c[2]]};
   task.cavity.clear();
   task.cavity.removed.push_back(tet);
-  float before = r.quality;
   if (const Index other = r.neighbours[face]; other != no_index) {
     if (!hold_point(task, mesh.tet(other).points[mesh.face_towards(other, tet)])) return Outcome::lock_taken;
     task.cavity.removed.push_back(other);
-    before = std::min(before, mesh.tet(other).quality);
   }
   const Vec3 at = mesh.snap((mesh.position(ids[0]) + mesh.position(ids[1]) + mesh.position(ids[2])) / 3);
-  star_of_new_point(task, rules, at, [&](Index p) { return p == ids[0] || p == ids[1] || p == ids[2]; });
+  const Outcome o =
+      cone_over(task, rules, at, place, [&](Index p) { return p == ids[0] || p == ids[1] || p == ids[2]; });
+  if (o != Outcome::done) return o;
   for (int k = 0; k < 3; ++k) task.star.add_sheet(ids[k], ids[(k + 1) % 3], r.region, across);
   task.edit.removed.assign(1, triangle(mesh, ids[0], ids[1], ids[2]));
-  return carry_out(task, rules, place, before);
+  return carry_out(task, rules, place);
 }
 
 Outcome try_edge(Task& task, const BlockRules& rules, Index tet, int edge, InsertionPlace place,
@@ -133,7 +214,10 @@ Outcome try_edge(Task& task, const BlockRules& rules, Index tet, int edge, Inser
   task.cavity.clear();
   task.cavity.removed = ring.tets;
   const Vec3 at = mesh.snap((mesh.position(ring.a) + mesh.position(ring.b)) / 2);
-  star_of_new_point(task, rules, at, [&](Index p) { return p == ring.a || p == ring.b; });
+  if (const Outcome o =
+          cone_over(task, rules, at, place, [&](Index p) { return p == ring.a || p == ring.b; });
+      o != Outcome::done)
+    return o;
   task.edit.removed.clear();
   const std::size_t n = ring.tets.size();
   const auto sheet = [&](Index p, Region inside, Region across) {
@@ -149,7 +233,7 @@ Outcome try_edge(Task& task, const BlockRules& rules, Index tet, int edge, Inser
     const Region before = ring.regions[(i + n - 1) % n];
     if (before != ring.regions[i]) sheet(ring.points[i], ring.regions[i], before);
   }
-  return carry_out(task, rules, place, ring.poorest);
+  return carry_out(task, rules, place);
 }
 
 }  // namespace
@@ -162,9 +246,9 @@ Outcome insert_in_tet(Task& task, const BlockRules& rules, Index tet, InsertionP
   const Vec3 at = mesh.snap((mesh.position(r.points[0]) + mesh.position(r.points[1]) +
                              mesh.position(r.points[2]) + mesh.position(r.points[3])) /
                             4);
-  star_of_new_point(task, rules, at, [](Index) { return true; });
+  Outcome o = cone_over(task, rules, at, place, [](Index) { return true; });
   task.edit.removed.clear();
-  const Outcome o = carry_out(task, rules, place, r.quality);
+  if (o == Outcome::done) o = carry_out(task, rules, place);
   task.counts.add(Operation::insert_in_tet, o);
   return o;
 }

@@ -7,7 +7,9 @@ namespace tetwright {
 /// How an inserted point finds its place.
 enum class InsertionPlace {
   centre,  ///< as in section 4 of the paper: the centre of the tet, face or edge
-  best     ///< from there where find_place() leads
+  /// From there where find_place() leads; tets around that the new point sees well go too, so that one tet
+  /// need not become four of its shape.
+  best
 };
 
 /// Adds a point in a tet whose points are held, at its centre: one tet becomes four. What comes out decides:

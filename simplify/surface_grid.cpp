@@ -57,6 +57,7 @@ void SurfaceGrid::for_cells(const MeshTriangle& t, const F& f) const {
 }
 
 void SurfaceGrid::build(const EditableMesh& mesh, double smallest_cell, std::size_t spare) {
+  mesh_ = &mesh;
   {
     const std::vector<EditableMesh::InterfaceFace> faces = mesh.interface_faces();
     records_.resize(faces.size());
@@ -64,7 +65,10 @@ void SurfaceGrid::build(const EditableMesh& mesh, double smallest_cell, std::siz
       for (std::size_t i = begin; i < end; ++i) {
         MeshTriangle& triangle = records_[i];
         triangle.ids = faces[i].ids;
-        for (int k = 0; k < 3; ++k) triangle.points[k] = mesh.position(triangle.ids[k]);
+        for (int k = 0; k < 3; ++k) {
+          triangle.points[k] = mesh.position(triangle.ids[k]);
+          triangle.ids[k] = mesh.original(triangle.ids[k]);
+        }
         sort_ids(triangle);
       }
     });
@@ -136,6 +140,7 @@ Outcome SurfaceGrid::prepare(Edit& edit, Task& task, HeldLocks& held) {
   task.removed_records.clear();
   for (auto* list : {&edit.removed, &edit.added})
     for (MeshTriangle& t : *list) {
+      for (Index& id : t.ids) id = mesh_->original(id);
       sort_ids(t);
       for_cells(t, [&](const Cell3& c) { task.cells.push_back(slot(c)); });
     }

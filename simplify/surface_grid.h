@@ -65,6 +65,7 @@ class SurfaceGrid {
   void for_cells(const MeshTriangle& t, const F& f) const;
   bool hits_standing(const MeshTriangle& t, const Task& task) const;
 
+  const EditableMesh* mesh_ = nullptr;  ///< tells which points are one and the same
   Vec3 origin_ = Vec3::Zero();
   double to_cell_ = 1;
   std::uint32_t mask_ = 0;

@@ -57,7 +57,7 @@ struct BlockRules {
   double largest_error = 0;  ///< E, working coordinates
   double gamma = 10;         ///< weight of the volume error
   /// An operation may not leave fewer tets, nor, where it adds some, more.
-  std::size_t fewest_tets = 0, most_tets = std::numeric_limits<std::size_t>::max();
+  std::size_t fewest_tets = 0, most_tets = std::numeric_limits<std::int64_t>::max();
   double accept_worse = 0;    ///< annealing: probability of an action that leaves a poorer tet than before
   float annealing_floor = 0;  ///< share of the poorest quality that such an action must keep
   float good_enough = 1;      ///< an action that leaves only better tets is accepted whatever was there

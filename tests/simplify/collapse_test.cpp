@@ -28,7 +28,7 @@ void collapse_all(Workbench& w) {
   bool any = true;
   while (any) {
     any = false;
-    for (Index p = 0; p < w.mesh.point_slots(); ++p) {
+    for (Index p : w.live_points()) {
       if (w.mesh.hint(p) == no_index) continue;
       w.star(p);
       any |= collapse(*w.task, w.rules) == Outcome::done;
@@ -167,7 +167,7 @@ TEST(Collapse, ATakenGridCellIsToldAndNothingChanges) {
   w.rules.accept_worse = 1;
   for (std::size_t c = 0; c < w.grid.locks().size(); ++c) ASSERT_TRUE(w.grid.locks().try_lock(c));
   int taken = 0;
-  for (Index p = 0; p < w.mesh.point_slots(); ++p)
+  for (Index p : w.live_points())
     if (!w.star(p).sheets.empty()) taken += collapse(*w.task, w.rules) == Outcome::lock_taken;
   EXPECT_GT(taken, 0);
   EXPECT_EQ(w.mesh.live_tets(), mesh.tets.size());

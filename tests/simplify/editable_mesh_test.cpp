@@ -35,7 +35,7 @@ TEST(EditableMesh, HandsBackWhatItTookBitForBit) {
   EditableMesh editable(TetMesh(mesh), "mesh");
   EXPECT_TRUE(editable.links_consistent());
   EXPECT_EQ(editable.live_tets(), mesh.tets.size());
-  editable.compact(100);
+  editable.compact(100, 0);
   EXPECT_TRUE(editable.links_consistent());
   EXPECT_EQ(editable.tet_slots(), mesh.tets.size() + 100);
   const TetMesh after = std::move(editable).to_mesh();
@@ -66,13 +66,9 @@ std::string refusal(TetMesh mesh) {
 }
 
 TEST(EditableMesh, RefusesWhatHasNoNeighbours) {
-  TetMesh inverted = grid_mesh(2);
-  std::swap(inverted.tets[7][0], inverted.tets[7][1]);
-  EXPECT_NE(refusal(inverted).find("some.mesh: tet 7 "), std::string::npos) << refusal(inverted);
-
-  TetMesh flat = grid_mesh(1);
-  flat.points[flat.tets[0][3]] = flat.points[flat.tets[0][2]];
-  EXPECT_NE(refusal(flat).find("tet "), std::string::npos);
+  TetMesh twice = grid_mesh(2);
+  twice.tets[7][0] = twice.tets[7][1];
+  EXPECT_NE(refusal(twice).find("some.mesh: tet 7 "), std::string::npos) << refusal(twice);
 
   TetMesh over_shared = grid_mesh(1);
   over_shared.points.emplace_back(0.3, 0.4, 0.2);
@@ -82,18 +78,65 @@ TEST(EditableMesh, RefusesWhatHasNoNeighbours) {
   over_shared.materials.push_back(1);
   EXPECT_NE(refusal(over_shared), "");
 
-  // Two cubes that touch along an edge only: no walk across faces leads from one to the other.
-  const TetMesh touching = grid_mesh({2, 2, 1}, [](int x, int y, int) {
-    return x == y ? std::optional<MaterialTag>(1) : std::optional<MaterialTag>();
-  });
-  EXPECT_NE(refusal(touching).find("touch"), std::string::npos) << refusal(touching);
-
   // Two tets on the same side of a face.
   TetMesh folded;
   folded.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1, 0.1, 2}};
   folded.tets = {{0, 1, 2, 3}, {0, 1, 2, 4}};
   folded.materials = {1, 1};
   EXPECT_NE(refusal(folded).find("one side"), std::string::npos) << refusal(folded);
+}
+
+TEST(EditableMesh, TakesNegativeAndFlatTetsAsTheyAre) {
+  TetMesh mesh = grid_mesh(3);
+  for (Vec3& p : mesh.points)
+    if (p == Vec3(1, 1, 1)) p = Vec3(2.5, 1, 1);
+  const auto before = contents(mesh);
+  EditableMesh editable(TetMesh(mesh), "mesh");
+  EXPECT_TRUE(editable.links_consistent());
+  EXPECT_EQ(contents(std::move(editable).to_mesh()), before);
+}
+
+// Two cubes that touch along an edge only: no walk across faces leads from one to the other.
+TEST(EditableMesh, SplitsWhatTouchesWithoutAFaceAndPutsItTogetherAgain) {
+  const TetMesh touching = grid_mesh({2, 2, 1}, [](int x, int y, int) {
+    return x == y ? std::optional<MaterialTag>(1) : std::optional<MaterialTag>();
+  });
+  const auto before = contents(touching);
+  EditableMesh editable(TetMesh(touching), "mesh");
+  EXPECT_TRUE(editable.links_consistent());
+  EXPECT_EQ(editable.point_slots(), touching.points.size() + 2);
+  editable.compact(10, 10);
+  std::size_t pinned = 0, copies = 0;
+  for (Index p = 0; p < editable.point_slots(); ++p) {
+    pinned += editable.pinned(p);
+    if (editable.original(p) == p) continue;
+    ++copies;
+    EXPECT_EQ(editable.position(p), editable.position(editable.original(p)));
+  }
+  EXPECT_EQ(pinned, 4u);
+  EXPECT_EQ(copies, 2u);
+  const TetMesh after = std::move(editable).to_mesh();
+  EXPECT_EQ(after.points.size(), touching.points.size());
+  EXPECT_EQ(contents(after), before);
+}
+
+TEST(EditableMesh, WorksAtTheOriginWhereThatIsExact) {
+  const TetMesh mesh = grid_mesh(3);
+  TetMesh moved = mesh;
+  for (Vec3& p : moved.points) p += Vec3(0x1p40, -0x1p45, 3);
+  EditableMesh here(TetMesh(mesh), "mesh"), there(TetMesh(moved), "mesh");
+  for (Index p = 0; p < here.point_slots(); ++p) EXPECT_EQ(here.position(p), there.position(p));
+  // What has no exact input coordinates is rounded to what has.
+  const Vec3 off = there.position(5) + Vec3::Constant(1e-9);
+  const Vec3 snapped = there.snap(off);
+  EXPECT_EQ(there.to_working(there.to_input(snapped)), snapped);
+  EXPECT_NE(snapped, off);
+  EXPECT_EQ(contents(std::move(there).to_mesh()), contents(moved));
+
+  TetMesh uneven = grid_mesh(2);  // 1e-30 has bits that a shift by 1 would lose
+  for (Vec3& p : uneven.points) p.x() = p.x() == 0 ? -1 : p.x() == 1 ? 1e-30 : 1;
+  const auto before = contents(uneven);
+  EXPECT_EQ(contents(EditableMesh(TetMesh(uneven), "mesh").to_mesh()), before);
 }
 
 }  // namespace

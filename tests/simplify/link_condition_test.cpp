@@ -66,13 +66,13 @@ TEST(LinkCondition, WhatPassesKeepsTheTopology) {
     Workbench w(mesh);
     // Coarse meshes are where links meet: first some collapses as they come.
     w.rules.accept_worse = 1;
-    for (Index p = 0; p < w.mesh.point_slots(); ++p) {
+    for (Index p : w.live_points()) {
       w.star(p);
       if (random.below(4)) collapse(*w.task, w.rules);
       w.task->release();
     }
     const Topology before = topology(as_mesh(w.mesh));
-    for (Index a = 0; a < w.mesh.point_slots(); ++a) {
+    for (Index a : w.live_points()) {
       if (w.mesh.hint(a) == no_index) continue;
       const Star& star = w.star(a);
       const int dimension = star.dimension();
@@ -108,7 +108,7 @@ TEST(LinkCondition, ASpanOverAHoleIsRefused) {
   const auto ring = [](int x, int y, int) { return x == 1 && y == 1 ? Tag() : Tag(1); };
   Workbench w(grid_mesh({3, 3, 1}, ring));
   int allowed = 0;
-  for (Index a = 0; a < w.mesh.point_slots(); ++a) {
+  for (Index a : w.live_points()) {
     const Star& star = w.star(a);
     for (std::size_t b = 0; b < star.points.size(); ++b)
       if (star.edge_dimension(b) == star.dimension() && link_condition(w.mesh, star, b, w.task->numbers)) {

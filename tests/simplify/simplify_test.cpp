@@ -55,11 +55,19 @@ TEST(Simplify, ReachesTheCountAndKeepsTheTopology) {
 
 // Each operation has a purpose; one that never succeeds in the optimised build has silently broken.
 TEST(Simplify, EveryOperationSucceedsAtLeastOnce) {
-  SimplifyOptions options;
-  options.target_tets = 1500;
-  SimplifyReport report;
-  simplify(ring(), options, &report);
   OperationCounts counts;
+  for (Schedule schedule : {Schedule::tuned, Schedule::paper}) {
+    SimplifyOptions options;
+    options.target_tets = 1500;
+    options.schedule = schedule;
+    SimplifyReport report;
+    simplify(ring(), options, &report);
+    for (const auto& it : report.iterations) counts.add(it.counts);
+  }
+  TetMesh crooked = grid_mesh({8, 8, 8}, [](int x, int y, int) -> Tag { return x < 4 ? 1 : y < 4 ? 2 : 3; });
+  jitter(crooked, 2, 0.9);
+  SimplifyReport report;
+  improve(crooked, ImproveOptions(), &report);
   for (const auto& it : report.iterations) counts.add(it.counts);
   for (std::size_t o = 0; o < operation_count; ++o)
     EXPECT_GT(counts.of(static_cast<Operation>(o), Outcome::done), 0u) << operation_names[o];
@@ -87,15 +95,45 @@ TEST(Simplify, AnyNumberOfThreadsGivesTheSameGuarantees) {
 }
 
 TEST(Simplify, SizeAndPlaceDoNotMatter) {
-  const TetMesh mesh = grid_mesh(10);
+  TetMesh mesh = grid_mesh(10);
+  Random random(3);
+  for (Vec3& p : mesh.points)  // multiples of 1/64, so that moves far away are exact
+    p += Vec3(random.below(9), random.below(9), random.below(9)) / 64;
   SimplifyOptions options;
   options.target_tets = 600;
   const ThreadLimit one(1);
   const TetMesh plain = simplify(mesh, options);
-  TetMesh scaled = mesh;
-  for (Vec3& p : scaled.points) p *= 0x1p-700;  // exact: the same connectivity
-  const TetMesh after = simplify(scaled, options);
-  EXPECT_EQ(after.tets, plain.tets);
+  for (double factor : {0x1p-700, 0x1p300}) {
+    TetMesh scaled = mesh;
+    for (Vec3& p : scaled.points) p *= factor;  // exact: the same connectivity
+    const TetMesh after = simplify(scaled, options);
+    EXPECT_EQ(after.tets, plain.tets);
+    for (std::size_t i = 0; i < plain.points.size(); ++i)
+      EXPECT_EQ(after.points[i], plain.points[i] * factor);
+  }
+  for (const Vec3& by : {Vec3(1 << 20, 0, 0), Vec3(-7.5, 0x1p15, 0x1p22)}) {
+    TetMesh moved = mesh;
+    for (Vec3& p : moved.points) p += by;  // exact too
+    const TetMesh after = simplify(moved, options);
+    EXPECT_EQ(after.tets, plain.tets);
+    for (std::size_t i = 0; i < plain.points.size(); ++i) EXPECT_EQ(after.points[i], plain.points[i] + by);
+  }
+}
+
+// Only coordinates that a double holds may come out, and signs hold for those.
+TEST(Simplify, FarFromTheOriginTheWrittenMeshIsValid) {
+  TetMesh mesh = grid_mesh(10);
+  jitter(mesh, 9);
+  const double diagonal = 10 * std::sqrt(3.0);
+  for (Vec3& p : mesh.points) p += Vec3::Constant(1e6 * diagonal);
+  ASSERT_TRUE(check_mesh(mesh).empty());
+  const Topology before = topology(mesh);
+  SimplifyOptions options;
+  options.target_tets = 600;
+  const TetMesh after = simplify(mesh, options);
+  for (const MeshFinding& f : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(f);
+  for (const std::string& d : topology_differences(before, topology(after))) ADD_FAILURE() << d;
+  EXPECT_NEAR(static_cast<double>(after.tets.size()), 600, 6);
 }
 
 TEST(Simplify, AMeshBelowTheTargetIsOnlyImproved) {

@@ -57,7 +57,7 @@ TEST(Star, GradientsAreExactForTheVolume) {
   TetMesh mesh = grid_mesh({4, 4, 4}, [](int x, int, int) { return Tag(x < 2 ? 1 : 2); });
   jitter(mesh, 9, 0.2);
   Workbench w(mesh);
-  for (Index p = 0; p < w.mesh.point_slots(); ++p) {
+  for (Index p : w.live_points()) {
     Star& star = w.star(p);
     star.compute_gradients();
     if (star.sheets.empty()) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <vector>
 
 #include "common/predicates.h"
 #include "simplify/task.h"
@@ -14,7 +15,7 @@ namespace tetwright {
 /// One task on one mesh, for tests of single operations.
 struct Workbench {
   explicit Workbench(const TetMesh& input) : mesh(TetMesh(input), "mesh") {
-    mesh.compact(64);
+    mesh.compact(64, 32);
     rules.objective.quality = TetQuality::for_target(mesh.total_volume(), 1);
     rules.largest_error = 1e9;
     for (Index t = 0; t < mesh.tet_slots(); ++t) {
@@ -23,17 +24,24 @@ struct Workbench {
         mesh.set_quality(t, rules.objective(mesh.position(p[0]), mesh.position(p[1]), mesh.position(p[2]),
                                             mesh.position(p[3])));
     }
-    grid.build(mesh, 0);
+    grid.build(mesh, 0, 64);
     task = std::make_unique<Task>(mesh, grid);
   }
 
   /// The point at a place given in input units.
   Index at(double x, double y, double z) const {
-    for (Index p = 0; p < mesh.point_slots(); ++p)
-      if (mesh.hint(p) != no_index && (mesh.position(p) / mesh.scale() - Vec3(x, y, z)).norm() < 1e-12)
-        return p;
+    for (Index p : live_points())
+      if ((mesh.to_input(mesh.position(p)) - Vec3(x, y, z)).norm() < 1e-12) return p;
     ADD_FAILURE() << "no point at " << x << ' ' << y << ' ' << z;
     return 0;
+  }
+
+  /// The points that are there.
+  std::vector<Index> live_points() const {
+    std::vector<Index> out;
+    for (Index p = 0; p < mesh.point_slots(); ++p)
+      if (mesh.hint(p) != no_index) out.push_back(p);
+    return out;
   }
 
   /// The star of a point, held.
@@ -61,7 +69,8 @@ struct Workbench {
       for (int f = 0; f < 4; ++f) {
         const Index other = r.neighbours[f];
         if (other != no_index && (other < t || mesh.tet(other).region == r.region)) continue;
-        Triangle ids{r.points[tet_faces[f][0]], r.points[tet_faces[f][1]], r.points[tet_faces[f][2]]};
+        Triangle ids;
+        for (int k = 0; k < 3; ++k) ids[k] = mesh.original(r.points[tet_faces[f][k]]);
         std::sort(ids.begin(), ids.end());
         interfaces.push_back(ids);
       }

@@ -1,0 +1,102 @@
+#include <gtest/gtest.h>
+
+#include "common/mesh_check.h"
+#include "common/mesh_statistics.h"
+#include "common/parallel.h"
+#include "common/topology.h"
+#include "simplify/simplify.h"
+#include "tests/simplify/meshes.h"
+
+namespace tetwright {
+namespace {
+
+using Tag = std::optional<MaterialTag>;
+
+TetMesh crooked(std::uint64_t seed) {
+  TetMesh mesh = grid_mesh({8, 8, 8}, [](int x, int y, int) { return Tag(x < 4 ? 1 : y < 4 ? 2 : 3); });
+  jitter(mesh, seed, 0.55);
+  return mesh;
+}
+
+TEST(Improve, BettersTheShapesAndKeepsTheRest) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const TetMesh mesh = crooked(seed);
+    SimplifyReport report;
+    const TetMesh after = improve(mesh, ImproveOptions(), &report);
+    const MeshStatistics was = mesh_statistics(mesh), is = mesh_statistics(after);
+    for (const MeshFinding& f : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(f);
+    for (const std::string& d : topology_differences(topology(mesh), topology(after))) ADD_FAILURE() << d;
+    EXPECT_NEAR(static_cast<double>(is.tets), static_cast<double>(was.tets),
+                0.05 * static_cast<double>(was.tets));
+    EXPECT_GT(was.below_count, 20u);
+    EXPECT_EQ(is.below_count, 0u);
+    EXPECT_GT(is.min_dihedral, 2 * was.min_dihedral);
+    for (const auto& [tag, m] : was.materials)
+      EXPECT_NEAR(is.materials.at(tag).volume, m.volume, 0.02 * m.volume);
+    ASSERT_FALSE(report.iterations.empty());
+    for (const IterationReport& it : report.iterations) EXPECT_EQ(it.kind, "improve");
+  }
+}
+
+TEST(Improve, OnlyBelowLeavesTheRestAlone) {
+  const TetMesh mesh = crooked(5);
+  ImproveOptions options;
+  options.only_below = 0.02;
+  const TetMesh after = improve(mesh, options);
+  const MeshStatistics was = mesh_statistics(mesh, 0.02), is = mesh_statistics(after, 0.02);
+  EXPECT_GT(was.below_count, 0u);
+  EXPECT_EQ(is.below_count, 0u);
+  // Most points stand where they stood.
+  std::set<std::array<double, 3>> places;
+  for (const Vec3& p : mesh.points) places.insert({p.x(), p.y(), p.z()});
+  std::size_t kept = 0;
+  for (const Vec3& p : after.points) kept += places.count({p.x(), p.y(), p.z()});
+  EXPECT_GT(kept, after.points.size() * 8 / 10);
+}
+
+TEST(Improve, ObjectivesAimAtWhatTheySay) {
+  const TetMesh mesh = crooked(6);
+  ImproveOptions options;
+  options.objective = ShapeObjective::solid_angle;
+  const MeshStatistics angle = mesh_statistics(improve(mesh, options));
+  options.objective = ShapeObjective::dihedral;
+  const MeshStatistics dihedral = mesh_statistics(improve(mesh, options));
+  EXPECT_GT(dihedral.min_dihedral, 12);
+  EXPECT_LT(dihedral.max_dihedral, 168);
+  EXPECT_GT(angle.min_solid_angle, 0.1);
+  EXPECT_NE(angle.min_solid_angle, dihedral.min_solid_angle);
+}
+
+TEST(Improve, OneThreadGivesTheSameBytesAndManyTheSameGuarantees) {
+  const TetMesh mesh = crooked(7);
+  {
+    const ThreadLimit one(1);
+    const TetMesh a = improve(mesh, ImproveOptions()), b = improve(mesh, ImproveOptions());
+    EXPECT_EQ(a.points, b.points);
+    EXPECT_EQ(a.tets, b.tets);
+  }
+  const ThreadLimit six(6);
+  const TetMesh after = improve(mesh, ImproveOptions());
+  EXPECT_TRUE(check_mesh(after).empty());
+  EXPECT_EQ(mesh_statistics(after).below_count, 0u);
+}
+
+// A tet that was turned over by moving one point is put right.
+TEST(Improve, PutsInvertedTetsRight) {
+  TetMesh mesh = grid_mesh(5);
+  for (Vec3& p : mesh.points)
+    if (p == Vec3(2, 2, 2)) p = Vec3(3.2, 2.1, 2.3);
+  ASSERT_FALSE(check_mesh(mesh).empty());
+  const TetMesh after = improve(mesh, ImproveOptions());
+  for (const MeshFinding& f : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(f);
+}
+
+TEST(Improve, RefusesAndCancels) {
+  EXPECT_THROW(improve(TetMesh(), ImproveOptions()), InputError);
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW(improve(grid_mesh(3), ImproveOptions(), nullptr, &progress), Interrupted);
+}
+
+}  // namespace
+}  // namespace tetwright

@@ -1,0 +1,124 @@
+// Ten thousand random operations on small meshes of several materials, looked at after each.
+#include "common/mesh_check.h"
+#include "common/topology.h"
+#include "simplify/collapse.h"
+#include "simplify/face_removal.h"
+#include "simplify/insertion.h"
+#include "simplify/smoothing.h"
+#include "tests/simplify/workbench.h"
+
+namespace tetwright {
+namespace {
+
+using Tag = std::optional<MaterialTag>;
+
+/// The mesh as it stands, with as many points as there are slots.
+TetMesh snapshot(const EditableMesh& mesh) {
+  TetMesh out;
+  std::vector<Index> number(mesh.point_slots(), no_index);
+  for (Index t = 0; t < mesh.tet_slots(); ++t) {
+    const TetRecord& r = mesh.tet(t);
+    if (r.points[0] == no_index) continue;
+    Tet ids;
+    for (int k = 0; k < 4; ++k) {
+      if (number[r.points[k]] == no_index) {
+        number[r.points[k]] = static_cast<Index>(out.points.size());
+        out.points.push_back(mesh.to_input(mesh.position(r.points[k])));
+      }
+      ids[k] = number[r.points[k]];
+    }
+    out.tets.push_back(ids);
+    out.materials.push_back(mesh.tag(r.region));
+  }
+  return out;
+}
+
+const std::array<Tag (*)(int, int, int), 5> materials{
+    [](int, int, int) { return Tag(1); }, [](int x, int, int) { return Tag(x < 2 ? 1 : 2); },
+    [](int x, int y, int z) {
+      return Tag(z < 1 ? 1 : x < 2 ? 2 : y < 2 ? 3 : 4);
+    },
+    [](int x, int y, int z) { return x == 1 && y == 1 && z == 1 ? Tag() : Tag(z < 2 ? 5 : 9); },
+    [](int x, int y, int z) { return x == 1 && y == 1 ? Tag() : Tag(z == 1 ? 2 : 1); }};
+
+/// One operation, chosen at random, on the tet.
+Outcome random_operation(Workbench& w, Index t, const Slide& slide) {
+  Task& task = *w.task;
+  Random& random = task.random;
+  BlockRules rules = w.rules;
+  rules.accept_worse = random.uniform() < 0.5 ? 1 : 0;
+  rules.good_enough = random.uniform() < 0.3 ? 0.05f : 1;
+  if (random.below(2)) {
+    rules.slide = &slide;
+    rules.largest_distance = 0.2;
+    rules.leave_surface = random.below(2);
+  }
+  const auto place = random.below(2) ? InsertionPlace::best : InsertionPlace::centre;
+  const FlipReach reach = random.below(2) ? FlipReach{7, 5} : FlipReach{3, 1};
+  const Tet points = w.mesh.tet(t).points;
+  for (Index p : points) EXPECT_TRUE(task.points.try_lock(p));
+  const auto star = [&] { return task.star.gather(w.mesh, points[random.below(4)], task.points); };
+  switch (random.below(9)) {
+    case 0:
+      return remove_edge(task, rules, t, static_cast<int>(random.below(6)), reach);
+    case 1:
+      return remove_face(task, rules, t, static_cast<int>(random.below(4)), reach);
+    case 2:
+    case 3:
+      return star() == Outcome::done ? collapse(task, rules) : Outcome::no_candidate;
+    case 4:
+      return star() == Outcome::done ? smooth(task, rules) : Outcome::no_candidate;
+    case 5:
+      return star() == Outcome::done ? optimise(task, rules) : Outcome::no_candidate;
+    case 6:
+      return insert_in_tet(task, rules, t, place);
+    case 7:
+      return insert_in_face(task, rules, t, static_cast<int>(random.below(4)), place);
+    default:
+      return insert_in_edge(task, rules, t, static_cast<int>(random.below(6)), place, true);
+  }
+}
+
+TEST(RandomOperations, TenThousandLeaveEveryMeshSoundAndItsTopologyAsItWas) {
+  constexpr int operations_per_mesh = 500, rounds = 4;
+  std::size_t done = 0, tried = 0;
+  for (int round = 0; round < rounds; ++round)
+    for (std::size_t m = 0; m < materials.size(); ++m) {
+      const std::uint64_t seed = 100 * static_cast<std::uint64_t>(round) + m;
+      SCOPED_TRACE(testing::Message() << "seed " << seed);
+      TetMesh mesh = grid_mesh({4, 3, 3}, materials[m]);
+      jitter(mesh, seed, 0.3);
+      const Topology before = topology(mesh);
+      Workbench w(mesh);
+      w.mesh.compact(4096, 1024);
+      w.grid.build(w.mesh, 0, 1024);
+      w.task = std::make_unique<Task>(w.mesh, w.grid);
+      w.task->random = Random(seed);
+      w.rules.objective.kind = seed % 2 ? Objective::Kind::shape : Objective::Kind::paper;
+      w.rules.most_tets = 2 * mesh.tets.size();
+      const Slide slide(w.mesh, nullptr);
+      for (int i = 0; i < operations_per_mesh; ++i) {
+        Index t;
+        do {
+          t = w.task->random.below(static_cast<std::uint32_t>(w.mesh.tet_slots()));
+        } while (w.mesh.dead(t));
+        const Outcome o = random_operation(w, t, slide);
+        w.task->release();
+        ++tried;
+        if (o != Outcome::done) continue;
+        ++done;
+        ASSERT_TRUE(w.mesh.links_consistent());
+        const TetMesh now = snapshot(w.mesh);
+        for (const MeshFinding& f : check_mesh(now))
+          FAIL() << "operation " << i << ": " << mesh_finding_line(f);
+        for (const std::string& d : topology_differences(before, topology(now)))
+          FAIL() << "operation " << i << ": " << d;
+      }
+      w.expect_sound();
+    }
+  EXPECT_EQ(tried, 10000u);
+  EXPECT_GT(done, 1500u);
+}
+
+}  // namespace
+}  // namespace tetwright

@@ -1,0 +1,59 @@
+#include "simplify/slide.h"
+
+#include "common/point_triangle.h"
+#include "tests/simplify/workbench.h"
+
+namespace tetwright {
+namespace {
+
+TEST(NearestTree, FindsWhatASearchOfAllFinds) {
+  Random random(4);
+  const auto number = [&] { return 2 * random.uniform() - 1; };
+  std::vector<Vec3> points;
+  std::vector<NearestTree::Item> items;
+  for (Index i = 0; i < 500; ++i) {
+    const Vec3 c(number(), number(), number());
+    for (int k = 0; k < 3; ++k) points.push_back(c + 0.1 * Vec3(number(), number(), number()));
+    items.push_back({{3 * i, 3 * i + 1, i % 7 ? 3 * i + 2 : 3 * i + 1}, i % 3, 9});
+  }
+  const NearestTree tree(points, items);
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 p = 1.2 * Vec3(number(), number(), number());
+    const Region kind = static_cast<Region>(i % 3);
+    double best = 0.3;
+    for (const auto& item : items)
+      if (item.first == kind)
+        best = std::min(best, std::sqrt(squared_distance(p, points[item.corners[0]], points[item.corners[1]],
+                                                         points[item.corners[2]])));
+    const auto found = tree.nearest(p, 9, kind, 0.3);
+    ASSERT_EQ(found.has_value(), best < 0.3);
+    if (found) {
+      EXPECT_NEAR((*found - p).norm(), best, 1e-12);
+    }
+    EXPECT_FALSE(tree.nearest(p, 5, 6, 10));
+  }
+  EXPECT_FALSE(NearestTree().nearest({0, 0, 0}, 0, 0, 10));
+}
+
+TEST(Slide, KnowsSurfacesByTheirMaterialsAndJunctionCurves) {
+  Workbench w(
+      grid_mesh({4, 4, 4}, [](int x, int, int) { return std::optional<MaterialTag>(x < 2 ? 1 : 2); }));
+  const Slide slide(w.mesh, nullptr);
+  const double s = w.mesh.scale();
+  const auto at = [&](double x, double y, double z) { return w.mesh.to_working({x, y, z}); };
+  const auto interface = slide.onto_surface(at(1.7, 2.2, 2.1), 0, 1, s);
+  ASSERT_TRUE(interface);
+  EXPECT_NEAR((*interface - at(2, 2.2, 2.1)).norm(), 0, 1e-12);
+  const auto boundary = slide.onto_surface(at(1, 2.2, 0.3), 0, outside_region, s);
+  ASSERT_TRUE(boundary);
+  EXPECT_NEAR((*boundary - at(1, 2.2, 0)).norm(), 0, 1e-12);
+  EXPECT_FALSE(
+      slide.onto_surface(at(3, 2.2, 0.3), 0, outside_region, 0.5 * s));  // there it is the other's boundary
+  const auto curve = slide.onto_curve(at(2.1, 3, 0.2), s);
+  ASSERT_TRUE(curve);
+  EXPECT_NEAR((*curve - at(2, 3, 0)).norm(), 0, 1e-12);
+  EXPECT_FALSE(slide.onto_curve(at(2, 2, 2), s));
+}
+
+}  // namespace
+}  // namespace tetwright
