@@ -102,8 +102,8 @@ void carry_out(Task& task, std::size_t b, const std::vector<float>& qualities) {
   task.point_slots.give_back(star.centre);
 }
 
-/// Everything but the weight, for the target with local number b.
-Outcome try_target(Task& task, const BlockRules& rules, std::size_t b) {
+/// Everything but the weight, for the target with local number b; on trial nothing is changed.
+Outcome try_target(Task& task, const BlockRules& rules, std::size_t b, bool trial = false) {
   Star& star = task.star;
   thread_local std::vector<float> qualities;
   const Vec3& to = star.positions[b];
@@ -141,6 +141,10 @@ Outcome try_target(Task& task, const BlockRules& rules, std::size_t b) {
       return o;
     }
   }
+  if (trial) {
+    task.cells.release();
+    return Outcome::done;
+  }
   // Last of all, since what is taken off the count here is not put back.
   const auto change = static_cast<std::int64_t>(left) - static_cast<std::int64_t>(star.tets.size());
   if (!task.mesh.change_count(change, rules.fewest_tets, rules.most_tets)) {
@@ -165,13 +169,13 @@ double collapse_weight(Star& star, std::size_t b, const BlockRules& rules) {
   return step.norm() + (star.sheets.empty() ? 0 : star.surface_error(step, rules.gamma));
 }
 
-Outcome collapse_onto(Task& task, const BlockRules& rules, std::size_t b) {
+Outcome collapse_onto(Task& task, const BlockRules& rules, std::size_t b, bool trial) {
   Star& star = task.star;
   const int dimension = star.dimension();
   if (!may_go(star, dimension) || star.edge_dimension(b) != dimension) return Outcome::material_rule;
   star.compute_gradients();
   if (collapse_weight(star, b, rules) > rules.largest_error) return Outcome::surface_error;
-  return try_target(task, rules, b);
+  return try_target(task, rules, b, trial);
 }
 
 Outcome collapse(Task& task, const BlockRules& rules) {

@@ -16,8 +16,9 @@ namespace tetwright {
 /// was changed. Otherwise the mesh is as it was, and the outcome is that of the target that got farthest.
 Outcome collapse(Task& task, const BlockRules& rules);
 
-/// The same for one target alone, the link point with local number b.
-Outcome collapse_onto(Task& task, const BlockRules& rules, std::size_t b);
+/// The same for one target alone, the link point with local number b. `trial`: nothing is changed, and done
+/// says that it would be, but for the count.
+Outcome collapse_onto(Task& task, const BlockRules& rules, std::size_t b, bool trial = false);
 
 /// Weight(e) of the half-edge from the centre to link point b: length plus Error(collapse). The star's
 /// gradients must be computed.

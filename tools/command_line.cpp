@@ -36,6 +36,18 @@ CLI::Validator number_from(double low, bool or_equal) {
           ""};
 }
 
+/// The smallest solid angle of a tet, which is never more than that of the regular one. (The parser's own
+/// range lets what is no number pass.)
+const CLI::Validator solid_angle(
+    [](std::string& text) {
+      char* end = nullptr;
+      const double value = std::strtod(text.c_str(), &end);
+      return !text.empty() && *end == 0 && value >= 0 && value <= 0.5513
+                 ? std::string()
+                 : "'" + text + "' is not a solid angle from 0 to 0.5513, the regular tet's";
+    },
+    "");
+
 void add_common(CLI::App& app, CommandLine& c) {
   app.add_option("--threads", c.threads, "Threads to use (default: all of the machine)")
       ->check(whole_number)
@@ -119,22 +131,53 @@ void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) 
   app.add_option("--write-sdf", c.write_sdf, "Write the signed distances that were meshed to this .vdb file");
 }
 
-void add_simplifying(CLI::App& app, CommandLine& c) {
-  app.add_option("--target-tets", c.target_tets, "Number of tets wanted")->required()->check(whole_number);
+/// An option whose value is one of a few words, each naming one of `values`.
+template <class Value>
+void add_choice(CLI::App& app, const char* option, Value& to, std::initializer_list<Value> values,
+                const char* description) {
+  std::map<std::string, Value> words;
+  std::string known;
+  for (const Value value : values) {
+    words[name_of(value)] = value;
+    known += (known.empty() ? "" : ", ") + std::string(name_of(value));
+  }
+  app.add_option_function<std::string>(
+         option,
+         [option, words, known, &to](const std::string& text) {
+           const auto found = words.find(text);
+           if (found == words.end()) throw CLI::ValidationError(option, "'" + text + "' is none of " + known);
+           to = found->second;
+         },
+         description)
+      ->default_str(name_of(to));
+}
+
+/// What simplification and improvement have in common.
+void add_shaping(CLI::App& app, CommandLine& c, const char* iterations) {
   app.add_option(
          "--min-solid-angle", c.min_solid_angle,
          "Tets with a smaller solid angle (steradians) are improved; if given and some are left, status 1")
-      ->check(CLI::Range(0.0, 0.5513))
+      ->check(solid_angle)
       ->capture_default_str();
+  add_choice(app, "--objective", c.objective,
+             {ShapeObjective::both, ShapeObjective::solid_angle, ShapeObjective::dihedral},
+             "What a good shape is: large solid-angle, no small or large dihedral, or both");
+  app.add_option("--max-iterations", c.max_iterations, iterations)
+      ->check(whole_number)
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+}
+
+void add_simplifying(CLI::App& app, CommandLine& c) {
+  app.add_option("--target-tets", c.target_tets, "Number of tets wanted")->required()->check(whole_number);
+  add_shaping(app, c, "Block iterations at most");
+  add_choice(app, "--schedule", c.schedule, {Schedule::tuned, Schedule::paper},
+             "tuned: fast, and closes with improvement; paper: operations and order of Cutler et al. 2004");
   app.add_option("--beta", c.beta, "Longest edge, in ideal edges, that quality does not penalise")
       ->check(number_from(0, false))
       ->capture_default_str();
   app.add_option("--gamma", c.gamma, "Weight of the surface's error; larger keeps more of it")
       ->check(number_from(0, true))
-      ->capture_default_str();
-  app.add_option("--max-iterations", c.max_iterations, "Block iterations at most")
-      ->check(whole_number)
-      ->check(CLI::Range(1, 10000))
       ->capture_default_str();
 }
 
@@ -152,6 +195,14 @@ std::string joined(const std::vector<std::string>& names) {
 }
 
 }  // namespace
+
+const char* name_of(Schedule schedule) { return schedule == Schedule::tuned ? "tuned" : "paper"; }
+
+const char* name_of(ShapeObjective objective) {
+  return objective == ShapeObjective::both          ? "both"
+         : objective == ShapeObjective::solid_angle ? "solid-angle"
+                                                    : "dihedral";
+}
 
 bool parse_command_line(int argc, char** argv, CommandLine& out) {
   CLI::App app("Turns surface scans into tetrahedral meshes that a simulation can run on.", "tetwright");
@@ -188,6 +239,19 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
   add_common(*simplify, out);
   add_seed(*simplify, out);
 
+  CLI::App* improve = app.add_subcommand("improve", "Better shapes for a tet mesh, about as many tets");
+  improve->add_option("MESH", out.inputs, meshes)->required()->expected(1);
+  add_output(*improve, out, mesh_out);
+  improve
+      ->add_option("--only-below", out.only_below,
+                   "Work only on tets with a smaller solid angle (steradians) and what stands around them; "
+                   "0: on all")
+      ->check(solid_angle)
+      ->capture_default_str();
+  add_shaping(*improve, out, "Rounds at most");
+  add_common(*improve, out);
+  add_seed(*improve, out);
+
   CLI::App* check =
       app.add_subcommand("check", "Validity, topology and quality of a tet mesh; status 1 if not valid");
   check->add_option("MESH", out.inputs, meshes)->required()->expected(1);
@@ -216,12 +280,13 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
   out.command = chosen == prepare    ? Command::prepare
                 : chosen == mesh     ? Command::mesh
                 : chosen == simplify ? Command::simplify
+                : chosen == improve  ? Command::improve
                 : chosen == check    ? Command::check
                                      : Command::sample;
-  if (out.command == Command::prepare || out.command == Command::simplify) {
+  const bool simplifies = out.command == Command::prepare || out.command == Command::simplify;
+  if (simplifies && out.target_tets == 0) throw UsageError("--target-tets 0 leaves no mesh; give 1 or more");
+  if (simplifies || out.command == Command::improve)
     out.min_solid_angle_given = chosen->count("--min-solid-angle") > 0;
-    if (out.target_tets == 0) throw UsageError("--target-tets 0 leaves no mesh; give 1 or more");
-  }
   if ((out.command == Command::prepare || out.command == Command::mesh) && out.inputs.empty() &&
       out.materials.empty())
     throw UsageError("there is no input; name a surface, or give --material NAME=FILE");

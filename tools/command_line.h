@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mesher/surface_input.h"
+#include "simplify/simplify.h"
 
 namespace tetwright {
 
@@ -14,7 +15,7 @@ struct NamedValue {
   std::string name, value;
 };
 
-enum class Command { prepare, mesh, simplify, check, sample };
+enum class Command { prepare, mesh, simplify, improve, check, sample };
 
 /// What the command line said; defaults are those of --help.
 struct CommandLine {
@@ -29,6 +30,9 @@ struct CommandLine {
   bool min_solid_angle_given = false;
   double beta = 5, gamma = 10;
   int max_iterations = 100;
+  Schedule schedule = Schedule::tuned;
+  ShapeObjective objective = ShapeObjective::both;
+  double only_below = 0;  ///< improve, steradians; 0: all tets
 
   int resolution = 0;     ///< 0: not given
   double voxel_size = 0;  ///< input units; 0: not given
@@ -50,5 +54,9 @@ struct CommandLine {
 /// Parses the arguments. Throws UsageError (one line that says what to do) when the call is wrong. Returns
 /// false when help or the version was asked for and printed.
 bool parse_command_line(int argc, char** argv, CommandLine& out);
+
+/// As options spell them: "tuned", "paper"; "both", "solid-angle", "dihedral".
+const char* name_of(Schedule schedule);
+const char* name_of(ShapeObjective objective);
 
 }  // namespace tetwright

@@ -18,7 +18,9 @@
 #include "common/parallel.h"
 #include "common/samples.h"
 #include "common/topology.h"
+#include "mesher/material_field.h"
 #include "mesher/vdb_files.h"
+#include "tools/held_back.h"
 #include "tools/progress_bar.h"
 #include "tools/report.h"
 #include "tools/stats_json.h"
@@ -26,6 +28,10 @@
 namespace tetwright {
 
 namespace {
+
+// How far a count may be off, of what was asked; beyond it the status says so.
+constexpr double target_slack = 0.01;
+constexpr double improve_slack = 0.05;
 
 std::vector<std::string> all_inputs(const CommandLine& line) {
   std::vector<std::string> inputs = line.inputs;
@@ -127,7 +133,8 @@ class Run {
     check_stats_path(line);
     check_sdf_path(line);
     report_.inputs = all_inputs(line);
-    if (line.command != Command::simplify) check_output_is_no_input(line);
+    const bool may_replace = line.command == Command::simplify || line.command == Command::improve;
+    if (!may_replace) check_output_is_no_input(line);
   }
 
   void read_surfaces() {
@@ -181,7 +188,7 @@ class Run {
       options.resolution = resolution_for_target(input_, line_.target_tets);
     }
     MeshedSurface dense = mesh_surfaces(input_, options, &progress_);
-    if (!line_.write_sdf.empty()) field_ = dense.field;
+    if (line_.command == Command::prepare || !line_.write_sdf.empty()) field_ = dense.field;
     mesh_ = std::move(dense.mesh);
     report_.mesher = dense.report;
     report_.seconds_mesh = watch.seconds();
@@ -211,10 +218,26 @@ class Run {
     options.beta = line_.beta;
     options.gamma = line_.gamma;
     options.max_iterations = line_.max_iterations;
+    options.schedule = line_.schedule;
+    options.objective = line_.objective;
+    options.reference = field_.get();  // nothing where a mesh was read
     options.seed = line_.seed;
     options.name = report_.inputs.front();
     report_.simplify.emplace();
     mesh_ = simplify(std::move(mesh_), options, &*report_.simplify, &progress_);
+    if (line_.write_sdf.empty()) field_.reset();
+  }
+
+  void improve_mesh() {
+    ImproveOptions options;
+    options.only_below = line_.only_below;
+    options.min_solid_angle = line_.min_solid_angle;
+    options.objective = line_.objective;
+    options.max_iterations = line_.max_iterations;
+    options.seed = line_.seed;
+    options.name = report_.inputs.front();
+    report_.simplify.emplace();
+    mesh_ = improve(std::move(mesh_), options, &*report_.simplify, &progress_);
   }
 
   ExitStatus finish() {
@@ -234,37 +257,33 @@ class Run {
     if (!line_.quiet) print_notes(report_);
     if (!line_.quiet) print_report(line_, report_);
     for (const Shortfall& s : report_.shortfall)
-      std::fprintf(stderr, "tetwright: short of --%s: %g was asked, %g reached; held back by: %s\n",
-                   s.what == "target_tets" ? "target-tets" : "min-solid-angle", s.asked, s.reached,
-                   s.held_back_by.c_str());
+      std::fprintf(stderr, "tetwright: short of %s: %.10g was asked, %.10g reached; held back by: %s\n",
+                   s.what != "target_tets"             ? "--min-solid-angle"
+                   : line_.command == Command::improve ? "about the same count"
+                                                       : "--target-tets",
+                   s.asked, s.reached, s.held_back_by.c_str());
     return report_.shortfall.empty() ? ExitStatus::done : ExitStatus::short_of_request;
   }
 
  private:
-  /// The rule that refused most collapses in the last iteration of a kind.
-  std::string held_back_by(const std::string& kind) const {
-    OperationCounts counts;
-    for (const IterationReport& it : report_.simplify->iterations)
-      if (it.kind == kind) counts = it.counts;
-    std::size_t most = 0;
-    for (std::size_t r = 1; r < outcome_count; ++r)
-      if (counts.of(Operation::collapse, static_cast<Outcome>(r)) >
-          (most ? counts.of(Operation::collapse, static_cast<Outcome>(most)) : 0))
-        most = r;
-    return most ? std::string(outcome_names[most]) : "nothing: no operation was left to try";
+  std::string what_changed_the_count(double asked, double reached) const {
+    if (line_.command == Command::improve)
+      return "nothing: shapes were worth " + std::string(reached < asked ? "fewer" : "more") + " tets";
+    if (reached > asked) return count_held_back_by(*report_.simplify, line_.max_iterations);
+    return static_cast<double>(report_.dense->tets) < asked
+               ? "the dense mesh, which has too few tets; raise --resolution"
+               : "nothing: the closing improvement took tets away";
   }
 
   void find_shortfall() {
-    const double target = static_cast<double>(line_.target_tets);
+    const bool improved = line_.command == Command::improve;
+    const double asked = static_cast<double>(improved ? report_.dense->tets : line_.target_tets);
     const double reached = static_cast<double>(report_.result->tets);
-    if (std::fabs(reached - target) > 0.01 * target)
-      report_.shortfall.push_back({"target_tets", target, reached,
-                                   static_cast<double>(report_.dense->tets) < target
-                                       ? "the dense mesh, which has too few tets; raise --resolution"
-                                       : held_back_by("simplify")});
+    if (std::fabs(reached - asked) > (improved ? improve_slack : target_slack) * asked)
+      report_.shortfall.push_back({"target_tets", asked, reached, what_changed_the_count(asked, reached)});
     if (line_.min_solid_angle_given && report_.result->min_solid_angle < line_.min_solid_angle)
-      report_.shortfall.push_back(
-          {"min_solid_angle", line_.min_solid_angle, report_.result->min_solid_angle, held_back_by("close")});
+      report_.shortfall.push_back({"min_solid_angle", line_.min_solid_angle, report_.result->min_solid_angle,
+                                   shapes_held_back_by(*report_.simplify)});
   }
 
   const CommandLine& line_;
@@ -274,7 +293,7 @@ class Run {
   InterruptHandler handler_;
   RunReport report_;
   PreparedInput input_;
-  std::shared_ptr<const MaterialField> field_;  ///< only where it is to be written
+  std::shared_ptr<const MaterialField> field_;  ///< while it is slid along, or where it is to be written
   TetMesh mesh_;
 };
 
@@ -297,6 +316,13 @@ ExitStatus simplify(const CommandLine& line) {
   Run run(line);
   run.read_mesh();
   run.simplify_mesh();
+  return run.finish();
+}
+
+ExitStatus improve(const CommandLine& line) {
+  Run run(line);
+  run.read_mesh();
+  run.improve_mesh();
   return run.finish();
 }
 
@@ -374,6 +400,8 @@ ExitStatus run_command(const CommandLine& line) {
       return mesh(line);
     case Command::simplify:
       return simplify(line);
+    case Command::improve:
+      return improve(line);
     case Command::check:
       return check(line);
     case Command::sample:

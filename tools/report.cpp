@@ -28,7 +28,7 @@ std::string printable(std::string text) {
 
 void print_report(const CommandLine& line, const RunReport& run) {
   const MeshStatistics* columns[2] = {run.dense ? &*run.dense : nullptr, run.result ? &*run.result : nullptr};
-  const char* heads[2] = {line.command == Command::simplify ? "before" : "dense", "result"};
+  const char* heads[2] = {line.command == Command::prepare ? "dense" : "before", "result"};
   if (line.command == Command::mesh) columns[0] = nullptr;  // the dense mesh is the result
   const auto row = [&](const char* name, const std::function<std::string(const MeshStatistics&)>& value) {
     std::printf("%-26s", name);
@@ -55,9 +55,13 @@ void print_report(const CommandLine& line, const RunReport& run) {
     std::printf("resolution %d (cells of %.4g), ", run.mesher->resolution, run.mesher->cell_size);
   std::printf("%.2f s: read %.2f", run.seconds_total, run.seconds_read);
   if (run.mesher) std::printf(", mesh %.2f", run.seconds_mesh);
-  if (run.simplify)
-    std::printf(", simplify %.2f, improve %.2f", run.simplify->seconds_build + run.simplify->seconds_simplify,
-                run.simplify->seconds_close);
+  if (run.simplify) {
+    const SimplifyReport& s = *run.simplify;
+    if (line.command == Command::improve)
+      std::printf(", improve %.2f", s.seconds_build + s.seconds_simplify + s.seconds_close);
+    else
+      std::printf(", simplify %.2f, improve %.2f", s.seconds_build + s.seconds_simplify, s.seconds_close);
+  }
   std::printf(", write %.2f; peak memory %.0f MB\n", run.seconds_write,
               static_cast<double>(peak_bytes()) / 1e6);
 }

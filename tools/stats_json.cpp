@@ -16,6 +16,8 @@ const char* name_of(Command command) {
       return "mesh";
     case Command::simplify:
       return "simplify";
+    case Command::improve:
+      return "improve";
     case Command::check:
       return "check";
     case Command::sample:
@@ -86,6 +88,13 @@ nlohmann::json stats_json(const CommandLine& line, const RunReport& run) {
   j["command"] = name_of(line.command);
   j["threads"] = thread_count();
   j["seed"] = line.seed;
+  if (run.simplify) {
+    j["objective"] = name_of(line.objective);
+    if (line.command == Command::improve)
+      j["only_below"] = line.only_below;
+    else
+      j["schedule"] = name_of(line.schedule);
+  }
   j["input"] = {{"files", run.inputs}, {"triangles", run.input_triangles}, {"points", run.input_points}};
   if (!run.material_field.empty()) j["input"]["material_field"] = run.material_field;
   nlohmann::json seconds = {

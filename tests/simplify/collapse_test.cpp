@@ -139,6 +139,33 @@ TEST(Collapse, ALayerOneCubeThickSurvives) {
   EXPECT_GT(std::count(touching.begin(), touching.end(), std::pair<MaterialTag, MaterialTag>(1, 2)), 0);
 }
 
+TEST(Collapse, OntoOneTargetOnTrialAndInEarnest) {
+  TetMesh mesh = grid_mesh(4);
+  jitter(mesh, 7);
+  Workbench w(mesh);
+  w.rules.accept_worse = 1;
+  int allowed = 0;
+  std::size_t onto = 0;
+  Index last = no_index;
+  for (Index p = 0; p < mesh.points.size(); ++p)
+    for (std::size_t b = 0; b < w.star(p).points.size(); ++b) {
+      const Outcome trial = collapse_onto(*w.task, w.rules, b, true);
+      EXPECT_EQ(w.mesh.live_tets(), mesh.tets.size());
+      if (trial != Outcome::done) continue;
+      ++allowed;
+      last = p;
+      onto = b;
+    }
+  w.expect_sound();
+  ASSERT_GT(allowed, 10);
+  const Index b = w.star(last).points[onto];
+  EXPECT_EQ(collapse_onto(*w.task, w.rules, onto), Outcome::done);
+  EXPECT_EQ(w.mesh.hint(last), no_index);
+  EXPECT_NE(w.mesh.hint(b), no_index);
+  EXPECT_LT(w.mesh.live_tets(), mesh.tets.size());
+  w.expect_sound();
+}
+
 TEST(Collapse, CornersStay) {
   Workbench w(grid_mesh({4, 4, 4}, [](int x, int y, int z) {
     return Tag(z < 2 ? 1 : x < 2 ? 2 : y < 2 ? 3 : 4);

@@ -38,6 +38,7 @@ TEST(StatsJson, FollowsItsSchema) {
   stats("sample torus -o " + (f / "t.ply"));
   stats("mesh " + (f / "t.ply") + " -o " + (f / "d.vtu") + " --resolution 24");
   stats("simplify " + (f / "d.vtu") + " -o " + (f / "s.vtu") + " --target-tets 3");
+  stats("improve " + (f / "s.vtu") + " -o " + (f / "i.vtu"));
   stats("check " + (f / "d.vtu"));
   auto j = stats("prepare " + (f / "t.ply") + " -o " + (f / "p.vtu") + " --target-tets 1000 --threads 2");
   EXPECT_EQ(j["threads"], 2);

@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <cmath>
+
+#include "benchmarks/strategy/orderings.h"
+#include "simplify/block.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr double percent_step = 10;
+constexpr int most_iterations = 200;
+constexpr int most_idle = 5;  ///< iterations in a row that remove next to nothing
+
+/// Quality^3 below which `percent` of the tets lie.
+float cutoff(const EditableMesh& mesh, double percent) {
+  std::vector<float> qualities;
+  for (Index t = 0; t < mesh.tet_slots(); ++t)
+    if (mesh.tet(t).points[0] != no_index) qualities.push_back(mesh.tet(t).quality);
+  const auto k = static_cast<std::size_t>(percent / 100 * static_cast<double>(qualities.size()));
+  if (k >= qualities.size()) return 1;
+  std::nth_element(qualities.begin(), qualities.begin() + static_cast<std::ptrdiff_t>(k), qualities.end());
+  return qualities[k];
+}
+
+std::vector<ListedTet> poor_tets(const EditableMesh& mesh, float limit) {
+  std::vector<ListedTet> list;
+  for (Index t = 0; t < mesh.tet_slots(); ++t) {
+    const TetRecord& r = mesh.tet(t);
+    if (r.points[0] != no_index && r.quality <= limit) list.push_back({t, r.points});
+  }
+  return list;
+}
+
+void sort_by_weight(std::vector<WeighedCollapse>& candidates) {
+  std::sort(candidates.begin(), candidates.end(), [](const WeighedCollapse& a, const WeighedCollapse& b) {
+    return a.weight != b.weight   ? a.weight < b.weight
+           : a.origin != b.origin ? a.origin < b.origin
+                                  : a.target < b.target;
+  });
+}
+
+/// The loop that both blocks have; `block(limit)` takes up what is below, `grow(removed)` changes E.
+template <class Block, class Grow>
+void iterate(Workpiece& piece, const Block& block, const Grow& grow) {
+  double percent = percent_step;
+  int idle = 0;
+  for (int i = 0; i < most_iterations && !piece.reached() && idle < most_idle; ++i) {
+    const auto before = static_cast<double>(piece.mesh.live_tets());
+    block(cutoff(piece.mesh, percent));
+    const double removed = 1 - static_cast<double>(piece.mesh.live_tets()) / before;
+    grow(removed);
+    idle = removed < 0.001 && percent >= 100 ? idle + 1 : 0;
+    percent = std::min(100.0, percent + percent_step);
+  }
+}
+
+}  // namespace
+
+void block_of_tets(Workpiece& piece, std::uint64_t seed) {
+  BlockRunner runner(piece.mesh, piece.grid, seed, 2000, nullptr);
+  runner.reset_tasks();
+  piece.rules.largest_error = piece.rules.objective.quality.ideal_edge;
+  std::vector<WeighedCollapse> candidates;
+  const auto block = [&](float limit) {
+    runner.tets(
+        poor_tets(piece.mesh, limit),
+        [&](Task& task, const ListedTet& item) {
+          if (const Outcome o = hold(task, item); o != Outcome::done) return o;
+          if (piece.mesh.tet(item.tet).quality > limit) return Outcome::stale;
+          candidates.clear();
+          const auto of_the_tet = [&](Index p) {
+            return std::find(item.points.begin(), item.points.end(), p) != item.points.end();
+          };
+          for (const Index p : item.points)
+            if (piece.gather(task, p)) piece.weigh(task, candidates, of_the_tet);
+          sort_by_weight(candidates);
+          for (const WeighedCollapse& c : candidates) {
+            if (c.weight > piece.rules.largest_error) break;
+            if (piece.gather(task, c.origin) && piece.collapse(task, c.target)) return Outcome::done;
+          }
+          return Outcome::no_candidate;
+        },
+        [&] { return piece.reached(); });
+  };
+  iterate(piece, block, [&](double) {
+    piece.rules.largest_error *=
+        std::cbrt(static_cast<double>(piece.mesh.live_tets()) / static_cast<double>(piece.target));
+  });
+}
+
+void block_of_points(Workpiece& piece, std::uint64_t seed) {
+  constexpr std::size_t most_targets = 4;
+  BlockRunner runner(piece.mesh, piece.grid, seed, 2000, nullptr);
+  runner.reset_tasks();
+  piece.rules.largest_error = 4 * piece.rules.objective.quality.ideal_edge;
+  std::vector<WeighedCollapse> candidates;
+  const auto block = [&](float limit) {
+    std::vector<Index> points;
+    for (const ListedTet& t : poor_tets(piece.mesh, limit))
+      points.insert(points.end(), t.points.begin(), t.points.end());
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    runner.points(
+        points,
+        [&](Task& task, Index p) {
+          if (!piece.gather(task, p)) return Outcome::stale;
+          candidates.clear();
+          piece.weigh(task, candidates);
+          sort_by_weight(candidates);
+          for (std::size_t i = 0; i < std::min(most_targets, candidates.size()); ++i) {
+            if (candidates[i].weight > piece.rules.largest_error) break;
+            if (piece.collapse(task, candidates[i].target)) return Outcome::done;
+          }
+          return Outcome::no_candidate;
+        },
+        [&] { return piece.reached(); });
+  };
+  iterate(piece, block, [&](double removed) {
+    if (removed < 0.15) piece.rules.largest_error *= 1.3;
+  });
+}
+
+}  // namespace tetwright

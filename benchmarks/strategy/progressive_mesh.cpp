@@ -1,0 +1,97 @@
+#include <algorithm>
+
+#include "benchmarks/strategy/orderings.h"
+
+namespace tetwright {
+
+namespace {
+
+struct Queued {
+  WeighedCollapse collapse;
+  std::uint32_t version;  ///< of the origin when it was weighed
+};
+
+/// Heaps of the standard library have the largest first.
+bool later(const Queued& a, const Queued& b) {
+  const WeighedCollapse &x = a.collapse, &y = b.collapse;
+  return x.weight != y.weight   ? x.weight > y.weight
+         : x.origin != y.origin ? x.origin > y.origin
+                                : x.target > y.target;
+}
+
+class ProgressiveMesh {
+ public:
+  ProgressiveMesh(Workpiece& piece, bool eager)
+      : piece_(piece), eager_(eager), task_(piece.mesh, piece.grid), versions_(piece.mesh.point_slots(), 0) {}
+
+  void run() {
+    for (Index p = 0; p < piece_.mesh.point_slots(); ++p)
+      if (piece_.alive(p)) weigh(p);
+    heap_ = std::move(fresh_);
+    fresh_.clear();
+    std::make_heap(heap_.begin(), heap_.end(), later);
+    drop_outdated_at_ = 2 * heap_.size() + 1024;
+    while (!heap_.empty() && !piece_.reached()) {
+      std::pop_heap(heap_.begin(), heap_.end(), later);
+      const Queued next = heap_.back();
+      heap_.pop_back();
+      if (current(next)) take(next.collapse);
+      if (heap_.size() > drop_outdated_at_) drop_outdated();
+    }
+  }
+
+ private:
+  bool current(const Queued& q) const {
+    return versions_[q.collapse.origin] == q.version && piece_.alive(q.collapse.origin);
+  }
+
+  /// Puts the half-edges that begin at a point into fresh_.
+  void weigh(Index p) {
+    weighed_.clear();
+    ++versions_[p];
+    if (piece_.gather(task_, p)) {
+      piece_.weigh(task_, weighed_);
+      for (const WeighedCollapse& c : weighed_)
+        if (!eager_ || piece_.collapse(task_, c.target, true)) fresh_.push_back({c, versions_[p]});
+    }
+    task_.release();
+  }
+
+  void take(const WeighedCollapse& c) {
+    bool done = false;
+    if (piece_.gather(task_, c.origin)) {
+      link_ = task_.star.points;
+      done = piece_.collapse(task_, c.target);
+    }
+    task_.release();
+    if (!done) return;  // until its star changes
+    for (const Index p : link_) weigh(p);
+    for (const Queued& q : fresh_) {
+      heap_.push_back(q);
+      std::push_heap(heap_.begin(), heap_.end(), later);
+    }
+    fresh_.clear();
+  }
+
+  /// Memory would grow without end.
+  void drop_outdated() {
+    std::erase_if(heap_, [&](const Queued& q) { return !current(q); });
+    std::make_heap(heap_.begin(), heap_.end(), later);
+    drop_outdated_at_ = 2 * heap_.size() + 1024;
+  }
+
+  Workpiece& piece_;
+  bool eager_;
+  Task task_;
+  std::vector<std::uint32_t> versions_;  ///< by point; grows when what it begins is weighed anew
+  std::vector<Queued> heap_, fresh_;
+  std::size_t drop_outdated_at_ = 0;
+  std::vector<WeighedCollapse> weighed_;
+  std::vector<Index> link_;
+};
+
+}  // namespace
+
+void progressive_mesh(Workpiece& piece, bool eager) { ProgressiveMesh(piece, eager).run(); }
+
+}  // namespace tetwright

@@ -1,0 +1,61 @@
+#include "benchmarks/strategy/workpiece.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "simplify/collapse.h"
+
+namespace tetwright {
+
+Workpiece::Workpiece(TetMesh input, std::size_t target_tets)
+    : mesh(std::move(input), "mesh"), target(target_tets) {
+  rules.objective.quality = TetQuality::for_target(mesh.total_volume(), static_cast<double>(target));
+  rules.largest_error = std::numeric_limits<double>::infinity();
+  rules.fewest_tets = 0;
+  // Shape refuses only what falls far behind what stands there, in both orderings alike: none could reach the
+  // target if nothing might become poorer.
+  rules.accept_worse = 1;
+  rules.annealing_floor = 0.1f;
+  grid.build(mesh, rules.objective.quality.ideal_edge / 2);
+  rate_all();
+}
+
+void Workpiece::rate_all() {
+  for (Index t = 0; t < mesh.tet_slots(); ++t) {
+    const Tet& p = mesh.tet(t).points;
+    if (p[0] != no_index)
+      mesh.set_quality(t, rules.objective(mesh.position(p[0]), mesh.position(p[1]), mesh.position(p[2]),
+                                          mesh.position(p[3])));
+  }
+}
+
+bool Workpiece::gather(Task& task, Index point) {
+  ++counts.stars;
+  return (task.points.holds(point) || task.points.try_lock(point)) && alive(point) &&
+         task.star.gather(mesh, point, task.points) == Outcome::done;
+}
+
+void Workpiece::weigh(Task& task, std::vector<WeighedCollapse>& out,
+                      const std::function<bool(Index)>& wanted) {
+  Star& star = task.star;
+  const int dimension = star.dimension();
+  if (dimension == 0) return;
+  star.compute_gradients();
+  for (std::size_t p = 0; p < star.points.size(); ++p) {
+    if (star.edge_dimension(p) != dimension || !wanted(star.points[p])) continue;
+    out.push_back({collapse_weight(star, p, rules), star.centre, star.points[p]});
+    ++counts.weights;
+  }
+}
+
+bool Workpiece::collapse(Task& task, Index onto, bool trial) {
+  ++counts.tests;
+  const std::vector<Index>& link = task.star.points;
+  const auto b = static_cast<std::size_t>(std::find(link.begin(), link.end(), onto) - link.begin());
+  const bool done = b < link.size() && collapse_onto(task, rules, b, trial) == Outcome::done;
+  task.cells.release();
+  if (done && !trial) ++counts.collapses;
+  return done;
+}
+
+}  // namespace tetwright
