@@ -10,19 +10,23 @@ namespace tetwright {
 /// Files by their extension, upper or lower case.
 enum class FileKind {
   surface,   ///< .ply .obj .stl .off
-  tet_mesh,  ///< .vtu .msh .mesh
+  tet_mesh,  ///< .vtu .msh .mesh; to be read .vtk .node .ele too
   unknown
 };
 
-FileKind file_kind(const std::string& path);
+/// Some formats are read but not written.
+enum class FileUse { read, write };
+
+FileKind file_kind(const std::string& path, FileUse use = FileUse::read);
 
 /// ".ply .obj .stl .off", for messages and help.
-std::string known_extensions(FileKind kind);
+std::string known_extensions(FileKind kind, FileUse use = FileUse::read);
 
 /// Reads a file. Throws UsageError if the extension is not one of the kind asked for, InputError if the file
-/// is missing, unreadable or makes no sense.
+/// is missing, unreadable or makes no sense. A .node and an .ele file are a pair, named by either: the other
+/// one stands beside it under the same name.
 TriangleMesh read_surface(const std::string& path);
-ReadTetMesh read_tet_mesh(const std::string& path);
+ReadTetMesh read_tet_mesh(const std::string& path, const ReadTetMeshOptions& options = {});
 
 /// Writes a file whole or not at all (see atomic_file.h); coordinates come back bit by bit. Throws UsageError
 /// if the extension is not one of the kind, OutputError if it can't be written.

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/error.h"
+#include "common/formats/mesh_fields.h"
 #include "common/formats/number_text.h"
 #include "common/formats/text_scanner.h"
 #include "common/interfaces.h"
@@ -126,7 +127,11 @@ void append_triangles(std::string& out, const std::vector<InterfaceTriangle>& tr
 
 }  // namespace
 
-ReadTetMesh read_medit(std::string_view bytes, const std::string& name) { return Reader(bytes, name).read(); }
+ReadTetMesh read_medit(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options) {
+  ReadTetMesh read = Reader(bytes, name).read();
+  take_material(read, options, name);
+  return read;
+}
 
 std::string write_medit(const TetMesh& mesh) {
   // Version 2: coordinates in double precision.

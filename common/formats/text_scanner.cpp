@@ -1,5 +1,6 @@
 #include "common/formats/text_scanner.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -96,6 +97,13 @@ std::string_view TextScanner::rest_of_line() {
   return rest;
 }
 
+std::string_view TextScanner::take_bytes(std::size_t n) {
+  const std::string_view bytes = bytes_.substr(position_, n);
+  position_ += bytes.size();
+  line_ += static_cast<std::size_t>(std::count(bytes.begin(), bytes.end(), '\n'));
+  return bytes;
+}
+
 bool TextScanner::at_end() {
   skip_space(true);
   return position_ == bytes_.size();
@@ -108,6 +116,15 @@ double TextScanner::coordinate(std::string_view what) {
   if (!parse_number(token, value)) fail("expected a " + std::string(what) + ", found " + in_quotes(token));
   if (!std::isfinite(value))
     fail(std::string(what) + " " + in_quotes(token) + " is not finite; remove or repair this point");
+  return value;
+}
+
+double TextScanner::number(std::string_view what) {
+  const std::string_view token = word();
+  if (token.empty()) fail_cut_short(what);
+  double value = 0;
+  if (!parse_number(token, value))
+    fail("expected a number (" + std::string(what) + "), found " + in_quotes(token));
   return value;
 }
 

@@ -36,11 +36,15 @@ class TextScanner {
   std::string_view rest_of_line();
   /// Drops what is left of this line.
   void skip_line() { (void)rest_of_line(); }
+  /// The next `n` bytes as they are; less at the end. Lines in them count as elsewhere.
+  std::string_view take_bytes(std::size_t n);
 
   /// The next word as a number; `what` names it in messages ("coordinate", "index of a point").
   /// Throws InputError at the end, if it is not one or (coordinate) not finite.
   double coordinate(std::string_view what = "coordinate");
   std::int64_t integer(std::string_view what);
+  /// Any number, nan and infinities among them.
+  double number(std::string_view what);
   /// An integer that counts things still to come, of which each takes at least `bytes_each` bytes: throws
   /// InputError if it is negative or more than the rest of the file can hold.
   std::size_t count(std::string_view what, std::size_t bytes_each);

@@ -7,6 +7,7 @@
 
 #include "common/error.h"
 #include "common/formats/byte_order.h"
+#include "common/formats/mesh_fields.h"
 #include "common/formats/number_text.h"
 #include "common/formats/text_scanner.h"
 #include "common/formats/vtu_data.h"
@@ -17,11 +18,12 @@ namespace {
 
 constexpr std::int64_t tet_type = 10;
 constexpr const char* names_field = "material_names";
+constexpr std::int64_t most_components = 1 << 16;
 
 class Reader {
  public:
-  Reader(std::string_view bytes, const std::string& name)
-      : data_(bytes, name), name_(name), file_size_(bytes.size()) {}
+  Reader(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options)
+      : data_(bytes, name), name_(name), options_(options), file_size_(bytes.size()) {}
 
   ReadTetMesh read() {
     const std::string_view type = data_.root().attribute("type").as_string();
@@ -37,8 +39,10 @@ class Reader {
       data_.fail(piece, "more than " + std::to_string(no_index - 1) + " points; split the mesh");
     read_points(piece);
     read_cells(piece);
-    read_materials(piece);
+    result_.mesh.point_fields = read_fields(piece.child("PointData"), points_, nullptr);
+    result_.mesh.cell_fields = read_fields(piece.child("CellData"), cells_, &tet_to_cell_);
     read_names(grid);
+    take_material(result_, options_, name_);
     return std::move(result_);
   }
 
@@ -118,32 +122,36 @@ class Reader {
                             " cells; a tet mesh is needed");
   }
 
-  /// The cell field that tells the material; null if there is none.
-  static pugi::xml_node material_field(pugi::xml_node cell_data) {
-    for (const char* name : {"material", "medit:ref", "gmsh:physical", "MaterialID", "attribute"})
-      if (const pugi::xml_node node = cell_data.find_child_by_attribute("DataArray", "Name", name))
-        return node;
-    pugi::xml_node only;
-    for (const pugi::xml_node node : cell_data.children("DataArray")) {
+  /// The arrays of numbers of PointData or CellData: `n` tuples in the file, of which those of `chosen` are
+  /// kept, or all.
+  std::vector<MeshField> read_fields(pugi::xml_node data, std::size_t n,
+                                     const std::vector<std::size_t>* chosen) const {
+    std::vector<MeshField> fields;
+    for (const pugi::xml_node node : data.children("DataArray")) {
       const std::string_view type = node.attribute("type").as_string();
-      if (!type.starts_with("Int") && !type.starts_with("UInt")) continue;
-      if (node.attribute("NumberOfComponents").as_int(1) > 1) continue;
-      if (only) return {};
-      only = node;
+      const bool integer = type.starts_with("Int") || type.starts_with("UInt");
+      if (!integer && !type.starts_with("Float")) continue;  // text
+      MeshField field;
+      field.name = field_name(node.attribute("Name").as_string());
+      const std::string_view text = node.attribute("NumberOfComponents").as_string("1");
+      std::int64_t components = 0;
+      if (!parse_number(text, components) || components < 1 || components > most_components)
+        data_.fail(node, "NumberOfComponents is " + in_quotes(text) + ", not a number from 1 to " +
+                             std::to_string(most_components));
+      field.components = static_cast<int>(components);
+      const auto per_item = static_cast<std::size_t>(components);
+      field.values = data_.numbers(node, per_item * n);
+      expect_size(node, field.values.size(), per_item * n);
+      if (chosen && chosen->size() < n) {
+        for (std::size_t i = 0; i < chosen->size(); ++i)
+          for (std::size_t k = 0; k < per_item; ++k)
+            field.values[i * per_item + k] = field.values[(*chosen)[i] * per_item + k];
+        field.values.resize(chosen->size() * per_item);
+      }
+      field.integer = integer && all_whole(field);
+      fields.push_back(std::move(field));
     }
-    return only;
-  }
-
-  void read_materials(pugi::xml_node piece) {
-    std::vector<MaterialTag>& materials = result_.mesh.materials;
-    materials.assign(tet_to_cell_.size(), 1);
-    const pugi::xml_node node = material_field(piece.child("CellData"));
-    if (!node) return;
-    const std::vector<std::int64_t> values = data_.integers(node, cells_);
-    expect_size(node, values.size(), cells_);
-    for (std::size_t t = 0; t < materials.size(); ++t)
-      materials[t] = checked_material(values[tet_to_cell_[t]], name_, 0);
-    result_.material_field = node.attribute("Name").as_string();
+    return fields;
   }
 
   void read_names(pugi::xml_node grid) {
@@ -166,6 +174,7 @@ class Reader {
 
   VtuData data_;
   std::string name_;
+  const ReadTetMeshOptions& options_;
   std::size_t file_size_;
   std::size_t points_ = 0, cells_ = 0;
   std::vector<std::size_t> tet_to_cell_;
@@ -188,7 +197,7 @@ class Bytes {
   std::string bytes_;
 };
 
-void append_array(std::string& out, const char* type, const char* name, const char* more,
+void append_array(std::string& out, const char* type, const std::string& name, const std::string& more,
                   const std::string& bytes) {
   out +=
       std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\" " + more + "format=\"binary\">\n";
@@ -196,9 +205,45 @@ void append_array(std::string& out, const char* type, const char* name, const ch
   out += "\n</DataArray>\n";
 }
 
+/// In an attribute; control characters are not in it any more.
+std::string escaped(const std::string& name) {
+  std::string out;
+  for (char c : name) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+void append_field(std::string& out, const MeshField& field, const std::string& name) {
+  const auto append = [&]<class Number>(Number, const char* type) {
+    Bytes<Number> bytes(field.values.size());
+    for (double value : field.values) bytes.add(static_cast<Number>(value));
+    append_array(out, type, escaped(name), "NumberOfComponents=\"" + std::to_string(field.components) + "\" ",
+                 bytes.get());
+  };
+  const auto narrow = [](double value) { return value >= INT32_MIN && value <= INT32_MAX; };
+  if (!field.integer || !all_whole(field))
+    append(double{}, "Float64");
+  else if (std::all_of(field.values.begin(), field.values.end(), narrow))
+    append(std::int32_t{}, "Int32");
+  else
+    append(std::int64_t{}, "Int64");
+}
+
 }  // namespace
 
-ReadTetMesh read_vtu(std::string_view bytes, const std::string& name) { return Reader(bytes, name).read(); }
+ReadTetMesh read_vtu(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options) {
+  return Reader(bytes, name, options).read();
+}
 
 std::string write_vtu(const TetMesh& mesh) {
   std::string out =
@@ -217,8 +262,8 @@ std::string write_vtu(const TetMesh& mesh) {
       for (char c : line) text.add(static_cast<std::uint8_t>(c));
     }
     out += "<FieldData>\n";
-    append_array(out, "UInt8", names_field,
-                 ("NumberOfTuples=\"" + std::to_string(text.get().size()) + "\" ").c_str(), text.get());
+    append_array(out, "UInt8", names_field, "NumberOfTuples=\"" + std::to_string(text.get().size()) + "\" ",
+                 text.get());
     out += "</FieldData>\n";
   }
   out += "<Piece NumberOfPoints=\"" + std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" +
@@ -242,12 +287,21 @@ std::string write_vtu(const TetMesh& mesh) {
     append_array(out, "Int64", "offsets", "", offsets.get());
   }
   append_array(out, "UInt8", "types", "", std::string(mesh.tets.size(), static_cast<char>(tet_type)));
-  out += "</Cells>\n<CellData Scalars=\"material\">\n";
+  out += "</Cells>\n";
+  if (!mesh.point_fields.empty()) {
+    out += "<PointData>\n";
+    const std::vector<std::string> names = field_names_to_write(mesh.point_fields, {});
+    for (std::size_t f = 0; f < names.size(); ++f) append_field(out, mesh.point_fields[f], names[f]);
+    out += "</PointData>\n";
+  }
+  out += "<CellData Scalars=\"material\">\n";
   {
     Bytes<std::int32_t> materials(mesh.tets.size());
     for (MaterialTag tag : mesh.materials) materials.add(tag);
     append_array(out, "Int32", "material", "", materials.get());
   }
+  const std::vector<std::string> names = field_names_to_write(mesh.cell_fields, {"material"});
+  for (std::size_t f = 0; f < names.size(); ++f) append_field(out, mesh.cell_fields[f], names[f]);
   return out + "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
 }
 

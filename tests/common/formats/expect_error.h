@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <type_traits>
 
 #include "common/error.h"
 
@@ -23,11 +24,17 @@ std::string error_of(const Call& call) {
   return {};
 }
 
-/// Expects that reading `text` as file "f" is an InputError with both texts in its message.
+/// Expects that reading `text` as file "f" is an InputError with both texts in its message. Readers of tet
+/// meshes are handed their default options.
 template <class Read>
 void expect_input_error(const Read& read, std::string_view text, const std::string& first,
                         const std::string& second = "") {
-  const std::string message = error_of<InputError>([&] { (void)read(text, "f"); });
+  const std::string message = error_of<InputError>([&] {
+    if constexpr (std::is_invocable_v<const Read&, std::string_view, const char*>)
+      (void)read(text, "f");
+    else
+      (void)read(text, "f", {});
+  });
   EXPECT_EQ(message.substr(0, 3), "f: ") << message;
   EXPECT_NE(message.find(first), std::string::npos) << message;
   EXPECT_NE(message.find(second), std::string::npos) << message;

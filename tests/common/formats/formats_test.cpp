@@ -17,7 +17,14 @@ TEST_F(Formats, KindsByExtension) {
   EXPECT_EQ(file_kind("x.VTU"), FileKind::tet_mesh);
   EXPECT_EQ(file_kind("x.msh"), FileKind::tet_mesh);
   EXPECT_EQ(file_kind("x.mesh"), FileKind::tet_mesh);
-  for (const char* name : {"", "ply", "a/.ply/b", "x.vtk", "x.", "x.ply "})
+  for (const char* name : {"x.vtk", "x.NODE", "x.ele"}) {
+    EXPECT_EQ(file_kind(name), FileKind::tet_mesh);
+    EXPECT_EQ(file_kind(name, FileUse::write), FileKind::unknown);
+  }
+  EXPECT_EQ(file_kind("x.msh", FileUse::write), FileKind::tet_mesh);
+  EXPECT_EQ(known_extensions(FileKind::tet_mesh), ".vtu .msh .mesh .vtk .node .ele");
+  EXPECT_EQ(known_extensions(FileKind::tet_mesh, FileUse::write), ".vtu .msh .mesh");
+  for (const char* name : {"", "ply", "a/.ply/b", "x.vtl", "x.", "x.ply "})
     EXPECT_EQ(file_kind(name), FileKind::unknown);
 }
 
@@ -41,6 +48,10 @@ TEST_F(Formats, UnknownExtensions) {
   EXPECT_NE(in.find("\".xyz\" for a surface; known are .ply .obj .stl .off"), std::string::npos) << in;
   const std::string out = error_of<UsageError>([&] { check_output_path(path("x")); });
   EXPECT_NE(out.find("no extension for a tet mesh; known are .vtu .msh .mesh"), std::string::npos) << out;
+  const std::string only_read = error_of<UsageError>([&] { check_output_path(path("x.vtk")); });
+  EXPECT_NE(only_read.find("\".vtk\" can be read, not written, for a tet mesh; known are .vtu .msh .mesh"),
+            std::string::npos)
+      << only_read;
   // A surface is no place for a tet mesh.
   (void)error_of<UsageError>([&] { check_output_path(path("x.ply")); });
   (void)error_of<UsageError>([&] { check_output_path(path("x.vtu"), FileKind::surface); });
@@ -55,6 +66,30 @@ TEST_F(Formats, MissingFiles) {
   (void)error_of<OutputError>([&] { check_output_path(path("no/a.vtu")); });
   std::filesystem::create_directory(path("a.ply"));
   (void)error_of<InputError>([&] { (void)read_surface(path("a.ply")); });
+}
+
+TEST_F(Formats, EitherNameOfAPairWillDo) {
+  put(path("a.node"), "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n");
+  EXPECT_NE(error_of<InputError>([&] { (void)read_tet_mesh(path("a.node")); }).find("a.ele"),
+            std::string::npos);
+  put(path("a.ele"), "1 4 1\n0 0 1 2 3 7\n");
+  for (const char* name : {"a.node", "a.ele"}) {
+    const ReadTetMesh read = read_tet_mesh(path(name));
+    EXPECT_EQ(read.mesh.tets, (std::vector<Tet>{{0, 1, 2, 3}}));
+    EXPECT_EQ(read.mesh.materials, (std::vector<MaterialTag>{7}));
+  }
+  std::filesystem::rename(path("a.node"), path("B.NODE"));
+  std::filesystem::rename(path("a.ele"), path("B.ELE"));
+  EXPECT_EQ(read_tet_mesh(path("B.ELE")).mesh.tets.size(), 1u);
+}
+
+TEST_F(Formats, OptionsReachTheReader) {
+  TetMesh mesh = tricky_tets();
+  mesh.cell_fields = {{"region", 1, true, {4, 5, 6}}};
+  write_tet_mesh(mesh, path("a.vtu"));
+  const ReadTetMesh read = read_tet_mesh(path("a.vtu"), {.material_field = "region"});
+  EXPECT_EQ(read.material_field, "region");
+  EXPECT_EQ(read.mesh.materials, (std::vector<MaterialTag>{4, 5, 6}));
 }
 
 TEST_F(Formats, MessagesNameTheFile) {

@@ -1,7 +1,10 @@
 #include "common/formats/msh.h"
 
+#include <limits>
+
 #include "common/interfaces.h"
 #include "tests/common/formats/expect_error.h"
+#include "tests/common/formats/same_values.h"
 #include "tests/common/formats/tricky_meshes.h"
 #include "tests/common/small_meshes.h"
 
@@ -54,7 +57,7 @@ TEST(Msh, WhatGmshWrites) {
           "$PhysicalNames\n2\n2 7 \"skin\"\n3 7 \"my bone\"\n$EndPhysicalNames\n"
           "$Nodes\n5\n10 0 0 0\n20 1 0 0\n7 0 1 0\n40 0 0 1\n3 1 1 1\n$EndNodes\n" +
           elements("1 15 2 0 1 10\n2 2 2 7 1 10 20 7\n5 4 2 7 1 10 20 7 40\n6 4 4 8 2 1 3 20 7 40 3\n", "4") +
-          "$NodeData\n1\n\"a\"\n$EndNodeData\n",
+          "$ElementNodeData\n1\n\"a\"\n$EndElementNodeData\n",
       "f");
   EXPECT_EQ(r.mesh.tets, (std::vector<Tet>{{0, 1, 2, 3}, {1, 2, 3, 4}}));
   EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{7, 8}));
@@ -73,11 +76,99 @@ TEST(Msh, QuotesInNamesDoNotBreakTheFile) {
   EXPECT_EQ(read_msh(write_msh(mesh), "f").mesh.material_names.at(0), "a_b_c");
 }
 
+TEST(Msh, FieldsComeBack) {
+  TetMesh mesh = two_tets(2);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  mesh.point_fields = {{"speed", 3, false, {0.1, -0.0, 1e300, 1, 2, 3, 4, 5, 6, 7, 8, 9, nan, -nan, 1.0 / 3}},
+                       {"two", 2, false, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}}};
+  mesh.cell_fields = {{"a \"b\"", 1, true, {7, -8}}, {"ten", 10, false, std::vector<double>(20, 0.5)}};
+  const std::string text = write_msh(mesh);
+  EXPECT_EQ(text.find("-nan"), std::string::npos);
+  const TetMesh back = read_msh(text, "f").mesh;
+  ASSERT_EQ(back.point_fields.size(), 2u);
+  EXPECT_EQ(back.point_fields[0].name, "speed");
+  EXPECT_EQ(back.point_fields[0].components, 3);
+  expect_same_values(back.point_fields[0].values, mesh.point_fields[0].values);
+  // Filled up to what the format knows.
+  EXPECT_EQ(back.point_fields[1].components, 3);
+  EXPECT_EQ(back.point_fields[1].values, (std::vector<double>{1, 2, 0, 3, 4, 0, 5, 6, 0, 7, 8, 0, 9, 10, 0}));
+  ASSERT_EQ(back.cell_fields.size(), 11u);
+  EXPECT_EQ(back.cell_fields[0], (MeshField{"a _b_", 1, false, {7, -8}}));
+  EXPECT_EQ(back.cell_fields[10], (MeshField{"ten_9", 1, false, {0.5, 0.5}}));
+  EXPECT_EQ(back.materials, mesh.materials);
+  // What is read is written again as it was.
+  EXPECT_EQ(write_msh(read_msh(write_msh(back), "f").mesh), write_msh(back));
+}
+
+TEST(Msh, DataOfSomeNodesAndOfOtherElements) {
+  const std::string mesh = head + nodes + elements("3 2 2 7 1 1 2 3\n9 4 2 5 1 1 2 3 4\n", "2");
+  const TetMesh r = read_msh(
+                        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$NodeData\n2\n\"p\"\n\"scheme\"\n1\n0.5\n"
+                        "4\n0\n1\n1\n0\n3 2.5\n$EndNodeData\n" +
+                            mesh.substr(head.size()) +
+                            "$ElementData\n1\n\"e\"\n1\n0\n3\n0\n1\n2\n3 1\n9 4\n$EndElementData\n"
+                            "$ElementData\n1\n\"faces\"\n1\n0\n3\n0\n1\n1\n3 1\n$EndElementData\n",
+                        "f")
+                        .mesh;
+  ASSERT_EQ(r.point_fields.size(), 1u);
+  EXPECT_EQ(r.point_fields[0].name, "p");
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  expect_same_values(r.point_fields[0].values, {nan, nan, 2.5, nan});
+  EXPECT_EQ(r.cell_fields, (std::vector<MeshField>{{"e", 1, false, {4}}}));
+}
+
+TEST(Msh, WhatIsTakenForTheMaterial) {
+  const std::string text = head + nodes + elements("1 4 2 5 6 1 2 3 4\n") +
+                           "$ElementData\n1\n\"material\"\n1\n0\n3\n0\n1\n1\n1 9\n$EndElementData\n";
+  // The format's own place goes before the name.
+  ReadTetMesh r = read_msh(text, "f");
+  EXPECT_EQ(r.material_field, "gmsh:physical");
+  EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{5}));
+  EXPECT_EQ(r.mesh.cell_fields.size(), 1u);
+  r = read_msh(text, "f", {.material_field = "material"});
+  EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{9}));
+  EXPECT_EQ(r.mesh.cell_fields, (std::vector<MeshField>{{"gmsh:physical", 1, true, {5}}}));
+  r = read_msh(text, "f", {.material_field = "gmsh:geometrical"});
+  EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{6}));
+  EXPECT_EQ(r.material_field, "gmsh:geometrical");
+  const std::string said =
+      error_of<InputError>([&] { (void)read_msh(text, "f", {.material_field = "zone"}); });
+  EXPECT_NE(said.find("\"zone\""), std::string::npos) << said;
+  EXPECT_NE(said.find("there is \"gmsh:physical\", \"gmsh:geometrical\", \"material\""), std::string::npos)
+      << said;
+}
+
+TEST(Msh, BadData) {
+  const std::string mesh = head + nodes + elements("1 4 2 5 6 1 2 3 4\n");
+  const auto data = [&](const std::string& tags, const std::string& rows) {
+    return mesh + "$NodeData\n1\n\"p\"\n1\n0\n" + tags + rows + "$EndNodeData\n";
+  };
+  expect_input_error(read_msh, data("3\n0\n1\n1\n", "5 0\n"), "line 24", "node 5");
+  expect_input_error(read_msh, data("3\n0\n1\n1\n", "1 x\n"), "line 24", "\"x\"");
+  expect_input_error(read_msh, data("3\n0\n1\n2\n", "1 0\n"), "line 25", "\"$EndNodeData\"");
+  expect_input_error(read_msh, data("3\n0\n10\n1\n", "1 0\n"), "line 22", "10 components");
+  expect_input_error(read_msh, data("3\n0\n1\n4000000000\n", "1 0\n"), "line 23", "4000000000");
+  expect_input_error(read_msh, data("2\n0\n1\n", "1 0\n"), "line 20", "2 integer tags");
+  expect_input_error(read_msh, mesh + "$NodeData\n1\np\n", "\"$EndNodeData\"", "cut short");
+  expect_input_error(read_msh, mesh + "$NodeData\n1\np\n$EndNodeData\n", "line 17", "in quotes");
+  expect_input_error(read_msh,
+                     head + nodes + elements("1 4 2 5 6 1 2 3 4\n1 4 2 5 6 1 2 3 4\n", "2") +
+                         "$ElementData\n1\n\"e\"\n1\n0\n3\n0\n1\n1\n1 4\n$EndElementData\n",
+                     "element 1", "twice");
+  // Short sections must not ask for memory without end.
+  std::string many = head + "$Nodes\n100\n";
+  for (int i = 1; i <= 100; ++i) many += std::to_string(i) + " 0 0 0\n";
+  many += "$EndNodes\n" + elements("1 4 0 1 2 3 4\n");
+  for (int i = 0; i < 200; ++i)
+    many += "$NodeData\n1\n\"p\"\n1\n0\n3\n0\n9\n1\n1 0 0 0 0 0 0 0 0 0\n$EndNodeData\n";
+  expect_input_error(read_msh, many, "mostly empty");
+}
+
 TEST(Msh, BadInput) {
   const std::string tet = "1 4 2 1 1 1 2 3 4\n";
   expect_input_error(read_msh, "", "empty");
   expect_input_error(read_msh, "hello", "\"hello\"");
-  expect_input_error(read_msh, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n", "\"4.1\"", "msh22");
+  expect_input_error(read_msh, "$MeshFormat\n4 0 8\n$EndMeshFormat\n", "\"4\"", "msh22");
   expect_input_error(read_msh, "$MeshFormat\n2.2 1 8\n", "binary", "ASCII");
   expect_input_error(read_msh, head + nodes, "$Elements", "cut short");
   expect_input_error(read_msh, head + nodes + elements("1 2 2 1 1 1 2 3\n"), "no tets");
@@ -90,6 +181,11 @@ TEST(Msh, BadInput) {
   expect_input_error(read_msh, head + "$Nodes\n2\n1 0 0 0\n1 1 0 0\n$EndNodes\n", "node 1", "twice");
   expect_input_error(read_msh, head + "$Nodes\n1\n1 0 inf 0\n$EndNodes\n", "line 6", "not finite");
   expect_input_error(read_msh, head + elements(tet), "before the nodes");
+  // Part of the volume must not go missing unnoticed.
+  expect_input_error(read_msh, head + nodes + elements("7 5 2 1 1 1 2 3 4 1 2 3 4\n" + tet, "2"), "line 13",
+                     "element 7 is a hexahedron");
+  expect_input_error(read_msh, head + nodes + elements("1 11 2 1 1 1 2 3 4 1 2 3 4 1 2\n"), "line 13",
+                     "quadratic tet");
   const std::string whole = head + nodes + "$Elements\n1\n" + tet + "$EndElements";
   for (std::size_t n = 0; n < whole.size(); ++n)
     (void)error_of<InputError>([&] { (void)read_msh(whole.substr(0, n), "f"); });

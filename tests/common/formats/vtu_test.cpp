@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 
 #include "common/formats/base64.h"
 #include "tests/common/formats/expect_error.h"
+#include "tests/common/formats/same_values.h"
 #include "tests/common/formats/tricky_meshes.h"
 
 namespace tetwright {
@@ -191,6 +193,51 @@ TEST(Vtu, WhichFieldIsTheMaterial) {
                      "f")
                 .mesh.materials[0],
             6);
+}
+
+TEST(Vtu, FieldsComeBack) {
+  TetMesh mesh = tricky_tets();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  mesh.point_fields = {
+      {"a <b> & \"c\"\n", 3, false, {0.1, -0.0, nan, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 1e300}},
+      {"id", 1, true, {1, -2, 3, 4, 5}}};
+  mesh.cell_fields = {{"material", 1, false, {0.5, 1, 2}},
+                      {"big", 1, true, {0x1p53, -0x1p53, 0}},
+                      {"big", 1, true, {0.5, 1, 2}}};  // it says integer, but is not
+  const TetMesh back = read_vtu(write_vtu(mesh), "f").mesh;
+  ASSERT_EQ(back.point_fields.size(), 2u);
+  EXPECT_EQ(back.point_fields[0].name, "a <b> & \"c\"_");
+  EXPECT_EQ(back.point_fields[0].components, 3);
+  expect_same_values(back.point_fields[0].values, mesh.point_fields[0].values);
+  EXPECT_EQ(back.point_fields[1], mesh.point_fields[1]);
+  EXPECT_EQ(back.cell_fields, (std::vector<MeshField>{{"material_2", 1, false, {0.5, 1, 2}},
+                                                      {"big", 1, true, {0x1p53, -0x1p53, 0}},
+                                                      {"big_2", 1, false, {0.5, 1, 2}}}));
+  EXPECT_EQ(back.materials, mesh.materials);
+  // Small whole numbers are Int32, which every reader knows.
+  EXPECT_NE(write_vtu(mesh).find("<DataArray type=\"Int32\" Name=\"id\""), std::string::npos);
+  EXPECT_EQ(write_vtu(read_vtu(write_vtu(back), "f").mesh), write_vtu(back));
+}
+
+TEST(Vtu, FieldsOfTetsAmongOtherCells) {
+  const TetMesh mesh = read_vtu(ascii_file({field("material", 3),
+                                            array<double>("Float32", "stress", {1, 2, 3, 4, 5, 6}, false,
+                                                          "NumberOfComponents=\"3\""),
+                                            {"String", "text", "", "a b", ""}}),
+                                "f")
+                           .mesh;
+  EXPECT_EQ(mesh.cell_fields, (std::vector<MeshField>{{"stress", 3, false, {4, 5, 6}}}));
+}
+
+TEST(Vtu, FieldsThatDoNotFit) {
+  const auto stress = [](const std::vector<double>& values, const std::string& more = "") {
+    return ascii_file({field("material", 3), array<double>("Float64", "stress", values, false, more)});
+  };
+  expect_input_error(read_vtu, stress({1}), "\"stress\": 1 values, but 2", "byte");
+  expect_input_error(read_vtu, stress({1, 2, 3}), "\"stress\": more than the 2", "byte");
+  expect_input_error(read_vtu, stress({1, 2}, "NumberOfComponents=\"0\""), "NumberOfComponents is \"0\"");
+  expect_input_error(read_vtu, stress({1, 2}, "NumberOfComponents=\"4000000000\""), "\"4000000000\"");
+  expect_input_error(read_vtu, replaced(stress({1, 7}), "7.000000", "x"), "\"x\"", "\"stress\"");
 }
 
 TEST(Vtu, BadInput) {

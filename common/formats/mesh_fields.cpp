@@ -1,0 +1,157 @@
+#include "common/formats/mesh_fields.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "common/error.h"
+#include "common/formats/number_text.h"
+#include "common/formats/text_scanner.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::size_t longest_name = 200;  // bytes
+
+/// Bytes of the UTF-8 sequence that begins `text`; 0 if there is none.
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80) return 1;
+  const std::size_t n = first >= 0xf0 && first <= 0xf4  ? 4
+                        : first >= 0xe0 && first < 0xf0 ? 3
+                        : first >= 0xc2 && first < 0xe0 ? 2
+                                                        : 0;
+  if (n == 0 || n > text.size()) return 0;
+  for (std::size_t i = 1; i < n; ++i)
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  // Overlong forms, surrogates and what is beyond the last code point.
+  if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) >= 0xa0) ||
+      (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) >= 0x90))
+    return 0;
+  return n;
+}
+
+bool is_whole(double value) { return value == std::floor(value) && std::fabs(value) <= largest_whole; }
+
+/// The field's values as materials of `file`.
+std::vector<MaterialTag> materials_of(const MeshField& field, const std::string& file) {
+  std::vector<MaterialTag> materials(field.values.size());
+  for (std::size_t t = 0; t < materials.size(); ++t) {
+    const double value = field.values[t];
+    if (!is_whole(value)) {
+      std::string text;
+      append_number(text, value);
+      throw InputError(file, 0,
+                       "cell field " + in_quotes(field.name) + " is to be the material, but tet " +
+                           std::to_string(t) + " (counted from 0) has " + text +
+                           ", which is no whole number that fits into 32 bits");
+    }
+    materials[t] = checked_material(static_cast<std::int64_t>(value), file, 0);
+  }
+  return materials;
+}
+
+/// The index of the cell field to take; the size of the list if there is none.
+std::size_t field_by_rule(const std::vector<MeshField>& fields) {
+  for (const char* name : {"material", "medit:ref", "gmsh:physical", "MaterialID", "attribute"})
+    for (std::size_t f = 0; f < fields.size(); ++f)
+      if (fields[f].name == name && fields[f].components == 1 &&
+          (fields[f].integer || fields[f].name == "material" || all_whole(fields[f])))
+        return f;
+  std::size_t only = fields.size();
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    if (!fields[f].integer || fields[f].components != 1) continue;
+    if (only != fields.size()) return fields.size();
+    only = f;
+  }
+  return only;
+}
+
+[[noreturn]] void fail_no_such_field(const ReadTetMesh& read, const std::string& wanted,
+                                     const std::string& file, const std::vector<std::string>& also) {
+  std::vector<std::string> names = also;
+  if (!read.material_field.empty()) names.insert(names.begin(), read.material_field);
+  for (const MeshField& field : read.mesh.cell_fields)
+    if (field.components == 1 && all_whole(field)) names.push_back(field.name);
+  constexpr std::size_t most = 20;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(most, names.size()); ++i)
+    list += (i ? ", " : "; there is ") + in_quotes(names[i]);
+  if (names.size() > most) list += " and " + std::to_string(names.size() - most) + " more";
+  throw InputError(file, 0,
+                   "no cell field " + in_quotes(wanted) + " with one number for each tet" +
+                       (list.empty() ? "; there is no integer cell field in it" : list));
+}
+
+}  // namespace
+
+std::string field_name(std::string_view name) {
+  name = name.substr(0, longest_name);
+  std::string out;
+  while (!name.empty()) {
+    const std::size_t n = utf8_length(name);
+    if (n == 0 || static_cast<unsigned char>(name[0]) < ' ' || name[0] == 127)
+      out += '_';
+    else
+      out += name.substr(0, n);
+    name.remove_prefix(std::max<std::size_t>(1, n));
+  }
+  return out.empty() ? "field" : out;
+}
+
+std::vector<std::string> field_names_to_write(const std::vector<MeshField>& fields,
+                                              std::vector<std::string> taken) {
+  std::set<std::string> used(taken.begin(), taken.end());
+  std::map<std::string, std::size_t> next;  // the number to try, so that many alike cost no square
+  std::vector<std::string> names;
+  for (const MeshField& field : fields) {
+    const std::string name = field_name(field.name);
+    std::string unique = name;
+    std::size_t& number = next.try_emplace(name, 2).first->second;
+    while (!used.insert(unique).second) unique = name + "_" + std::to_string(number++);
+    names.push_back(unique);
+  }
+  return names;
+}
+
+bool all_whole(const MeshField& field) {
+  return std::all_of(field.values.begin(), field.values.end(), is_whole);
+}
+
+void take_material(ReadTetMesh& read, const ReadTetMeshOptions& options, const std::string& file,
+                   const std::vector<std::string>& also) {
+  TetMesh& mesh = read.mesh;
+  std::vector<MeshField>& fields = mesh.cell_fields;
+  std::size_t taken = fields.size();
+  if (options.material_field.empty()) {
+    if (!read.material_field.empty()) return;
+    taken = field_by_rule(fields);
+  } else {
+    if (options.material_field == read.material_field) return;
+    const std::string wanted = field_name(options.material_field);
+    for (std::size_t f = fields.size(); f-- > 0;)
+      if (fields[f].name == wanted && fields[f].components == 1) taken = f;
+    if (taken == fields.size()) fail_no_such_field(read, options.material_field, file, also);
+  }
+  if (taken == fields.size()) {
+    mesh.materials.assign(mesh.tets.size(), 1);
+    return;
+  }
+  std::vector<MaterialTag> materials = materials_of(fields[taken], file);
+  const std::string name = fields[taken].name;
+  if (read.material_field.empty()) {
+    fields.erase(fields.begin() + static_cast<std::ptrdiff_t>(taken));
+  } else {
+    // The format's own materials are a field like others then.
+    fields[taken] = {read.material_field, 1, true,
+                     std::vector<double>(mesh.materials.begin(), mesh.materials.end())};
+  }
+  // Names belong to the field that the file means to be the material.
+  if (!options.material_field.empty() && name != "material") mesh.material_names.clear();
+  mesh.materials = std::move(materials);
+  read.material_field = name;
+}
+
+}  // namespace tetwright

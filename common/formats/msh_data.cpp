@@ -1,0 +1,117 @@
+#include "common/formats/msh_data.h"
+
+#include <cmath>
+#include <limits>
+
+#include "common/error.h"
+#include "common/formats/mesh_fields.h"
+#include "common/formats/number_text.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::int64_t most_components = 9;
+
+void append_value(std::string& out, double value) {
+  if (std::isnan(value))
+    out += "nan";  // of either sign, which other readers do not know
+  else
+    append_number(out, value);
+}
+
+}  // namespace
+
+MeshField read_msh_data(TextScanner& in, const std::string& what, const FileNumbers& numbers,
+                        std::size_t items, bool missing_allowed, std::size_t& room) {
+  MeshField field;
+  const std::size_t strings = in.count("number of string tags", 2);
+  in.skip_line();
+  for (std::size_t i = 0; i < strings; ++i) {
+    std::string_view line;
+    std::size_t number = 0;
+    do {
+      if (in.left() == 0) in.fail_cut_short("name");
+      number = in.line();
+      line = in.rest_of_line();
+    } while (line.find_first_not_of(" \t") == std::string_view::npos);
+    if (i > 0) continue;
+    const std::size_t open = line.find('"'), close = line.rfind('"');
+    if (open == close)
+      throw InputError(in.name(), number, "expected the name of a field in quotes, found " + in_quotes(line));
+    field.name = std::string(line.substr(open + 1, close - open - 1));
+  }
+  field.name = field_name(field.name);
+  const std::size_t reals = in.count("number of real tags", 2);
+  for (std::size_t i = 0; i < reals; ++i) (void)in.number("real tag");
+  const std::size_t integers = in.count("number of integer tags", 2);
+  if (integers < 3)
+    in.fail("field " + in_quotes(field.name) + " has " + std::to_string(integers) +
+            " integer tags; its components and its number of values are missing");
+  (void)in.integer("time step");
+  const std::int64_t components = in.integer("number of components");
+  if (components < 1 || components > most_components)
+    in.fail("field " + in_quotes(field.name) + " has " + std::to_string(components) +
+            " components; 1, 3 and 9 are known");
+  const auto per_item = static_cast<std::size_t>(components);
+  const std::size_t rows = in.count("number of rows", 2 + 2 * per_item);
+  for (std::size_t i = 3; i < integers; ++i) (void)in.integer("integer tag");
+  field.components = static_cast<int>(components);
+  for (std::size_t r = 0; r < rows; ++r) {
+    const std::int64_t number = in.integer("number of a " + what);
+    const Index item = numbers.find(number);
+    if (item == no_index) {
+      if (!missing_allowed)
+        in.fail("field " + in_quotes(field.name) + " names " + what + " " + std::to_string(number) +
+                ", which is not in the file; export it again");
+      for (std::size_t k = 0; k < per_item; ++k) (void)in.number("value");
+      continue;
+    }
+    if (field.values.empty()) {
+      if (per_item * items > room)
+        in.fail("field " + in_quotes(field.name) + " has " + std::to_string(rows) + " rows for " +
+                std::to_string(items) + " " + what + "s; the fields of this file are mostly empty");
+      room -= per_item * items;
+      field.values.assign(per_item * items, std::numeric_limits<double>::quiet_NaN());
+    }
+    for (std::size_t k = 0; k < per_item; ++k) field.values[item * per_item + k] = in.number("value");
+  }
+  return field;
+}
+
+void append_msh_data(std::string& out, const std::string& section, const std::vector<MeshField>& fields,
+                     std::size_t items) {
+  const std::vector<std::string> names = field_names_to_write(fields, {});
+  // One view: `used` components from `first` on of each item, filled up to `written`.
+  const auto append_view = [&](const MeshField& field, const std::string& name, int first, int used,
+                               int written) {
+    out += "$" + section + "\n1\n\"" + msh_name(name) + "\"\n1\n0\n3\n0\n" + std::to_string(written) + "\n" +
+           std::to_string(items) + "\n";
+    for (std::size_t i = 0; i < items; ++i) {
+      append_number(out, i + 1);
+      for (int k = 0; k < written; ++k) {
+        out += ' ';
+        append_value(out, k < used ? field.values[i * static_cast<std::size_t>(field.components) +
+                                                  static_cast<std::size_t>(first + k)]
+                                   : 0.0);
+      }
+      out += '\n';
+    }
+    out += "$End" + section + "\n";
+  };
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const int n = fields[f].components;
+    if (n <= most_components)
+      append_view(fields[f], names[f], 0, n, n == 1 ? 1 : n <= 3 ? 3 : 9);
+    else
+      for (int k = 0; k < n; ++k) append_view(fields[f], names[f] + "_" + std::to_string(k), k, 1, 1);
+  }
+}
+
+std::string msh_name(const std::string& name) {
+  std::string out;
+  for (char c : name) out += c == '"' || c == '\\' || static_cast<unsigned char>(c) < ' ' ? '_' : c;
+  return out;
+}
+
+}  // namespace tetwright

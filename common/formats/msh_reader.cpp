@@ -1,0 +1,375 @@
+#include <array>
+#include <map>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "common/error.h"
+#include "common/formats/mesh_fields.h"
+#include "common/formats/msh.h"
+#include "common/formats/msh_data.h"
+#include "common/formats/text_scanner.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::int64_t tet_type = 4;
+
+/// What Gmsh calls an element of a volume; null for points, lines, faces and unknown ones.
+const char* volume_element(std::int64_t type) {
+  switch (type) {
+    case 4:
+      return "tet of 4 points";
+    case 5:
+    case 12:
+    case 17:
+    case 92:
+    case 93:
+      return "hexahedron";
+    case 6:
+    case 13:
+    case 18:
+    case 90:
+    case 91:
+      return "prism";
+    case 7:
+    case 14:
+    case 19:
+    case 118:
+    case 119:
+      return "pyramid";
+    case 11:
+      return "quadratic tet of 10 points";
+    case 29:
+    case 30:
+    case 31:
+    case 71:
+    case 72:
+    case 73:
+    case 74:
+    case 75:
+      return "tet of higher order";
+    default:
+      return nullptr;
+  }
+}
+
+class Reader {
+ public:
+  Reader(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options)
+      : in_(bytes, name), options_(options), bytes_(bytes) {}
+
+  ReadTetMesh read() {
+    if (in_.at_end()) in_.fail("the file is empty");
+    read_format();
+    for (std::string_view section; !(section = in_.word()).empty();) {
+      if (section[0] != '$') in_.fail("expected a section such as $Nodes, found " + in_quotes(section));
+      if (section == "$PhysicalNames")
+        read_names();
+      else if (section == "$Nodes")
+        version_4_ ? read_nodes_4() : read_nodes_2();
+      else if (section == "$Elements")
+        version_4_ ? read_elements_4() : read_elements_2();
+      else if (section == "$Entities" && version_4_)
+        read_entities();
+      else if (section == "$PartitionedEntities")
+        in_.fail("the mesh is partitioned; save it as one (gmsh -part 0, or Mesh > Unpartition)");
+      else if (section == "$ParametricNodes")
+        in_.fail("parametric nodes are not supported; save the file without them");
+      else
+        keep_or_skip(section);
+    }
+    if (!has_elements_) in_.fail("there is no section $Elements in it; the file is cut short");
+    if (result_.mesh.tets.empty())
+      in_.fail("there are no tets of four points (type 4) in it; a volume mesh is needed, not a surface");
+    read_data();
+    set_materials();
+    return std::move(result_);
+  }
+
+ private:
+  void read_format() {
+    if (const std::string_view word = in_.word(); word != "$MeshFormat")
+      in_.fail("expected $MeshFormat at the beginning, found " + in_quotes(word) + "; is this a Gmsh file?");
+    const std::string_view version = in_.word();
+    version_4_ = version == "4.1";
+    if (!version.starts_with("2") && !version_4_)
+      in_.fail("version " + in_quotes(version) +
+               " of the format is not supported; save it as version 2.2 or 4.1 ASCII (gmsh -format msh22)");
+    if (in_.word() != "0") in_.fail("binary files are not supported; save it as version 2.2 or 4.1 ASCII");
+    (void)in_.integer("size of a number");
+    expect("$EndMeshFormat");
+  }
+
+  void expect(std::string_view end) {
+    const std::string_view word = in_.word();
+    if (word.empty()) in_.fail_cut_short(end);
+    if (word != end) in_.fail("expected " + std::string(end) + ", found " + in_quotes(word));
+  }
+
+  /// Data is read when all nodes and elements are known; a scanner stays where it begins.
+  void keep_or_skip(std::string_view section) {
+    if (section == "$NodeData") node_data_.push_back(in_);
+    if (section == "$ElementData") element_data_.push_back(in_);
+    const std::string end = "$End" + std::string(section.substr(1));
+    in_.skip_line();
+    for (;;) {
+      if (in_.at_end()) in_.fail_cut_short("line " + in_quotes(end));
+      if (in_.word_on_line() == end) return;
+      in_.skip_line();
+    }
+  }
+
+  void read_names() {
+    const std::size_t n = in_.count("number of physical names", 6);
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::int64_t dimension = in_.integer("dimension of a physical group");
+      const std::int64_t tag = in_.integer("physical group");
+      const std::size_t line = in_.line();
+      std::string_view name = in_.rest_of_line();
+      const std::size_t open = name.find('"'), close = name.rfind('"');
+      if (open == close)
+        throw InputError(in_.name(), line,
+                         "expected the name of a physical group in quotes, found " + in_quotes(name));
+      name = name.substr(open + 1, close - open - 1);
+      if (dimension == 3)
+        result_.mesh.material_names[checked_material(tag, in_.name(), line)] = std::string(name);
+    }
+    expect("$EndPhysicalNames");
+  }
+
+  Vec3 read_point() {
+    Vec3 p;
+    for (int k = 0; k < 3; ++k) p[k] = in_.coordinate();
+    return p;
+  }
+
+  std::size_t begin_nodes(std::size_t n) {
+    if (n >= no_index) in_.fail("more than " + std::to_string(no_index - 1) + " points; split the mesh");
+    return n;
+  }
+
+  void end_nodes() {
+    expect("$EndNodes");
+    if (const std::optional<std::int64_t> twice = nodes_.sort())
+      in_.fail("node " + std::to_string(*twice) + " appears twice");
+  }
+
+  void read_nodes_2() {
+    if (!result_.mesh.points.empty()) in_.fail("a second section $Nodes");
+    result_.mesh.points.resize(begin_nodes(in_.count("number of nodes", 8)));
+    for (Vec3& p : result_.mesh.points) {
+      nodes_.add(in_.integer("number of a node"));
+      p = read_point();
+    }
+    end_nodes();
+  }
+
+  void read_nodes_4() {
+    if (!result_.mesh.points.empty()) in_.fail("a second section $Nodes");
+    const std::size_t blocks = in_.count("number of blocks of nodes", 8);
+    const std::size_t n = begin_nodes(in_.count("number of nodes", 8));
+    (void)in_.integer("smallest number of a node");
+    (void)in_.integer("largest number of a node");
+    result_.mesh.points.reserve(n);
+    for (std::size_t b = 0; b < blocks; ++b) {
+      const std::int64_t dimension = read_dimension();
+      (void)in_.integer("number of an entity");
+      const std::int64_t parametric = in_.integer("flag of parametric nodes");
+      if (parametric != 0 && parametric != 1)
+        in_.fail("the flag of parametric nodes is 0 or 1, not " + std::to_string(parametric));
+      const std::size_t in_block = in_.count("number of nodes", 8);
+      if (in_block > n - result_.mesh.points.size())
+        in_.fail("the blocks have more nodes than the " + std::to_string(n) + " that $Nodes promises");
+      for (std::size_t i = 0; i < in_block; ++i) nodes_.add(in_.integer("number of a node"));
+      for (std::size_t i = 0; i < in_block; ++i) {
+        result_.mesh.points.push_back(read_point());
+        for (std::int64_t k = 0; k < dimension * parametric; ++k) (void)in_.number("parameter of a node");
+      }
+    }
+    if (result_.mesh.points.size() != n)
+      in_.fail("the blocks have " + std::to_string(result_.mesh.points.size()) + " nodes, but " +
+               std::to_string(n) + " were promised; the file is damaged");
+    end_nodes();
+  }
+
+  std::int64_t read_dimension() {
+    const std::int64_t dimension = in_.integer("dimension of an entity");
+    if (dimension < 0 || dimension > 3)
+      in_.fail("dimension " + std::to_string(dimension) + " of an entity; 0 to 3 are known");
+    return dimension;
+  }
+
+  void read_entities() {
+    std::array<std::size_t, 4> counts{};
+    for (std::size_t& n : counts) n = in_.count("number of entities", 2);
+    for (std::size_t dimension = 0; dimension < 4; ++dimension)
+      for (std::size_t i = 0; i < counts[dimension]; ++i) {
+        const std::int64_t tag = in_.integer("number of an entity");
+        for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) (void)in_.number("bound of an entity");
+        const std::size_t physical = in_.count("number of physical groups", 2);
+        for (std::size_t k = 0; k < physical; ++k) {
+          const std::int64_t group = in_.integer("physical group");
+          if (dimension == 3 && k == 0) volume_to_group_[tag] = group;
+        }
+        if (dimension == 0) continue;
+        const std::size_t bounding = in_.count("number of bounding entities", 2);
+        for (std::size_t k = 0; k < bounding; ++k) (void)in_.integer("bounding entity");
+      }
+    expect("$EndEntities");
+  }
+
+  void begin_elements() {
+    if (has_elements_) in_.fail("a second section $Elements");
+    if (result_.mesh.points.empty()) in_.fail("the elements come before the nodes, or there are no nodes");
+    has_elements_ = true;
+    keep_numbers_ = bytes_.find("$ElementData") != std::string_view::npos;
+  }
+
+  void refuse_volume(std::int64_t type, std::int64_t element) {
+    const char* kind = volume_element(type);
+    in_.fail("element " + std::to_string(element) + " is a " + (kind ? kind : "volume element") + " (type " +
+             std::to_string(type) + "); only tets of 4 points are supported, convert or split it");
+  }
+
+  void read_tet(std::int64_t element) {
+    Tet tet;
+    for (Index& vertex : tet) {
+      const std::int64_t node = in_.integer("node of a tet");
+      vertex = nodes_.find(node);
+      if (vertex == no_index)
+        in_.fail("element " + std::to_string(element) + " names node " + std::to_string(node) +
+                 ", which is not in $Nodes; export the file again");
+    }
+    result_.mesh.tets.push_back(tet);
+    if (keep_numbers_) elements_.add(element);
+  }
+
+  /// In version 2 each element has a line of its own: number, type, tags, nodes.
+  void read_elements_2() {
+    begin_elements();
+    const std::size_t n = in_.count("number of elements", 7);
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::int64_t element = in_.integer("number of an element");
+      const std::int64_t type = in_.integer("type of an element");
+      const std::int64_t tags = in_.integer("number of tags");
+      if (type == tet_type) {
+        std::int64_t physical = 0, geometrical = 0;
+        for (std::int64_t k = 0; k < tags; ++k) {
+          const std::int64_t tag = in_.integer("tag");
+          if (k == 0) physical = tag;
+          if (k == 1) geometrical = tag;
+        }
+        any_physical_ = any_physical_ || tags > 0;
+        any_geometrical_ = any_geometrical_ || tags > 1;
+        add_groups(physical, geometrical);
+        read_tet(element);
+      } else if (volume_element(type)) {
+        refuse_volume(type, element);
+      }
+      in_.skip_line();
+    }
+    expect("$EndElements");
+  }
+
+  void read_elements_4() {
+    begin_elements();
+    const std::size_t blocks = in_.count("number of blocks of elements", 8);
+    const std::size_t n = in_.count("number of elements", 4);
+    (void)in_.integer("smallest number of an element");
+    (void)in_.integer("largest number of an element");
+    std::size_t done = 0;
+    for (std::size_t b = 0; b < blocks; ++b) {
+      const std::int64_t dimension = read_dimension();
+      const std::int64_t volume = in_.integer("number of an entity");
+      const std::int64_t type = in_.integer("type of an element");
+      const std::size_t in_block = in_.count("number of elements", 4);
+      if (in_block > n - done)
+        in_.fail("the blocks have more elements than the " + std::to_string(n) + " that $Elements promises");
+      done += in_block;
+      const auto group = volume_to_group_.find(volume);
+      if (type == tet_type && in_block > 0) {
+        any_physical_ = any_physical_ || group != volume_to_group_.end();
+        any_geometrical_ = true;
+      }
+      for (std::size_t i = 0; i < in_block; ++i) {
+        const std::int64_t element = in_.integer("number of an element");
+        if (type == tet_type) {
+          add_groups(group == volume_to_group_.end() ? 0 : group->second, volume);
+          read_tet(element);
+        } else if (dimension == 3 || volume_element(type)) {
+          refuse_volume(type, element);
+        } else {
+          in_.skip_line();
+        }
+      }
+    }
+    if (done != n)
+      in_.fail("the blocks have " + std::to_string(done) + " elements, but " + std::to_string(n) +
+               " were promised; the file is damaged");
+    expect("$EndElements");
+  }
+
+  void add_groups(std::int64_t physical, std::int64_t geometrical) {
+    result_.mesh.materials.push_back(checked_material(physical, in_.name(), in_.line()));
+    // Version 2 has physical groups wherever it has others.
+    if (version_4_ || options_.material_field == geometrical_name)
+      geometrical_.push_back(checked_material(geometrical, in_.name(), in_.line()));
+  }
+
+  void read_data() {
+    const TetMesh& mesh = result_.mesh;
+    std::size_t room = bytes_.size();
+    for (TextScanner& in : node_data_) {
+      MeshField field = read_msh_data(in, "node", nodes_, mesh.points.size(), false, room);
+      if (!field.values.empty()) result_.mesh.point_fields.push_back(std::move(field));
+    }
+    if (element_data_.empty()) return;
+    if (const std::optional<std::int64_t> twice = elements_.sort())
+      in_.fail("element " + std::to_string(*twice) + " appears twice");
+    for (TextScanner& in : element_data_) {
+      MeshField field = read_msh_data(in, "element", elements_, mesh.tets.size(), true, room);
+      if (!field.values.empty()) result_.mesh.cell_fields.push_back(std::move(field));
+    }
+  }
+
+  void set_materials() {
+    TetMesh& mesh = result_.mesh;
+    std::vector<std::string> also;
+    const bool asked = options_.material_field == geometrical_name;
+    if (any_geometrical_ && (asked || (version_4_ && !any_physical_))) {
+      mesh.materials = std::move(geometrical_);
+      result_.material_field = geometrical_name;
+      // These are names of physical groups.
+      mesh.material_names.clear();
+    } else if (any_physical_) {
+      result_.material_field = "gmsh:physical";
+      if (any_geometrical_) also.emplace_back(geometrical_name);
+    }
+    take_material(result_, options_, in_.name(), also);
+  }
+
+  static constexpr const char* geometrical_name = "gmsh:geometrical";
+
+  TextScanner in_;
+  const ReadTetMeshOptions& options_;
+  std::string_view bytes_;
+  ReadTetMesh result_;
+  FileNumbers nodes_, elements_;
+  std::unordered_map<std::int64_t, std::int64_t> volume_to_group_;
+  std::vector<MaterialTag> geometrical_;
+  std::vector<TextScanner> node_data_, element_data_;
+  bool version_4_ = false;
+  bool has_elements_ = false;
+  bool any_physical_ = false, any_geometrical_ = false;
+  bool keep_numbers_ = false;  ///< those of the elements
+};
+
+}  // namespace
+
+ReadTetMesh read_msh(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options) {
+  return Reader(bytes, name, options).read();
+}
+
+}  // namespace tetwright

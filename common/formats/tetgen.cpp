@@ -1,0 +1,153 @@
+#include "common/formats/tetgen.h"
+
+#include <cmath>
+
+#include "common/error.h"
+#include "common/formats/mesh_fields.h"
+#include "common/formats/text_scanner.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::int64_t most_attributes = 1000;
+
+/// One of the two files: a line of counts, then a line for each item; # begins a comment.
+class Lines {
+ public:
+  Lines(std::string_view bytes, const std::string& name) : in_(bytes, name, '#') {
+    if (in_.at_end()) in_.fail("the file is empty");
+  }
+
+  /// A number of this line; `what` says which one is missing.
+  template <class Number>
+  Number next(const std::string& what) {
+    const std::string_view word = in_.word_on_line();
+    Number value{};
+    if (word.empty()) in_.fail("the line ends where a " + what + " was expected; the file is damaged");
+    if (!parse_number(word, value)) in_.fail("expected a number (" + what + "), found " + in_quotes(word));
+    return value;
+  }
+  /// A count at the end of the first line, which may be left out: then 0.
+  std::int64_t optional_count(const std::string& what, std::int64_t most) {
+    const std::string_view word = in_.word_on_line();
+    std::int64_t value = 0;
+    if (word.empty()) return 0;
+    if (!parse_number(word, value)) in_.fail("expected a number (" + what + "), found " + in_quotes(word));
+    if (value < 0 || value > most)
+      in_.fail("the " + what + " is " + std::to_string(value) + ", not 0 to " + std::to_string(most));
+    return value;
+  }
+  /// To the next line that has something.
+  void begin_line(const std::string& what) {
+    if (in_.at_end()) in_.fail_cut_short(what);
+  }
+  void end_line() { in_.skip_line(); }
+
+  /// Throws InputError if `n` lines of `words` words each cannot be there.
+  std::size_t checked(std::int64_t n, std::size_t words, const std::string& what) {
+    if (n < 0) in_.fail("the number of " + what + " is negative: " + std::to_string(n));
+    if (static_cast<std::uint64_t>(n) > (in_.left() + 1) / (2 * words))
+      in_.fail(std::to_string(n) + " " + what + " are promised, but only " + std::to_string(in_.left()) +
+               " bytes follow; the file is cut short or its header is wrong");
+    return static_cast<std::size_t>(n);
+  }
+
+  [[noreturn]] void fail(const std::string& message) const { in_.fail(message); }
+
+ private:
+  TextScanner in_;
+};
+
+/// A field for each attribute, with room for `n` items.
+std::vector<MeshField> attribute_fields(std::int64_t attributes, std::size_t n, const char* first) {
+  std::vector<MeshField> fields;
+  for (std::int64_t k = 0; k < attributes; ++k)
+    fields.push_back(
+        {k == 0 ? first : "attribute" + std::to_string(k + 1), 1, false, std::vector<double>(n)});
+  return fields;
+}
+
+/// Reads the points; the first one's number.
+std::int64_t read_nodes(Lines& in, TetMesh& mesh) {
+  const auto promised = in.next<std::int64_t>("number of points");
+  if (const auto dimension = in.next<std::int64_t>("dimension"); dimension != 3)
+    in.fail("dimension " + std::to_string(dimension) + "; a mesh of tets has 3");
+  const std::int64_t attributes = in.optional_count("number of attributes", most_attributes);
+  const std::int64_t markers = in.optional_count("number of boundary markers", 1);
+  in.end_line();
+  const std::size_t n = in.checked(promised, 4 + static_cast<std::size_t>(attributes + markers), "points");
+  if (n == 0) in.fail("there are no points in it");
+  if (n >= no_index) in.fail("more than " + std::to_string(no_index - 1) + " points; split the mesh");
+  mesh.points.resize(n);
+  mesh.point_fields = attribute_fields(attributes, n, "attribute1");
+  if (markers) mesh.point_fields.push_back({"boundary_marker", 1, true, std::vector<double>(n)});
+  std::int64_t first = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    in.begin_line("point");
+    const auto number = in.next<std::int64_t>("number of a point");
+    if (i == 0) {
+      if (number != 0 && number != 1)
+        in.fail("the first point has the number " + std::to_string(number) + "; numbers begin at 0 or 1");
+      first = number;
+    }
+    if (number - first != static_cast<std::int64_t>(i))
+      in.fail("point " + std::to_string(number) + " stands where point " +
+              std::to_string(first + static_cast<std::int64_t>(i)) + " was expected");
+    for (int k = 0; k < 3; ++k) {
+      mesh.points[i][k] = in.next<double>("coordinate");
+      if (!std::isfinite(mesh.points[i][k]))
+        in.fail("a coordinate of point " + std::to_string(number) + " is not finite; remove or repair it");
+    }
+    for (std::int64_t k = 0; k < attributes; ++k)
+      mesh.point_fields[static_cast<std::size_t>(k)].values[i] = in.next<double>("attribute");
+    if (markers)
+      mesh.point_fields.back().values[i] = static_cast<double>(in.next<std::int64_t>("boundary marker"));
+    in.end_line();
+  }
+  return first;
+}
+
+void read_tets(Lines& in, std::int64_t first, TetMesh& mesh) {
+  const auto promised = in.next<std::int64_t>("number of tets");
+  const auto corners = in.next<std::int64_t>("number of points of a tet");
+  if (corners == 10) in.fail("tets of 10 points; linear tets are needed, run TetGen without -o2");
+  if (corners != 4) in.fail("tets of " + std::to_string(corners) + " points; there are 4 in a linear tet");
+  const std::int64_t attributes = in.optional_count("number of attributes", most_attributes);
+  in.end_line();
+  const std::size_t n = in.checked(promised, 5 + static_cast<std::size_t>(attributes), "tets");
+  if (n == 0) in.fail("there are no tets in it; a tet mesh is needed, not a surface");
+  mesh.tets.resize(n);
+  mesh.cell_fields = attribute_fields(attributes, n, "attribute");
+  for (std::size_t t = 0; t < n; ++t) {
+    in.begin_line("tet");
+    const auto number = in.next<std::int64_t>("number of a tet");
+    for (Index& vertex : mesh.tets[t]) {
+      const auto point = in.next<std::int64_t>("number of a point");
+      if (point < first || point - first >= std::ssize(mesh.points))
+        in.fail("tet " + std::to_string(number) + " names point " + std::to_string(point) +
+                ", but those of the .node file are " + std::to_string(first) + " to " +
+                std::to_string(first + std::ssize(mesh.points) - 1) + "; do the files belong together?");
+      vertex = static_cast<Index>(point - first);
+    }
+    for (MeshField& field : mesh.cell_fields) field.values[t] = in.next<double>("attribute");
+    in.end_line();
+  }
+  // Attributes are numbers of regions, which the file writes as any other number.
+  for (MeshField& field : mesh.cell_fields) field.integer = all_whole(field);
+}
+
+}  // namespace
+
+ReadTetMesh read_tetgen(std::string_view node, const std::string& node_name, std::string_view ele,
+                        const std::string& ele_name, const ReadTetMeshOptions& options) {
+  ReadTetMesh read;
+  Lines nodes(node, node_name);
+  const std::int64_t first = read_nodes(nodes, read.mesh);
+  Lines tets(ele, ele_name);
+  read_tets(tets, first, read.mesh);
+  take_material(read, options, ele_name);
+  return read;
+}
+
+}  // namespace tetwright

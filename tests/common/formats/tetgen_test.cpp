@@ -1,0 +1,85 @@
+#include "common/formats/tetgen.h"
+
+#include <cmath>
+
+#include "tests/common/formats/expect_error.h"
+
+namespace tetwright {
+namespace {
+
+const std::string node =
+    "# made by hand\n\n5  3  2  1  # points\n1 0 0 0 0.5 7 1\n2 1 0 0 1.5 8 0\n3 0 1 0 nan 9 -1\n\n"
+    "4 0 0 1 3.5 10 2 # the top\n5 1 1 1 4.5 11 0\n";
+const std::string ele = "2 4 2\n1 1 2 3 4  3 0.25\n# between\n2 2 3 4 5  -4 2\n";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(TetGen, PointsTetsAndTheirNumbers) {
+  const ReadTetMesh r = read_tetgen(node, "n", ele, "e");
+  EXPECT_EQ(r.mesh.tets, (std::vector<Tet>{{0, 1, 2, 3}, {1, 2, 3, 4}}));
+  EXPECT_EQ(r.mesh.points[3], Vec3(0, 0, 1));
+  EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{3, -4}));
+  EXPECT_EQ(r.material_field, "attribute");
+  ASSERT_EQ(r.mesh.point_fields.size(), 3u);
+  EXPECT_EQ(r.mesh.point_fields[0].name, "attribute1");
+  EXPECT_EQ(r.mesh.point_fields[0].values[1], 1.5);
+  EXPECT_TRUE(std::isnan(r.mesh.point_fields[0].values[2]));
+  EXPECT_EQ(r.mesh.point_fields[1], (MeshField{"attribute2", 1, false, {7, 8, 9, 10, 11}}));
+  EXPECT_EQ(r.mesh.point_fields[2], (MeshField{"boundary_marker", 1, true, {1, 0, -1, 2, 0}}));
+  EXPECT_EQ(r.mesh.cell_fields, (std::vector<MeshField>{{"attribute2", 1, false, {0.25, 2}}}));
+}
+
+TEST(TetGen, NumbersFromZeroAndShortHeads) {
+  const ReadTetMesh r =
+      read_tetgen("4 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1 99\n", "n", "1 4\n0 0 1 2 3\n", "e");
+  EXPECT_EQ(r.mesh.tets, (std::vector<Tet>{{0, 1, 2, 3}}));
+  EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{1}));
+  EXPECT_EQ(r.material_field, "");
+  EXPECT_TRUE(r.mesh.point_fields.empty());
+}
+
+TEST(TetGen, AnAttributeThatIsNotWholeIsAField) {
+  const ReadTetMesh r = read_tetgen(node, "n", "1 4 1\n1 1 2 3 4 0.5\n", "e");
+  EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{1}));
+  EXPECT_EQ(r.mesh.cell_fields, (std::vector<MeshField>{{"attribute", 1, false, {0.5}}}));
+}
+
+TEST(TetGen, BadInput) {
+  const auto expect = [](const std::string& n, const std::string& e, const std::string& first,
+                         const std::string& second = "") {
+    const std::string message = error_of<InputError>([&] { (void)read_tetgen(n, "n", e, "e"); });
+    EXPECT_EQ(message.find(first), 0u) << message;
+    EXPECT_NE(message.find(second), std::string::npos) << message;
+  };
+  expect("", ele, "n: line 1:", "empty");
+  expect(node, " \n#\n", "e: line", "empty");
+  expect(replaced(node, "5  3", "5  2"), ele, "n: line 3:", "dimension 2");
+  expect(replaced(node, "5  3", "4000000000  3"), ele, "n: line", "4000000000");
+  expect(replaced(node, "5  3", "-5  3"), ele, "n: line", "-5");
+  expect(replaced(node, "3  2  1", "3  -2  1"), ele, "n: line 3:", "-2");
+  expect(replaced(node, "3  2  1", "3  2000000000  1"), ele, "n: line 3:", "2000000000");
+  expect(replaced(node, "5  3", "0  3"), ele, "n: line", "no points");
+  expect(replaced(node, "1 0 0 0 0.5", "2 0 0 0 0.5"), ele, "n: line 4:", "number 2");
+  expect(replaced(node, "4 0 0 1 3.5", "5 0 0 1 3.5"), ele, "n: line 8:", "point 5 stands where point 4");
+  expect(replaced(node, "1 0 0 1.5", "1 0 inf 1.5"), ele, "n: line 5:", "not finite");
+  expect(replaced(node, "1 0 0 1.5", "1 0 zero 1.5"), ele, "n: line 5:", "\"zero\"");
+  expect(replaced(node, "1.5 8 0", "1.5"), ele, "n: line 5:", "the line ends where a attribute");
+  expect(replaced(node, "5 1 1 1 4.5 11 0\n", ""), ele, "n: line", "cut short");
+  expect(node, replaced(ele, "2 4 2", "2 10 2"), "e: line 1:", "linear tets are needed");
+  expect(node, replaced(ele, "2 4 2", "2 3 2"), "e: line 1:", "tets of 3 points");
+  expect(node, replaced(ele, "2 4 2", "4000000000 4 2"), "e: line", "4000000000");
+  expect(node, replaced(ele, "2 4 2", "0 4 2"), "e: line", "no tets");
+  expect(node, replaced(ele, "2 3 4 5", "2 3 4 6"),
+         "e: line 4:", "point 6, but those of the .node file are 1 to 5");
+  expect(node, replaced(ele, "2 3 4 5", "0 3 4 5"), "e: line 4:", "point 0");
+  expect(node, replaced(ele, "2 4 2", "3 4 2"), "e: line", "cut short");
+  for (std::size_t n = 0; n + 12 < ele.size(); ++n)
+    (void)error_of<InputError>([&] { (void)read_tetgen(node, "n", ele.substr(0, n), "e"); });
+}
+
+}  // namespace
+}  // namespace tetwright
