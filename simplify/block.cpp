@@ -18,7 +18,8 @@ constexpr std::size_t ordered_chunk = 64;
 
 void BlockRunner::reset_tasks() {
   tasks_.clear();
-  for (unsigned i = 0; i < thread_count(); ++i) tasks_.push_back(std::make_unique<Task>(mesh_, grid_));
+  for (unsigned i = 0; i < thread_count(); ++i)
+    tasks_.push_back(std::make_unique<Task>(mesh_, grid_, ledger_));
 }
 
 template <class Item, class Attempt>

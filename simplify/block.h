@@ -21,9 +21,14 @@ struct ListedTet {
 /// block, chunk).
 class BlockRunner {
  public:
-  BlockRunner(EditableMesh& mesh, SurfaceGrid& grid, std::uint64_t seed, std::size_t chunk_size,
-              Progress* progress)
-      : mesh_(mesh), grid_(grid), seed_(seed), chunk_size_(chunk_size), progress_(progress) {}
+  BlockRunner(EditableMesh& mesh, SurfaceGrid& grid, VolumeLedger& ledger, std::uint64_t seed,
+              std::size_t chunk_size, Progress* progress)
+      : mesh_(mesh),
+        grid_(grid),
+        ledger_(ledger),
+        seed_(seed),
+        chunk_size_(chunk_size),
+        progress_(progress) {}
 
   /// Fresh tasks for thread_count() workers; to be called after every EditableMesh::compact, which takes back
   /// the slots that the old ones hoarded.
@@ -57,6 +62,7 @@ class BlockRunner {
 
   EditableMesh& mesh_;
   SurfaceGrid& grid_;
+  VolumeLedger& ledger_;
   std::uint64_t seed_;
   std::size_t chunk_size_;
   std::uint64_t block_ = 0;

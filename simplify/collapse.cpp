@@ -145,9 +145,15 @@ Outcome try_target(Task& task, const BlockRules& rules, std::size_t b, bool tria
     task.cells.release();
     return Outcome::done;
   }
+  const auto& volumes = star.volume_changes(to - star.centre_position);
+  if (!task.ledger.book(volumes)) {
+    task.cells.release();
+    return Outcome::surface_error;
+  }
   // Last of all, since what is taken off the count here is not put back.
   const auto change = static_cast<std::int64_t>(left) - static_cast<std::int64_t>(star.tets.size());
   if (!task.mesh.change_count(change, rules.fewest_tets, rules.most_tets)) {
+    task.ledger.take_back(volumes);
     task.cells.release();
     return Outcome::count;
   }

@@ -163,8 +163,26 @@ Outcome try_remove(Task& task, const BlockRules& rules, const FlipReach& reach, 
       return o;
     }
   }
+  std::array<VolumeLedger::Change, 2> volumes{{{regions[0], 0}, {outside_region, 0}}};
+  if (dimension == 2) {
+    double gained = 0;
+    for (const NewTet& t : cavity.added)
+      if (t.region == regions[0])
+        gained += orient3d_value(mesh.position(t.points[0]), mesh.position(t.points[1]),
+                                 mesh.position(t.points[2]), mesh.position(t.points[3])) /
+                  6;
+    for (std::size_t i = 0; i < n; ++i)
+      if (ring.regions[i] == regions[0]) gained -= mesh.signed_volume(ring.tets[i]);
+    volumes[0].volume = gained;
+    if (ring.closed) volumes[1] = {regions[1], -gained};
+    if (!task.ledger.book(volumes)) {
+      task.cells.release();
+      return Outcome::surface_error;
+    }
+  }
   if (!mesh.change_count(static_cast<std::int64_t>(cavity.added.size()) - static_cast<std::int64_t>(n),
                          rules.fewest_tets, rules.most_tets)) {
+    task.ledger.take_back(volumes);
     task.cells.release();
     return Outcome::count;
   }

@@ -235,6 +235,12 @@ void EditableMesh::split_stars() {
   next_spare_point_ = positions_.size();
 }
 
+std::size_t EditableMesh::pinned_points() const {
+  std::size_t count = 0;
+  for (Index p = 0; p < pinned_.size(); ++p) count += pinned_[p] && originals_[p] == p;
+  return count;
+}
+
 void EditableMesh::part_of_star(Index point, Index first, LocalNumbers& seen,
                                 std::vector<Index>& part) const {
   seen.clear();
@@ -385,6 +391,11 @@ std::vector<EditableMesh::InterfaceFace> EditableMesh::interface_faces() const {
           }
         }
       });
+}
+
+double EditableMesh::signed_volume(Index t) const {
+  const Tet& p = tets_[t].points;
+  return orient3d_value(positions_[p[0]], positions_[p[1]], positions_[p[2]], positions_[p[3]]) / 6;
 }
 
 double EditableMesh::total_volume() const {

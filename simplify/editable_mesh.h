@@ -72,6 +72,8 @@ class EditableMesh {
   /// A point where parts of the mesh touch without a common face: it stays as it is with all its tets.
   bool pinned(Index point) const { return any_pinned() && pinned_[point] != 0; }
   bool any_pinned() const { return !pinned_.empty(); }
+  /// Pinned places, whatever number of points stands at each.
+  std::size_t pinned_points() const;
   /// What a pinned point was split off from; the point itself for all others.
   Index original(Index point) const { return any_pinned() ? originals_[point] : point; }
 
@@ -175,6 +177,8 @@ class EditableMesh {
   };
   /// All of them, each once. Parallel; the order does not depend on the threads.
   std::vector<InterfaceFace> interface_faces() const;
+  /// Of a living tet, working coordinates cubed.
+  double signed_volume(Index t) const;
   /// In working coordinates cubed; flat and negative tets count as they are.
   double total_volume() const;
   /// Every invariant of the links: neighbours mutual, hints right, faces equal, live count right. For tests.

@@ -22,6 +22,9 @@ constexpr double squeeze_below = 0.7;
 constexpr std::size_t spare_share = 16;
 constexpr std::size_t least_spare = 4096;
 
+/// Share by which the volume of a material may change.
+constexpr double volume_share = 0.015;
+
 }  // namespace
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -33,10 +36,11 @@ Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, P
       progress_(progress),
       mesh_(std::move(mesh), options.name),
       slide_(mesh_, options.reference),
-      runner_(mesh_, grid_, options.seed, options.chunk_size, progress) {
+      runner_(mesh_, grid_, ledger_, options.seed, options.chunk_size, progress) {
   rules.objective.quality = TetQuality::for_target(mesh_.total_volume(), options.target_tets, options.beta);
   rules.objective.shape = options.objective;
   rules.gamma = options.gamma;
+  if (options.keep_volumes) ledger_.open(mesh_, volume_share);
 }
 
 TetMesh Engine::take() && {

@@ -20,6 +20,7 @@ class Engine {
     std::size_t chunk_size;
     ShapeObjective objective;
     const ReferenceSurface* reference;
+    bool keep_volumes = true;  ///< by a VolumeLedger
   };
   Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, Progress* progress);
   Engine(const Engine&) = delete;
@@ -84,6 +85,7 @@ class Engine {
   Progress* progress_;
   EditableMesh mesh_;
   SurfaceGrid grid_;
+  VolumeLedger ledger_;
   Slide slide_;
   BlockRunner runner_;
 };

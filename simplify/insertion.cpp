@@ -74,6 +74,8 @@ bool grow(Task& task, const BlockRules& rules, const Vec3& at, std::vector<Cone>
       if (f == back) continue;
       const Index across = mesh.neighbour(beyond, f);
       if (across != no_index && std::find(removed.begin(), removed.end(), across) != removed.end()) {
+        // An interface between two parts of the cavity has to stay.
+        better = mesh.tet(across).region == mesh.tet(beyond).region;
         ++meets;
         continue;
       }
@@ -164,9 +166,13 @@ Outcome carry_out(Task& task, const BlockRules& rules, InsertionPlace place) {
     const Outcome o = task.grid.prepare(task.edit, task.grid_task, task.cells);
     if (o != Outcome::done) return give_up(o);
   }
+  const auto& volumes = star.volume_changes(placement.position - star.centre_position);
+  if (!task.ledger.book(volumes)) return give_up(Outcome::surface_error);
   if (!mesh.change_count(static_cast<std::int64_t>(new_count) - static_cast<std::int64_t>(old_count),
-                         rules.fewest_tets, rules.most_tets))
+                         rules.fewest_tets, rules.most_tets)) {
+    task.ledger.take_back(volumes);
     return give_up(Outcome::count);
+  }
   mesh.set_position(id, placement.position);
   task.cavity.added.clear();
   for (std::size_t k = 0; k < star.tets.size(); ++k) {

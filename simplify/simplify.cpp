@@ -42,10 +42,11 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
   check(mesh, options.chunk_size, options.name);
   const auto start = std::chrono::steady_clock::now();
   const std::size_t first_count = mesh.tets.size();
-  Engine engine(std::move(mesh),
-                {options.name, static_cast<double>(options.target_tets), options.beta, options.gamma,
-                 options.seed, options.chunk_size, options.objective, options.reference},
-                report, progress);
+  Engine engine(
+      std::move(mesh),
+      {options.name, static_cast<double>(options.target_tets), options.beta, options.gamma, options.seed,
+       options.chunk_size, options.objective, options.reference, options.schedule == Schedule::tuned},
+      report, progress);
   engine.begin_stage("simplify");
   engine.squeeze();
   const double build = seconds_since(start);
@@ -70,6 +71,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
          .fit_sweeps = closing_fit_sweeps});
   }
   if (report) {
+    report->pinned_points = engine.mesh().pinned_points();
     report->seconds_build = build;
     report->seconds_simplify = loop_end - build;
     report->seconds_close = seconds_since(start) - loop_end;
@@ -101,6 +103,7 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
                            .most_rounds = options.max_iterations,
                            .fit_sweeps = 0});
   if (report) {
+    report->pinned_points = engine.mesh().pinned_points();
     report->seconds_build = build;
     report->seconds_close = seconds_since(start) - build;
   }

@@ -66,6 +66,7 @@ struct IterationReport {
 
 struct SimplifyReport {
   std::vector<IterationReport> iterations;
+  std::size_t pinned_points = 0;  ///< where parts touch without a common face: they stay as they are
   double seconds_build = 0, seconds_simplify = 0, seconds_close = 0;
 };
 

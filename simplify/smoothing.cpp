@@ -95,11 +95,18 @@ Outcome move_to(Task& task, const BlockRules& rules, const Vec3& to, const std::
       return o;
     }
   }
+  if (!task.ledger.book(task.star.volume_changes(to - star.centre_position))) {
+    task.cells.release();
+    return Outcome::surface_error;
+  }
   task.mesh.set_position(star.centre, to);
   task.mesh.touch(star.centre);
   for (Index p : star.points) task.mesh.touch(p);
   for (std::size_t k = 0; k < star.tets.size(); ++k) task.mesh.set_quality(star.tets[k].tet, qualities[k]);
-  if (!star.sheets.empty()) task.grid.commit(task.edit, task.grid_task);
+  if (!star.sheets.empty()) {
+    task.grid.commit(task.edit, task.grid_task);
+    task.cells.release();
+  }
   return Outcome::done;
 }
 

@@ -156,6 +156,12 @@ void Star::compute_gradients() {
   }
 }
 
+const std::vector<VolumeLedger::Change>& Star::volume_changes(const Vec3& step) {
+  changes_.clear();
+  for (const VolumeGradient& g : gradients) changes_.push_back({g.region, g.change.dot(step)});
+  return changes_;
+}
+
 double Star::surface_error(const Vec3& step, double gamma) {
   // A moving centre makes each sheet sweep a tet of volume |area vector . step| / 3.
   swept_.assign(gradients.size(), 0);

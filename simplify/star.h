@@ -6,6 +6,7 @@
 #include "simplify/editable_mesh.h"
 #include "simplify/local_numbers.h"
 #include "simplify/outcome.h"
+#include "simplify/volume_ledger.h"
 
 namespace tetwright {
 
@@ -70,6 +71,9 @@ struct Star {
   };
   std::vector<VolumeGradient> gradients;
   void compute_gradients();
+  /// What each region's volume gains when the centre moves by `step` (also: is collapsed by it). Gradients
+  /// must be computed.
+  const std::vector<VolumeLedger::Change>& volume_changes(const Vec3& step);
   /// Error(op) of Cutler, Dorsey & McMillan 2004, section 3, for moving the centre by `step`:
   /// gamma * sum over the materials of the cube root of the change of volume. What one sheet gains and
   /// another loses is added up here instead of cancelling, as it does in the paper: otherwise a saddle or an
@@ -80,7 +84,8 @@ struct Star {
   LocalNumbers point_numbers_, tet_numbers_;
   mutable std::vector<std::uint8_t> visited_;  // scratch of dimension()
   std::vector<Vec3> areas_;                    // a third of each sheet's area vector
-  std::vector<double> swept_;                  // scratch of surface_error()
+  std::vector<VolumeLedger::Change> changes_;
+  std::vector<double> swept_;  // scratch of surface_error()
 };
 
 }  // namespace tetwright

@@ -16,6 +16,7 @@
 #include "simplify/slide.h"
 #include "simplify/star.h"
 #include "simplify/surface_grid.h"
+#include "simplify/volume_ledger.h"
 
 namespace tetwright {
 
@@ -84,11 +85,12 @@ inline bool near_reference(const BlockRules& rules, const MeshTriangle& t, Regio
 
 /// One task's own things: what it holds, what it reuses, what it counted.
 struct Task {
-  Task(EditableMesh& m, SurfaceGrid& g)
-      : mesh(m), grid(g), points(m.locks()), cells(g.locks()), slots(m), point_slots(m) {}
+  Task(EditableMesh& m, SurfaceGrid& g, VolumeLedger& l)
+      : mesh(m), grid(g), ledger(l), points(m.locks()), cells(g.locks()), slots(m), point_slots(m) {}
 
   EditableMesh& mesh;
   SurfaceGrid& grid;
+  VolumeLedger& ledger;
   HeldLocks points;  ///< of the mesh's points
   HeldLocks cells;   ///< of the grid's cells
   EditableMesh::SlotStock slots;

@@ -181,6 +181,12 @@ void add_simplifying(CLI::App& app, CommandLine& c) {
       ->capture_default_str();
 }
 
+void add_material_field(CLI::App& app, CommandLine& c) {
+  app.add_option("--material-field", c.material_field,
+                 "Integer cell field that holds the materials, instead of the first of material, medit:ref, "
+                 "physical groups, MaterialID, attribute");
+}
+
 std::string one_line(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
   for (char& ch : text)
@@ -214,7 +220,7 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
       "4 nothing to mesh, 5 could not be written or out of memory, 130 interrupted.");
   constexpr const char* surfaces =
       "Surfaces: .ply .obj .stl .off, level sets: .vdb; each a material, later ones carve earlier ones";
-  constexpr const char* meshes = "Tet mesh: .vtu .msh .mesh";
+  constexpr const char* meshes = "Tet mesh: .vtu .msh .mesh .vtk .node .ele";
   constexpr const char* mesh_out = "Where the mesh goes: .vtu .msh .mesh";
 
   CLI::App* prepare = app.add_subcommand("prepare", "Scan to simulation mesh, in one go");
@@ -236,6 +242,7 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
   simplify->add_option("MESH", out.inputs, meshes)->required()->expected(1);
   add_output(*simplify, out, mesh_out);
   add_simplifying(*simplify, out);
+  add_material_field(*simplify, out);
   add_common(*simplify, out);
   add_seed(*simplify, out);
 
@@ -249,6 +256,7 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
       ->check(solid_angle)
       ->capture_default_str();
   add_shaping(*improve, out, "Rounds at most");
+  add_material_field(*improve, out);
   add_common(*improve, out);
   add_seed(*improve, out);
 
@@ -257,6 +265,7 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
   check->add_option("MESH", out.inputs, meshes)->required()->expected(1);
   check->add_option("--before", out.before, "Mesh whose topology this one must have");
   check->add_flag("--json", out.json, "Print JSON");
+  add_material_field(*check, out);
   add_common(*check, out);
 
   CLI::App* sample = app.add_subcommand("sample", "Writes a built-in sample");

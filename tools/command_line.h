@@ -22,8 +22,9 @@ struct CommandLine {
   Command command = Command::prepare;
   std::vector<std::string> inputs;  ///< for sample: its name
   std::string output;
-  std::string before;  ///< check: mesh whose topology must be the same
-  bool json = false;   ///< check
+  std::string before;          ///< check: mesh whose topology must be the same
+  bool json = false;           ///< check
+  std::string material_field;  ///< of a tet mesh that is read; empty: by the rule
 
   std::size_t target_tets = 0;
   double min_solid_angle = 0.1;  ///< steradians

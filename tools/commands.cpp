@@ -11,6 +11,8 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "common/field_transfer.h"
+#include "common/foreign_mesh.h"
 #include "common/formats/atomic_file.h"
 #include "common/formats/formats.h"
 #include "common/mesh_check.h"
@@ -199,10 +201,12 @@ class Run {
   void read_mesh() {
     const Stopwatch watch;
     progress_.begin_stage("read");
-    ReadTetMesh read = read_tet_mesh(line_.inputs.front());
+    ReadTetMesh read = read_tet_mesh(line_.inputs.front(), {line_.material_field});
     mesh_ = std::move(read.mesh);
     report_.material_field = read.material_field;
     report_.input_points = mesh_.points.size();
+    make_mesh_coherent();
+    if (!mesh_.point_fields.empty() || !mesh_.cell_fields.empty()) fields_from_ = mesh_;
     report_.seconds_read = watch.seconds();
     if (line_.target_tets > mesh_.tets.size())
       throw UsageError("--target-tets " + std::to_string(line_.target_tets) + " is above the " +
@@ -225,6 +229,8 @@ class Run {
     options.name = report_.inputs.front();
     report_.simplify.emplace();
     mesh_ = simplify(std::move(mesh_), options, &*report_.simplify, &progress_);
+    carry_fields();
+    note_pinned_points();
     if (line_.write_sdf.empty()) field_.reset();
   }
 
@@ -238,6 +244,8 @@ class Run {
     options.name = report_.inputs.front();
     report_.simplify.emplace();
     mesh_ = improve(std::move(mesh_), options, &*report_.simplify, &progress_);
+    carry_fields();
+    note_pinned_points();
   }
 
   ExitStatus finish() {
@@ -266,6 +274,37 @@ class Run {
   }
 
  private:
+  /// Other programs list tets the other way round, repeat points for each tet, and worse.
+  void make_mesh_coherent() {
+    const ForeignReport found = make_coherent(mesh_);
+    const auto note = [&](std::size_t count, const char* what, const char* done,
+                          std::optional<Vec3> place = {}) {
+      if (count) report_.findings.push_back({line_.inputs.front(), {what, count, place, done}});
+    };
+    note(found.merged_points, "points repeated for each tet", "merged where coordinates are equal");
+    note(found.removed_tets, "tets with a vertex twice", "left out");
+    note(found.turned_tets, "tets listed the other way round", "turned");
+    std::optional<Vec3> first;
+    if (!found.first_inverted.empty()) first = mesh_.points[mesh_.tets[found.first_inverted.front()][0]];
+    note(found.inverted_tets, "flat or negative tets", "kept unless the work puts them right", first);
+  }
+
+  /// The fields of the input, if it had any, on the mesh that was made of it.
+  void carry_fields() {
+    if (!fields_from_) return;
+    transfer_fields(*fields_from_, mesh_);
+    fields_from_.reset();
+  }
+
+  void note_pinned_points() {
+    if (report_.simplify && report_.simplify->pinned_points > 0)
+      report_.findings.push_back({line_.inputs.front(),
+                                  {"points where parts touch without a common face",
+                                   report_.simplify->pinned_points,
+                                   {},
+                                   "kept as they are with all their tets"}});
+  }
+
   std::string what_changed_the_count(double asked, double reached) const {
     if (line_.command == Command::improve)
       return "nothing: shapes were worth " + std::string(reached < asked ? "fewer" : "more") + " tets";
@@ -295,6 +334,7 @@ class Run {
   PreparedInput input_;
   std::shared_ptr<const MaterialField> field_;  ///< while it is slid along, or where it is to be written
   TetMesh mesh_;
+  std::optional<TetMesh> fields_from_;  ///< the mesh as it was read, if it had fields
 };
 
 ExitStatus prepare(const CommandLine& line) {
@@ -332,7 +372,7 @@ ExitStatus check(const CommandLine& line) {
   const Stopwatch total;
   RunReport run;
   run.inputs = line.inputs;
-  const ReadTetMesh read = read_tet_mesh(line.inputs.front());
+  const ReadTetMesh read = read_tet_mesh(line.inputs.front(), {line.material_field});
   run.material_field = read.material_field;
   run.input_points = read.mesh.points.size();
   run.seconds_read = total.seconds();
@@ -355,7 +395,8 @@ ExitStatus check(const CommandLine& line) {
     topology_text = topology_lines(signature);
     json["topology"] = topology_text;
     if (!line.before.empty())
-      differences = topology_differences(topology(read_tet_mesh(line.before).mesh), signature);
+      differences =
+          topology_differences(topology(read_tet_mesh(line.before, {line.material_field}).mesh), signature);
   }
   if (!line.before.empty()) json["topology_differences"] = differences;
   const bool kept = differences.empty();

@@ -100,6 +100,13 @@ nlohmann::json stats_json(const CommandLine& line, const RunReport& run) {
   nlohmann::json seconds = {
       {"read", run.seconds_read}, {"write", run.seconds_write}, {"total", run.seconds_total}};
   if (run.dense) j["dense"] = mesh_json(*run.dense, run.material_names, line.min_solid_angle);
+  j["input"]["findings"] = nlohmann::json::array();
+  for (const InputFinding& f : run.findings) {
+    nlohmann::json finding = {
+        {"file", f.file}, {"what", f.finding.what}, {"count", f.finding.count}, {"done", f.finding.done}};
+    if (f.finding.place) finding["place"] = place_json(*f.finding.place);
+    j["input"]["findings"].push_back(finding);
+  }
   if (run.mesher) {
     const MesherReport& m = *run.mesher;
     j["dense"]["cell_size"] = m.cell_size;
@@ -114,13 +121,6 @@ nlohmann::json stats_json(const CommandLine& line, const RunReport& run) {
                                           {"places", t.places},
                                           {"first", place_json(t.first)},
                                           {"refined", t.refined}});
-    j["input"]["findings"] = nlohmann::json::array();
-    for (const InputFinding& f : run.findings) {
-      nlohmann::json finding = {
-          {"file", f.file}, {"what", f.finding.what}, {"count", f.finding.count}, {"done", f.finding.done}};
-      if (f.finding.place) finding["place"] = place_json(*f.finding.place);
-      j["input"]["findings"].push_back(finding);
-    }
     seconds["mesh"] = run.seconds_mesh;
     seconds["sdf"] = m.seconds_sdf;
     seconds["octree"] = m.seconds_octree;

@@ -141,7 +141,7 @@ TEST(InsertionLimits, CountAndRoom) {
   Workbench tight(grid_mesh(2));
   tight.mesh.compact(0, 0);
   tight.grid.build(tight.mesh, 0);
-  tight.task = std::make_unique<Task>(tight.mesh, tight.grid);
+  tight.task = std::make_unique<Task>(tight.mesh, tight.grid, tight.ledger);
   make_poor(tight);
   hold_tet(tight, 5);
   EXPECT_EQ(insert_in_tet(*tight.task, tight.rules, 5, InsertionPlace::centre), Outcome::no_room);

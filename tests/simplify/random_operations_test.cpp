@@ -92,7 +92,7 @@ TEST(RandomOperations, TenThousandLeaveEveryMeshSoundAndItsTopologyAsItWas) {
       Workbench w(mesh);
       w.mesh.compact(4096, 1024);
       w.grid.build(w.mesh, 0, 1024);
-      w.task = std::make_unique<Task>(w.mesh, w.grid);
+      w.task = std::make_unique<Task>(w.mesh, w.grid, w.ledger);
       w.task->random = Random(seed);
       w.rules.objective.kind = seed % 2 ? Objective::Kind::shape : Objective::Kind::paper;
       w.rules.most_tets = 2 * mesh.tets.size();

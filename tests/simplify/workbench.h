@@ -25,7 +25,7 @@ struct Workbench {
                                             mesh.position(p[3])));
     }
     grid.build(mesh, 0, 64);
-    task = std::make_unique<Task>(mesh, grid);
+    task = std::make_unique<Task>(mesh, grid, ledger);
   }
 
   /// The point at a place given in input units.
@@ -87,6 +87,7 @@ struct Workbench {
 
   EditableMesh mesh;
   SurfaceGrid grid;
+  VolumeLedger ledger;  ///< no bounds unless opened
   BlockRules rules;
   std::unique_ptr<Task> task;
 };

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "simplify/editable_mesh.h"
+
+namespace tetwright {
+
+/// Keeps the volume of every region within a share of what it was. Error(op) bounds what one operation may do
+/// and lets many small losses add up: a simplified ball lies inside the ball.
+class VolumeLedger {
+ public:
+  struct Change {
+    Region region;
+    double volume;  ///< gained, working coordinates
+  };
+
+  /// From the volumes as they are; while no task runs.
+  void open(const EditableMesh& mesh, double share) {
+    allowed_.assign(mesh.region_count(), 0);
+    net_ = std::vector<std::atomic<double>>(mesh.region_count());
+    for (Index t = 0; t < mesh.tet_slots(); ++t) {
+      const TetRecord& r = mesh.tet(t);
+      if (r.points[0] != no_index) allowed_[r.region] += share * mesh.signed_volume(t);
+    }
+  }
+
+  /// Books the changes unless one takes its region's volume out of its bounds, or farther out: then false,
+  /// and nothing is booked. Safe concurrently; two tasks at once may overdraw by what one of them does.
+  template <class Changes>
+  bool book(const Changes& changes) {
+    for (const Change& c : changes) {
+      if (c.region == outside_region || allowed_.empty()) continue;
+      // Relaxed here and below: the numbers carry no other data.
+      const double now = net_[c.region].load(std::memory_order_relaxed), then = now + c.volume;
+      if (std::fabs(then) > allowed_[c.region] && std::fabs(then) > std::fabs(now)) return false;
+    }
+    add(changes, 1);
+    return true;
+  }
+  /// Takes back what book() did, where the operation failed after it.
+  template <class Changes>
+  void take_back(const Changes& changes) {
+    add(changes, -1);
+  }
+
+ private:
+  template <class Changes>
+  void add(const Changes& changes, double sign) {
+    for (const Change& c : changes)
+      if (c.region != outside_region && !allowed_.empty())
+        net_[c.region].fetch_add(sign * c.volume, std::memory_order_relaxed);
+  }
+
+  std::vector<double> allowed_;  ///< by region; empty: no bounds
+  std::vector<std::atomic<double>> net_;
+};
+
+}  // namespace tetwright
