@@ -16,7 +16,7 @@ constexpr int most_closing_rounds = 40;
 constexpr double improve_margin = 1.27;
 /// For those below this many times the bound the surface may be left: angles up to 25 degrees.
 constexpr double safety_margin = 1.27;
-constexpr int closing_fit_sweeps = 2;
+constexpr int closing_fit_sweeps = 1;
 /// Where improve() is to better all it can: dihedral angles up to 42 degrees.
 constexpr double improve_all_below = 0.2;
 /// Share of the tets that improve() may add or take away; 5 % are promised.

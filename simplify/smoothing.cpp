@@ -328,8 +328,6 @@ Outcome fit_to_surface(Task& task, const BlockRules& rules, float floor) {
   sample(c, 1, star.sheets.front());
   for (const Star::Sheet& s : star.sheets)
     sample((c + star.positions[s.first] + star.positions[s.second]) / 3, 1.0 / 3, s);
-  for (std::size_t p = 0; p < star.points.size(); ++p)
-    if (star.sheet_count[p] != 0) sample((c + star.positions[p]) / 2, 0.5, star.sheets.front());
   if (!(weights > 0)) return Outcome::no_candidate;
   const Vec3 to = task.mesh.snap(c + normal * (pull / weights));
   thread_local std::vector<float> qualities;

@@ -32,9 +32,9 @@ Outcome smooth(Task& task, const BlockRules& rules);
 Outcome optimise(Task& task, const BlockRules& rules);
 
 /// Moves the centre of the gathered star, if it lies on an interface, along its normal to where its interface
-/// triangles fit the reference surface best in the least-squares sense, at the point itself, the middles of
-/// its edges and the centres of its triangles: a surface whose vertices stand *on* a convex body lies inside
-/// it. The poorest tet must stay above `floor` or get better. Same answers; no_candidate for other points.
+/// triangles fit the reference surface best in the least-squares sense, at the point itself and the centres
+/// of its triangles: a surface whose vertices stand *on* a convex body lies inside it. The poorest tet must
+/// stay above `floor` or hardly get poorer. Same answers; no_candidate for other points.
 Outcome fit_to_surface(Task& task, const BlockRules& rules, float floor);
 
 }  // namespace tetwright

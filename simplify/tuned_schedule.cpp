@@ -16,6 +16,7 @@ constexpr double first_error_edges = 4;  ///< E at first, in ideal edges
 constexpr double error_growth = 1.3;     ///< E's factor after an iteration that removed too little
 constexpr double least_removed = 0.15;   ///< of the tets: less than that is too little
 constexpr double percent_step = 10;      ///< the paper's: the share of poor tets grows by this each iteration
+constexpr double flip_percent = 40;      ///< of the tets, at most, that flips and smoothing take up
 constexpr double first_annealing = 0.3;  ///< probability at first of an action that leaves a poorer tet
 constexpr double swaps_below = 3;        ///< times the target: above it flips and smoothing are wasted work
 /// What annealing must leave of the poorest Quality^3. Below it (0: anything positive) the loop ends with
@@ -113,7 +114,7 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options) {
     // Where collapses stall, other connectivity and places may let them go on.
     if (collapsed > loop_target && (static_cast<double>(collapsed) < swaps_below * target ||
                                     (removed < least_removed && percent >= 100)))
-      flip_and_smooth_block(engine, limit);
+      flip_and_smooth_block(engine, std::min(limit, engine.cutoff(flip_percent)));
     round.finish();
     // A larger E helps as long as E is what refuses.
     const bool error_refuses =
