@@ -106,7 +106,7 @@ TEST(InsertionJudges, TakesTheTetsAroundAPoorOneToo) {
   std::size_t done = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     TetMesh mesh = grid_mesh(6);
-    jitter(mesh, seed, 0.6);
+    jitter(mesh, seed, 0.48);
     Workbench w(mesh);
     w.rules.objective.kind = Objective::Kind::shape;
     std::vector<std::pair<float, Index>> poorest;
