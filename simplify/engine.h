@@ -113,7 +113,8 @@ struct ImprovementPlan {
   int fit_sweeps;  ///< over all interface points, before (fit_to_surface())
 };
 
-/// Improves the shapes of the poorest tets, worst first (README.md, Improvement).
-void run_improvement(Engine& engine, const ImprovementPlan& plan);
+/// Improves the shapes of the poorest tets, worst first (README.md, Improvement). The number of rounds it
+/// took.
+int run_improvement(Engine& engine, const ImprovementPlan& plan);
 
 }  // namespace tetwright

@@ -79,7 +79,7 @@ Outcome shake_tet(Task& task, const BlockRules& shaking, const ListedTet& item) 
 
 }  // namespace
 
-void run_improvement(Engine& engine, const ImprovementPlan& plan) {
+int run_improvement(Engine& engine, const ImprovementPlan& plan) {
   EditableMesh& mesh = engine.mesh();
   BlockRules& rules = engine.rules;
   rules.objective.kind = Objective::Kind::shape;
@@ -120,7 +120,8 @@ void run_improvement(Engine& engine, const ImprovementPlan& plan) {
   std::size_t fewest_poor = 4 * mesh.live_tets();
   int idle = 0;
   std::vector<ListedTet> tried;  // in the last round, by number
-  for (int i = 0; i < plan.most_rounds; ++i) {
+  int i = 0;
+  for (; i < plan.most_rounds; ++i) {
     std::vector<ListedTet> list = engine.poor_tets(plan.only_below);
     if (list.empty()) break;
     const bool bad = std::any_of(list.begin(), list.end(), [&](const ListedTet& t) {
@@ -187,6 +188,7 @@ void run_improvement(Engine& engine, const ImprovementPlan& plan) {
     round.finish();
     if (engine.progress()) engine.progress()->update(static_cast<double>(i + 1) / plan.most_rounds);
   }
+  return i;
 }
 
 }  // namespace tetwright

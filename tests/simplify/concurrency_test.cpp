@@ -11,26 +11,45 @@
 namespace tetwright {
 namespace {
 
+TetMesh three_materials(std::uint64_t seed) {
+  TetMesh mesh = grid_mesh({12, 12, 12}, [](int x, int y, int z) {
+    return std::optional<MaterialTag>(z < 3 ? 3 : x + y < 12 ? 1 : 2);
+  });
+  jitter(mesh, seed, 0.3);
+  return mesh;
+}
+
+void expect_kept(const TetMesh& before, const TetMesh& after) {
+  for (const MeshFinding& f : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(f);
+  for (const std::string& d : topology_differences(topology(before), topology(after))) ADD_FAILURE() << d;
+}
+
 TEST(Concurrency, EightThreadsMeetAndTheMeshStaysSound) {
   const ThreadLimit eight(8);
   std::uint64_t conflicts = 0;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    TetMesh mesh = grid_mesh(
-        {12, 12, 12}, [](int x, int y, int) { return std::optional<MaterialTag>(x + y < 12 ? 1 : 2); });
-    jitter(mesh, seed);
-    const Topology before = topology(mesh);
+    const TetMesh mesh = three_materials(seed);
     SimplifyOptions options;
     options.target_tets = 1500;
     options.seed = seed;
     options.chunk_size = 16;
+    options.schedule = seed == 2 ? Schedule::paper : Schedule::tuned;
     SimplifyReport report;
     const TetMesh after = simplify(mesh, options, &report);
     EXPECT_NEAR(static_cast<double>(after.tets.size()), 1500, 15);
-    for (const MeshFinding& f : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(f);
-    for (const std::string& d : topology_differences(before, topology(after))) ADD_FAILURE() << d;
+    expect_kept(mesh, after);
     for (const auto& it : report.iterations) conflicts += it.lock_conflicts;
   }
   EXPECT_GT(conflicts, 0u);
+}
+
+TEST(Concurrency, EightThreadsImprove) {
+  const ThreadLimit eight(8);
+  const TetMesh mesh = three_materials(4);
+  ImproveOptions options;
+  options.chunk_size = 16;
+  options.max_iterations = 12;
+  expect_kept(mesh, improve(mesh, options));
 }
 
 }  // namespace
