@@ -177,11 +177,13 @@ class TetTree {
   Range all() const { return {0, tets_.size()}; }
   /// The tets of a material, or all if it has none. Only with Order::material_place.
   Range of(MaterialTag material) const {
-    const auto range =
-        std::ranges::equal_range(tets_, material, {}, [&](Index t) { return mesh_.materials[t]; });
-    if (range.empty()) return all();
-    return {static_cast<std::size_t>(range.begin() - tets_.begin()),
-            static_cast<std::size_t>(range.end() - tets_.begin())};
+    // Not by std::ranges, whose subranges clang 14 cannot compile.
+    const auto begin = std::partition_point(tets_.begin(), tets_.end(),
+                                            [&](Index t) { return mesh_.materials[t] < material; });
+    const auto end =
+        std::partition_point(begin, tets_.end(), [&](Index t) { return mesh_.materials[t] == material; });
+    if (begin == end) return all();
+    return {static_cast<std::size_t>(begin - tets_.begin()), static_cast<std::size_t>(end - tets_.begin())};
   }
 
   /// A tet of the range that holds `p`, or else the nearest, of those the one of the smallest number;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -22,8 +23,18 @@ int sign(const TetMesh& mesh, const Tet& t) {
   return orient3d(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]);
 }
 
-double volume(const TetMesh& mesh, const Tet& t) {
-  return orient3d_value(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]);
+/// A power of two that brings coordinates to at most 1, so that no volume overflows.
+double scale_of(const TetMesh& mesh) {
+  double largest = 0;
+  for (const Vec3& p : mesh.points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  return std::ldexp(1.0, -std::clamp(exponent, -1000, 1023));
+}
+
+double volume(const TetMesh& mesh, const Tet& t, double scale) {
+  return orient3d_value(mesh.points[t[0]] * scale, mesh.points[t[1]] * scale, mesh.points[t[2]] * scale,
+                        mesh.points[t[3]] * scale);
 }
 
 bool all_positive(const TetMesh& mesh) {
@@ -187,6 +198,7 @@ std::vector<Index> link_faces(const TetMesh& mesh) {
 std::size_t orient(TetMesh& mesh) {
   std::vector<Tet>& tets = mesh.tets;
   const std::vector<Index> across = link_faces(mesh);
+  const double scale = scale_of(mesh);
   enum : std::uint8_t { unseen, as_is, turned };
   std::vector<std::uint8_t> state(tets.size(), unseen);
   std::vector<Index> part;  // tets connected by faces, in the order reached
@@ -199,7 +211,7 @@ std::size_t orient(TetMesh& mesh) {
     std::size_t turned_here = 0;
     for (std::size_t i = 0; i < part.size(); ++i) {
       const Index t = part[i];
-      const double v = volume(mesh, tets[t]);
+      const double v = volume(mesh, tets[t], scale);
       total += state[t] == turned ? -v : v;
       turned_here += state[t] == turned;
       for (std::size_t f = 0; f < 4; ++f) {

@@ -206,6 +206,8 @@ class Run {
     report_.material_field = read.material_field;
     report_.input_points = mesh_.points.size();
     make_mesh_coherent();
+    if (mesh_.tets.empty())
+      throw InputError(line_.inputs.front(), 0, "all its tets have a vertex twice; nothing is left of it");
     if (!mesh_.point_fields.empty() || !mesh_.cell_fields.empty()) fields_from_ = mesh_;
     report_.seconds_read = watch.seconds();
     if (line_.target_tets > mesh_.tets.size())
@@ -372,7 +374,10 @@ ExitStatus check(const CommandLine& line) {
   const Stopwatch total;
   RunReport run;
   run.inputs = line.inputs;
-  const ReadTetMesh read = read_tet_mesh(line.inputs.front(), {line.material_field});
+  // Of two meshes it is enough that one has the field: what was made of the other has it as "material".
+  const ReadTetMeshOptions options{line.material_field, line.before.empty()};
+  const ReadTetMesh read = read_tet_mesh(line.inputs.front(), options);
+  bool field_found = read.material_field == line.material_field;
   run.material_field = read.material_field;
   run.input_points = read.mesh.points.size();
   run.seconds_read = total.seconds();
@@ -394,10 +399,15 @@ ExitStatus check(const CommandLine& line) {
     const Topology signature = topology(read.mesh);
     topology_text = topology_lines(signature);
     json["topology"] = topology_text;
-    if (!line.before.empty())
-      differences =
-          topology_differences(topology(read_tet_mesh(line.before, {line.material_field}).mesh), signature);
+    if (!line.before.empty()) {
+      const ReadTetMesh before = read_tet_mesh(line.before, options);
+      field_found = field_found || before.material_field == line.material_field;
+      differences = topology_differences(topology(before.mesh), signature);
+    }
   }
+  // It is not where it has to be: the reader says what there is.
+  if (!line.material_field.empty() && !field_found)
+    (void)read_tet_mesh(line.inputs.front(), {line.material_field});
   if (!line.before.empty()) json["topology_differences"] = differences;
   const bool kept = differences.empty();
   run.seconds_total = total.seconds();

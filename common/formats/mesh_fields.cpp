@@ -133,7 +133,12 @@ void take_material(ReadTetMesh& read, const ReadTetMeshOptions& options, const s
     const std::string wanted = field_name(options.material_field);
     for (std::size_t f = fields.size(); f-- > 0;)
       if (fields[f].name == wanted && fields[f].components == 1) taken = f;
-    if (taken == fields.size()) fail_no_such_field(read, options.material_field, file, also);
+    if (taken == fields.size() && options.material_field_required)
+      fail_no_such_field(read, options.material_field, file, also);
+    if (taken == fields.size()) {
+      take_material(read, {}, file);
+      return;
+    }
   }
   if (taken == fields.size()) {
     mesh.materials.assign(mesh.tets.size(), 1);

@@ -11,6 +11,8 @@ struct ReadTetMeshOptions {
   /// The cell field that is the material, whatever the rule of ReadTetMesh says. Empty: by that rule. A name
   /// that the file does not have is an InputError that lists those it could be.
   std::string material_field;
+  /// False: a file without that field is read by the rule instead.
+  bool material_field_required = true;
 };
 
 /// What a reader of tet meshes found.

@@ -263,6 +263,17 @@ TEST(ForeignMesh, FlatTetsFollowTheirNeighbours) {
   EXPECT_EQ(mesh.tets, two_tets().tets);
 }
 
+TEST(ForeignMesh, CoordinatesWhoseVolumesOverflow) {
+  for (const double scale : {1e308, 1e-300}) {
+    TetMesh mesh = grid_mesh(2);
+    double largest = 0;
+    for (const Vec3& p : mesh.points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+    for (Vec3& p : mesh.points) p *= scale / largest;
+    for (Tet& t : mesh.tets) turn(t);
+    EXPECT_EQ(make_coherent(mesh).turned_tets, mesh.tets.size()) << scale;
+  }
+}
+
 TEST(ForeignMesh, NoTets) {
   TetMesh mesh;
   mesh.points = {{0, 0, 0}, {0, 0, 0}};

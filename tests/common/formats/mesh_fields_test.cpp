@@ -68,26 +68,41 @@ TEST(MeshFields, TheMaterialByRule) {
 TEST(MeshFields, TheMaterialAskedFor) {
   ReadTetMesh read = with_fields({{"material", 1, true, {5, 6}}, {"region", 1, true, {3, 4}}});
   read.mesh.material_names = {{3, "not this one"}};
-  take_material(read, {"region"}, "f");
+  take_material(read, {.material_field = "region"}, "f");
   EXPECT_EQ(read.mesh.materials, (std::vector<MaterialTag>{3, 4}));
   EXPECT_EQ(read.material_field, "region");
   EXPECT_EQ(read.mesh.cell_fields, (std::vector<MeshField>{{"material", 1, true, {5, 6}}}));
   EXPECT_TRUE(read.mesh.material_names.empty());
   // Instead of the format's own, which is a field then.
   read = with_fields({{"region", 1, false, {3, 4}}}, "medit:ref");
-  take_material(read, {"region"}, "f");
+  take_material(read, {.material_field = "region"}, "f");
   EXPECT_EQ(read.mesh.materials, (std::vector<MaterialTag>{3, 4}));
   EXPECT_EQ(read.mesh.cell_fields, (std::vector<MeshField>{{"medit:ref", 1, true, {1, 2}}}));
   read = with_fields({}, "medit:ref");
-  take_material(read, {"medit:ref"}, "f");
+  take_material(read, {.material_field = "medit:ref"}, "f");
   EXPECT_EQ(read.mesh.materials, (std::vector<MaterialTag>{1, 2}));
+}
+
+TEST(MeshFields, TheMaterialAskedForIfItIsThere) {
+  ReadTetMesh read = with_fields({{"material", 1, true, {5, 6}}, {"region", 1, true, {3, 4}}});
+  read.mesh.material_names = {{5, "five"}};
+  take_material(read, {"zone", false}, "f");
+  EXPECT_EQ(read.material_field, "material");
+  EXPECT_EQ(read.mesh.materials, (std::vector<MaterialTag>{5, 6}));
+  EXPECT_EQ(read.mesh.material_names.size(), 1u);
+  read = with_fields({{"material", 1, true, {5, 6}}, {"region", 1, true, {3, 4}}});
+  take_material(read, {"region", false}, "f");
+  EXPECT_EQ(read.material_field, "region");
+  read = with_fields({}, "medit:ref");
+  take_material(read, {"zone", false}, "f");
+  EXPECT_EQ(read.material_field, "medit:ref");
 }
 
 TEST(MeshFields, MaterialsThatAreNone) {
   const auto message = [](std::vector<MeshField> fields, const char* asked) {
     return error_of<InputError>([&] {
       ReadTetMesh read = with_fields(std::move(fields));
-      take_material(read, {asked}, "f");
+      take_material(read, {.material_field = asked}, "f");
     });
   };
   EXPECT_EQ(message({}, "x"),
