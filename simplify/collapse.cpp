@@ -18,6 +18,7 @@ int depth(Outcome o) {
     case Outcome::count:
       return 7;
     case Outcome::self_intersection:
+    case Outcome::volume:
       return 6;
     case Outcome::link_condition:
       return 5;
@@ -148,7 +149,7 @@ Outcome try_target(Task& task, const BlockRules& rules, std::size_t b, bool tria
   const auto& volumes = star.volume_changes(to - star.centre_position);
   if (!task.ledger.book(volumes)) {
     task.cells.release();
-    return Outcome::surface_error;
+    return Outcome::volume;
   }
   // Last of all, since what is taken off the count here is not put back.
   const auto change = static_cast<std::int64_t>(left) - static_cast<std::int64_t>(star.tets.size());
@@ -172,7 +173,7 @@ bool may_go(const Star& star, int dimension) { return dimension > 0 && !star.nea
 
 double collapse_weight(Star& star, std::size_t b, const BlockRules& rules) {
   const Vec3 step = star.positions[b] - star.centre_position;
-  return step.norm() + (star.sheets.empty() ? 0 : star.surface_error(step, rules.gamma));
+  return step.norm() + (star.sheets.empty() ? 0 : star.surface_error(step, rules.gamma, rules.losses_cancel));
 }
 
 Outcome collapse_onto(Task& task, const BlockRules& rules, std::size_t b, bool trial) {

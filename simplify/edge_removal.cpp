@@ -131,6 +131,7 @@ Outcome try_remove(Task& task, const BlockRules& rules, const FlipReach& reach, 
        std::any_of(ring.points.begin(), ring.points.end(), [&](Index p) { return mesh.pinned(p); })))
     return Outcome::material_rule;
 
+  if (!ring.closed && !whole_ring(task)) return Outcome::material_rule;
   const float limit = acceptance_limit(task, rules, ring.poorest);
   for (std::size_t c = 0; c < chain_count; ++c)
     if (!filled[c].find(mesh, rules, ring.a, ring.b, chains[c], limit)) return Outcome::quality;
@@ -177,7 +178,7 @@ Outcome try_remove(Task& task, const BlockRules& rules, const FlipReach& reach, 
     if (ring.closed) volumes[1] = {regions[1], -gained};
     if (!task.ledger.book(volumes)) {
       task.cells.release();
-      return Outcome::surface_error;
+      return Outcome::volume;
     }
   }
   if (!mesh.change_count(static_cast<std::int64_t>(cavity.added.size()) - static_cast<std::int64_t>(n),

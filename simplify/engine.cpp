@@ -5,10 +5,11 @@
 #include <atomic>
 #include <bit>
 
+#include "common/error.h"
 #include "common/interfaces.h"
 #include "common/parallel.h"
 #include "common/parallel_sort.h"
-#include "common/portable_math.h"
+#include "simplify/smoothing.h"
 
 namespace tetwright {
 
@@ -37,7 +38,12 @@ Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, P
       mesh_(std::move(mesh), options.name),
       slide_(mesh_, options.reference),
       runner_(mesh_, grid_, ledger_, options.seed, options.chunk_size, progress) {
-  rules.objective.quality = TetQuality::for_target(mesh_.total_volume(), options.target_tets, options.beta);
+  const double volume = mesh_.total_volume();
+  if (!(volume > 0))
+    throw InputError(
+        options.name, 0,
+        "the volumes of its tets add up to nothing or less; turn the tets so that they are positive");
+  rules.objective.quality = TetQuality::for_target(volume, options.target_tets, options.beta);
   rules.objective.shape = options.objective;
   rules.gamma = options.gamma;
   if (options.keep_volumes) ledger_.open(mesh_, volume_share);
@@ -183,6 +189,27 @@ std::vector<Index> Engine::interface_points() const {
       if (f != k && mesh_.region_across(t, f) != r.region) return true;
     return false;
   });
+}
+
+void Engine::each_star(const std::vector<Index>& points, Operation kind,
+                       const std::function<Outcome(Task&)>& operation, const std::function<bool()>& stop) {
+  runner_.points(
+      points,
+      [&](Task& task, Index p) {
+        if (!task.points.try_lock(p)) return Outcome::lock_taken;
+        Outcome o = task.star.gather(mesh_, p, task.points);
+        if (o == Outcome::done) o = operation(task);
+        task.counts.add(kind, o);
+        return o;
+      },
+      stop);
+}
+
+void Engine::fit_interfaces(float floor) {
+  BlockRules fitting = rules;
+  fitting.slide = &slide_;
+  each_star(interface_points(), Operation::fit,
+            [&](Task& task) { return fit_to_surface(task, fitting, floor); });
 }
 
 Engine::Round::Round(Engine& engine, const char* kind) : engine_(engine) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ class Engine {
   EditableMesh& mesh() { return mesh_; }
   BlockRunner& runner() { return runner_; }
   const Slide& slide() const { return slide_; }
+  const VolumeLedger& ledger() const { return ledger_; }
   Progress* progress() { return progress_; }
   BlockRules rules;
 
@@ -56,6 +58,14 @@ class Engine {
   std::vector<Index> points_around(const std::vector<ListedTet>& tets) const;
   /// The points of boundary and interfaces, in the order of the curve.
   std::vector<Index> interface_points() const;
+
+  /// One try at each of the points with an operation on its star, which may answer anything; `stop` is asked
+  /// before each.
+  void each_star(
+      const std::vector<Index>& points, Operation kind, const std::function<Outcome(Task&)>& operation,
+      const std::function<bool()>& stop = [] { return false; });
+  /// fit_to_surface() for all interface points.
+  void fit_interfaces(float floor);
 
   /// Times a round of the schedule and takes down what its tasks counted.
   class Round {
@@ -105,10 +115,11 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options);
 
 /// How improvement works.
 struct ImprovementPlan {
-  const char* kind;           ///< of its rounds in the report
-  float only_below;           ///< quality (shape_quality()) of the tets that are worked on
-  float leave_surface_below;  ///< of tets for whose sake points of the surface may leave it a little
+  const char* kind;  ///< of its rounds in the report
+  double angle;  ///< steradians: tets whose shape is poorer than shape_quality_bound() of it are worked on
+  double leave_surface_angle;  ///< the same: for these points of the surface may leave it a little
   std::size_t target_tets, fewest_tets, most_tets;
+  bool local;  ///< only where such tets are: no room for insertions is made elsewhere
   int most_rounds;
   int fit_sweeps;  ///< over all interface points, before (fit_to_surface())
 };

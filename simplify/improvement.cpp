@@ -33,14 +33,19 @@ constexpr double least_gain_of_many = 0.05;
 constexpr int most_idle_rounds = 8;
 constexpr int most_idle_rounds_when_good = 2;
 
+/// Qualities (shape_quality()) below which a tet is worked on, and points may leave the surface for it.
+struct Bounds {
+  float poor, leave_surface;
+};
+
 /// One tet's turn: the first action that makes the poorest tet around better ends it.
 Outcome improve_tet(Task& task, const BlockRules& rules, const BlockRules& surgery, bool last_resort,
-                    const ListedTet& item, const ImprovementPlan& plan) {
+                    const ListedTet& item, const Bounds& bounds) {
   EditableMesh& mesh = task.mesh;
   if (const Outcome o = hold(task, item); o != Outcome::done) return o;
   const float quality = mesh.tet(item.tet).quality;
-  if (quality > plan.only_below) return Outcome::stale;
-  const BlockRules& moving = last_resort && quality < plan.leave_surface_below ? surgery : rules;
+  if (quality > bounds.poor) return Outcome::stale;
+  const BlockRules& moving = last_resort && quality < bounds.leave_surface ? surgery : rules;
   const auto ends = [](Outcome o) { return o == Outcome::done || o == Outcome::lock_taken; };
   for (Index p : item.points) {
     Outcome o = task.star.gather(mesh, p, task.points);
@@ -68,7 +73,7 @@ Outcome improve_tet(Task& task, const BlockRules& rules, const BlockRules& surge
   return insert_in_tet(task, rules, item.tet, InsertionPlace::best);
 }
 
-/// A flip of the tet that leaves nothing poor, chosen at random, whether it is better or not: other
+/// A flip of the tet that leaves nothing poor or is better, chosen at random: other
 /// connectivity near a tet that nothing helps.
 Outcome shake_tet(Task& task, const BlockRules& shaking, const ListedTet& item) {
   if (const Outcome o = hold(task, item); o != Outcome::done) return o;
@@ -82,31 +87,19 @@ Outcome shake_tet(Task& task, const BlockRules& shaking, const ListedTet& item) 
 int run_improvement(Engine& engine, const ImprovementPlan& plan) {
   EditableMesh& mesh = engine.mesh();
   BlockRules& rules = engine.rules;
+  const auto quality = [&](double angle) {
+    return static_cast<float>(std::min(0.99, shape_quality_bound(rules.objective.shape, angle)));
+  };
+  const Bounds bounds{quality(plan.angle), quality(plan.leave_surface_angle)};
   rules.objective.kind = Objective::Kind::shape;
   rules.accept_worse = 0;
   rules.fewest_tets = plan.fewest_tets;
   rules.most_tets = plan.most_tets;
   rules.slide = &engine.slide();
   engine.squeeze();
-  /// One try at each of the points with an operation on its star.
-  const auto each_star = [&](
-                             const std::vector<Index>& points, Operation kind, const auto& operation,
-                             const std::function<bool()>& stop = [] { return false; }) {
-    engine.runner().points(
-        points,
-        [&](Task& task, Index p) {
-          if (!task.points.try_lock(p)) return Outcome::lock_taken;
-          Outcome o = task.star.gather(mesh, p, task.points);
-          if (o == Outcome::done) o = operation(task);
-          task.counts.add(kind, o);
-          return o;
-        },
-        stop);
-  };
   for (int sweep = 0; sweep < plan.fit_sweeps; ++sweep) {
     Engine::Round round(engine, plan.kind);
-    each_star(engine.interface_points(), Operation::fit,
-              [&](Task& task) { return fit_to_surface(task, rules, plan.only_below); });
+    engine.fit_interfaces(bounds.poor);
     round.finish();
   }
   // Cutting off an ear or turning an edge sweeps much volume for the little that the surface moves: there the
@@ -122,14 +115,13 @@ int run_improvement(Engine& engine, const ImprovementPlan& plan) {
   std::vector<ListedTet> tried;  // in the last round, by number
   int i = 0;
   for (; i < plan.most_rounds; ++i) {
-    std::vector<ListedTet> list = engine.poor_tets(plan.only_below);
+    std::vector<ListedTet> list = engine.poor_tets(bounds.poor);
     if (list.empty()) break;
     const bool bad = std::any_of(list.begin(), list.end(), [&](const ListedTet& t) {
-      return mesh.tet(t.tet).quality < plan.leave_surface_below;
+      return mesh.tet(t.tet).quality < bounds.leave_surface;
     });
     const bool stuck = static_cast<double>(list.size()) > stuck_above * static_cast<double>(fewest_poor);
-    const double gain =
-        fewest_poor ? 1 - static_cast<double>(list.size()) / static_cast<double>(fewest_poor) : 1;
+    const double gain = 1 - static_cast<double>(list.size()) / static_cast<double>(fewest_poor);
     // Where very many resist, it is the interfaces that hold them, and more rounds would take long for
     // little.
     const bool many = static_cast<double>(list.size()) > many_poor * static_cast<double>(mesh.live_tets());
@@ -139,20 +131,21 @@ int run_improvement(Engine& engine, const ImprovementPlan& plan) {
     const bool last_resort = stuck && idle > 0;
     Engine::Round round(engine, plan.kind);
     IterationReport& it = round.report();
-    it.cutoff = plan.only_below;
+    it.cutoff = plan.angle;
     it.percent = 100 * static_cast<double>(list.size()) / static_cast<double>(it.tets_before);
-    // Room for insertions: where all is good, points go.
+    // Room for insertions: where all is good, or gets better, points go.
     if (2 * mesh.live_tets() > plan.target_tets + plan.most_tets) {
       BlockRules thinning = rules;
-      thinning.good_enough = plan.only_below * thinning_margin;
+      thinning.good_enough = bounds.poor * thinning_margin;
       thinning.fewest_tets = plan.target_tets;
-      each_star(
-          engine.poor_points(1), Operation::collapse, [&](Task& task) { return collapse(task, thinning); },
+      engine.each_star(
+          plan.local ? engine.points_around(list) : engine.poor_points(1), Operation::collapse,
+          [&](Task& task) { return collapse(task, thinning); },
           [&] { return mesh.live_tets() <= plan.target_tets; });
     }
     if (last_resort) {
       BlockRules shaking = surgery;
-      shaking.good_enough = plan.only_below;
+      shaking.good_enough = bounds.poor;
       engine.runner().tets(
           engine.tets_around(list),
           [&](Task& task, const ListedTet& item) { return shake_tet(task, shaking, item); },
@@ -161,7 +154,7 @@ int run_improvement(Engine& engine, const ImprovementPlan& plan) {
     if (stuck) {
       std::vector<Index> around = engine.points_around(list);
       if (!last_resort) std::erase_if(around, [&](Index p) { return !mesh.touched(p); });
-      each_star(around, Operation::optimise, [&](Task& task) { return optimise(task, rules); });
+      engine.each_star(around, Operation::optimise, [&](Task& task) { return optimise(task, rules); });
     }
     // What was tried in the last round comes again only where something changed, or where more is allowed.
     std::vector<ListedTet> tries;
@@ -183,7 +176,7 @@ int run_improvement(Engine& engine, const ImprovementPlan& plan) {
       return qa != qb ? qa < qb : a.tet < b.tet;
     });
     engine.runner().tets_in_order(tries, [&](Task& task, const ListedTet& item) {
-      return improve_tet(task, rules, surgery, last_resort, item, plan);
+      return improve_tet(task, rules, surgery, last_resort, item, bounds);
     });
     round.finish();
     if (engine.progress()) engine.progress()->update(static_cast<double>(i + 1) / plan.most_rounds);

@@ -30,7 +30,7 @@ Cone cone(const Task& task, const BlockRules& rules, const Vec3& at, Index tet, 
 }
 
 /// Builds task.star of the point that is to be inserted at `at`. False if a point of the old tets would be
-/// lost.
+/// lost, or the cavity's hull were no surface (which needs inverted tets).
 bool star_of_new_point(Task& task, const Vec3& at, const std::vector<Cone>& cones) {
   const EditableMesh& mesh = task.mesh;
   Star& star = task.star;
@@ -45,6 +45,16 @@ bool star_of_new_point(Task& task, const Vec3& at, const std::vector<Cone>& cone
     star.tets.push_back({c.tet, link, static_cast<std::uint8_t>(c.slot), r.region, c.quality});
     star.poorest = std::min(star.poorest, c.quality);
   }
+  thread_local std::vector<std::uint32_t> edges;  // of the hull, each from both its triangles
+  edges.clear();
+  for (const Star::StarTet& t : star.tets)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t p = t.link[k], q = t.link[(k + 1) % 3];
+      edges.push_back(std::min(p, q) << 16 | std::max(p, q));
+    }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 2; i < edges.size(); ++i)
+    if (edges[i] == edges[i - 2]) return false;
   for (Index t : task.cavity.removed)
     for (Index p : mesh.tet(t).points)
       if (std::find(star.points.begin(), star.points.end(), p) == star.points.end()) return false;
@@ -58,7 +68,7 @@ bool grow(Task& task, const BlockRules& rules, const Vec3& at, std::vector<Cone>
   const EditableMesh& mesh = task.mesh;
   std::vector<Index>& removed = task.cavity.removed;
   std::sort(cones.begin(), cones.end(), [](const Cone& a, const Cone& b) {
-    return a.quality != b.quality ? a.quality > b.quality : a.tet < b.tet;
+    return a.quality != b.quality ? a.quality > b.quality : a.tet != b.tet ? a.tet < b.tet : a.slot < b.slot;
   });
   thread_local std::vector<Cone> fresh;
   for (std::size_t grown = 0; grown < most_grown && !cones.empty(); ++grown) {
@@ -167,7 +177,7 @@ Outcome carry_out(Task& task, const BlockRules& rules, InsertionPlace place) {
     if (o != Outcome::done) return give_up(o);
   }
   const auto& volumes = star.volume_changes(placement.position - star.centre_position);
-  if (!task.ledger.book(volumes)) return give_up(Outcome::surface_error);
+  if (!task.ledger.book(volumes)) return give_up(Outcome::volume);
   if (!mesh.change_count(static_cast<std::int64_t>(new_count) - static_cast<std::int64_t>(old_count),
                          rules.fewest_tets, rules.most_tets)) {
     task.ledger.take_back(volumes);
@@ -217,6 +227,7 @@ Outcome try_edge(Task& task, const BlockRules& rules, Index tet, int edge, Inser
   EdgeRing& ring = task.ring;
   if (const Outcome o = ring.gather(mesh, tet, edge, task.points); o != Outcome::done) return o;
   if (!interior && ring.sheets == 0) return Outcome::no_candidate;
+  if (!ring.closed && !whole_ring(task)) return Outcome::material_rule;
   task.cavity.clear();
   task.cavity.removed = ring.tets;
   const Vec3 at = mesh.snap((mesh.position(ring.a) + mesh.position(ring.b)) / 2);

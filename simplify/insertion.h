@@ -16,7 +16,7 @@ enum class InsertionPlace {
 /// the poorest new tet must be better than the old one (or pass the annealing). Counted as insert_in_tet.
 ///
 /// These three answer done, lock_taken, no_candidate, too_large, material_rule, quality (also: would invert),
-/// surface_error, self_intersection, no_room, count.
+/// surface_error, link_condition, self_intersection, volume, no_room, count.
 Outcome insert_in_tet(Task& task, const BlockRules& rules, Index tet, InsertionPlace place);
 
 /// Adds a point in a face of the boundary or of an interface, whose one or two tets become three each.

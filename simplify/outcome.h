@@ -21,16 +21,17 @@ enum class Outcome : std::uint8_t {
   quality,            ///< the poorest tet would become poorer, and annealing did not let it pass
   link_condition,     ///< the topology would change
   self_intersection,  ///< a boundary or interface triangle would meet another
-  no_room,            ///< the reserve of tets is used up
-  count,              ///< fewer tets than wanted would be left
+  no_room,            ///< the reserve of tets, points or surface triangles is used up
+  count,              ///< fewer tets than wanted would be left, or more
   too_large,          ///< the star holds more points than a task handles
+  volume,             ///< a material's volume would leave its bounds (VolumeLedger)
 };
-inline constexpr std::size_t outcome_count = 13;
+inline constexpr std::size_t outcome_count = 14;
 
 inline constexpr std::array<std::string_view, outcome_count> outcome_names{
-    "done",          "lock_taken", "stale",    "no_candidate",   "material_rule",
-    "surface_error", "inverts",    "quality",  "link_condition", "self_intersection",
-    "no_room",       "count",      "too_large"};
+    "done",          "lock_taken", "stale",     "no_candidate",   "material_rule",
+    "surface_error", "inverts",    "quality",   "link_condition", "self_intersection",
+    "no_room",       "count",      "too_large", "volume"};
 
 /// The kinds of operation that are counted.
 enum class Operation : std::uint8_t {

@@ -122,19 +122,22 @@ std::size_t below_angle(const EditableMesh& mesh, double angle) {
 void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
   EditableMesh& mesh = engine.mesh();
   BlockRules& rules = engine.rules;
-  const auto target = static_cast<double>(options.target_tets);
+  const std::size_t target_tets = std::min(options.target_tets, mesh.live_tets());
+  const auto target = static_cast<double>(target_tets);
   const double log_first = portable_log(std::max(static_cast<double>(mesh.live_tets()) / target, 1 + 1e-9));
   const double most_error = largest_useful_error * std::max(1.0, options.gamma / 10);
   rules.objective.kind = Objective::Kind::paper;
   rules.largest_error = rules.objective.quality.ideal_edge;
   rules.annealing_floor = 0;
+  rules.losses_cancel = true;
   rules.fewest_tets = static_cast<std::size_t>(std::ceil(target * (1 - count_slack)));
   engine.rate_all();
   double percent = percent_step;
   int idle = 0;
+  bool reached = false;
   std::size_t poor = mesh.live_tets();
   for (int i = 0; i < options.max_iterations && idle < most_idle_iterations; ++i) {
-    const bool reached = mesh.live_tets() <= options.target_tets;
+    reached = reached || mesh.live_tets() <= target_tets;
     if (reached) {
       // The second stop. The counts of poor tets tell whether anything is still gained.
       const std::size_t now = below_angle(mesh, options.min_solid_angle);
@@ -149,14 +152,14 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
     const auto before = static_cast<double>(it.tets_before);
     const double log_now = portable_log(std::max(before / target, 1.0));
     rules.accept_worse = reached ? 0 : first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
-    // Before, anything goes; then only what keeps or restores the count.
+    // Before, whatever does not undo the iterations before it; then only what keeps or restores the count.
     rules.most_tets = reached ? static_cast<std::size_t>(target * (1 + count_slack)) : it.tets_before;
     const float limit = engine.cutoff(percent);
     it.cutoff = portable_cbrt(limit);
     engine.runner().tets(
         engine.poor_tets(limit),
         [&](Task& task, const ListedTet& item) { return paper_turn(task, rules, item, limit); },
-        [&] { return !reached && mesh.live_tets() <= options.target_tets; });
+        [&] { return !reached && mesh.live_tets() <= target_tets; });
     round.finish();
     if (!reached) {
       const auto after = static_cast<double>(mesh.live_tets());

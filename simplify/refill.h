@@ -13,6 +13,8 @@ namespace tetwright {
 /// number; counting is the caller's.
 void refill(Task& task, const Cavity& cavity);
 
+inline bool contains(const Tet& t, Index p) { return t[0] == p || t[1] == p || t[2] == p || t[3] == p; }
+
 /// True if `test(points of the tet)` holds for one tet at a held point: walks its star by ids alone.
 template <class F>
 bool any_in_star(Task& task, Index point, const F& test) {
@@ -35,11 +37,21 @@ bool any_in_star(Task& task, Index point, const F& test) {
   return false;
 }
 
-inline bool contains(const Tet& t, Index p) { return t[0] == p || t[1] == p || t[2] == p || t[3] == p; }
-
 /// True if an edge of the mesh joins the held point p to q.
 inline bool joined(Task& task, Index p, Index q) {
   return any_in_star(task, p, [q](const Tet& t) { return contains(t, q); });
+}
+
+/// True if the gathered ring has all tets at its edge: where wedges of material touch along an edge it has
+/// only one.
+inline bool whole_ring(Task& task) {
+  const EdgeRing& ring = task.ring;
+  std::size_t count = 0;
+  any_in_star(task, ring.a, [&](const Tet& t) {
+    count += contains(t, ring.b);
+    return false;
+  });
+  return count == ring.tets.size();
 }
 
 /// Locks a point unless the task holds it.

@@ -33,10 +33,6 @@ void check(const TetMesh& mesh, std::size_t chunk_size, const std::string& name)
   if (mesh.tets.empty()) throw InputError(name, 0, "no tets in it");
 }
 
-float working_limit(ShapeObjective objective, double solid_angle) {
-  return static_cast<float>(std::min(0.99, shape_quality_bound(objective, solid_angle)));
-}
-
 }  // namespace
 
 TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report, Progress* progress) {
@@ -63,16 +59,15 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
   if (options.schedule == Schedule::tuned) {
     engine.begin_stage("improve");
     const auto count = static_cast<double>(std::min(options.target_tets, first_count));
-    run_improvement(
-        engine,
-        {.kind = "close",
-         .only_below = working_limit(options.objective, closing_margin * options.min_solid_angle),
-         .leave_surface_below = working_limit(options.objective, closing_margin * options.min_solid_angle),
-         .target_tets = static_cast<std::size_t>(count),
-         .fewest_tets = static_cast<std::size_t>(std::ceil(count * (1 - closing_slack))),
-         .most_tets = static_cast<std::size_t>(count * (1 + closing_slack)),
-         .most_rounds = most_closing_rounds,
-         .fit_sweeps = closing_fit_sweeps});
+    run_improvement(engine, {.kind = "close",
+                             .angle = closing_margin * options.min_solid_angle,
+                             .leave_surface_angle = closing_margin * options.min_solid_angle,
+                             .target_tets = static_cast<std::size_t>(count),
+                             .fewest_tets = static_cast<std::size_t>(std::ceil(count * (1 - closing_slack))),
+                             .most_tets = static_cast<std::size_t>(count * (1 + closing_slack)),
+                             .local = false,
+                             .most_rounds = most_closing_rounds,
+                             .fit_sweeps = closing_fit_sweeps});
   }
   if (report) {
     report->pinned_points = engine.mesh().pinned_points();
@@ -98,22 +93,22 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
   engine.rules.largest_error = improve_error_edges * engine.rules.objective.quality.ideal_edge;
   const double below = options.only_below > 0
                            ? options.only_below
-                           : std::max(improve_all_below, closing_margin * options.min_solid_angle);
+                           : std::max(improve_all_below, improve_margin * options.min_solid_angle);
   // The worst first, also in the large: a bound that most tets are below would leave no time for them.
   int rounds = options.max_iterations;
   for (double limit = std::min(below, closing_margin * options.min_solid_angle); rounds > 0;
        limit *= improve_step) {
     limit = std::min(limit, below);
     rounds -= run_improvement(
-        engine,
-        {.kind = "improve",
-         .only_below = working_limit(options.objective, limit),
-         .leave_surface_below = working_limit(options.objective, improve_margin * options.min_solid_angle),
-         .target_tets = static_cast<std::size_t>(count),
-         .fewest_tets = static_cast<std::size_t>(std::ceil(count * (1 - improve_slack))),
-         .most_tets = static_cast<std::size_t>(count * (1 + improve_slack)),
-         .most_rounds = rounds,
-         .fit_sweeps = 0});
+        engine, {.kind = "improve",
+                 .angle = limit,
+                 .leave_surface_angle = improve_margin * options.min_solid_angle,
+                 .target_tets = static_cast<std::size_t>(count),
+                 .fewest_tets = static_cast<std::size_t>(std::ceil(count * (1 - improve_slack))),
+                 .most_tets = static_cast<std::size_t>(count * (1 + improve_slack)),
+                 .local = options.only_below > 0,
+                 .most_rounds = rounds,
+                 .fit_sweeps = 0});
     if (limit >= below) break;
   }
   if (report) {

@@ -39,8 +39,9 @@ struct SimplifyOptions {
 
 /// Shape only; the count stays within 5 %.
 struct ImproveOptions {
-  /// Only tets whose smallest solid angle is below this (steradians) are worked on, with what stands around
-  /// them: the time follows their number, not the mesh's. 0: all.
+  /// Only tets whose shape is poorer, by the objective, than this solid angle (steradians) stands for
+  /// (shape_quality_bound()) are worked on, with what stands around them. 0: all below 0.2, or more if
+  /// min_solid_angle asks for it.
   double only_below = 0;
   double min_solid_angle = 0.1;  ///< steradians; the work ends early once all are well above it
   ShapeObjective objective = ShapeObjective::both;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "simplify/refill.h"
@@ -71,7 +72,7 @@ bool surface_edit(Task& task, const BlockRules& rules, const Vec3& to) {
 Outcome rate(Star& star, const BlockRules& rules, const Vec3& to, float limit, std::vector<float>& qualities,
              float& poorest) {
   if (!star.sheets.empty() &&
-      star.surface_error(to - star.centre_position, rules.gamma) > rules.largest_error)
+      star.surface_error(to - star.centre_position, rules.gamma, rules.losses_cancel) > rules.largest_error)
     return Outcome::surface_error;
   poorest = 1;
   for (std::size_t k = 0; k < star.tets.size(); ++k) {
@@ -97,7 +98,7 @@ Outcome move_to(Task& task, const BlockRules& rules, const Vec3& to, const std::
   }
   if (!task.ledger.book(task.star.volume_changes(to - star.centre_position))) {
     task.cells.release();
-    return Outcome::surface_error;
+    return Outcome::volume;
   }
   task.mesh.set_position(star.centre, to);
   task.mesh.touch(star.centre);
@@ -203,7 +204,7 @@ bool find_place(Star& star, const EditableMesh& mesh, const BlockRules& rules, i
   const auto poorest_at = [&](const Vec3& to, float above,
                               std::vector<float>& values) -> std::optional<float> {
     if (!star.sheets.empty() &&
-        star.surface_error(to - star.centre_position, rules.gamma) > rules.largest_error)
+        star.surface_error(to - star.centre_position, rules.gamma, rules.losses_cancel) > rules.largest_error)
       return {};
     float least = 1;
     for (std::size_t k = 0; k < star.tets.size(); ++k) {
@@ -215,6 +216,7 @@ bool find_place(Star& star, const EditableMesh& mesh, const BlockRules& rules, i
   };
 
   thread_local std::vector<float> here, there;
+  thread_local std::vector<std::size_t> order;
   here.resize(star.tets.size());
   there.resize(star.tets.size());
   Vec3 at = star.centre_position;
@@ -229,10 +231,18 @@ bool find_place(Star& star, const EditableMesh& mesh, const BlockRules& rules, i
   double length = first_step * shortest;
   std::array<Vec3, most_active> gradients;
   for (int ascent = 0; ascent < most_ascents; ++ascent) {
+    // The poorest ones first, as they are now.
+    order.resize(star.tets.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const std::size_t considered = std::min(most_active, order.size());
+    std::partial_sort(
+        order.begin(), order.begin() + static_cast<std::ptrdiff_t>(considered), order.end(),
+        [&](std::size_t x, std::size_t y) { return here[x] != here[y] ? here[x] < here[y] : x < y; });
     std::size_t active = 0;
     const double h = difference_step * shortest;
-    for (std::size_t k = 0; k < star.tets.size() && active < most_active; ++k) {
-      if (here[k] > (poorest > 0 ? active_within * poorest : 0)) continue;
+    for (std::size_t i = 0; i < considered; ++i) {
+      const std::size_t k = order[i];
+      if (here[k] > (poorest > 0 ? active_within * poorest : 0)) break;
       Vec3 g = Vec3::Zero();
       // In double precision: the differences are small.
       const auto exact = [&](const Vec3& p) {

@@ -162,7 +162,12 @@ const std::vector<VolumeLedger::Change>& Star::volume_changes(const Vec3& step) 
   return changes_;
 }
 
-double Star::surface_error(const Vec3& step, double gamma) {
+double Star::surface_error(const Vec3& step, double gamma, bool losses_cancel) {
+  if (losses_cancel) {
+    double sum = 0;
+    for (const VolumeGradient& g : gradients) sum += portable_cbrt(std::fabs(g.change.dot(step)));
+    return gamma * sum;
+  }
   // A moving centre makes each sheet sweep a tet of volume |area vector . step| / 3.
   swept_.assign(gradients.size(), 0);
   for (std::size_t k = 0; k < sheets.size(); ++k) {

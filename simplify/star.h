@@ -75,10 +75,10 @@ struct Star {
   /// must be computed.
   const std::vector<VolumeLedger::Change>& volume_changes(const Vec3& step);
   /// Error(op) of Cutler, Dorsey & McMillan 2004, section 3, for moving the centre by `step`:
-  /// gamma * sum over the materials of the cube root of the change of volume. What one sheet gains and
-  /// another loses is added up here instead of cancelling, as it does in the paper: otherwise a saddle or an
+  /// gamma * sum over the materials of the cube root of the change of volume. The paper takes the net change
+  /// (`losses_cancel`); else what one sheet gains and another loses is added up: otherwise a saddle or an
   /// edge may be cut off for nothing.
-  double surface_error(const Vec3& step, double gamma);
+  double surface_error(const Vec3& step, double gamma, bool losses_cancel);
 
  private:
   LocalNumbers point_numbers_, tet_numbers_;

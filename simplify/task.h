@@ -59,6 +59,8 @@ struct BlockRules {
   double gamma = 10;         ///< weight of the volume error
   /// An operation may not leave fewer tets, nor, where it adds some, more.
   std::size_t fewest_tets = 0, most_tets = std::numeric_limits<std::int64_t>::max();
+  /// Error(op) takes the net change of each volume, as the paper has it; else what each sheet sweeps adds up.
+  bool losses_cancel = false;
   double accept_worse = 0;    ///< annealing: probability of an action that leaves a poorer tet than before
   float annealing_floor = 0;  ///< share of the poorest quality that such an action must keep
   float good_enough = 1;      ///< an action that leaves only better tets is accepted whatever was there

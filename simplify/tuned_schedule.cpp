@@ -30,6 +30,8 @@ constexpr double needle_angle = 0.02;
 /// distance ended at 1.3-2.2 % of the diagonal without it, at 1.0-1.7 % with it; larger ones drive E up
 /// instead.
 constexpr double distance_weight = 50;
+/// VolumeLedger::strain() from which on the loop fits surfaces.
+constexpr double fit_above_strain = 0.6;
 /// Iterations in a row that remove next to nothing before the loop gives up.
 constexpr int most_idle_iterations = 3;
 constexpr double idle_below = 0.003;  ///< of the tets
@@ -39,16 +41,9 @@ constexpr double largest_useful_error = 200;
 
 void collapse_block(Engine& engine, float limit, std::size_t target) {
   EditableMesh& mesh = engine.mesh();
-  engine.runner().points(
-      engine.poor_points(limit),
-      [&](Task& task, Index p) {
-        if (!task.points.try_lock(p)) return Outcome::lock_taken;
-        Outcome o = task.star.gather(mesh, p, task.points);
-        if (o == Outcome::done) o = collapse(task, engine.rules);
-        task.counts.add(Operation::collapse, o);
-        return o;
-      },
-      [&] { return mesh.live_tets() <= target; });
+  engine.each_star(
+      engine.poor_points(limit), Operation::collapse,
+      [&](Task& task) { return collapse(task, engine.rules); }, [&] { return mesh.live_tets() <= target; });
 }
 
 /// Flips and smoothing of what is still poor.
@@ -114,7 +109,11 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options) {
     // Where collapses stall, other connectivity and places may let them go on.
     if (collapsed > loop_target && (static_cast<double>(collapsed) < swaps_below * target ||
                                     (removed < least_removed && percent >= 100)))
-      flip_and_smooth_block(engine, std::min(limit, engine.cutoff(flip_percent)));
+      flip_and_smooth_block(engine, removed < least_removed && percent >= 100
+                                        ? limit
+                                        : std::min(limit, engine.cutoff(flip_percent)));
+    // Where a body has lost much of its volume, its surface is put back to the middle of what it stands for.
+    if (collapsed > loop_target && engine.ledger().strain() > fit_above_strain) engine.fit_interfaces(1);
     round.finish();
     // A larger E helps as long as E is what refuses.
     const bool error_refuses =

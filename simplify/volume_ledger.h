@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstddef>
@@ -27,10 +27,11 @@ class VolumeLedger {
       const TetRecord& r = mesh.tet(t);
       if (r.points[0] != no_index) allowed_[r.region] += share * mesh.signed_volume(t);
     }
+    for (double& a : allowed_) a = std::fabs(a);
   }
 
   /// Books the changes unless one takes its region's volume out of its bounds, or farther out: then false,
-  /// and nothing is booked. Safe concurrently; two tasks at once may overdraw by what one of them does.
+  /// and nothing is booked. Safe concurrently; tasks that book at once may overdraw by what they do.
   template <class Changes>
   bool book(const Changes& changes) {
     for (const Change& c : changes) {
@@ -46,6 +47,15 @@ class VolumeLedger {
   template <class Changes>
   void take_back(const Changes& changes) {
     add(changes, -1);
+  }
+
+  /// How much of its bounds the worst region has used: 1 is all. Only while no task runs.
+  double strain() const {
+    double most = 0;
+    for (std::size_t r = 0; r < allowed_.size(); ++r)
+      if (allowed_[r] > 0)
+        most = std::max(most, std::fabs(net_[r].load(std::memory_order_relaxed)) / allowed_[r]);
+    return most;
   }
 
  private:

@@ -208,7 +208,11 @@ class Run {
     make_mesh_coherent();
     if (mesh_.tets.empty())
       throw InputError(line_.inputs.front(), 0, "all its tets have a vertex twice; nothing is left of it");
-    if (!mesh_.point_fields.empty() || !mesh_.cell_fields.empty()) fields_from_ = mesh_;
+    if (!mesh_.point_fields.empty() || !mesh_.cell_fields.empty()) {
+      fields_from_ = mesh_;
+      mesh_.point_fields.clear();
+      mesh_.cell_fields.clear();
+    }
     report_.seconds_read = watch.seconds();
     if (line_.target_tets > mesh_.tets.size())
       throw UsageError("--target-tets " + std::to_string(line_.target_tets) + " is above the " +

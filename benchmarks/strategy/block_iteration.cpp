@@ -58,7 +58,8 @@ void iterate(Workpiece& piece, const Block& block, const Grow& grow) {
 }  // namespace
 
 void block_of_tets(Workpiece& piece, std::uint64_t seed) {
-  BlockRunner runner(piece.mesh, piece.grid, seed, 2000, nullptr);
+  VolumeLedger ledger;
+  BlockRunner runner(piece.mesh, piece.grid, ledger, seed, 2000, nullptr);
   runner.reset_tasks();
   piece.rules.largest_error = piece.rules.objective.quality.ideal_edge;
   std::vector<WeighedCollapse> candidates;
@@ -91,7 +92,8 @@ void block_of_tets(Workpiece& piece, std::uint64_t seed) {
 
 void block_of_points(Workpiece& piece, std::uint64_t seed) {
   constexpr std::size_t most_targets = 4;
-  BlockRunner runner(piece.mesh, piece.grid, seed, 2000, nullptr);
+  VolumeLedger ledger;
+  BlockRunner runner(piece.mesh, piece.grid, ledger, seed, 2000, nullptr);
   runner.reset_tasks();
   piece.rules.largest_error = 4 * piece.rules.objective.quality.ideal_edge;
   std::vector<WeighedCollapse> candidates;

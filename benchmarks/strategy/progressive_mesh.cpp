@@ -22,7 +22,10 @@ bool later(const Queued& a, const Queued& b) {
 class ProgressiveMesh {
  public:
   ProgressiveMesh(Workpiece& piece, bool eager)
-      : piece_(piece), eager_(eager), task_(piece.mesh, piece.grid), versions_(piece.mesh.point_slots(), 0) {}
+      : piece_(piece),
+        eager_(eager),
+        task_(piece.mesh, piece.grid, ledger_),
+        versions_(piece.mesh.point_slots(), 0) {}
 
   void run() {
     for (Index p = 0; p < piece_.mesh.point_slots(); ++p)
@@ -82,6 +85,7 @@ class ProgressiveMesh {
 
   Workpiece& piece_;
   bool eager_;
+  VolumeLedger ledger_;  // no bounds: the paper has none
   Task task_;
   std::vector<std::uint32_t> versions_;  ///< by point; grows when what it begins is weighed anew
   std::vector<Queued> heap_, fresh_;

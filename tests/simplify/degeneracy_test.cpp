@@ -60,6 +60,11 @@ const Case cases[] = {
      [](int x, int y, int) { return x >= 3 && x < 4 && y >= 3 && y < 4 ? Tag() : Tag(1); }},
     // Parts that touch along an edge or in a point.
     {"touching_in_an_edge", {4, 4, 3}, [](int x, int y, int) { return (x < 2) == (y < 2) ? Tag(1) : Tag(); }},
+    // The same with both ends of the edge inside a slab: no point falls apart, the edge alone is not
+    // manifold.
+    {"wedges_between_slabs",
+     {4, 4, 3},
+     [](int x, int y, int z) { return z != 1 || (x < 2) == (y < 2) ? Tag(1) : Tag(); }},
     {"touching_in_a_point",
      {4, 4, 4},
      [](int x, int y, int z) {

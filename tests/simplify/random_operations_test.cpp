@@ -103,6 +103,7 @@ TEST(RandomOperations, TenThousandLeaveEveryMeshSoundAndItsTopologyAsItWas) {
           t = w.task->random.below(static_cast<std::uint32_t>(w.mesh.tet_slots()));
         } while (w.mesh.dead(t));
         const Outcome o = random_operation(w, t, slide);
+        ASSERT_EQ(w.task->cells.count(), 0u);
         w.task->release();
         ++tried;
         if (o != Outcome::done) continue;

@@ -55,6 +55,7 @@ struct Workbench {
   /// Everything given back, links sound, all tets positive, as many triangles in the grid as faces between
   /// regions.
   void expect_sound() {
+    EXPECT_EQ(task->cells.count(), 0u);  // no operation leaves a cell of the grid held
     task->release();
     EXPECT_TRUE(mesh.locks().all_free());
     EXPECT_TRUE(grid.locks().all_free());
