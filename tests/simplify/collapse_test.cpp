@@ -176,6 +176,28 @@ TEST(Collapse, CornersStay) {
   w.expect_sound();
 }
 
+// A tet that hangs on one face: its far point goes with it, onto any of the three others.
+TEST(Collapse, AnEarIsCutOff) {
+  TetMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+  mesh.tets = {{0, 1, 2, 3}, {1, 2, 3, 4}};
+  mesh.materials = {1, 1};
+  Workbench w(mesh);
+  w.star(w.at(1, 1, 1));
+  ASSERT_EQ(collapse(*w.task, w.rules), Outcome::done);
+  EXPECT_EQ(w.mesh.live_tets(), 1u);
+  w.expect_sound();
+  w.star(w.at(0, 0, 0));  // the last one stays
+  EXPECT_EQ(collapse(*w.task, w.rules), Outcome::link_condition);
+  w.expect_sound();
+
+  mesh.materials[1] = 2;
+  Workbench two(mesh);
+  two.star(two.at(1, 1, 1));
+  EXPECT_NE(collapse(*two.task, two.rules), Outcome::done);
+  two.expect_sound();
+}
+
 TEST(Collapse, AnErrorAboveEIsRefused) {
   TetMesh mesh = grid_mesh(4);
   jitter(mesh, 5);

@@ -122,7 +122,7 @@ TEST_P(Degeneracy, SurvivesImprovement) {
 }
 
 // The smallest ones there are: what has no operation left comes back as it was.
-TEST(Degeneracy, SingleTetsAndEars) {
+TEST(Degeneracy, SingleTetsAndPairs) {
   TetMesh one;
   one.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   one.tets = {{0, 1, 2, 3}};
@@ -130,15 +130,13 @@ TEST(Degeneracy, SingleTetsAndEars) {
   SimplifyOptions options;
   options.target_tets = 1;
   EXPECT_EQ(simplify(one, options).tets.size(), 1u);
-  TetMesh ear = one;  // a second tet on one face: either may be cut off
-  ear.points.emplace_back(1, 1, 1);
-  ear.tets.push_back({1, 2, 3, 4});
-  ear.materials.push_back(1);
-  const TetMesh after = simplify(ear, options);
-  EXPECT_TRUE(check_mesh(after).empty());
-  EXPECT_GE(after.tets.size(), 1u);
-  ear.materials[1] = 2;
-  EXPECT_EQ(simplify(ear, options).tets.size(), 2u);
+  TetMesh pair = one;  // half of the volume must not go
+  pair.points.emplace_back(1, 1, 1);
+  pair.tets.push_back({1, 2, 3, 4});
+  pair.materials.push_back(1);
+  EXPECT_EQ(simplify(pair, options).tets.size(), 2u);
+  pair.materials[1] = 2;
+  EXPECT_EQ(simplify(pair, options).tets.size(), 2u);
 }
 
 }  // namespace

@@ -140,23 +140,30 @@ TEST(EdgeRemoval, JunctionEdgesStay) {
   w.expect_sound();
 }
 
+// A cavity of one tet: taking out one of its edges would make the opposite edge, which is there, and fill the
+// cavity.
 TEST(EdgeRemoval, AnEdgeThatIsThereElsewhereIsNotMadeAgain) {
-  // Two tets at a boundary edge whose far points are joined by a third tet below: 2-2 would double that edge.
-  TetMesh mesh = ring_mesh(2, 1, true, 2.6);
-  // The ring's ends 2 and 4 and two new points behind the axis.
-  mesh.points.emplace_back(-0.2, -0.8, 0.1);
-  mesh.points.emplace_back(-0.2, -0.9, -0.3);
-  mesh.tets.push_back({2, 4, 5, 6});
-  mesh.materials.push_back(1);
-  if (orient3d(mesh.points[2], mesh.points[4], mesh.points[5], mesh.points[6]) < 0)
-    std::swap(mesh.tets[2][2], mesh.tets[2][3]);
-  // A chain of tets makes it one piece: from the face (0, 2, 3) to the new tet.
-  EditableMesh probe(TetMesh(mesh), "mesh");
-  EXPECT_TRUE(probe.any_pinned());  // the third tet only touches: both its common points are pinned
-  Workbench w(mesh);
-  make_poor(w);
-  EXPECT_NE(remove_axis(w, w.at(0, 0, -1), w.at(0, 0, 1), basic), Outcome::done);
-  w.expect_sound();
+  int refused = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    TetMesh mesh = grid_mesh(3);
+    jitter(mesh, seed, 0.3);
+    const std::size_t missing = 6 * 13 + seed % 6;  // in the cube in the middle
+    const Tet cavity = mesh.tets[missing];
+    std::array<Vec3, 4> corners;
+    for (int k = 0; k < 4; ++k) corners[k] = mesh.points[cavity[k]];
+    mesh.tets.erase(mesh.tets.begin() + static_cast<std::ptrdiff_t>(missing));
+    mesh.materials.pop_back();
+    for (const auto& e : tet_edges) {
+      Workbench w(mesh);
+      make_poor(w);
+      const auto at = [&](const Vec3& p) { return w.at(p.x(), p.y(), p.z()); };
+      const Outcome o = remove_axis(w, at(corners[e[0]]), at(corners[e[1]]), all);
+      EXPECT_NE(o, Outcome::done);
+      refused += o == Outcome::link_condition;
+      w.expect_sound();
+    }
+  }
+  EXPECT_GT(refused, 5);
 }
 
 TEST(EdgeRemoval, CountLimitsHold) {
