@@ -119,7 +119,9 @@ Outcome try_target(Task& task, const BlockRules& rules, std::size_t b, bool tria
   // The whole star vanishes where each of its tets stands on another: an ear of the boundary is cut off.
   if (left == 0)
     for (const Star::StarTet& t : star.tets)
-      if (task.mesh.neighbour(t.tet, t.slot) == no_index) return Outcome::link_condition;
+      if (const Index below = task.mesh.neighbour(t.tet, t.slot);
+          below == no_index || contains(task.mesh.tet(below).points, star.centre))
+        return Outcome::link_condition;
   const float limit = acceptance_limit(task, rules, star.poorest);
   qualities.resize(star.tets.size());
   for (std::size_t k = 0; k < star.tets.size(); ++k) {

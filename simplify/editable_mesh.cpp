@@ -195,7 +195,17 @@ void EditableMesh::split_stars() {
                                       }
                                     });
   }
-  if (split.empty()) return;
+  // Tets that share more than one face (flawed files have such) are no complex to operate on: all their
+  // points stay.
+  std::vector<Index> glued;
+  for (std::size_t t = 0; t < tets_.size(); ++t) {
+    const auto& n = tets_[t].neighbours;
+    for (int k = 0; k < 4; ++k)
+      for (int l = 0; l < k; ++l)
+        if (n[k] != no_index && n[k] == n[l]) glued.push_back(static_cast<Index>(t));
+  }
+  if (split.empty() && glued.empty()) return;
+  std::vector<Index> pins = split;
   std::vector<std::vector<Index>> stars(split.size());
   for (std::size_t t = 0; t < tets_.size(); ++t)
     for (Index p : tets_[t].points) {
@@ -203,7 +213,7 @@ void EditableMesh::split_stars() {
       if (at != split.end() && *at == p) stars[at - split.begin()].push_back(static_cast<Index>(t));
     }
   LocalNumbers seen;
-  std::vector<Index> part, pins = split;
+  std::vector<Index> part;
   std::vector<std::array<Index, 2>> copies;  // and what they were split off from
   for (std::size_t i = 0; i < split.size(); ++i) {
     std::vector<Index>& left = stars[i];
@@ -228,6 +238,8 @@ void EditableMesh::split_stars() {
   touched_.assign(positions_.size(), 0);
   pinned_.assign(positions_.size(), 0);
   for (Index p : pins) pinned_[p] = 1;
+  for (Index t : glued)
+    for (Index p : tets_[t].points) pinned_[p] = 1;
   originals_.resize(positions_.size());
   std::iota(originals_.begin(), originals_.end(), Index{0});
   for (const auto& [copy, original] : copies) originals_[copy] = original;

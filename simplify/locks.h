@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/error.h"
+#include "simplify/local_numbers.h"
 
 namespace tetwright {
 
@@ -61,22 +62,34 @@ class HeldLocks {
     if (held_.size() == held_.capacity()) held_.reserve(2 * held_.size() + 64);
     if (!locks_->try_lock(i)) return false;
     held_.push_back(static_cast<std::uint32_t>(i));
+    if (held_.size() > most_searched) {
+      bool added;
+      // The first time all that came before; afterwards those are known.
+      if (held_.size() == most_searched + 1)
+        for (std::uint32_t h : held_) known_.number(h, added);
+      known_.number(static_cast<std::uint32_t>(i), added);
+    }
     return true;
   }
   void release() {
     for (std::uint32_t i : held_) locks_->unlock(i);
     held_.clear();
+    known_.clear();
   }
   std::size_t count() const { return held_.size(); }
   bool holds(std::size_t i) const {
+    if (held_.size() > most_searched) return known_.find(static_cast<Index>(i)) != no_index;
     for (std::uint32_t h : held_)
       if (h == i) return true;
     return false;
   }
 
  private:
+  /// Locks that are looked for one by one: more than a star of the usual size has.
+  static constexpr std::size_t most_searched = 48;
   TryLocks* locks_;
   std::vector<std::uint32_t> held_;
+  LocalNumbers known_;  ///< of held_, once it is longer
 };
 
 }  // namespace tetwright

@@ -27,7 +27,7 @@ struct Star {
     Region inside, across;
   };
   /// Points a star may have: more is not worth a task's time.
-  static constexpr std::size_t most_points = 2000;
+  static constexpr std::size_t most_points = 500;
 
   Index centre;
   Vec3 centre_position;

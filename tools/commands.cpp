@@ -35,6 +35,9 @@ namespace {
 constexpr double target_slack = 0.01;
 constexpr double improve_slack = 0.05;
 
+/// Changes of a material's volume from which on they are noted.
+constexpr double volume_note_share = 0.02;
+
 std::vector<std::string> all_inputs(const CommandLine& line) {
   std::vector<std::string> inputs = line.inputs;
   for (const NamedValue& m : line.materials) inputs.push_back(m.value);
@@ -257,6 +260,7 @@ class Run {
   ExitStatus finish() {
     report_.result = mesh_statistics(mesh_, line_.min_solid_angle);
     report_.material_names = mesh_.material_names;
+    note_volumes();
     if (report_.simplify) find_shortfall();
     const Stopwatch watch;
     progress_.throw_if_cancelled();
@@ -300,6 +304,25 @@ class Run {
     if (!fields_from_) return;
     transfer_fields(*fields_from_, mesh_);
     fields_from_.reset();
+  }
+
+  /// What nobody asked for and everybody would want to know.
+  void note_volumes() {
+    if (!report_.dense || !report_.result || !report_.simplify) return;
+    for (const auto& [tag, before] : report_.dense->materials) {
+      const auto after = report_.result->materials.find(tag);
+      const double volume = after == report_.result->materials.end() ? 0 : after->second.volume;
+      if (!(std::fabs(volume - before.volume) > volume_note_share * std::fabs(before.volume))) continue;
+      const auto name = mesh_.material_names.find(tag);
+      report_.findings.push_back(
+          {line_.inputs.front(),
+           {"material '" + (name != mesh_.material_names.end() ? name->second : std::to_string(tag)) +
+                "' whose volume changed by " +
+                std::to_string(static_cast<int>(std::lround(100 * (volume / before.volume - 1)))) + " %",
+            1,
+            {},
+            "the schedule does not bound it"}});
+    }
   }
 
   void note_pinned_points() {

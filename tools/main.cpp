@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
     return fail(e.status(), e.what());
   } catch (const std::bad_alloc&) {
     return fail(ExitStatus::output_failed,
-                "not enough memory; give a smaller --resolution or a larger --voxel-size, or free some");
+                "not enough memory; free some, or ask for less (of surfaces: a smaller --resolution)");
   } catch (const std::exception& e) {
     return fail(ExitStatus::bad_input, e.what());
   }
