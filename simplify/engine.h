@@ -38,7 +38,8 @@ class Engine {
   BlockRules rules;
 
   void begin_stage(const char* name);
-  /// Compaction, and all that holds indices anew; slots are left for operations that add.
+  /// Compaction, and all that holds indices or qualities anew; slots are left for operations that add. Every
+  /// schedule begins with it, once it has set its objective.
   void squeeze();
   /// squeeze() where so many slots are dead that it pays.
   void squeeze_if_sparse();

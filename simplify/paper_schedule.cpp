@@ -131,7 +131,7 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
   rules.annealing_floor = 0;
   rules.losses_cancel = true;
   rules.fewest_tets = static_cast<std::size_t>(std::ceil(target * (1 - count_slack)));
-  engine.rate_all();
+  engine.squeeze();
   double percent = percent_step;
   int idle = 0;
   bool reached = false;

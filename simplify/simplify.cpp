@@ -48,7 +48,6 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
        options.chunk_size, options.objective, options.reference, options.schedule == Schedule::tuned},
       report, progress);
   engine.begin_stage("simplify");
-  engine.squeeze();
   const double build = seconds_since(start);
   if (options.schedule == Schedule::paper) {
     run_paper_schedule(engine, options);
@@ -88,7 +87,6 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
                  options.objective, options.reference},
                 report, progress);
   engine.begin_stage("improve");
-  engine.squeeze();
   const double build = seconds_since(start);
   engine.rules.largest_error = improve_error_edges * engine.rules.objective.quality.ideal_edge;
   const double below = options.only_below > 0

@@ -91,7 +91,7 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options) {
   rules.distance_weight = distance_weight;
   // Rounded up: for small targets the slack is less than one tet.
   rules.fewest_tets = static_cast<std::size_t>(std::ceil(target * (1 - closing_slack)));
-  engine.rate_all();
+  engine.squeeze();
   double percent = percent_step;
   int idle = 0;
   for (int i = 0; i < options.max_iterations && mesh.live_tets() > loop_target; ++i) {
