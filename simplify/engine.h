@@ -108,6 +108,19 @@ double seconds_since(std::chrono::steady_clock::time_point start);
 /// within 1 %.
 inline constexpr double closing_slack = 0.006;
 
+// What both schedules have of the paper, or of what it leaves open.
+
+inline constexpr double percent_step = 10;  ///< the share of poor tets grows by this each iteration
+/// Probability at first of an action that leaves a poorer tet, where the paper allows such "early in
+/// computation": p0 of p0 ln(n/N) / ln(n0/N).
+inline constexpr double first_annealing = 0.3;
+/// E stops growing here, in working coordinates, of which the farthest is below 2, for gamma 10: beyond it
+/// nothing is refused any more.
+inline constexpr double largest_useful_error = 200;
+/// Iterations in a row that gain less than that share of the tets before a loop ends.
+inline constexpr int most_idle_iterations = 3;
+inline constexpr double idle_below = 0.003;
+
 /// The block loop with the tuned schedule (README.md, Schedule), down to the target.
 void run_tuned_schedule(Engine& engine, const SimplifyOptions& options);
 

@@ -12,15 +12,6 @@ namespace tetwright {
 
 namespace {
 
-constexpr double percent_step = 10;
-/// The paper allows worse outcomes "early in computation" and says no more: p0 of p0 ln(n/N) / ln(n0/N).
-constexpr double first_annealing = 0.3;
-/// E stops growing here, working coordinates, of which the farthest is below 2, for gamma 10: beyond it
-/// nothing is refused any more, and numbers would overflow.
-constexpr double largest_useful_error = 200;
-/// Iterations in a row that gain next to nothing before the loop ends.
-constexpr int most_idle_iterations = 3;
-constexpr double idle_below = 0.003;  ///< of the tets
 /// Around the target, once it is reached: actions that leave this band are not taken.
 constexpr double count_slack = 0.005;
 

@@ -15,9 +15,7 @@ namespace {
 constexpr double first_error_edges = 4;  ///< E at first, in ideal edges
 constexpr double error_growth = 1.3;     ///< E's factor after an iteration that removed too little
 constexpr double least_removed = 0.15;   ///< of the tets: less than that is too little
-constexpr double percent_step = 10;      ///< the paper's: the share of poor tets grows by this each iteration
 constexpr double flip_percent = 40;      ///< of the tets, at most, that flips and smoothing take up
-constexpr double first_annealing = 0.3;  ///< probability at first of an action that leaves a poorer tet
 constexpr double swaps_below = 3;        ///< times the target: above it flips and smoothing are wasted work
 /// What annealing must leave of the poorest Quality^3. Below it (0: anything positive) the loop ends with
 /// 5-10 % of tets under 0.1 sr instead of 2-3 %; larger ones need a larger E to reach the target, which costs
@@ -32,12 +30,6 @@ constexpr double needle_angle = 0.02;
 constexpr double distance_weight = 50;
 /// VolumeLedger::strain() from which on the loop fits surfaces.
 constexpr double fit_above_strain = 0.6;
-/// Iterations in a row that remove next to nothing before the loop gives up.
-constexpr int most_idle_iterations = 3;
-constexpr double idle_below = 0.003;  ///< of the tets
-/// E stops growing here, in working coordinates, of which the farthest is below 2, for gamma 10: beyond it
-/// nothing is refused any more.
-constexpr double largest_useful_error = 200;
 
 void collapse_block(Engine& engine, float limit, std::size_t target) {
   EditableMesh& mesh = engine.mesh();
