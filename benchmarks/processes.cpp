@@ -103,7 +103,7 @@ void reset_peak() {
 }
 
 ScratchFolder::ScratchFolder() {
-  path_ = (std::filesystem::temp_directory_path() / "tetwright-benchmark-XXXXXX").string();
+  path_ = (std::filesystem::temp_directory_path() / "tetwright-benchmark-").string() + std::string(6, 'X');
   if (!mkdtemp(path_.data())) throw OutputError("no temporary folder could be made at " + path_);
 }
 

@@ -9,12 +9,6 @@ namespace {
 
 const FlipReach all{7, 5}, basic{3, 1};
 
-/// As if every tet were as poor as can be: any positive ones are better.
-void make_poor(Workbench& w) {
-  for (Index t = 0; t < w.mesh.tet_slots(); ++t)
-    if (!w.mesh.dead(t)) w.mesh.set_quality(t, 0);
-}
-
 /// Tries the edge between two points from the first tet that has it.
 Outcome remove_axis(Workbench& w, Index low, Index high, const FlipReach& reach) {
   for (Index t = 0; t < w.mesh.tet_slots(); ++t) {

@@ -8,15 +8,6 @@ namespace {
 
 const FlipReach all{7, 5}, basic{3, 1};
 
-void make_poor(Workbench& w) {
-  for (Index t = 0; t < w.mesh.tet_slots(); ++t)
-    if (!w.mesh.dead(t)) w.mesh.set_quality(t, 0);
-}
-
-void hold_tet(Workbench& w, Index t) {
-  for (Index p : w.mesh.tet(t).points) ASSERT_TRUE(w.task->points.try_lock(p));
-}
-
 /// Two tets above and below a triangle, their far points at the given heights.
 TetMesh bipyramid(double height, MaterialTag below = 1) {
   TetMesh mesh;

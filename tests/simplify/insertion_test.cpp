@@ -8,15 +8,6 @@ namespace {
 
 using Tag = std::optional<MaterialTag>;
 
-void make_poor(Workbench& w) {
-  for (Index t = 0; t < w.mesh.tet_slots(); ++t)
-    if (!w.mesh.dead(t)) w.mesh.set_quality(t, 0);
-}
-
-void hold_tet(Workbench& w, Index t) {
-  for (Index p : w.mesh.tet(t).points) ASSERT_TRUE(w.task->points.try_lock(p));
-}
-
 class Insertion : public testing::TestWithParam<InsertionPlace> {};
 INSTANTIATE_TEST_SUITE_P(Places, Insertion, testing::Values(InsertionPlace::centre, InsertionPlace::best));
 

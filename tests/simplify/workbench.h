@@ -93,4 +93,15 @@ struct Workbench {
   std::unique_ptr<Task> task;
 };
 
+/// As if every tet were as poor as can be: any positive ones are better.
+inline void make_poor(Workbench& w) {
+  for (Index t = 0; t < w.mesh.tet_slots(); ++t)
+    if (!w.mesh.dead(t)) w.mesh.set_quality(t, 0);
+}
+
+/// Locks the four points of a tet.
+inline void hold_tet(Workbench& w, Index t) {
+  for (Index p : w.mesh.tet(t).points) ASSERT_TRUE(w.task->points.try_lock(p));
+}
+
 }  // namespace tetwright
