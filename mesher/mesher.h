@@ -38,12 +38,6 @@ struct MaterialLayer {
   double thickness = 0;  ///< input units
 };
 
-/// Something found in an input and what was done about it.
-struct InputFinding {
-  std::string file;
-  SurfaceFinding finding;
-};
-
 /// Surfaces made ready for meshing.
 struct PreparedInput {
   struct Body {

@@ -41,6 +41,12 @@ struct SurfaceFinding {
   std::string done;           ///< what was done about it
 };
 
+/// Something found in an input and what was done about it.
+struct InputFinding {
+  std::string file;
+  SurfaceFinding finding;
+};
+
 struct SurfaceInput {
   PreparedSurface surface;
   /// With NestedRule::material the enclosed components, wound outwards, enclosing ones before what they

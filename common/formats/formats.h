@@ -3,6 +3,7 @@
 #include <string>
 
 #include "common/formats/read_tet_mesh_result.h"
+#include "common/label_volume.h"
 #include "common/triangle_mesh.h"
 
 namespace tetwright {
@@ -11,6 +12,7 @@ namespace tetwright {
 enum class FileKind {
   surface,   ///< .ply .obj .stl .off
   tet_mesh,  ///< .vtu .msh .mesh; to be read .vtk .node .ele too
+  volume,    ///< .nrrd; to be read .nhdr .mhd .mha .nii .nii.gz .inr .inr.gz too
   unknown
 };
 
@@ -27,11 +29,13 @@ std::string known_extensions(FileKind kind, FileUse use = FileUse::read);
 /// one stands beside it under the same name.
 TriangleMesh read_surface(const std::string& path);
 ReadTetMesh read_tet_mesh(const std::string& path, const ReadTetMeshOptions& options = {});
+LabelVolume read_label_volume(const std::string& path);
 
 /// Writes a file whole or not at all (see atomic_file.h); coordinates come back bit by bit. Throws UsageError
 /// if the extension is not one of the kind, OutputError if it can't be written.
 void write_surface(const TriangleMesh& mesh, const std::string& path);
 void write_tet_mesh(const TetMesh& mesh, const std::string& path);
+void write_label_volume(const LabelVolume& volume, const std::string& path);
 
 /// To be called before any work: throws UsageError if the extension is not one of `kind`, OutputError if the
 /// folder is missing or not writable or what is there is not a regular file.

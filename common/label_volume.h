@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "common/types.h"
+
+namespace tetwright {
+
+/// A segmented volume: a label for each voxel of a regular grid, whose axes need be neither perpendicular nor
+/// right-handed.
+///
+/// Voxels are cell-centred: index (i, j, k) is the centre of a voxel, which reaches half a step to each side.
+struct LabelVolume {
+  std::array<int, 3> size{};   ///< voxels along each axis, 1 or more
+  Vec3 origin = Vec3::Zero();  ///< centre of voxel (0, 0, 0), input units
+  /// Column a is the step from one voxel to the next along axis a, input units; of rank 3.
+  Eigen::Matrix3d directions = Eigen::Matrix3d::Identity();
+  /// What the file says its coordinates are: "left-posterior-superior", "RAS", or empty. Nothing is converted
+  /// between them.
+  std::string space;
+  std::vector<MaterialTag> labels;  ///< the first axis fastest
+
+  Vec3 to_input(const Vec3& index) const { return origin + directions * index; }
+};
+
+}  // namespace tetwright
