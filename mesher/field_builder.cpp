@@ -2,6 +2,7 @@
 
 #include "common/error.h"
 #include "common/parallel_sort.h"
+#include "mesher/level_set_field.h"
 #include "mesher/vdb_files.h"
 
 namespace tetwright {
@@ -14,7 +15,7 @@ std::shared_ptr<const MaterialField> build_field(const PreparedInput& input, con
     return static_cast<std::uint16_t>(level_sets.size() - 1);
   };
   // Outside is where no body is: the largest of their negatives.
-  std::vector<FieldRegion> regions{{keep_outside ? outside_name : "", outside_tag, {}}};
+  std::vector<LevelSetRegion> regions{{keep_outside ? outside_name : "", outside_tag, {}}};
   for (std::size_t b = 0; b < input.bodies.size(); ++b) {
     const PreparedInput::Body& body = input.bodies[b];
     const auto number = static_cast<std::uint16_t>(b);
@@ -40,7 +41,7 @@ std::shared_ptr<const MaterialField> build_field(const PreparedInput& input, con
       }
     regions.push_back({body.name, body.tag, {{outer, false, number}}});
   }
-  return std::make_shared<const MaterialField>(voxels, std::move(level_sets), std::move(regions));
+  return std::make_shared<const LevelSetField>(voxels, std::move(level_sets), std::move(regions));
 }
 
 void write_fields(const MaterialField& field, const std::string& path) {
@@ -50,18 +51,14 @@ void write_fields(const MaterialField& field, const std::string& path) {
     const FieldRegion& region = field.regions()[r];
     LevelSetSource source;
     source.name = region.name;
-    for (const RegionTerm& term : region.terms) {
-      const std::vector<LeafOrigin> leaves = field.level_sets()[term.level_set]->leaves();
-      source.leaves.insert(source.leaves.end(), leaves.begin(), leaves.end());
-    }
-    parallel_sort_unique(source.leaves);
+    source.leaves = field.band_leaves(static_cast<RegionIndex>(r));
     source.distances = [on_voxels, number = static_cast<RegionIndex>(r)](const LeafOrigin& leaf,
                                                                          std::span<float, leaf_points> out) {
-      FieldSampler sampler(*on_voxels);
+      const std::unique_ptr<FieldSampler> sampler = on_voxels->sampler();
       for (int i = 0; i < leaf_points; ++i) {
         const int x = i / (leaf_side * leaf_side), y = i / leaf_side % leaf_side, z = i % leaf_side;
-        sampler.values_at_voxel(leaf[0] + x, leaf[1] + y, leaf[2] + z, {&number, 1},
-                                &out[static_cast<std::size_t>(i)]);
+        sampler->values_at_voxel(leaf[0] + x, leaf[1] + y, leaf[2] + z, {&number, 1},
+                                 &out[static_cast<std::size_t>(i)]);
       }
     };
     sources.push_back(std::move(source));

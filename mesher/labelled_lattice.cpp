@@ -209,7 +209,8 @@ void read_star_values(LabelledLattice& lattice, const MaterialField& field) {
   constexpr float smallest_lead = 1e-6f;
   const std::vector<Index>& points = lattice.stars.points();
   parallel_for(0, points.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    FieldSampler sampler(field);
+    const std::unique_ptr<FieldSampler> owned = field.sampler();
+    FieldSampler& sampler = *owned;
     for (std::size_t s = begin; s < end; ++s) {
       const Index p = points[s];
       const std::span<const RegionIndex> regions = lattice.star_regions(p);

@@ -186,7 +186,8 @@ std::vector<NearestRegion> lattice_regions(const LatticePoints& points, const Ma
   std::vector<NearestRegion> regions(points.size());
   const int voxel = 2 << field.refinement();  // half lattice units
   parallel_for(0, points.size(), 4 * grain, [&](std::size_t begin, std::size_t end) {
-    FieldSampler sampler(field);
+    const std::unique_ptr<FieldSampler> owned = field.sampler();
+    FieldSampler& sampler = *owned;
     for (std::size_t i = begin; i < end; ++i) {
       const HalfCells p = morton_decode(points.keys[i]);
       const bool at_voxel = !((p[0] | p[1] | p[2]) & (voxel - 1));

@@ -175,7 +175,8 @@ Octree build_octree(const MaterialField& field, const OctreeOptions& options,
     if (voxel_steps > coarsest_interface_level || options.adaptivity <= 0) return holding;
     const std::vector<MortonKey> failed = parallel_collect<MortonKey>(
         0, holding.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
-          FieldSampler sampler(field);
+          const std::unique_ptr<FieldSampler> owned = field.sampler();
+          FieldSampler& sampler = *owned;
           for (std::size_t i = begin; i < end; ++i)
             if (contains(already, holding[i]) ||
                 !interpolates(sampler, holding[i], voxel_steps, options.adaptivity, field))

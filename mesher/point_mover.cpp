@@ -147,7 +147,8 @@ class Mover {
     rounds_.run(
         points, starts,
         [&](std::span<const Index> blocks) {
-          FieldSampler sampler(field_);
+          const std::unique_ptr<FieldSampler> owned = field_.sampler();
+          FieldSampler& sampler = *owned;
           for (Index b : blocks)
             for (std::size_t k = starts[b]; k < starts[b + 1]; ++k) work(k, sampler);
         },
@@ -200,7 +201,8 @@ class Mover {
     const std::vector<Index>& near = lattice_.stars.points();
     candidates_ = parallel_collect<Candidate>(
         0, near.size(), 1024, [&](std::size_t begin, std::size_t end, std::vector<Candidate>& out) {
-          FieldSampler sampler(field_);
+          const std::unique_ptr<FieldSampler> owned = field_.sampler();
+          FieldSampler& sampler = *owned;
           for (std::size_t i = begin; i < end; ++i)
             if (const std::optional<Candidate> c = candidate(near[i], sampler)) out.push_back(*c);
         });

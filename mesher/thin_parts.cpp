@@ -56,11 +56,12 @@ Vec3 place_of(const SheetCell& c) {
 
 ThinSheets find_thin_sheets(const MaterialField& field, const std::vector<MortonKey>& interface_voxels) {
   ThinSheets sheets;
-  if (field.level_sets().size() < 2) return sheets;
+  if (!field.knows_sheets()) return sheets;
   std::vector<SheetCell> found =
       parallel_collect<SheetCell>(0, interface_voxels.size(), grain,
                                   [&](std::size_t begin, std::size_t end, std::vector<SheetCell>& out) {
-                                    FieldSampler sampler(field);
+                                    const std::unique_ptr<FieldSampler> owned = field.sampler();
+                                    FieldSampler& sampler = *owned;
                                     for (std::size_t i = begin; i < end; ++i)
                                       descend(sampler, 0, morton_decode(interface_voxels[i]), out);
                                   });
@@ -89,7 +90,8 @@ std::vector<ThinPart> find_thin_parts(const MaterialField& field,
   };
   const std::vector<Found> found = parallel_collect<Found>(
       0, interface_voxels.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<Found>& out) {
-        FieldSampler sampler(field);
+        const std::unique_ptr<FieldSampler> owned = field.sampler();
+        FieldSampler& sampler = *owned;
         for (std::size_t i = begin; i < end; ++i) {
           const auto [x, y, z] = morton_decode(interface_voxels[i]);
           const Vec3 centre = Vec3(x, y, z) + Vec3::Constant(0.5);

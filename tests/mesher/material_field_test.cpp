@@ -37,7 +37,8 @@ TEST(MaterialField, LaterMaterialsCarveEarlierOnes) {
   const auto coarse = make_field({make_sphere(1), make_sphere(0.6, {0.7, 0.03, 0.01})}, 0.05);
   for (int refinement : {0, 2}) {
     const auto field = coarse->refined(refinement);
-    FieldSampler sampler(*field);
+    const std::unique_ptr<FieldSampler> owned = field->sampler();
+    FieldSampler& sampler = *owned;
     Random random(5);
     for (int i = 0; i < 2000; ++i) {
       const Vec3 p = 1.4 * Vec3(2 * random.uniform() - 1, 2 * random.uniform() - 1, 2 * random.uniform() - 1);
@@ -53,7 +54,8 @@ TEST(MaterialField, LaterMaterialsCarveEarlierOnes) {
 TEST(MaterialField, ProjectsOntoJunctionCurves) {
   const Vec3 centre(0.9, 0, 0);
   const auto field = make_field({make_sphere(1, Vec3::Zero(), 6), make_sphere(0.8, centre, 6)}, 0.05);
-  FieldSampler sampler(*field);
+  const std::unique_ptr<FieldSampler> owned = field->sampler();
+  FieldSampler& sampler = *owned;
   RegionSet all;
   for (RegionIndex r = 0; r < 3; ++r) all.insert(r);
   // The circle where both spheres meet.
@@ -80,7 +82,8 @@ TEST(MaterialField, FacesInContactLeaveNoSlivers) {
   const TriangleMesh both = make_box({-1, -0.5, -0.5}, {1, 0.5, 0.5});
   for (const auto& surfaces : {std::vector{left, right}, std::vector{both, right}}) {
     const auto field = make_field(surfaces, 0.07);
-    FieldSampler sampler(*field);
+    const std::unique_ptr<FieldSampler> owned = field->sampler();
+    FieldSampler& sampler = *owned;
     Random random(11);
     for (int i = 0; i < 3000; ++i) {
       const Vec3 p(0.0131 + 0.1 * (random.uniform() - 0.5), 0.9 * (random.uniform() - 0.5),
@@ -95,7 +98,8 @@ TEST(MaterialField, FacesInContactLeaveNoSlivers) {
 
 TEST(MaterialField, SheetsAndTheirThickness) {
   const auto field = make_field({make_sphere(1, Vec3::Zero(), 6), make_sphere(0.9, Vec3::Zero(), 6)}, 0.05);
-  FieldSampler sampler(*field);
+  const std::unique_ptr<FieldSampler> owned = field->sampler();
+  FieldSampler& sampler = *owned;
   const auto sheet = sampler.thinnest_sheet(field->frame().to_grid({0.57, 0.55, 0.54}), 0.5);
   ASSERT_TRUE(sheet);
   EXPECT_EQ(sheet->region, 1);
@@ -105,7 +109,8 @@ TEST(MaterialField, SheetsAndTheirThickness) {
 
 TEST(MaterialField, TwoNearest) {
   const auto field = make_field({make_sphere(1), make_sphere(0.5)}, 0.05);
-  FieldSampler sampler(*field);
+  const std::unique_ptr<FieldSampler> owned = field->sampler();
+  FieldSampler& sampler = *owned;
   EXPECT_EQ((*sampler.two_nearest(field->frame().to_grid({0.97, 0, 0})))[1], 1);
   EXPECT_EQ((*sampler.two_nearest(field->frame().to_grid({0.47, 0, 0})))[0], 1);
   EXPECT_FALSE(sampler.two_nearest(field->frame().to_grid({0, 0, 0})));

@@ -44,7 +44,8 @@ void expect_moves_well(const std::vector<TriangleMesh>& surfaces, double cell, d
   EXPECT_LT(poor_share(lattice), poor_after);
   EXPECT_GT(before, 0.1);
 
-  FieldSampler sampler(*field);
+  const std::unique_ptr<FieldSampler> owned = field->sampler();
+  FieldSampler& sampler = *owned;
   for (Index p : lattice.stars.points()) {
     if (!lattice.is_on[p]) continue;
     const auto regions = pure_regions(lattice, p);
