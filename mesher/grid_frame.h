@@ -15,9 +15,11 @@ struct GridFrame {
   double cell_size = 1;               ///< edge of a finest cell, input units
   std::array<int, 3> cells{1, 1, 1};  ///< finest cells along each side of the box, a multiple of 2^root_level
   int root_level = 0;  ///< the octree's largest cells have 2^root_level finest cells to an edge
+  /// Directions of the grid's axes, input space: perpendicular, of length 1, right-handed.
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
 
-  Vec3 to_grid(const Vec3& input) const { return (input - origin) / cell_size; }
-  Vec3 to_input(const Vec3& grid) const { return origin + cell_size * grid; }
+  Vec3 to_grid(const Vec3& input) const { return axes.transpose() * (input - origin) / cell_size; }
+  Vec3 to_input(const Vec3& grid) const { return origin + cell_size * (axes * grid); }
 };
 
 /// Finest cells between the surface's bounding box and the box of the octree. Points that may move and their

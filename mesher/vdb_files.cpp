@@ -140,8 +140,14 @@ DistanceGrid::Ptr make_grid(const GridFrame& frame, const LevelSetSource& source
   fill_beyond_band(*grid, size * band);
   grid->setName(source.name);
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
-  const auto transform = openvdb::math::Transform::createLinearTransform(frame.cell_size);
-  transform->postTranslate({frame.origin.x(), frame.origin.y(), frame.origin.z()});
+  // OpenVDB multiplies row vectors from the left: steps along the axes are rows.
+  openvdb::math::Mat4d to_world = openvdb::math::Mat4d::identity();
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) {
+      to_world(row, column) = frame.cell_size * frame.axes(column, row);
+      to_world(3, column) = frame.origin[column];
+    }
+  const auto transform = openvdb::math::Transform::createLinearTransform(to_world);
   grid->setTransform(transform);
   return grid;
 }

@@ -1,0 +1,496 @@
+#include "mesher/label_field.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "common/parallel_sort.h"
+#include "mesher/field_builder.h"
+#include "mesher/label_smoothing.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Nodes around the volume: as far as smoothing carries a label beyond it.
+constexpr int padding = 4;
+constexpr int block_cells = 8, block_nodes = block_cells + 1;
+constexpr int block_volume = block_nodes * block_nodes * block_nodes;
+constexpr int blocks_per_tile = LabelSmoother::cells / block_cells;
+/// Distances are kept as 16-bit whole numbers of this many to a voxel: finer than any decision.
+constexpr float units_per_voxel = 15000;
+constexpr auto band_units = static_cast<std::int16_t>(LabelSmoother::band * units_per_voxel);
+
+/// The volume's axes made perpendicular and right-handed (Gram-Schmidt), and positions along them from the
+/// first voxel's centre: local = to_local * index.
+struct LocalAxes {
+  explicit LocalAxes(const Eigen::Matrix3d& directions) {
+    Eigen::Matrix3d r = Eigen::Matrix3d::Zero();
+    for (int a = 0; a < 3; ++a) {
+      Vec3 rest = directions.col(a);
+      for (int b = 0; b < a; ++b) {
+        r(b, a) = axes.col(b).dot(rest);
+        rest -= r(b, a) * axes.col(b);
+      }
+      r(a, a) = rest.norm();
+      axes.col(a) = rest / r(a, a);
+    }
+    if (axes.determinant() < 0) {
+      axes.col(2) = -axes.col(2);
+      r.row(2) = -r.row(2);
+    }
+    to_local = r;
+  }
+  Eigen::Matrix3d axes, to_local;
+};
+
+}  // namespace
+
+double voxel_size(const PreparedLabels& labels) { return labels.directions.colwise().norm().minCoeff(); }
+
+GridFrame label_frame(const PreparedLabels& labels, double cell_size, bool uniform) {
+  const LocalAxes local(labels.directions);
+  Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
+  for (int k = 0; k < 8; ++k) {
+    Vec3 corner;
+    for (int a = 0; a < 3; ++a) corner[a] = (k >> a & 1) ? labels.size[a] - 0.5 : -0.5;
+    corner = local.to_local * corner;
+    low = low.cwiseMin(corner);
+    high = high.cwiseMax(corner);
+  }
+  // Downwards from the first voxel's centre in whole cells.
+  for (int a = 0; a < 3; ++a) low[a] = std::floor(low[a] / cell_size) * cell_size;
+  GridFrame frame = make_grid_frame(low, high, cell_size, uniform);
+  frame.origin = labels.origin + local.axes * frame.origin;
+  frame.axes = local.axes;
+  return frame;
+}
+
+/// Distances at the nodes, shared by the fields of all refinements.
+struct LabelField::Blocks {
+  /// The labels that come near a block are channels first, first + 1, ...; none where one label is alone.
+  struct Block {
+    std::uint32_t first = 0;
+    std::uint16_t count = 0;
+    RegionIndex alone = outside_region;
+  };
+
+  std::array<int, 3> counts{};  ///< blocks along each axis
+  std::vector<Block> blocks;
+  std::vector<RegionIndex> channels;
+  std::vector<std::int16_t> values;  ///< block_volume for each channel, x fastest
+  double voxel = 1;                  ///< smallest spacing, input units
+  double least_slope = 1;            ///< smallest spacing by largest
+  Eigen::Matrix3d to_index;          ///< from local positions
+  Vec3 origin;                       ///< first voxel's centre, input units
+
+  const Block& block(int x, int y, int z) const {
+    return blocks[(static_cast<std::size_t>(z) * counts[1] + y) * counts[0] + x];
+  }
+  const std::int16_t* channel(std::uint32_t number) const {
+    return values.data() + static_cast<std::size_t>(number) * block_volume;
+  }
+};
+
+namespace {
+
+/// What one tile adds.
+struct TileBlocks {
+  struct Made {
+    std::array<int, 3> at;
+    std::uint32_t first;
+    std::uint16_t count;
+    RegionIndex alone;
+  };
+  std::vector<Made> blocks;
+  std::vector<RegionIndex> channels;
+  std::vector<std::int16_t> values;
+};
+
+/// Copies the voxels around a tile; false if all are of one region, which is the first.
+bool copy_voxels(const PreparedLabels& labels, const std::array<int, 3>& tile, std::span<RegionIndex> out) {
+  constexpr int side = LabelSmoother::side;
+  const std::array<int, 3>& size = labels.size;
+  std::array<int, 3> low;  // first index copied
+  for (int a = 0; a < 3; ++a) low[a] = tile[a] * LabelSmoother::cells - LabelSmoother::reach - padding;
+  const int from = std::clamp(-low[0], 0, side), to = std::clamp(size[0] - low[0], from, side);
+  bool alike = true;
+  RegionIndex first = outside_region;
+  RegionIndex* row = out.data();
+  for (int z = 0; z < side; ++z)
+    for (int y = 0; y < side; ++y, row += side) {
+      const int iy = low[1] + y, iz = low[2] + z;
+      if (iy < 0 || iz < 0 || iy >= size[1] || iz >= size[2]) {
+        std::fill(row, row + side, outside_region);
+      } else {
+        const RegionIndex* in =
+            labels.regions.data() + (static_cast<std::size_t>(iz) * size[1] + iy) * size[0] + (low[0] + from);
+        std::fill(row, row + from, outside_region);
+        std::copy(in, in + (to - from), row + from);
+        std::fill(row + to, row + side, outside_region);
+      }
+      if (y == 0 && z == 0) first = row[0];
+      if (alike)
+        for (int x = 0; x < side; ++x) alike &= row[x] == first;
+    }
+  return !alike;
+}
+
+void add_block(const LabelSmoother& smoother, const std::array<int, 3>& in_tile, const std::array<int, 3>& at,
+               TileBlocks& out) {
+  TileBlocks::Made made{at, static_cast<std::uint32_t>(out.channels.size()), 0, outside_region};
+  std::array<std::int16_t, block_volume> values;
+  for (std::size_t l = 0; l < smoother.labels().size(); ++l) {
+    std::int16_t smallest = band_units, largest = -band_units;
+    int i = 0;
+    for (int z = 0; z < block_nodes; ++z)
+      for (int y = 0; y < block_nodes; ++y)
+        for (int x = 0; x < block_nodes; ++x, ++i) {
+          const float d = smoother.distance(l, in_tile[0] * block_cells + x, in_tile[1] * block_cells + y,
+                                            in_tile[2] * block_cells + z);
+          values[i] = static_cast<std::int16_t>(std::lrint(units_per_voxel * d));
+          smallest = std::min(smallest, values[i]);
+          largest = std::max(largest, values[i]);
+        }
+    if (smallest >= band_units) continue;
+    if (largest <= -band_units) made.alone = smoother.labels()[l];
+    out.channels.push_back(smoother.labels()[l]);
+    out.values.insert(out.values.end(), values.begin(), values.end());
+    ++made.count;
+  }
+  if (made.count == 1) {
+    made.alone = out.channels.back();
+    made.count = 0;
+    out.channels.pop_back();
+    out.values.resize(out.values.size() - block_volume);
+  }
+  out.blocks.push_back(made);
+}
+
+}  // namespace
+
+std::shared_ptr<const LabelField> LabelField::make(const PreparedLabels& labels, const GridFrame& frame,
+                                                   bool keep_outside, Progress* progress) {
+  auto made = std::make_shared<Blocks>();
+  std::array<int, 3> tiles;
+  for (int a = 0; a < 3; ++a) {
+    made->counts[a] = (labels.size[a] + 2 * padding - 1 + block_cells - 1) / block_cells;
+    tiles[a] = (made->counts[a] + blocks_per_tile - 1) / blocks_per_tile;
+  }
+  const auto product = [](const std::array<int, 3>& n) {
+    return static_cast<std::size_t>(n[0]) * n[1] * n[2];
+  };
+  made->blocks.resize(product(made->counts));
+  made->voxel = voxel_size(labels);
+  made->least_slope = made->voxel / labels.directions.colwise().norm().maxCoeff();
+  made->to_index = LocalAxes(labels.directions).to_local.inverse();
+  made->origin = labels.origin;
+
+  constexpr std::size_t grain = 32;  // tiles to a task, a millisecond each where labels meet
+  const std::size_t tile_count = product(tiles);
+  std::vector<TileBlocks> parts((tile_count + grain - 1) / grain);
+  parallel_for(0, parts.size(), 1, [&](std::size_t part_begin, std::size_t part_end) {
+    if (progress) progress->throw_if_cancelled();
+    LabelSmoother smoother;
+    for (std::size_t part = part_begin; part < part_end; ++part)
+      for (std::size_t t = part * grain; t < std::min(tile_count, (part + 1) * grain); ++t) {
+        const auto number = static_cast<int>(t);
+        const std::array<int, 3> tile{number % tiles[0], number / tiles[0] % tiles[1],
+                                      number / (tiles[0] * tiles[1])};
+        const bool mixed = copy_voxels(labels, tile, smoother.voxels());
+        if (mixed) smoother.smooth();
+        for (int k = 0; k < blocks_per_tile * blocks_per_tile * blocks_per_tile; ++k) {
+          const std::array<int, 3> in_tile{k % blocks_per_tile, k / blocks_per_tile % blocks_per_tile,
+                                           k / (blocks_per_tile * blocks_per_tile)};
+          std::array<int, 3> at;
+          bool inside = true;
+          for (int a = 0; a < 3; ++a) {
+            at[a] = tile[a] * blocks_per_tile + in_tile[a];
+            inside &= at[a] < made->counts[a];
+          }
+          if (!inside) continue;
+          if (mixed)
+            add_block(smoother, in_tile, at, parts[part]);
+          else
+            parts[part].blocks.push_back({at, 0, 0, smoother.voxels()[0]});
+        }
+      }
+  });
+  std::size_t channel_count = 0;
+  for (const TileBlocks& p : parts) channel_count += p.channels.size();
+  made->channels.reserve(channel_count);
+  made->values.reserve(channel_count * block_volume);
+  for (TileBlocks& p : parts) {
+    const auto first = static_cast<std::uint32_t>(made->channels.size());
+    for (const TileBlocks::Made& b : p.blocks)
+      made->blocks[(static_cast<std::size_t>(b.at[2]) * made->counts[1] + b.at[1]) * made->counts[0] +
+                   b.at[0]] = {first + b.first, b.count, b.alone};
+    made->channels.insert(made->channels.end(), p.channels.begin(), p.channels.end());
+    made->values.insert(made->values.end(), p.values.begin(), p.values.end());
+    p = {};
+  }
+
+  std::vector<FieldRegion> regions{{keep_outside ? outside_name : "", outside_tag}};
+  for (const LabelMaterial& m : labels.materials) regions.push_back({m.name, m.tag});
+  return std::shared_ptr<const LabelField>(new LabelField(std::move(made), frame, std::move(regions), 0));
+}
+
+LabelField::LabelField(std::shared_ptr<const Blocks> blocks, const GridFrame& voxels,
+                       std::vector<FieldRegion> regions, int refinement)
+    : MaterialField(voxels, std::move(regions), LabelSmoother::band * blocks->voxel / voxels.cell_size,
+                    refinement),
+      blocks_(std::move(blocks)),
+      to_nodes_(blocks_->to_index * frame().cell_size),
+      first_node_(blocks_->to_index * (frame().axes.transpose() * (frame().origin - blocks_->origin)) +
+                  Vec3::Constant(padding)) {}
+
+LabelField::~LabelField() = default;
+
+std::shared_ptr<const MaterialField> LabelField::refined(int refinement) const {
+  return std::shared_ptr<const LabelField>(new LabelField(blocks_, voxels(), regions(), refinement));
+}
+
+class LabelField::Sampler final : public FieldSampler {
+ public:
+  explicit Sampler(const LabelField& f)
+      : FieldSampler(std::ldexp(1, f.refinement()), f.blocks_->least_slope),
+        field_(f),
+        blocks_(*f.blocks_),
+        per_unit_(f.blocks_->voxel / f.frame().cell_size / units_per_voxel),
+        cells_per_voxel_(std::ldexp(1, f.refinement())) {}
+
+  NearestRegion nearest(const Vec3& point) override {
+    const Place p = find(point);
+    return nearest(p).first;
+  }
+  NearestRegion nearest_at_voxel(int x, int y, int z) override {
+    return nearest(cells_per_voxel_ * Vec3(x, y, z));
+  }
+  void values(const Vec3& point, std::span<const RegionIndex> regions, float* out) override {
+    const Place p = find(point);
+    for (RegionIndex r : regions) *out++ = static_cast<float>(per_unit_ * value(p, r));
+  }
+  void values_at_voxel(int x, int y, int z, std::span<const RegionIndex> regions, float* out) override {
+    values(cells_per_voxel_ * Vec3(x, y, z), regions, out);
+  }
+  std::optional<RegionSet> two_nearest(const Vec3& point) override {
+    const auto [first, second] = nearest(find(point));
+    if (first.margin >= field_.band()) return std::nullopt;
+    RegionSet both;
+    both.insert(first.region);
+    both.insert(second);
+    return both;
+  }
+  std::optional<Sheet> thinnest_sheet(const Vec3&, double) override { return std::nullopt; }
+
+ private:
+  /// A block, the cell in it, and where in the cell.
+  struct Place {
+    const Blocks::Block* block;
+    int node;
+    std::array<double, 3> share;
+  };
+
+  Place find(const Vec3& point) const {
+    const Vec3 at = field_.to_nodes_ * point + field_.first_node_;
+    Place p{&outside_, 0, {0, 0, 0}};
+    std::array<int, 3> block, cell;
+    for (int a = 0; a < 3; ++a) {
+      // Written so that what is no number is outside too.
+      if (!(at[a] >= 0 && at[a] < blocks_.counts[a] * block_cells)) return p;
+      const int whole = static_cast<int>(at[a]);
+      block[a] = whole / block_cells;
+      cell[a] = whole % block_cells;
+      p.share[a] = at[a] - whole;
+    }
+    p.block = &blocks_.block(block[0], block[1], block[2]);
+    p.node = (cell[2] * block_nodes + cell[1]) * block_nodes + cell[0];
+    return p;
+  }
+
+  static constexpr int step_y = block_nodes, step_z = block_nodes * block_nodes;
+  static double mix(double a, double b, double share) { return a + share * (b - a); }
+
+  double channel_value(const Place& p, std::uint32_t channel) const {
+    const std::int16_t* v = blocks_.channel(channel) + p.node;
+    const double low =
+        mix(mix(v[0], v[1], p.share[0]), mix(v[step_y], v[step_y + 1], p.share[0]), p.share[1]);
+    const double high = mix(mix(v[step_z], v[step_z + 1], p.share[0]),
+                            mix(v[step_z + step_y], v[step_z + step_y + 1], p.share[0]), p.share[1]);
+    return mix(low, high, p.share[2]);
+  }
+
+  /// By node steps.
+  double channel_value(const Place& p, std::uint32_t channel, Vec3& gradient) const {
+    const std::int16_t* v = blocks_.channel(channel) + p.node;
+    double along_x[2][2], slope_x[2][2];
+    for (int z = 0; z < 2; ++z)
+      for (int y = 0; y < 2; ++y) {
+        const std::int16_t* row = v + z * step_z + y * step_y;
+        along_x[z][y] = mix(row[0], row[1], p.share[0]);
+        slope_x[z][y] = row[1] - row[0];
+      }
+    const double low = mix(along_x[0][0], along_x[0][1], p.share[1]);
+    const double high = mix(along_x[1][0], along_x[1][1], p.share[1]);
+    gradient = {mix(mix(slope_x[0][0], slope_x[0][1], p.share[1]),
+                    mix(slope_x[1][0], slope_x[1][1], p.share[1]), p.share[2]),
+                mix(along_x[0][1] - along_x[0][0], along_x[1][1] - along_x[1][0], p.share[2]), high - low};
+    return mix(low, high, p.share[2]);
+  }
+
+  std::optional<std::uint32_t> channel_of(const Place& p, RegionIndex region) const {
+    for (std::uint32_t c = p.block->first; c < p.block->first + p.block->count; ++c)
+      if (blocks_.channels[c] == region) return c;
+    return std::nullopt;
+  }
+  double far_value(const Place& p, RegionIndex region) const {
+    return p.block->count == 0 && p.block->alone == region ? -band_units : band_units;
+  }
+  double value(const Place& p, RegionIndex region) const {
+    const auto channel = channel_of(p, region);
+    return channel ? channel_value(p, *channel) : far_value(p, region);
+  }
+
+  /// The region that has the place and the next one.
+  std::pair<NearestRegion, RegionIndex> nearest(const Place& p) const {
+    const Blocks::Block& b = *p.block;
+    const auto band = static_cast<float>(field_.band());
+    if (b.count == 0) return {{b.alone, band}, b.alone};
+    double smallest = HUGE_VAL, next = HUGE_VAL;
+    RegionIndex first = 0, second = 0;
+    for (std::uint32_t c = b.first; c < b.first + b.count; ++c) {
+      const double v = channel_value(p, c);
+      if (v < smallest) {
+        next = smallest, second = first;
+        smallest = v, first = blocks_.channels[c];
+      } else if (v < next) {
+        next = v, second = blocks_.channels[c];
+      }
+    }
+    return {{first, std::min(static_cast<float>(0.5 * per_unit_ * (next - smallest)), band)}, second};
+  }
+
+  void values_and_gradients(const Vec3& point, std::span<const RegionIndex> regions, double* values,
+                            Vec3* gradients) override {
+    const Place p = find(point);
+    for (RegionIndex r : regions) {
+      Vec3 by_nodes = Vec3::Zero();
+      const auto channel = channel_of(p, r);
+      *values++ = per_unit_ * (channel ? channel_value(p, *channel, by_nodes) : far_value(p, r));
+      *gradients++ = per_unit_ * (field_.to_nodes_.transpose() * by_nodes);
+    }
+  }
+
+  const LabelField& field_;
+  const Blocks& blocks_;
+  const double per_unit_;         ///< lattice units
+  const double cells_per_voxel_;  ///< of the frame's, not the volume's
+  const Blocks::Block outside_;
+};
+
+std::unique_ptr<FieldSampler> LabelField::sampler() const { return std::make_unique<Sampler>(*this); }
+
+std::vector<MortonKey> LabelField::interface_voxels() const {
+  const Blocks& all = *blocks_;
+  const Eigen::Matrix3d to_cells = (all.to_index * voxels().cell_size).inverse();
+  const Vec3 first =
+      all.to_index * (voxels().axes.transpose() * (voxels().origin - all.origin)) + Vec3::Constant(padding);
+  // Cells that only touch a cell of nodes hold nothing of it.
+  constexpr double touching = 1e-6;
+  const bool finer = voxels().cell_size < (1 - touching) * all.voxel;
+  const auto rows = static_cast<std::size_t>(all.counts[1]) * all.counts[2];
+  std::vector<MortonKey> keys = parallel_collect<MortonKey>(
+      0, rows, 1, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+        std::array<std::uint16_t, block_volume> own;
+        for (std::size_t row = begin; row < end; ++row)
+          for (int bx = 0; bx < all.counts[0]; ++bx) {
+            const int by = static_cast<int>(row) % all.counts[1], bz = static_cast<int>(row) / all.counts[1];
+            const Blocks::Block& b = all.block(bx, by, bz);
+            if (b.count == 0) continue;
+            std::array<std::int16_t, block_volume> smallest;
+            smallest.fill(INT16_MAX);
+            for (std::uint16_t c = 0; c < b.count; ++c) {
+              const std::int16_t* v = all.channel(b.first + c);
+              for (int i = 0; i < block_volume; ++i)
+                if (v[i] < smallest[i]) smallest[i] = v[i], own[i] = c;
+            }
+            for (int k = 0; k < block_cells * block_cells * block_cells; ++k) {
+              const std::array<int, 3> cell{k % block_cells, k / block_cells % block_cells,
+                                            k / (block_cells * block_cells)};
+              const int i = (cell[2] * block_nodes + cell[1]) * block_nodes + cell[0];
+              constexpr int y = block_nodes, z = block_nodes * block_nodes;
+              const std::uint16_t o = own[i];
+              if (own[i + 1] == o && own[i + y] == o && own[i + y + 1] == o && own[i + z] == o &&
+                  own[i + z + 1] == o && own[i + z + y] == o && own[i + z + y + 1] == o)
+                continue;
+              const Vec3 node(bx * block_cells + cell[0], by * block_cells + cell[1],
+                              bz * block_cells + cell[2]);
+              Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
+              for (int corner = 0; corner < 8; ++corner) {
+                const Vec3 at = to_cells * (node + Vec3(corner & 1, corner >> 1 & 1, corner >> 2) - first);
+                low = low.cwiseMin(at);
+                high = high.cwiseMax(at);
+              }
+              std::array<int, 3> from, to;
+              for (int a = 0; a < 3; ++a) {
+                from[a] = std::max(0, static_cast<int>(std::floor(low[a] + touching)));
+                to[a] = std::min(voxels().cells[a], static_cast<int>(std::ceil(high[a] - touching)));
+              }
+              for (int cz = from[2]; cz < to[2]; ++cz)
+                for (int cy = from[1]; cy < to[1]; ++cy)
+                  for (int cx = from[0]; cx < to[0]; ++cx) out.push_back(morton_encode(cx, cy, cz));
+            }
+          }
+      });
+  parallel_sort_unique(keys);
+  if (!finer) return keys;
+  // Of several cells within one of nodes, those that an interface passes: corners, middles of edges, faces
+  // and the cell.
+  constexpr std::size_t grain = 1024;
+  const std::shared_ptr<const MaterialField> on_voxels = refined(0);
+  return parallel_collect<MortonKey>(
+      0, keys.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+        const std::unique_ptr<FieldSampler> sampler = on_voxels->sampler();
+        for (std::size_t i = begin; i < end; ++i) {
+          const auto [x, y, z] = morton_decode(keys[i]);
+          const RegionIndex there = sampler->nearest_at_voxel(x, y, z).region;
+          for (int k = 1; k < 27; ++k)
+            if (sampler->nearest(Vec3(x + 0.5 * (k % 3), y + 0.5 * (k / 3 % 3), z + 0.5 * (k / 9))).region !=
+                there) {
+              out.push_back(keys[i]);
+              break;
+            }
+        }
+      });
+}
+
+std::vector<LeafOrigin> LabelField::band_leaves(RegionIndex region) const {
+  const Blocks& all = *blocks_;
+  const Eigen::Matrix3d to_cells = (all.to_index * voxels().cell_size).inverse();
+  const Vec3 first =
+      all.to_index * (voxels().axes.transpose() * (voxels().origin - all.origin)) + Vec3::Constant(padding);
+  std::vector<LeafOrigin> leaves;
+  for (int bz = 0; bz < all.counts[2]; ++bz)
+    for (int by = 0; by < all.counts[1]; ++by)
+      for (int bx = 0; bx < all.counts[0]; ++bx) {
+        const Blocks::Block& b = all.block(bx, by, bz);
+        const auto channels = all.channels.begin() + b.first;
+        if (std::find(channels, channels + b.count, region) == channels + b.count) continue;
+        Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
+        for (int corner = 0; corner < 8; ++corner) {
+          const Vec3 at =
+              to_cells *
+              (block_cells * Vec3(bx + (corner & 1), by + (corner >> 1 & 1), bz + (corner >> 2)) - first);
+          low = low.cwiseMin(at);
+          high = high.cwiseMax(at);
+        }
+        const auto leaf = [](double x) { return static_cast<int>(std::floor(x / leaf_side)) * leaf_side; };
+        for (int z = leaf(low[2]); z <= high[2]; z += leaf_side)
+          for (int y = leaf(low[1]); y <= high[1]; y += leaf_side)
+            for (int x = leaf(low[0]); x <= high[0]; x += leaf_side) leaves.push_back({x, y, z});
+      }
+  parallel_sort_unique(leaves);
+  return leaves;
+}
+
+}  // namespace tetwright

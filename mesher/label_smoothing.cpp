@@ -1,0 +1,311 @@
+#include "mesher/label_smoothing.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tetwright {
+
+namespace {
+
+/// Binomial coefficients of order 4, of variance 1.
+constexpr std::array<float, 5> kernel{0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F};
+constexpr int kernel_reach = 2;
+constexpr int back_projections = 2;
+/// Share of what is missing that is given back at a time: with all of it thin sheets overshoot.
+constexpr float given_back = 0.7F;
+/// How far one share must be ahead of another for a sample point to be counted wholly as its label's.
+constexpr float sure_lead = 0.4F;
+/// Own share ahead of all others at a voxel's centre: the interface keeps an eighth of a voxel away from it.
+constexpr float least_lead = 0.1F;
+/// The same as a distance, voxels.
+constexpr float least_distance = 0.125F;
+/// Standard deviation of the smoothing, and the slope of probit(u) in t = 2u - 1 at 0.
+constexpr float deviation = 1.0F, probit_slope = 1.2533141F;
+/// |2u - 1| is cut off here; the distance is LabelSmoother::band then.
+constexpr float most_excess = 0.95F;
+
+/// -probit(u) within 0.05 up to the band, of + - * / and sqrt alone.
+float distance_from_share(float u) {
+  const float t = std::clamp(2 * u - 1, -most_excess, most_excess);
+  return -deviation * probit_slope * t / std::sqrt(std::sqrt(1 - t * t));
+}
+
+}  // namespace
+
+LabelSmoother::LabelSmoother()
+    : raw_(volume), own_(volume), numbers_(1 << 16), rows_(volume), slices_(volume) {}
+
+void LabelSmoother::number_labels() {
+  labels_.clear();
+  RegionIndex last = raw_[0];
+  numbers_[last] = 1;
+  labels_.push_back(last);
+  for (RegionIndex r : raw_) {
+    if (r == last) continue;
+    last = r;
+    if (numbers_[r]) continue;
+    numbers_[r] = 1;
+    labels_.push_back(r);
+  }
+  std::sort(labels_.begin(), labels_.end());
+  for (std::size_t i = 0; i < labels_.size(); ++i) numbers_[labels_[i]] = static_cast<std::uint16_t>(i + 1);
+  boxes_.assign(labels_.size(), {{side, side, side}, {0, 0, 0}});
+  int i = 0;
+  for (int z = 0; z < side; ++z)
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x, ++i) {
+        own_[i] = static_cast<std::uint16_t>(numbers_[raw_[i]] - 1);
+        Box& b = boxes_[own_[i]];
+        const std::array<int, 3> at{x, y, z};
+        for (int a = 0; a < 3; ++a) {
+          b.low[a] = std::min(b.low[a], at[a]);
+          b.high[a] = std::max(b.high[a], at[a] + 1);
+        }
+      }
+  for (RegionIndex r : labels_) numbers_[r] = 0;
+  if (fields_.size() < labels_.size()) {
+    fields_.resize(labels_.size());
+    missing_.resize(labels_.size());
+  }
+  missing_boxes_.resize(labels_.size());
+}
+
+void LabelSmoother::find_mixed_nodes() {
+  mixed_.clear();
+  near_.clear();
+  std::vector<std::uint16_t> found;
+  for (int z = 1; z + 1 < side; ++z)
+    for (int y = 1; y + 1 < side; ++y)
+      for (int x = 1; x + 1 < side; ++x) {
+        const int here = place(x, y, z);
+        const std::uint16_t own = own_[here];
+        found.clear();
+        for (int dz = -1; dz <= 1; ++dz)
+          for (int dy = -1; dy <= 1; ++dy) {
+            const std::uint16_t* row = &own_[here + place(-1, dy, dz)];
+            for (int k = 0; k < 3; ++k)
+              if (row[k] != own && std::find(found.begin(), found.end(), row[k]) == found.end())
+                found.push_back(row[k]);
+          }
+        if (found.empty()) continue;
+        found.push_back(own);
+        std::sort(found.begin(), found.end());
+        mixed_.push_back(
+            {here, own, static_cast<std::uint16_t>(found.size()), static_cast<std::uint32_t>(near_.size())});
+        near_.insert(near_.end(), found.begin(), found.end());
+      }
+}
+
+void LabelSmoother::add_smoothed(const Field& from, const Box& box, int margin, float factor, Field& to) {
+  Box out;
+  for (int a = 0; a < 3; ++a) {
+    out.low[a] = std::max(margin, box.low[a] - kernel_reach);
+    out.high[a] = std::min(side - margin, box.high[a] + kernel_reach);
+    if (out.low[a] >= out.high[a]) return;
+  }
+  const int width = out.high[0] - out.low[0];
+  // Along x; a row is copied with zeros around it.
+  std::array<float, side + 4 * kernel_reach> padded{};
+  for (int z = box.low[2]; z < box.high[2]; ++z)
+    for (int y = box.low[1]; y < box.high[1]; ++y) {
+      padded.fill(0);
+      std::copy(&from[place(box.low[0], y, z)], &from[place(box.high[0] - 1, y, z)] + 1,
+                &padded[box.low[0] + kernel_reach]);
+      float* row = &rows_[place(out.low[0], y, z)];
+      const float* in = &padded[out.low[0]];
+      for (int x = 0; x < width; ++x)
+        row[x] =
+            kernel[0] * (in[x] + in[x + 4]) + kernel[1] * (in[x + 1] + in[x + 3]) + kernel[2] * in[x + 2];
+    }
+  for (int z = box.low[2]; z < box.high[2]; ++z)
+    for (int y = out.low[1]; y < out.high[1]; ++y) {
+      float* row = &slices_[place(out.low[0], y, z)];
+      std::fill(row, row + width, 0.0F);
+      for (int d = -kernel_reach; d <= kernel_reach; ++d) {
+        if (y + d < box.low[1] || y + d >= box.high[1]) continue;
+        const float* in = &rows_[place(out.low[0], y + d, z)];
+        const float k = kernel[d + kernel_reach];
+        for (int x = 0; x < width; ++x) row[x] += k * in[x];
+      }
+    }
+  for (int z = out.low[2]; z < out.high[2]; ++z)
+    for (int y = out.low[1]; y < out.high[1]; ++y) {
+      float* row = &to[place(out.low[0], y, z)];
+      for (int d = -kernel_reach; d <= kernel_reach; ++d) {
+        if (z + d < box.low[2] || z + d >= box.high[2]) continue;
+        const float* in = &slices_[place(out.low[0], y, z + d)];
+        const float k = factor * kernel[d + kernel_reach];
+        for (int x = 0; x < width; ++x) row[x] += k * in[x];
+      }
+    }
+}
+
+void LabelSmoother::add_missing_shares(int margin) {
+  for (std::size_t l = 0; l < labels_.size(); ++l) {
+    missing_[l].assign(volume, 0);
+    missing_boxes_[l] = {{side, side, side}, {0, 0, 0}};
+  }
+  // Of each label near a node the values at the eight sample points, a quarter of a voxel from its centre
+  // along each axis.
+  std::vector<std::array<float, 8>> samples;
+  std::vector<float> got;
+  for (const MixedNode& n : mixed_) {
+    const std::array<int, 3> at{n.place % side, n.place / side % side, n.place / (side * side)};
+    if (*std::min_element(at.begin(), at.end()) < margin ||
+        *std::max_element(at.begin(), at.end()) >= side - margin)
+      continue;
+    const auto near = labels_near(n);
+    samples.resize(near.size());
+    for (std::size_t l = 0; l < near.size(); ++l) {
+      const float* f = &fields_[near[l]][n.place];
+      const auto mix = [](float away, float here, float other_way, float& low, float& high) {
+        low = 0.75F * here + 0.25F * away;
+        high = 0.75F * here + 0.25F * other_way;
+      };
+      float along_x[9][2], along_y[3][2][2];
+      for (int k = 0; k < 9; ++k) {
+        const float* row = f + place(0, k % 3 - 1, k / 3 - 1);
+        mix(row[-1], row[0], row[1], along_x[k][0], along_x[k][1]);
+      }
+      for (int z = 0; z < 3; ++z)
+        for (int x = 0; x < 2; ++x)
+          mix(along_x[3 * z][x], along_x[3 * z + 1][x], along_x[3 * z + 2][x], along_y[z][0][x],
+              along_y[z][1][x]);
+      for (int y = 0; y < 2; ++y)
+        for (int x = 0; x < 2; ++x)
+          mix(along_y[0][y][x], along_y[1][y][x], along_y[2][y][x], samples[l][2 * y + x],
+              samples[l][4 + 2 * y + x]);
+    }
+    got.assign(near.size(), 0);
+    for (int s = 0; s < 8; ++s) {
+      float first = -HUGE_VALF, second = -HUGE_VALF;
+      std::size_t winner = 0;
+      for (std::size_t l = 0; l < near.size(); ++l)
+        if (samples[l][s] > first)
+          second = first, first = samples[l][s], winner = l;
+        else
+          second = std::max(second, samples[l][s]);
+      float sum = 0;
+      std::array<float, 27> share;
+      for (std::size_t l = 0; l < near.size(); ++l) {
+        const float lead = samples[l][s] - (l == winner ? second : first);
+        share[l] = std::clamp(0.5F + lead / sure_lead, 0.0F, 1.0F);
+        sum += share[l];
+      }
+      for (std::size_t l = 0; l < near.size(); ++l) got[l] += share[l] / (8 * sum);
+    }
+    for (std::size_t l = 0; l < near.size(); ++l) {
+      const float lack = (near[l] == n.own ? 1.0F : 0.0F) - got[l];
+      if (lack == 0) continue;
+      missing_[near[l]][n.place] = lack;
+      Box& b = missing_boxes_[near[l]];
+      for (int a = 0; a < 3; ++a) {
+        b.low[a] = std::min(b.low[a], at[a]);
+        b.high[a] = std::max(b.high[a], at[a] + 1);
+      }
+    }
+  }
+  for (std::size_t l = 0; l < labels_.size(); ++l)
+    if (missing_boxes_[l].low[0] < side)
+      add_smoothed(missing_[l], missing_boxes_[l], margin + kernel_reach, given_back, fields_[l]);
+}
+
+void LabelSmoother::hold_own_labels(int) {
+  for (const MixedNode& n : mixed_) {
+    float others = -HUGE_VALF;
+    for (std::uint16_t l : labels_near(n))
+      if (l != n.own) others = std::max(others, fields_[l][n.place]);
+    float& own = fields_[n.own][n.place];
+    own = std::max(own, others + least_lead);
+  }
+}
+
+void LabelSmoother::distances_from_shares(int margin) {
+  for (std::size_t l = 0; l < labels_.size(); ++l)
+    for (int z = margin; z < side - margin; ++z)
+      for (int y = margin; y < side - margin; ++y) {
+        float* row = &fields_[l][place(0, y, z)];
+        for (int x = margin; x < side - margin; ++x) row[x] = distance_from_share(row[x]);
+      }
+  // Once more: rounding, and shares beyond what counts.
+  for (const MixedNode& n : mixed_) {
+    float others = HUGE_VALF;
+    for (std::uint16_t l : labels_near(n))
+      if (l != n.own) others = std::min(others, fields_[l][n.place]);
+    float& own = fields_[n.own][n.place];
+    own = std::min(own, others - 2 * least_distance);
+  }
+}
+
+void LabelSmoother::connect_rarer_labels() {
+  // Lifts are taken from the distances as they were, so that they do not depend on the order.
+  struct Lift {
+    int place;
+    std::uint16_t label;
+    float by;
+  };
+  std::vector<Lift> lifts;
+  constexpr int low = reach - 1, high = side - reach + 1;
+  constexpr std::array<int, 3> step{place(1, 0, 0), place(0, 1, 0), place(0, 0, 1)};
+  for (const MixedNode& n : mixed_) {
+    const std::array<int, 3> at{n.place % side, n.place / side % side, n.place / (side * side)};
+    for (int normal = 0; normal < 3; ++normal) {
+      const int a = (normal + 1) % 3, b = (normal + 2) % 3;
+      if (at[normal] < low || at[normal] >= high || at[a] < low || at[a] + 1 >= high || at[b] < low ||
+          at[b] + 1 >= high)
+        continue;
+      const std::array<int, 4> quad{n.place, n.place + step[a], n.place + step[b],
+                                    n.place + step[a] + step[b]};
+      const std::uint16_t p = own_[quad[0]], q = own_[quad[1]];
+      if (p == q || own_[quad[3]] != p || own_[quad[2]] != q) continue;
+      int p_count = 0, q_count = 0;
+      for (int k = -1; k <= 1; ++k)
+        for (int j = -1; j <= 2; ++j)
+          for (int i = -1; i <= 2; ++i) {
+            const std::uint16_t l = own_[n.place + i * step[a] + j * step[b] + k * step[normal]];
+            p_count += l == p;
+            q_count += l == q;
+          }
+      const bool connect_p = p_count < q_count || (p_count == q_count && p < q);
+      const std::uint16_t rare = connect_p ? p : q, other = connect_p ? q : p;
+      float lead = 0;
+      for (int v : quad) lead += fields_[rare][v] - fields_[other][v];
+      const float lack = lead + 4 * 2 * least_distance;
+      if (lack <= 0) continue;
+      for (int v : quad)
+        if (own_[v] == rare) lifts.push_back({v, rare, lack / 2});
+    }
+  }
+  std::sort(lifts.begin(), lifts.end(), [](const Lift& x, const Lift& y) {
+    return x.place != y.place ? x.place < y.place : x.by > y.by;
+  });
+  for (std::size_t i = 0; i < lifts.size(); ++i)
+    if (i == 0 || lifts[i].place != lifts[i - 1].place) {
+      float& d = fields_[lifts[i].label][lifts[i].place];
+      d = std::max(d - lifts[i].by, -band);
+    }
+}
+
+void LabelSmoother::smooth() {
+  number_labels();
+  find_mixed_nodes();
+  for (std::size_t l = 0; l < labels_.size(); ++l) {
+    Field& indicator = missing_[l];
+    indicator.assign(volume, 0);
+    for (int i = 0; i < volume; ++i) indicator[i] = own_[i] == l ? 1.0F : 0.0F;
+    fields_[l].assign(volume, 0);
+    add_smoothed(indicator, boxes_[l], kernel_reach, 1, fields_[l]);
+  }
+  int margin = kernel_reach;
+  hold_own_labels(margin);
+  for (int k = 0; k < back_projections; ++k) {
+    add_missing_shares(margin + 1);
+    margin += 1 + kernel_reach;
+    hold_own_labels(margin);
+  }
+  static_assert(kernel_reach + back_projections * (1 + kernel_reach) + 1 == reach);
+  distances_from_shares(margin);
+  connect_rarer_labels();
+}
+
+}  // namespace tetwright
