@@ -17,8 +17,8 @@ struct LabelVolume {
   Vec3 origin = Vec3::Zero();  ///< centre of voxel (0, 0, 0), input units
   /// Column a is the step from one voxel to the next along axis a, input units; of rank 3.
   Eigen::Matrix3d directions = Eigen::Matrix3d::Identity();
-  /// What the file says its coordinates are: "left-posterior-superior", "RAS", or empty. Nothing is converted
-  /// between them.
+  /// What the file says its coordinates are: "left-posterior-superior", "right-anterior-superior" and so on,
+  /// or empty. Nothing is converted between them.
   std::string space;
   std::vector<MaterialTag> labels;  ///< the first axis fastest
 

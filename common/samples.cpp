@@ -2,12 +2,14 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <map>
 #include <numbers>
 
 #include "common/error.h"
 #include "common/formats/text_scanner.h"
+#include "common/random.h"
 
 namespace tetwright {
 
@@ -215,9 +217,62 @@ TetMesh layers() {
   return mesh;
 }
 
+/// Twice the distance of a voxel from the middle of a grid of 48 along an axis, so that it is whole.
+constexpr int organs_size = 48;
+using Doubled = std::array<std::int64_t, 3>;
+
+bool in_ellipsoid(const Doubled& at, const Doubled& centre, const Doubled& radii) {
+  std::int64_t sum = 0, product = 1;
+  for (const std::int64_t r : radii) product *= r * r;
+  for (std::size_t k = 0; k < 3; ++k)
+    sum += (at[k] - centre[k]) * (at[k] - centre[k]) * (product / (radii[k] * radii[k]));
+  return sum <= product;
+}
+
+MaterialTag organ_at(const Doubled& at) {
+  const auto in_body = [](const Doubled& p) { return in_ellipsoid(p, {0, 0, 0}, {44, 36, 46}); };
+  if (!in_body(at)) return 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (const int step : {-2, 2}) {
+      Doubled next = at;
+      next[k] += step;
+      if (!in_body(next)) return 4;  // the skin
+    }
+  // The organs' ellipsoids overlap, so that they touch in a surface.
+  if (in_ellipsoid(at, {-15, -6, 4}, {19, 18, 22})) return 2;
+  if (in_ellipsoid(at, {13, -6, 0}, {14, 15, 18})) return 3;
+  const std::int64_t x = at[0], y = at[1] - 22;
+  if (x * x + y * y <= 64 && std::abs(at[2]) < 28) return 5;  // the spine
+  return 1;
+}
+
+LabelVolume organs() {
+  LabelVolume volume;
+  volume.size = {organs_size, organs_size, organs_size};
+  const Vec3 spacing(0.75, 0.75, 1.25);
+  volume.directions = spacing.asDiagonal();
+  volume.origin = -0.5 * (organs_size - 1) * spacing;
+  volume.space = "left-posterior-superior";
+  for (int k = 0; k < organs_size; ++k)
+    for (int j = 0; j < organs_size; ++j)
+      for (int i = 0; i < organs_size; ++i)
+        volume.labels.push_back(
+            organ_at({2 * i - (organs_size - 1), 2 * j - (organs_size - 1), 2 * k - (organs_size - 1)}));
+  // Noise, as a segmentation has it: up to three voxels of any label in a row.
+  Random random(1);
+  constexpr int islands = 60;
+  for (int n = 0; n < islands; ++n) {
+    const std::uint32_t first = random.below(static_cast<std::uint32_t>(volume.labels.size()) - 2);
+    const std::uint32_t length = 1 + random.below(3);
+    const auto label = static_cast<MaterialTag>(random.below(6));
+    for (std::uint32_t i = 0; i < length; ++i) volume.labels[first + i] = label;
+  }
+  return volume;
+}
+
 struct Sample {
   const char* name;
-  std::variant<TriangleMesh (*)(), TetMesh (*)()> make;
+  std::variant<TriangleMesh (*)(), TetMesh (*)(), LabelVolume (*)()> make;
 };
 
 const std::vector<Sample>& samples() {
@@ -231,6 +286,7 @@ const std::vector<Sample>& samples() {
       {"tet_cube", tet_cube},
       {"two_materials", two_materials},
       {"layers", layers},
+      {"organs", organs},
   };
   return all;
 }
@@ -254,11 +310,12 @@ std::vector<std::string> sample_names() {
 }
 
 FileKind sample_kind(const std::string& name) {
-  return find_sample(name).make.index() == 0 ? FileKind::surface : FileKind::tet_mesh;
+  constexpr std::array<FileKind, 3> kinds{FileKind::surface, FileKind::tet_mesh, FileKind::volume};
+  return kinds[find_sample(name).make.index()];
 }
 
-std::variant<TriangleMesh, TetMesh> make_sample(const std::string& name) {
-  using Made = std::variant<TriangleMesh, TetMesh>;
+std::variant<TriangleMesh, TetMesh, LabelVolume> make_sample(const std::string& name) {
+  using Made = std::variant<TriangleMesh, TetMesh, LabelVolume>;
   return std::visit([](auto make) { return Made(make()); }, find_sample(name).make);
 }
 
@@ -267,8 +324,10 @@ void write_sample(const std::string& name, const std::string& path) {
   const auto sample = make_sample(name);
   if (const auto* surface = std::get_if<TriangleMesh>(&sample))
     write_surface(*surface, path);
+  else if (const auto* mesh = std::get_if<TetMesh>(&sample))
+    write_tet_mesh(*mesh, path);
   else
-    write_tet_mesh(std::get<TetMesh>(sample), path);
+    write_label_volume(std::get<LabelVolume>(sample), path);
 }
 
 }  // namespace tetwright

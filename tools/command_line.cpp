@@ -270,7 +270,8 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
 
   CLI::App* sample = app.add_subcommand("sample", "Writes a built-in sample");
   sample->add_option("NAME", out.inputs, "One of: " + joined(sample_names()))->required()->expected(1);
-  add_output(*sample, out, "Surfaces: .ply .obj .stl .off; tet meshes: .vtu .msh .mesh");
+  add_output(*sample, out,
+             "Surfaces: .ply .obj .stl .off; tet meshes: .vtu .msh .mesh; volumes of labels: .nrrd");
   add_common(*sample, out);
 
   try {

@@ -6,8 +6,12 @@
 
 #include "common/error.h"
 #include "common/formats/atomic_file.h"
+#include "common/formats/inr.h"
 #include "common/formats/medit.h"
+#include "common/formats/metaimage.h"
 #include "common/formats/msh.h"
+#include "common/formats/nifti.h"
+#include "common/formats/nrrd.h"
 #include "common/formats/obj.h"
 #include "common/formats/off.h"
 #include "common/formats/ply.h"
@@ -66,10 +70,41 @@ constexpr std::array<TetFormat, 6> tet_formats{{{".vtu", read_one_file<read_vtu>
                                                 {".node", read_node_with_ele, nullptr},
                                                 {".ele", read_ele_with_node, nullptr}}};
 
+template <LabelVolume (*read)(std::string_view, const std::string&)>
+LabelVolume read_one_volume_file(const std::string& path) {
+  return read(read_whole_file(path), path);
+}
+
+template <LabelVolume (*read)(std::string_view, const std::string&, const FileReader&)>
+LabelVolume read_volume_files(const std::string& path) {
+  return read(read_whole_file(path), path, read_whole_file);
+}
+
+struct VolumeFormat {
+  const char* extension;
+  LabelVolume (*read)(const std::string& path);
+  std::string (*write)(const LabelVolume& volume);  ///< null: the format is only read
+};
+constexpr std::array<VolumeFormat, 8> volume_formats{{{".nrrd", read_volume_files<read_nrrd>, write_nrrd},
+                                                      {".nhdr", read_volume_files<read_nrrd>, nullptr},
+                                                      {".mhd", read_volume_files<read_metaimage>, nullptr},
+                                                      {".mha", read_volume_files<read_metaimage>, nullptr},
+                                                      {".nii", read_one_volume_file<read_nifti>, nullptr},
+                                                      {".nii.gz", read_one_volume_file<read_nifti>, nullptr},
+                                                      {".inr", read_one_volume_file<read_inr>, nullptr},
+                                                      {".inr.gz", read_one_volume_file<read_inr>, nullptr}}};
+
+std::string in_lower_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// In lower case; with what stands before .gz where that is one with it.
 std::string extension_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
+  const std::string name = in_lower_case(std::filesystem::path(path).filename().string());
+  for (const char* compound : {".nii.gz", ".inr.gz"})
+    if (name.ends_with(compound) && name != compound) return compound;
+  return std::filesystem::path(name).extension().string();
 }
 
 template <class Format>
@@ -87,6 +122,10 @@ const typename Formats::value_type* find_format(const Formats& formats, const st
   return nullptr;
 }
 
+const char* kind_name(FileKind kind) {
+  return kind == FileKind::surface ? "surface" : kind == FileKind::volume ? "volume of labels" : "tet mesh";
+}
+
 template <class Formats>
 const typename Formats::value_type& need_format(const Formats& formats, const std::string& path,
                                                 FileKind kind, FileUse use) {
@@ -97,8 +136,7 @@ const typename Formats::value_type& need_format(const Formats& formats, const st
                    (extension.empty() ? "no extension"
                     : only_read       ? "extension " + in_quotes(extension) + " can be read, not written,"
                                       : "unknown extension " + in_quotes(extension)) +
-                   " for a " + (kind == FileKind::surface ? "surface" : "tet mesh") + "; known are " +
-                   known_extensions(kind, use));
+                   " for a " + kind_name(kind) + "; known are " + known_extensions(kind, use));
 }
 
 }  // namespace
@@ -106,6 +144,7 @@ const typename Formats::value_type& need_format(const Formats& formats, const st
 FileKind file_kind(const std::string& path, FileUse use) {
   if (find_format(surface_formats, path, use)) return FileKind::surface;
   if (find_format(tet_formats, path, use)) return FileKind::tet_mesh;
+  if (find_format(volume_formats, path, use)) return FileKind::volume;
   return FileKind::unknown;
 }
 
@@ -118,9 +157,15 @@ std::string known_extensions(FileKind kind, FileUse use) {
       out += format.extension;
     }
   };
-  if (kind != FileKind::tet_mesh) add(surface_formats);
-  if (kind != FileKind::surface) add(tet_formats);
+  if (kind == FileKind::surface || kind == FileKind::unknown) add(surface_formats);
+  if (kind == FileKind::tet_mesh || kind == FileKind::unknown) add(tet_formats);
+  if (kind == FileKind::volume || kind == FileKind::unknown) add(volume_formats);
   return out;
+}
+
+std::string file_stem(const std::string& path) {
+  const std::string name = std::filesystem::path(path).filename().string();
+  return name.substr(0, name.size() - extension_of(path).size());
 }
 
 TriangleMesh read_surface(const std::string& path) {
@@ -130,6 +175,10 @@ TriangleMesh read_surface(const std::string& path) {
 
 ReadTetMesh read_tet_mesh(const std::string& path, const ReadTetMeshOptions& options) {
   return need_format(tet_formats, path, FileKind::tet_mesh, FileUse::read).read(path, options);
+}
+
+LabelVolume read_label_volume(const std::string& path) {
+  return need_format(volume_formats, path, FileKind::volume, FileUse::read).read(path);
 }
 
 void write_surface(const TriangleMesh& mesh, const std::string& path) {
@@ -142,9 +191,16 @@ void write_tet_mesh(const TetMesh& mesh, const std::string& path) {
   write_file_atomically(path, format.write(mesh));
 }
 
+void write_label_volume(const LabelVolume& volume, const std::string& path) {
+  const VolumeFormat& format = need_format(volume_formats, path, FileKind::volume, FileUse::write);
+  write_file_atomically(path, format.write(volume));
+}
+
 void check_output_path(const std::string& path, FileKind kind) {
   if (kind == FileKind::surface)
     (void)need_format(surface_formats, path, kind, FileUse::write);
+  else if (kind == FileKind::volume)
+    (void)need_format(volume_formats, path, kind, FileUse::write);
   else
     (void)need_format(tet_formats, path, kind, FileUse::write);
   check_output_file(path);

@@ -24,6 +24,9 @@ FileKind file_kind(const std::string& path, FileUse use = FileUse::read);
 /// ".ply .obj .stl .off", for messages and help.
 std::string known_extensions(FileKind kind, FileUse use = FileUse::read);
 
+/// A file's name without folders and extension; .nii.gz and .inr.gz go whole.
+std::string file_stem(const std::string& path);
+
 /// Reads a file. Throws UsageError if the extension is not one of the kind asked for, InputError if the file
 /// is missing, unreadable or makes no sense. A .node and an .ele file are a pair, named by either: the other
 /// one stands beside it under the same name.

@@ -119,6 +119,7 @@ TEST(Program, WrongCallsAreStatusTwo) {
   expect_refused("prepare " + in + " -o " + out + " --target-tets 100 --seed -1", 2, {"-1"});
   expect_refused("sample dodo -o " + out, 2, {"dodo", "sphere"});
   expect_refused("sample sphere -o " + out, 2, {"t.vtu", ".ply"});
+  expect_refused("sample organs -o " + out, 2, {"t.vtu", "volume of labels", ".nrrd"});
   EXPECT_EQ(f.entries(), 1u);
 }
 

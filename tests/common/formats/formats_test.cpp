@@ -28,6 +28,41 @@ TEST_F(Formats, KindsByExtension) {
     EXPECT_EQ(file_kind(name), FileKind::unknown);
 }
 
+TEST_F(Formats, VolumesAndTheirCompoundExtensions) {
+  for (const char* name :
+       {"a.nrrd", "a.NHDR", "a.mhd", "a.mha", "a.nii", "b/a.x.nii.GZ", "a.inr", "a.inr.gz"})
+    EXPECT_EQ(file_kind(name), FileKind::volume) << name;
+  for (const char* name : {"a.gz", "a.vtu.gz", "nii.gz", "a.nii.gz.x"})
+    EXPECT_EQ(file_kind(name), FileKind::unknown) << name;
+  EXPECT_EQ(file_kind("a.nrrd", FileUse::write), FileKind::volume);
+  EXPECT_EQ(file_kind("a.nii.gz", FileUse::write), FileKind::unknown);
+  EXPECT_EQ(known_extensions(FileKind::volume), ".nrrd .nhdr .mhd .mha .nii .nii.gz .inr .inr.gz");
+  EXPECT_EQ(known_extensions(FileKind::volume, FileUse::write), ".nrrd");
+  EXPECT_EQ(file_stem("a/b.c/liver.NII.gz"), "liver");
+  EXPECT_EQ(file_stem("liver.v2.inr.gz"), "liver.v2");
+  EXPECT_EQ(file_stem("a/bone.stl"), "bone");
+  EXPECT_EQ(file_stem("bone"), "bone");
+  EXPECT_EQ(file_stem(".stl"), ".stl");
+  const std::string message =
+      error_of<UsageError>([&] { check_output_path(path("x.nii.gz"), FileKind::volume); });
+  EXPECT_NE(message.find("\".nii.gz\" can be read, not written, for a volume of labels; known are .nrrd"),
+            std::string::npos)
+      << message;
+}
+
+TEST_F(Formats, VolumesThroughFiles) {
+  LabelVolume volume;
+  volume.size = {1, 2, 3};
+  volume.labels = {0, 1, 2, 3, 4, 500};
+  write_label_volume(volume, path("a.nrrd"));
+  EXPECT_EQ(read_label_volume(path("a.nrrd")).labels, volume.labels);
+  put(path("h.mhd"), "NDims = 3\nDimSize = 1 1 2\nElementType = MET_UCHAR\nElementDataFile = h.raw\n");
+  EXPECT_NE(error_of<InputError>([&] { (void)read_label_volume(path("h.mhd")); }).find(path("h.raw")),
+            std::string::npos);
+  put(path("h.raw"), "\1\2");
+  EXPECT_EQ(read_label_volume(path("h.mhd")).labels, (std::vector<MaterialTag>{1, 2}));
+}
+
 TEST_F(Formats, RoundTripThroughFiles) {
   for (const char* name : {"a.vtu", "a.msh", "a.mesh"}) {
     write_tet_mesh(tricky_tets(), path(name));

@@ -24,6 +24,8 @@ TEST(Regressions, EveryFileIsReadOrRefused) {
     try {
       if (kind == FileKind::surface)
         EXPECT_FALSE(read_surface(path).triangles.empty());
+      else if (kind == FileKind::volume)
+        EXPECT_FALSE(read_label_volume(path).labels.empty());
       else {
         const TetMesh mesh = read_tet_mesh(path).mesh;
         EXPECT_FALSE(mesh.tets.empty());

@@ -1,0 +1,59 @@
+#include "common/formats/byte_source.h"
+
+#include "tests/common/formats/volume_bytes.h"
+
+namespace tetwright {
+namespace {
+
+using Packing = ByteSource::Packing;
+
+TEST(ByteSource, PlainBytes) {
+  const std::string bytes = "0123456789";
+  ByteSource source(bytes, Packing::none, "f");
+  EXPECT_EQ(source.most_left(), 10u);
+  EXPECT_EQ(source.take(3), "012");
+  EXPECT_EQ(source.skip(2), 2u);
+  EXPECT_EQ(source.take(99), "56789");
+  EXPECT_EQ(source.take(1), "");
+  EXPECT_EQ(source.skip(1), 0u);
+  EXPECT_EQ(source.taken(), 10u);
+}
+
+TEST(ByteSource, InflatedBytesInPiecesOfAnySize) {
+  std::string bytes;
+  for (int i = 0; i < 50000; ++i) bytes += std::to_string(i * 7919 % 1000);
+  for (const int wrapper : {31, 15})
+    for (const std::size_t piece : {1u, 7u, 1000u, 1000000u}) {
+      const std::string packed = deflated(bytes, wrapper);
+      ByteSource source(packed, Packing::deflate, "f");
+      EXPECT_GE(source.most_left(), bytes.size());
+      EXPECT_EQ(source.skip(70000), 70000u);
+      std::string out;
+      for (std::string_view part; !(part = source.take(piece)).empty();) out += part;
+      EXPECT_TRUE(out == bytes.substr(70000)) << wrapper << " " << piece;
+      EXPECT_EQ(source.taken(), bytes.size());
+    }
+}
+
+TEST(ByteSource, MostLeftHoldsForTheBestCompression) {
+  const std::string bytes(10000000, 'x');
+  const std::string packed = deflated(bytes);
+  ByteSource source(packed, Packing::deflate, "f");
+  EXPECT_GE(source.most_left(), bytes.size());
+  EXPECT_LT(source.most_left(), 2 * bytes.size());
+  EXPECT_EQ(source.skip(bytes.size()), bytes.size());
+}
+
+TEST(ByteSource, DamagedData) {
+  std::string packed = deflated("some bytes or other");
+  packed[12] ^= 0x7f;
+  ByteSource source(packed, Packing::deflate, "f");
+  const std::string message = error_of<InputError>([&] {
+    (void)source.take(100);
+    source.check_end();
+  });
+  EXPECT_EQ(message.find("f: the compressed data are damaged"), 0u) << message;
+}
+
+}  // namespace
+}  // namespace tetwright
