@@ -1,33 +1,20 @@
 #include "mesher/mesher.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <ranges>
 #include <set>
 
 #include "common/error.h"
-#include "common/interfaces.h"
-#include "common/parallel.h"
-#include "common/predicates.h"
-#include "mesher/cutting.h"
 #include "mesher/field_builder.h"
-#include "mesher/labelled_lattice.h"
-#include "mesher/lattice.h"
+#include "mesher/field_mesher.h"
 #include "mesher/material_field.h"
-#include "mesher/octree.h"
-#include "mesher/point_mover.h"
 #include "mesher/thin_parts.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr int smallest_resolution = 4;
-constexpr int largest_resolution = 4096;
 /// Cubes of input coordinates, as areas and volumes need them, must neither overflow nor vanish; single
 /// precision fields hold 1e38.
 constexpr double largest_coordinate = 1e50;
@@ -48,18 +35,9 @@ constexpr double tets_per_volume_uniform = 12;
 constexpr double bytes_per_tet = 140;
 /// As thin_parts.h refines for sheets.
 constexpr double cells_per_sheet = 1.5, smallest_refined = 0.125;
-/// Numbers have 32 bits, and a lattice has some tets that no mesh keeps.
-constexpr double most_tets = 2e9;
-/// Tets of the lattice for each leaf of an octree.
-constexpr double tets_per_leaf = 12;
-/// Measured: 40 bytes where most leaves are outside (uniform), 100 where sheets are refined for.
-constexpr double bytes_per_lattice_tet = 40, bytes_per_refined_tet = 100;
 constexpr std::size_t most_materials = 60000;
 /// A uniform grid has leaves and lattice points all over its box.
 constexpr double bytes_per_cell_uniform = 150;
-/// What the program takes anyhow, libraries and the surface included.
-constexpr double bytes_at_least = 64e6;
-
 /// Dense tets for each tet that is wanted in the end: fewer leave the simplifier no choice, more take time.
 constexpr double dense_per_target = 40;
 constexpr double most_dense_tets = 20e6;
@@ -68,27 +46,10 @@ constexpr int smallest_target_resolution = 32;
 /// Coordinates must resolve a finest cell this finely, or rounding them could turn a thin tet over.
 constexpr double cell_share_of_rounding = 0x1p-20;
 
-std::string number_text(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", v);
-  return text;
-}
-
 double longest_side(const PreparedInput& input) { return (input.high - input.low).maxCoeff(); }
 
 double farthest_coordinate(const PreparedInput& input) {
   return std::max(input.low.cwiseAbs().maxCoeff(), input.high.cwiseAbs().maxCoeff());
-}
-
-void check_options(const MesherOptions& options) {
-  if (options.voxel_size != 0 && !(options.voxel_size > 0 && std::isfinite(options.voxel_size)))
-    throw UsageError("the voxel size must be a positive number, not " + number_text(options.voxel_size));
-  if (options.voxel_size == 0 &&
-      (options.resolution < smallest_resolution || options.resolution > largest_resolution))
-    throw UsageError("the resolution must be from " + std::to_string(smallest_resolution) + " to " +
-                     std::to_string(largest_resolution) + ", not " + std::to_string(options.resolution));
-  if (!(options.adaptivity >= 0 && std::isfinite(options.adaptivity)))
-    throw UsageError("the adaptivity must be 0 or more finest cells, not " + number_text(options.adaptivity));
 }
 
 /// The finest cell's edge in input units.
@@ -141,82 +102,9 @@ MesherEstimate estimate(const PreparedInput& input, double h, bool uniform, bool
           static_cast<std::size_t>(bytes + bytes_per_tet * std::max(tets, tets_per_area_thick * cells / 2))};
 }
 
-void check_memory(const MesherEstimate& e) {
-  const double machine =
-      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  const double tets = static_cast<double>(e.tets), bytes = static_cast<double>(e.bytes);
-  if (tets > most_tets)
-    throw OutputError("the mesh would have about " + number_text(tets) + " tets, and at most " +
-                      number_text(most_tets) + " can be numbered; use a lower resolution");
-  if (bytes > machine)
-    throw OutputError("the mesh would have about " + number_text(tets) + " tets and take " +
-                      number_text(bytes / (1 << 30)) + " GB, this machine has " +
-                      number_text(machine / (1 << 30)) + " GB; use a lower resolution");
-}
-
-/// Runs the stages, tells about them and takes their times.
-class Stages {
- public:
-  explicit Stages(Progress* progress) : progress_(progress) {}
-  void begin(const char* name) {
-    if (progress_) {
-      progress_->throw_if_cancelled();
-      progress_->begin_stage(name);
-    }
-    start_ = std::chrono::steady_clock::now();
-  }
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  Progress* progress_;
-  std::chrono::steady_clock::time_point start_;
-};
-
-/// True for a point on a face of the frame's box, which is the mesh's boundary where outside is kept.
-bool on_box(const Vec3& point, const GridFrame& frame) {
-  for (int k = 0; k < 3; ++k)
-    if (point[k] == 0 || point[k] == frame.cells[k]) return true;  // exact: no point on the box moves
-  return false;
-}
-
-TetMesh to_input_units(CutMesh cut, const MaterialField& field) {
-  TetMesh mesh;
-  const GridFrame& frame = field.frame();
-  mesh.points = std::move(cut.points);
-  std::vector<std::uint8_t> candidates = std::move(cut.on_interface);
-  parallel_for(0, mesh.points.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (on_box(mesh.points[i], frame)) candidates[i] = 1;
-      mesh.points[i] = frame.to_input(mesh.points[i]);
-    }
-  });
-  mesh.tets = std::move(cut.tets);
-  mesh.materials.resize(mesh.tets.size());
-  parallel_for(0, mesh.tets.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) mesh.materials[i] = field.regions()[cut.regions[i]].tag;
-  });
-  for (const FieldRegion& region : field.regions())
-    if (!region.name.empty()) mesh.material_names[region.tag] = region.name;
-  // The promise is about the coordinates as handed out; the frame leaves room for their rounding.
-  parallel_for(0, mesh.tets.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Tet& t = mesh.tets[i];
-      TETWRIGHT_CHECK(orient3d(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) >
-                      0);
-    }
-  });
-  mesh.interfaces = find_interfaces(mesh, &candidates);
-  return mesh;
-}
-
-/// Refuses an input of which a material has nothing left: which one, and what to do about it. `regions` are
-/// those of all lattice points, or of all tets.
-template <class Regions>
-void check_all_there(const PreparedInput& input, const MaterialField& field, const Regions& regions) {
-  std::vector<std::uint8_t> there(field.regions().size(), 0);
-  for (RegionIndex r : regions) there[r] = 1;
+/// Refuses an input of which a material has nothing left: which one, and what to do about it.
+void check_all_there(const PreparedInput& input, const MaterialField& field,
+                     const std::vector<std::uint8_t>& there) {
   if (std::count(there.begin() + 1, there.end(), 1) == 0)
     throw NothingToMeshError(
         input.bodies[0].file +
@@ -252,12 +140,6 @@ void check_outside_is_free(const PreparedInput& input) {
   };
   for (const PreparedInput::Body& b : input.bodies) taken(b.name, b.tag);
   for (const MaterialLayer& l : input.layers) taken(l.name, l.tag);
-}
-
-ThinPartReport thin_part_report(const ThinPart& part, const MaterialField& field, bool refined) {
-  const std::string& name = field.regions()[part.region].name;
-  return {part.region == outside_region ? "" : name, part.places, field.voxels().to_input(part.first),
-          refined};
 }
 
 }  // namespace
@@ -322,8 +204,7 @@ MesherEstimate estimate_mesh(const PreparedInput& input, const MesherOptions& op
 }
 
 MeshedSurface mesh_surfaces(const PreparedInput& input, const MesherOptions& options, Progress* progress) {
-  MeshedSurface result;
-  MesherReport& report = result.report;
+  MesherReport report;
   Stages stages(progress);
 
   stages.begin("signed distances");
@@ -346,54 +227,18 @@ MeshedSurface mesh_surfaces(const PreparedInput& input, const MesherOptions& opt
   const std::vector<MortonKey> interface_voxels = field->interface_voxels();
   ThinSheets sheets;
   if (!options.uniform) sheets = find_thin_sheets(*field, interface_voxels);
-  for (const ThinPart& part : sheets.too_thin)
-    report.thin_parts.push_back(thin_part_report(part, *field, true));
-  for (const ThinPart& part : find_thin_parts(*field, interface_voxels))
-    report.thin_parts.push_back(thin_part_report(part, *field, false));
-  report.refinement = sheets.refinement;
-  if (sheets.refinement > 0) field = field->refined(sheets.refinement);
-  const Octree octree =
-      build_octree(*field, {options.uniform, options.adaptivity}, interface_voxels, sheets.cells, progress);
-  report.cells = octree.size();
-  // Thin sheets may have taken far more cells than the surface alone.
-  const double lattice_tets_expected = tets_per_leaf * static_cast<double>(octree.size());
-  check_memory(
-      {static_cast<std::size_t>(lattice_tets_expected),
-       static_cast<std::size_t>((report.refinement > 0 ? bytes_per_refined_tet : bytes_per_lattice_tet) *
-                                lattice_tets_expected)});
+  const auto add_thin = [&](const std::vector<ThinPart>& parts, bool refined) {
+    for (const ThinPart& p : parts)
+      report.thin_parts.push_back({p.region == outside_region ? "" : field->regions()[p.region].name,
+                                   p.places, voxels.to_input(p.first), refined});
+  };
+  add_thin(sheets.too_thin, true);
+  add_thin(find_thin_parts(*field, interface_voxels), false);
   report.seconds_octree = stages.seconds();
 
-  stages.begin("lattice");
-  LatticePoints points = lattice_points(octree);
-  std::vector<NearestRegion> regions = lattice_regions(points, *field);
-  check_all_there(input, *field, regions | std::views::transform(&NearestRegion::region));
-  std::vector<Tet> tets;
-  if (options.keep_outside) {
-    tets = lattice_tets(octree, points);
-  } else {
-    const std::vector<std::uint8_t> far = far_outside(regions, *field);
-    tets = lattice_tets(octree, points, &far, field->refinement());
-  }
-  LabelledLattice lattice = label_lattice(std::move(points), std::move(regions), std::move(tets),
-                                          field->regions().size(), options.keep_outside, &report.specks);
-  read_star_values(lattice, *field);
-  report.lattice_tets = lattice.tets.size();
-  report.seconds_lattice = stages.seconds();
-
-  stages.begin("moving points");
-  move_points(lattice, *field, progress);
-  report.seconds_move = stages.seconds();
-
-  stages.begin("cutting");
-  CutMesh cut = cut_lattice(lattice);
-  // Moves and specks may have taken what had few lattice points.
-  check_all_there(input, *field, cut.regions);
-  result.mesh = to_input_units(std::move(cut), *field);
-  report.seconds_cut = stages.seconds();
-  if (progress) progress->throw_if_cancelled();
-
-  result.field = std::move(field);
-  return result;
+  return mesh_field(field, interface_voxels, {sheets.refinement, std::move(sheets.cells)}, options,
+                    std::move(report), stages,
+                    [&](const std::vector<std::uint8_t>& there) { check_all_there(input, *field, there); });
 }
 
 int resolution_for_target(const PreparedInput& input, std::size_t target_tets) {

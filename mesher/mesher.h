@@ -9,6 +9,7 @@
 #include "common/reference_surface.h"
 #include "common/tet_mesh.h"
 #include "common/triangle_mesh.h"
+#include "mesher/label_input.h"
 #include "mesher/surface_input.h"
 
 namespace tetwright {
@@ -109,6 +110,21 @@ MesherEstimate estimate_mesh(const PreparedInput& input, const MesherOptions& op
 /// lattice point is inside), OutputError (the mesh would not fit in memory), Interrupted. Time grows with the
 /// square of the number of materials where there are many: every body may carve every earlier one.
 MeshedSurface mesh_surfaces(const PreparedInput& input, const MesherOptions& options, Progress* progress);
+
+/// A segmented volume to a dense tet mesh with the same invariants: a material for each label. Where a label
+/// is thinner than two cells, cells are halved, up to three times (not with `uniform`); what is still too
+/// thin is named in the report. The finest cells otherwise are those of `options`, of which voxel_size should
+/// be no larger than the smallest spacing unless something coarser is wanted.
+///
+/// `progress` may be null. Throws as mesh_surfaces() does; InputError where nothing is left of a label.
+MeshedSurface mesh_labels(const PreparedLabels& labels, const MesherOptions& options, Progress* progress);
+
+/// Estimates from the faces between voxels of different labels. Throws as mesh_labels() does for options.
+MesherEstimate estimate_mesh(const PreparedLabels& labels, const MesherOptions& options);
+
+/// The largest cells that give about ten dense tets for each of `target_tets`, at most a voxel. UsageError
+/// for a target of 0.
+double cell_size_for_target(const PreparedLabels& labels, std::size_t target_tets);
 
 /// The resolution that gives about 40 dense tets for each of `target_tets`, which is what a simplification
 /// needs to have a choice: at least 32, no more than some 20 million dense tets. UsageError for a target of

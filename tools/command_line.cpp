@@ -1,6 +1,7 @@
 #include "tools/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -48,6 +49,45 @@ const CLI::Validator solid_angle(
     },
     "");
 
+/// Takes a label off the beginning of the text; false if there is none.
+bool take_label(std::string_view& text, MaterialTag& label) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), label);
+  if (error != std::errc()) return false;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return true;
+}
+
+MaterialTag parse_label(const std::string& text, const char* option) {
+  std::string_view left = text;
+  MaterialTag label = 0;
+  if (!take_label(left, label) || !left.empty())
+    throw CLI::ValidationError(option, "'" + text + "' is not a whole number from -2147483648 to 2147483647");
+  return label;
+}
+
+/// "1,5-9,-3--1": a minus behind a number makes a range, before one it is a sign.
+void parse_labels(const std::string& text, std::vector<std::pair<MaterialTag, MaterialTag>>& to) {
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string part = text.substr(begin, end - begin);
+    begin = end + 1;
+    std::string_view left = part;
+    MaterialTag first = 0;
+    bool good = take_label(left, first);
+    MaterialTag last = first;
+    if (good && left.starts_with('-')) {
+      left.remove_prefix(1);
+      good = take_label(left, last);
+    }
+    if (!good || !left.empty())
+      throw CLI::ValidationError("--labels", "'" + part + "' is neither a label nor a range such as 5-9");
+    if (first > last)
+      throw CLI::ValidationError("--labels", "'" + part + "' begins with the larger label; did you mean " +
+                                                 std::to_string(last) + "-" + std::to_string(first) + "?");
+    to.emplace_back(first, last);
+  }
+}
+
 void add_common(CLI::App& app, CommandLine& c) {
   app.add_option("--threads", c.threads, "Threads to use (default: all of the machine)")
       ->check(whole_number)
@@ -73,6 +113,30 @@ NamedValue split_named(const std::string& text, const char* option, const char* 
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
     throw CLI::ValidationError(option, "'" + text + "' is not NAME=" + value);
   return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+/// What of segmented volumes is meshed.
+void add_labels(CLI::App& app, CommandLine& c) {
+  app.add_option_function<std::vector<std::string>>(
+         "--labels",
+         [&c](const std::vector<std::string>& all) {
+           for (const std::string& text : all) parse_labels(text, c.labels);
+         },
+         "Labels of a segmented volume to mesh, such as 1,5-9; the others are outside (default: all)")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--label-names", c.label_names,
+                 "Text file that names the labels: lines TAG NAME, or a table of 3D Slicer, FreeSurfer or "
+                 "ITK-SNAP");
+  app.add_option_function<std::string>(
+         "--outside-label",
+         [&c](const std::string& text) { c.outside_label = parse_label(text, "--outside-label"); },
+         "Label of a segmented volume that is outside")
+      ->default_str(std::to_string(c.outside_label));
+  app.add_option("--min-voxels", c.min_voxels,
+                 "Islands of a label with fewer voxels are merged into what they touch most; 0: none")
+      ->check(whole_number)
+      ->capture_default_str();
 }
 
 void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) {
@@ -219,7 +283,8 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
       "input,\n"
       "4 nothing to mesh, 5 could not be written or out of memory, 130 interrupted.");
   constexpr const char* surfaces =
-      "Surfaces: .ply .obj .stl .off, level sets: .vdb; each a material, later ones carve earlier ones";
+      "Surfaces: .ply .obj .stl .off, level sets: .vdb; each a material, later ones carve earlier ones. Or "
+      "segmented volumes: .nrrd .nhdr .mhd .mha .nii .nii.gz .inr .inr.gz";
   constexpr const char* meshes = "Tet mesh: .vtu .msh .mesh .vtk .node .ele";
   constexpr const char* mesh_out = "Where the mesh goes: .vtu .msh .mesh";
 
@@ -228,6 +293,7 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
   add_output(*prepare, out, mesh_out);
   add_simplifying(*prepare, out);
   add_meshing(*prepare, out, "what the target needs");
+  add_labels(*prepare, out);
   add_common(*prepare, out);
   add_seed(*prepare, out);
 
@@ -235,6 +301,7 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
   mesh->add_option("INPUT", out.inputs, surfaces);
   add_output(*mesh, out, mesh_out);
   add_meshing(*mesh, out, "128");
+  add_labels(*mesh, out);
   add_common(*mesh, out);
   add_seed(*mesh, out);
 
@@ -297,9 +364,12 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
   if (simplifies && out.target_tets == 0) throw UsageError("--target-tets 0 leaves no mesh; give 1 or more");
   if (simplifies || out.command == Command::improve)
     out.min_solid_angle_given = chosen->count("--min-solid-angle") > 0;
-  if ((out.command == Command::prepare || out.command == Command::mesh) && out.inputs.empty() &&
-      out.materials.empty())
-    throw UsageError("there is no input; name a surface, or give --material NAME=FILE");
+  if (out.command == Command::prepare || out.command == Command::mesh) {
+    if (out.inputs.empty() && out.materials.empty())
+      throw UsageError("there is no input; name a surface, or give --material NAME=FILE");
+    out.outside_label_given = chosen->count("--outside-label") > 0;
+    out.min_voxels_given = chosen->count("--min-voxels") > 0;
+  }
   if (out.resolution && out.voxel_size > 0) throw UsageError("give --resolution or --voxel-size, not both");
   return true;
 }

@@ -3,8 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "common/types.h"
 #include "mesher/surface_input.h"
 #include "simplify/simplify.h"
 
@@ -44,6 +46,14 @@ struct CommandLine {
   NestedRule nested = NestedRule::automatic;
   bool keep_outside = false;
   std::string write_sdf;  ///< .vdb file; empty: not wanted
+
+  /// Of a segmented volume: the labels to mesh, as ranges with both ends; empty: all but the outside label.
+  std::vector<std::pair<MaterialTag, MaterialTag>> labels;
+  std::string label_names;  ///< file with names of labels; empty: none
+  MaterialTag outside_label = 0;
+  bool outside_label_given = false;
+  std::size_t min_voxels = 8;  ///< smaller islands are merged
+  bool min_voxels_given = false;
 
   unsigned threads = 0;  ///< 0: all
   std::uint64_t seed = 1;

@@ -15,11 +15,13 @@
 #include "common/foreign_mesh.h"
 #include "common/formats/atomic_file.h"
 #include "common/formats/formats.h"
+#include "common/formats/label_names.h"
 #include "common/mesh_check.h"
 #include "common/mesh_statistics.h"
 #include "common/parallel.h"
 #include "common/samples.h"
 #include "common/topology.h"
+#include "mesher/label_field.h"
 #include "mesher/material_field.h"
 #include "mesher/vdb_files.h"
 #include "tools/held_back.h"
@@ -142,9 +144,94 @@ class Run {
     if (!may_replace) check_output_is_no_input(line);
   }
 
-  void read_surfaces() {
+  void read_input() {
     const Stopwatch watch;
     progress_.begin_stage("read");
+    if (is_volume())
+      read_volume();
+    else
+      read_surfaces();
+    report_.seconds_read = watch.seconds();
+  }
+
+  /// The dense mesh of the input.
+  void make_dense() {
+    const Stopwatch watch;
+    MeshedSurface dense = labels_ ? mesh_labels(*labels_, label_options(), &progress_)
+                                  : mesh_surfaces(input_, surface_options(), &progress_);
+    if (line_.command == Command::prepare || !line_.write_sdf.empty()) field_ = dense.field;
+    mesh_ = std::move(dense.mesh);
+    report_.mesher = dense.report;
+    report_.seconds_mesh = watch.seconds();
+    input_ = {};
+    labels_.reset();
+    report_.dense = mesh_statistics(mesh_, line_.min_solid_angle);
+  }
+
+ private:
+  /// A segmented volume says what all its materials are: it stands alone.
+  bool is_volume() const {
+    bool volume = false;
+    const std::vector<std::string> inputs = all_inputs(line_);
+    for (const std::string& file : inputs) volume |= file_kind(file) == FileKind::volume;
+    const bool choice = !line_.labels.empty() || !line_.label_names.empty() || line_.outside_label_given ||
+                        line_.min_voxels_given;
+    if (!volume) {
+      if (choice)
+        throw UsageError(
+            "--labels, --label-names, --outside-label and --min-voxels are for segmented volumes, and no "
+            "input "
+            "is one");
+      return false;
+    }
+    if (inputs.size() > 1 || line_.inputs.empty())
+      throw UsageError("a segmented volume is the only input of a call; leave the others away");
+    if (!line_.layers.empty())
+      throw UsageError("--layer is for surfaces, and the input is a segmented volume");
+    if (line_.nested != NestedRule::automatic)
+      throw UsageError("--nested is for surfaces, and the input is a segmented volume");
+    return true;
+  }
+
+  void read_volume() {
+    const std::string& file = line_.inputs.front();
+    LabelChoice choice;
+    choice.labels = line_.labels;
+    choice.outside_label = line_.outside_label;
+    choice.min_voxels = line_.min_voxels;
+    if (!line_.label_names.empty()) choice.names = read_label_names(line_.label_names);
+    LabelVolume volume = read_label_volume(file);
+    labels_ = prepare_labels(std::move(volume), file, choice, &progress_);
+    report_.findings = labels_->findings;
+  }
+
+  MesherOptions common_options() const {
+    MesherOptions options;
+    options.voxel_size = line_.voxel_size;
+    options.uniform = line_.uniform;
+    options.adaptivity = line_.adaptivity;
+    options.keep_outside = line_.keep_outside;
+    if (line_.resolution) options.resolution = line_.resolution;
+    return options;
+  }
+
+  MesherOptions surface_options() const {
+    MesherOptions options = common_options();
+    if (!line_.resolution && line_.voxel_size == 0 && line_.command == Command::prepare)
+      options.resolution = resolution_for_target(input_, line_.target_tets);
+    return options;
+  }
+
+  MesherOptions label_options() const {
+    MesherOptions options = common_options();
+    if (!line_.resolution && line_.voxel_size == 0)
+      options.voxel_size = line_.command == Command::prepare
+                               ? cell_size_for_target(*labels_, line_.target_tets)
+                               : voxel_size(*labels_);
+    return options;
+  }
+
+  void read_surfaces() {
     std::vector<MaterialSurface> surfaces;
     const auto add = [&](const std::string& name, const std::string& file, TriangleMesh surface) {
       report_.input_triangles += surface.triangles.size();
@@ -177,30 +264,9 @@ class Run {
           {l.name, static_cast<MaterialTag>(surfaces.size() + layers.size() + 1), std::stod(l.value)});
     input_ = prepare_input(std::move(surfaces), std::move(layers), line_.nested);
     report_.findings = input_.findings;
-    report_.seconds_read = watch.seconds();
   }
 
-  void make_dense() {
-    const Stopwatch watch;
-    MesherOptions options;
-    options.voxel_size = line_.voxel_size;
-    options.uniform = line_.uniform;
-    options.adaptivity = line_.adaptivity;
-    options.keep_outside = line_.keep_outside;
-    if (line_.resolution) {
-      options.resolution = line_.resolution;
-    } else if (line_.voxel_size == 0 && line_.command == Command::prepare) {
-      options.resolution = resolution_for_target(input_, line_.target_tets);
-    }
-    MeshedSurface dense = mesh_surfaces(input_, options, &progress_);
-    if (line_.command == Command::prepare || !line_.write_sdf.empty()) field_ = dense.field;
-    mesh_ = std::move(dense.mesh);
-    report_.mesher = dense.report;
-    report_.seconds_mesh = watch.seconds();
-    input_ = {};
-    report_.dense = mesh_statistics(mesh_, line_.min_solid_angle);
-  }
-
+ public:
   void read_mesh() {
     const Stopwatch watch;
     progress_.begin_stage("read");
@@ -361,6 +427,7 @@ class Run {
   InterruptHandler handler_;
   RunReport report_;
   PreparedInput input_;
+  std::optional<PreparedLabels> labels_;
   std::shared_ptr<const MaterialField> field_;  ///< while it is slid along, or where it is to be written
   TetMesh mesh_;
   std::optional<TetMesh> fields_from_;  ///< the mesh as it was read, if it had fields
@@ -368,7 +435,7 @@ class Run {
 
 ExitStatus prepare(const CommandLine& line) {
   Run run(line);
-  run.read_surfaces();
+  run.read_input();
   run.make_dense();
   run.simplify_mesh();
   return run.finish();
@@ -376,7 +443,7 @@ ExitStatus prepare(const CommandLine& line) {
 
 ExitStatus mesh(const CommandLine& line) {
   Run run(line);
-  run.read_surfaces();
+  run.read_input();
   run.make_dense();
   return run.finish();
 }

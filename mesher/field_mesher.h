@@ -1,0 +1,64 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mesher/material_field.h"
+#include "mesher/mesher.h"
+
+namespace tetwright {
+
+/// Runs the stages of meshing, tells about them and takes their times.
+class Stages {
+ public:
+  explicit Stages(Progress* progress) : progress_(progress) {}
+  void begin(const char* name) {
+    if (progress_) {
+      progress_->throw_if_cancelled();
+      progress_->begin_stage(name);
+    }
+    start_ = std::chrono::steady_clock::now();
+  }
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  Progress* progress() const { return progress_; }
+
+ private:
+  Progress* progress_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+inline constexpr int largest_resolution = 4096;  ///< finest cells along the longest side
+
+/// What a mesh takes at least: the program and its libraries.
+inline constexpr double bytes_at_least = 64e6;
+
+/// Throws OutputError where a mesh would have more tets than can be numbered or take more memory than the
+/// machine has.
+void check_memory(const MesherEstimate& estimate);
+
+/// Throws UsageError for option values out of range.
+void check_options(const MesherOptions& options);
+
+/// "%.6g", for messages.
+std::string number_text(double value);
+
+/// Cells that are to be smaller than a voxel.
+struct FinerCells {
+  int refinement = 0;                         ///< levels below a voxel
+  std::vector<std::vector<MortonKey>> cells;  ///< to be split, by level of a lattice refined so; ascending
+};
+
+/// Of a field all that follows: octree, lattice, moved points, cut tets. `finer` says where cells are halved;
+/// `check_there` is handed a flag for each region, 0 for one that nothing is left of, and throws if one is
+/// missed. Fills the rest of `report`. Throws what it throws, OutputError, Interrupted.
+MeshedSurface mesh_field(std::shared_ptr<const MaterialField> field,
+                         const std::vector<MortonKey>& interface_voxels, const FinerCells& finer,
+                         const MesherOptions& options, MesherReport report, Stages& stages,
+                         const std::function<void(const std::vector<std::uint8_t>&)>& check_there);
+
+}  // namespace tetwright

@@ -1,0 +1,181 @@
+#include "mesher/label_thickness.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/parallel_sort.h"
+
+namespace tetwright {
+
+namespace {
+
+using Sides = std::array<int, 3>;
+
+/// The voxels that no box of `sides` voxels of their region holds, as ascending indices.
+class Opening {
+ public:
+  Opening(const PreparedLabels& labels, const Sides& sides, const Progress* progress)
+      : regions_(labels.regions),
+        size_(labels.size),
+        sides_(sides),
+        progress_(progress),
+        holds_(labels.regions.size(), 1),
+        runs_(labels.regions.size()) {}
+
+  std::vector<std::size_t> thin_voxels() {
+    // A box starts at a voxel if along each axis in turn enough voxels that do so for the axes before are
+    // in a row; then every voxel of such a box is thick.
+    for (int axis = 0; axis < 3; ++axis) sweep(axis, [&](int a, auto&&... p) { start_boxes(a, p...); });
+    for (int axis = 0; axis < 3; ++axis) sweep(axis, [&](int a, auto&&... p) { fill_boxes(a, p...); });
+    constexpr std::size_t grain = 1 << 18;
+    return parallel_collect<std::size_t>(
+        0, holds_.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<std::size_t>& out) {
+          for (std::size_t i = begin; i < end; ++i)
+            if (!holds_[i] && !(regions_[i] == outside_region && near_border(i))) out.push_back(i);
+        });
+  }
+
+ private:
+  /// Work on lines along an axis: `first` voxel, `step` between voxels of a line, `lines` side by side.
+  template <class Work>
+  void sweep(int axis, Work&& work) {
+    if (progress_) progress_->throw_if_cancelled();
+    const auto nx = static_cast<std::size_t>(size_[0]), ny = static_cast<std::size_t>(size_[1]);
+    // Whole rows of x at a time, so that memory is walked along.
+    if (axis < 2)
+      parallel_for(0, static_cast<std::size_t>(size_[2]), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t z = begin; z < end; ++z) {
+          if (axis == 1) {
+            work(axis, z * nx * ny, nx, nx);
+            continue;
+          }
+          for (std::size_t y = 0; y < ny; ++y) work(axis, (z * ny + y) * nx, std::size_t{1}, std::size_t{1});
+        }
+      });
+    else
+      parallel_for(0, ny, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t y = begin; y < end; ++y) work(axis, y * nx, nx * ny, nx);
+      });
+  }
+
+  void start_boxes(int axis, std::size_t first, std::size_t step, std::size_t lines) {
+    const int side = sides_[axis];
+    for (int k = size_[axis] - 1; k >= 0; --k)
+      for (std::size_t line = 0; line < lines; ++line) {
+        const std::size_t i = first + static_cast<std::size_t>(k) * step + line;
+        const bool last = k + 1 == size_[axis];
+        int run = 0;
+        if (holds_[i])
+          // Outside goes on beyond the volume.
+          run = last ? (regions_[i] == outside_region ? side : 1)
+                     : (regions_[i + step] == regions_[i] ? std::min<int>(runs_[i + step] + 1, side) : 1);
+        runs_[i] = static_cast<std::uint8_t>(run);
+      }
+    for (int k = 0; k < size_[axis]; ++k)
+      for (std::size_t line = 0; line < lines; ++line) {
+        const std::size_t i = first + static_cast<std::size_t>(k) * step + line;
+        holds_[i] = runs_[i] >= side;
+      }
+  }
+
+  void fill_boxes(int axis, std::size_t first, std::size_t step, std::size_t lines) {
+    const int side = sides_[axis];
+    for (int k = 0; k < size_[axis]; ++k)
+      for (std::size_t line = 0; line < lines; ++line) {
+        const std::size_t i = first + static_cast<std::size_t>(k) * step + line;
+        const int left = holds_[i] ? side : k > 0 ? std::max(0, runs_[i - step] - 1) : 0;
+        runs_[i] = static_cast<std::uint8_t>(left);
+      }
+    for (int k = 0; k < size_[axis]; ++k)
+      for (std::size_t line = 0; line < lines; ++line) {
+        const std::size_t i = first + static_cast<std::size_t>(k) * step + line;
+        holds_[i] = runs_[i] > 0;
+      }
+  }
+
+  /// Boxes of outside that begin before the volume were not looked for.
+  bool near_border(std::size_t i) const {
+    for (int a = 0; a < 3; ++a) {
+      const auto n = static_cast<std::size_t>(size_[a]);
+      if (i % n < static_cast<std::size_t>(sides_[a])) return true;
+      i /= n;
+    }
+    return false;
+  }
+
+  const std::vector<RegionIndex>& regions_;
+  const std::array<int, 3> size_;
+  const Sides sides_;
+  const Progress* progress_;
+  std::vector<std::uint8_t> holds_, runs_;
+};
+
+}  // namespace
+
+ThinLabels find_thin_labels(const PreparedLabels& labels, const GridFrame& frame, const Progress* progress) {
+  constexpr double cells_enough = 2;
+  constexpr double slack = 1e-6;  // of a voxel: two cells of half a voxel are one
+  constexpr int longest_box = 200;
+  // How far from the centre of a thin voxel its interfaces may be, voxels.
+  constexpr double around = 0.75;
+  const Vec3 spacing = labels.directions.colwise().norm();
+  const Eigen::Matrix3d to_grid = frame.axes.transpose() * labels.directions / frame.cell_size;
+  const Vec3 first = frame.to_grid(labels.origin);
+  const Vec3 reach = around * to_grid.cwiseAbs().rowwise().sum();
+
+  ThinLabels thin;
+  std::vector<std::vector<MortonKey>> by_depth;
+  for (int depth = 0; depth <= most_refinement; ++depth) {
+    const double cell = std::ldexp(frame.cell_size, -depth);
+    Sides sides;
+    for (int a = 0; a < 3; ++a)
+      sides[a] =
+          std::clamp(static_cast<int>(std::ceil(cells_enough * cell / spacing[a] - slack)), 1, longest_box);
+    if (sides == Sides{1, 1, 1}) break;
+    const std::vector<std::size_t> voxels = Opening(labels, sides, progress).thin_voxels();
+    if (voxels.empty()) break;
+    const auto index_of = [&](std::size_t i) {
+      const auto nx = static_cast<std::size_t>(labels.size[0]), ny = static_cast<std::size_t>(labels.size[1]);
+      return Vec3(static_cast<double>(i % nx), static_cast<double>(i / nx % ny),
+                  static_cast<double>(i / (nx * ny)));
+    };
+    if (depth == most_refinement) {
+      for (std::size_t i : voxels) {
+        const RegionIndex region = labels.regions[i];
+        const auto part = std::find_if(thin.too_thin.begin(), thin.too_thin.end(),
+                                       [&](const ThinPart& p) { return p.region == region; });
+        if (part == thin.too_thin.end())
+          thin.too_thin.push_back({region, 1, first + to_grid * index_of(i)});
+        else
+          ++part->places;
+      }
+      std::sort(thin.too_thin.begin(), thin.too_thin.end(),
+                [](const ThinPart& a, const ThinPart& b) { return a.region < b.region; });
+      break;
+    }
+    by_depth.push_back(parallel_collect<MortonKey>(
+        0, voxels.size(), 1 << 12, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+          for (std::size_t k = begin; k < end; ++k) {
+            const Vec3 centre = first + to_grid * index_of(voxels[k]);
+            std::array<int, 3> from, to;
+            for (int a = 0; a < 3; ++a) {
+              const double low = std::ldexp(centre[a] - reach[a], depth),
+                           high = std::ldexp(centre[a] + reach[a], depth);
+              from[a] = std::max(0, static_cast<int>(std::floor(low)));
+              to[a] = std::min(frame.cells[a] << depth, static_cast<int>(std::ceil(high)));
+            }
+            for (int z = from[2]; z < to[2]; ++z)
+              for (int y = from[1]; y < to[1]; ++y)
+                for (int x = from[0]; x < to[0]; ++x) out.push_back(morton_encode(x, y, z));
+          }
+        }));
+    parallel_sort_unique(by_depth.back());
+  }
+  thin.finer.refinement = static_cast<int>(by_depth.size());
+  thin.finer.cells.resize(by_depth.size() + 1);
+  for (std::size_t depth = 0; depth < by_depth.size(); ++depth)
+    thin.finer.cells[by_depth.size() - depth] = std::move(by_depth[depth]);
+  return thin;
+}
+
+}  // namespace tetwright
