@@ -9,7 +9,6 @@
 #include "common/error.h"
 #include "common/parallel_sort.h"
 #include "mesher/label_islands.h"
-#include "mesher/surface_components.h"
 
 namespace tetwright {
 

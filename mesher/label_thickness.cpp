@@ -31,7 +31,8 @@ class Opening {
     return parallel_collect<std::size_t>(
         0, holds_.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<std::size_t>& out) {
           for (std::size_t i = begin; i < end; ++i)
-            if (!holds_[i] && !(regions_[i] == outside_region && near_border(i))) out.push_back(i);
+            if (!holds_[i] && !(regions_[i] == outside_region && near_border(i)) && !beside_thick(i))
+              out.push_back(i);
         });
   }
 
@@ -103,6 +104,19 @@ class Opening {
     return false;
   }
 
+  /// What sticks out of a thick part by a voxel is roughness, which smoothing takes away.
+  bool beside_thick(std::size_t i) const {
+    std::size_t rest = i, step = 1;
+    for (int a = 0; a < 3; ++a) {
+      const auto n = static_cast<std::size_t>(size_[a]), at = rest % n;
+      if (at > 0 && holds_[i - step] && regions_[i - step] == regions_[i]) return true;
+      if (at + 1 < n && holds_[i + step] && regions_[i + step] == regions_[i]) return true;
+      rest /= n;
+      step *= n;
+    }
+    return false;
+  }
+
   const std::vector<RegionIndex>& regions_;
   const std::array<int, 3> size_;
   const Sides sides_;
@@ -133,6 +147,7 @@ ThinLabels find_thin_labels(const PreparedLabels& labels, const GridFrame& frame
           std::clamp(static_cast<int>(std::ceil(cells_enough * cell / spacing[a] - slack)), 1, longest_box);
     if (sides == Sides{1, 1, 1}) break;
     const std::vector<std::size_t> voxels = Opening(labels, sides, progress).thin_voxels();
+    if (getenv("DBG")) fprintf(stderr, "depth %d thin %zu\n", depth, voxels.size());
     if (voxels.empty()) break;
     const auto index_of = [&](std::size_t i) {
       const auto nx = static_cast<std::size_t>(labels.size[0]), ny = static_cast<std::size_t>(labels.size[1]);

@@ -159,6 +159,10 @@ TEST(LabelInput, TooManyLabels) {
   LabelChoice choice = unmerged();
   choice.labels = {{1, 100000}};
   EXPECT_EQ(prepare(labels, choice).materials.size(), 4u);
+  // Few in each part of a large volume.
+  labels.resize(600000);
+  for (std::size_t i = 0; i < labels.size(); ++i) labels[i] = static_cast<MaterialTag>(i / 9);
+  EXPECT_NE(refusal<InputError>(labels, unmerged()).find("more than 60000 labels"), std::string::npos);
 }
 
 TEST(LabelInput, IslandsAreMergedAndReported) {

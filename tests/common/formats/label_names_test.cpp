@@ -39,6 +39,7 @@ TEST(LabelNames, ColourTablesOfSlicerAndFreeSurfer) {
 TEST(LabelNames, NumbersAtTheEndOfSomeNamesAreNoColours) {
   EXPECT_EQ(parse("1 rib 1 2 3 4\n2 liver\n"), (Names{{1, "rib 1 2 3 4"}, {2, "liver"}}));
   EXPECT_EQ(parse("1 rib 1 2 3 256\n"), (Names{{1, "rib 1 2 3 256"}}));
+  EXPECT_EQ(parse("1 2 3 4 5 6 7 rib\n"), (Names{{1, "2 3 4 5 6 7 rib"}}));
   EXPECT_EQ(parse("1 2\n2 3 4 5 6\n"), (Names{{1, "2"}, {2, "3 4 5 6"}}));
 }
 
