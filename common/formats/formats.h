@@ -29,7 +29,7 @@ std::string file_stem(const std::string& path);
 
 /// Reads a file. Throws UsageError if the extension is not one of the kind asked for, InputError if the file
 /// is missing, unreadable or makes no sense. A .node and an .ele file are a pair, named by either: the other
-/// one stands beside it under the same name.
+/// one stands beside it under the same name. A header of a volume may name another file with the voxels.
 TriangleMesh read_surface(const std::string& path);
 ReadTetMesh read_tet_mesh(const std::string& path, const ReadTetMeshOptions& options = {});
 LabelVolume read_label_volume(const std::string& path);

@@ -85,8 +85,7 @@ LabelVolume read_geometry(const HeaderFields& header) {
       header.has(field)) {
     // Axis after axis, the direction of each.
     const std::vector<double> matrix = header.numbers(field, 9);
-    for (int axis = 0; axis < 3; ++axis)
-      for (int k = 0; k < 3; ++k) volume.directions(k, axis) = matrix[static_cast<std::size_t>(3 * axis + k)];
+    volume.directions = Eigen::Map<const Eigen::Matrix3d>(matrix.data());
   }
   // The size of voxels is their spacing unless there are gaps, which the spacing then counts in.
   if (const std::string field = header.any_of({"elementspacing", "elementsize"}); header.has(field)) {

@@ -1,5 +1,6 @@
-// Own reader of the 348 bytes that matter: libnifti2 reports bad headers on stderr, opens files by itself
-// and brings three more libraries along. Numbers in comments are offsets in the header (nifti1.h, 2004).
+// Own reader of the 348 bytes that matter: libnifti2's conversion of headers (3.0.1) prints to stderr and
+// silently makes 1 of spacings that are zero or not finite and of sizes below 1, which must be refused here.
+// Numbers below are offsets in the header (nifti1.h, 2004).
 #include "common/formats/nifti.h"
 
 #include <cmath>
