@@ -6,6 +6,7 @@
 
 #include "common/parallel_sort.h"
 #include "mesher/field_builder.h"
+#include "mesher/label_depth.h"
 #include "mesher/label_smoothing.h"
 
 namespace tetwright {
@@ -20,6 +21,9 @@ constexpr int blocks_per_tile = LabelSmoother::cells / block_cells;
 /// Distances are kept as 16-bit whole numbers of this many to a voxel: finer than any decision.
 constexpr float units_per_voxel = 15000;
 constexpr auto band_units = static_cast<std::int16_t>(LabelSmoother::band * units_per_voxel);
+
+/// Cells that only touch a cell of nodes by as much, in cells, hold nothing of it.
+constexpr double touching = 1e-6;
 
 /// The volume's axes made perpendicular and right-handed (Gram-Schmidt), and positions along them from the
 /// first voxel's centre: local = to_local * index.
@@ -83,6 +87,8 @@ struct LabelField::Blocks {
   double least_slope = 1;            ///< smallest spacing by largest
   Eigen::Matrix3d to_index;          ///< from local positions
   Vec3 origin;                       ///< first voxel's centre, input units
+  /// For cells larger than a voxel, which reach beyond where distances are cut off; else empty.
+  LabelDepths depths;
 
   const Block& block(int x, int y, int z) const {
     return blocks[(static_cast<std::size_t>(z) * counts[1] + y) * counts[0] + x];
@@ -185,6 +191,7 @@ std::shared_ptr<const LabelField> LabelField::make(const PreparedLabels& labels,
   made->least_slope = made->voxel / labels.directions.colwise().norm().maxCoeff();
   made->to_index = LocalAxes(labels.directions).to_local.inverse();
   made->origin = labels.origin;
+  if (frame.cell_size > (1 + touching) * made->voxel) made->depths = label_depths(labels);
 
   constexpr std::size_t grain = 32;  // tiles to a task, a millisecond each where labels meet
   const std::size_t tile_count = product(tiles);
@@ -235,6 +242,11 @@ std::shared_ptr<const LabelField> LabelField::make(const PreparedLabels& labels,
   return std::shared_ptr<const LabelField>(new LabelField(std::move(made), frame, std::move(regions), 0));
 }
 
+double LabelField::band_in_cells(const Blocks& blocks, const GridFrame& voxels) {
+  // As for level sets where it can be had, which is what lattice edges need.
+  return blocks.depths.steps.empty() ? LabelSmoother::band * blocks.voxel / voxels.cell_size : level_set_band;
+}
+
 LabelField::LabelField(std::shared_ptr<const Blocks> blocks, const GridFrame& voxels,
                        std::vector<FieldRegion> regions, int refinement)
     : MaterialField(voxels, std::move(regions), LabelSmoother::band * blocks->voxel / voxels.cell_size,
@@ -261,6 +273,8 @@ class LabelField::Sampler final : public FieldSampler {
 
   NearestRegion nearest(const Vec3& point) override {
     const Place p = find(point);
+    if (const std::optional<Far> far = beyond_band(p, point))
+      return {far->region, static_cast<float>(std::min(far->depth, field_.band()))};
     return nearest(p).first;
   }
   NearestRegion nearest_at_voxel(int x, int y, int z) override {
@@ -268,6 +282,10 @@ class LabelField::Sampler final : public FieldSampler {
   }
   void values(const Vec3& point, std::span<const RegionIndex> regions, float* out) override {
     const Place p = find(point);
+    if (const std::optional<Far> far = beyond_band(p, point)) {
+      for (RegionIndex r : regions) *out++ = static_cast<float>(r == far->region ? -far->depth : far->depth);
+      return;
+    }
     for (RegionIndex r : regions) *out++ = static_cast<float>(per_unit_ * value(p, r));
   }
   void values_at_voxel(int x, int y, int z, std::span<const RegionIndex> regions, float* out) override {
@@ -275,7 +293,7 @@ class LabelField::Sampler final : public FieldSampler {
   }
   std::optional<RegionSet> two_nearest(const Vec3& point) override {
     const auto [first, second] = nearest(find(point));
-    if (first.margin >= field_.band()) return std::nullopt;
+    if (first.margin >= field_.band() || first.region == second) return std::nullopt;
     RegionSet both;
     both.insert(first.region);
     both.insert(second);
@@ -351,6 +369,28 @@ class LabelField::Sampler final : public FieldSampler {
     return channel ? channel_value(p, *channel) : far_value(p, region);
   }
 
+  /// What is known where all distances are cut off: the region, how deep the place is in it (lattice units),
+  /// and how that changes.
+  struct Far {
+    RegionIndex region;
+    double depth;
+    Vec3 slope;
+  };
+  /// Nothing where distances are not cut off, or nothing more is known than that.
+  std::optional<Far> beyond_band(const Place& p, const Vec3& point) const {
+    if (blocks_.depths.steps.empty()) return std::nullopt;
+    const NearestRegion first = nearest(p).first;
+    const double cut_off = per_unit_ * band_units;
+    // Rounding and interpolation leave a little less than the band.
+    if (first.margin < 0.98 * cut_off) return std::nullopt;
+    const Vec3 index = field_.to_nodes_ * point + field_.first_node_ - Vec3::Constant(padding);
+    Vec3 by_voxels;
+    const double per_voxel = per_unit_ * units_per_voxel;
+    const double depth = per_voxel * blocks_.depths.at(index, by_voxels);
+    if (depth <= cut_off) return std::nullopt;
+    return Far{first.region, depth, per_voxel * (field_.to_nodes_.transpose() * by_voxels)};
+  }
+
   /// The region that has the place and the next one.
   std::pair<NearestRegion, RegionIndex> nearest(const Place& p) const {
     const Blocks::Block& b = *p.block;
@@ -373,6 +413,14 @@ class LabelField::Sampler final : public FieldSampler {
   void values_and_gradients(const Vec3& point, std::span<const RegionIndex> regions, double* values,
                             Vec3* gradients) override {
     const Place p = find(point);
+    if (const std::optional<Far> far = beyond_band(p, point)) {
+      for (RegionIndex r : regions) {
+        const double sign = r == far->region ? -1 : 1;
+        *values++ = sign * far->depth;
+        *gradients++ = sign * far->slope;
+      }
+      return;
+    }
     for (RegionIndex r : regions) {
       Vec3 by_nodes = Vec3::Zero();
       const auto channel = channel_of(p, r);
@@ -395,8 +443,6 @@ std::vector<MortonKey> LabelField::interface_voxels() const {
   const Eigen::Matrix3d to_cells = (all.to_index * voxels().cell_size).inverse();
   const Vec3 first =
       all.to_index * (voxels().axes.transpose() * (voxels().origin - all.origin)) + Vec3::Constant(padding);
-  // Cells that only touch a cell of nodes hold nothing of it.
-  constexpr double touching = 1e-6;
   const bool finer = voxels().cell_size < (1 - touching) * all.voxel;
   const auto rows = static_cast<std::size_t>(all.counts[1]) * all.counts[2];
   std::vector<MortonKey> keys = parallel_collect<MortonKey>(

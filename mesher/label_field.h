@@ -39,6 +39,7 @@ class LabelField final : public MaterialField {
   class Sampler;
   struct Blocks;
 
+  static double band_in_cells(const Blocks& blocks, const GridFrame& voxels);
   LabelField(std::shared_ptr<const Blocks> blocks, const GridFrame& voxels, std::vector<FieldRegion> regions,
              int refinement);
 

@@ -15,7 +15,7 @@ namespace {
 
 /// Dense tets of an adaptive mesh for each face between two materials, as large as a squared cell; half of
 /// them for one to the outside.
-constexpr double tets_per_face = 36;
+constexpr double tets_per_face = 45;
 /// Of a uniform mesh, for each cell.
 constexpr double tets_per_cell = 12;
 /// Peak memory for each dense tet.
@@ -23,7 +23,7 @@ constexpr double bytes_per_tet = 140;
 /// For each voxel while its distances are made: regions, and what is kept for blocks where labels meet.
 constexpr double bytes_per_voxel = 16;
 /// Dense tets for each tet that is wanted in the end.
-constexpr double dense_per_target = 10;
+constexpr double dense_per_target = 5;
 /// Finer cells show nothing more of voxels.
 constexpr int most_cells_per_voxel = 4;
 /// Coordinates must resolve a finest cell this finely, or rounding them could turn a thin tet over.

@@ -147,7 +147,6 @@ ThinLabels find_thin_labels(const PreparedLabels& labels, const GridFrame& frame
           std::clamp(static_cast<int>(std::ceil(cells_enough * cell / spacing[a] - slack)), 1, longest_box);
     if (sides == Sides{1, 1, 1}) break;
     const std::vector<std::size_t> voxels = Opening(labels, sides, progress).thin_voxels();
-    if (getenv("DBG")) fprintf(stderr, "depth %d thin %zu\n", depth, voxels.size());
     if (voxels.empty()) break;
     const auto index_of = [&](std::size_t i) {
       const auto nx = static_cast<std::size_t>(labels.size[0]), ny = static_cast<std::size_t>(labels.size[1]);

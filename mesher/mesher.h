@@ -122,7 +122,7 @@ MeshedSurface mesh_labels(const PreparedLabels& labels, const MesherOptions& opt
 /// Estimates from the faces between voxels of different labels. Throws as mesh_labels() does for options.
 MesherEstimate estimate_mesh(const PreparedLabels& labels, const MesherOptions& options);
 
-/// The largest cells that give about ten dense tets for each of `target_tets`, at most a voxel. UsageError
+/// The largest cells that give five dense tets or more for each of `target_tets`, at most a voxel. UsageError
 /// for a target of 0.
 double cell_size_for_target(const PreparedLabels& labels, std::size_t target_tets);
 
