@@ -115,7 +115,8 @@ MeshedSurface mesh_field(std::shared_ptr<const MaterialField> field,
   report.refinement = finer.refinement;
   if (finer.refinement > 0) field = field->refined(finer.refinement);
   const Octree octree =
-      build_octree(*field, {options.uniform, options.adaptivity}, interface_voxels, finer.cells, progress);
+      build_octree(*field, {options.uniform, options.adaptivity, finer.coarsest_interface_level},
+                   interface_voxels, finer.cells, progress);
   report.cells = octree.size();
   // Thin sheets may have taken far more cells than the surface alone.
   const double lattice_tets_expected = tets_per_leaf * static_cast<double>(octree.size());

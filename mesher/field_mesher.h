@@ -47,10 +47,12 @@ void check_options(const MesherOptions& options);
 /// "%.6g", for messages.
 std::string number_text(double value);
 
-/// Cells that are to be smaller than a voxel.
+/// Cells that are to be smaller than they would be.
 struct FinerCells {
-  int refinement = 0;                         ///< levels below a voxel
-  std::vector<std::vector<MortonKey>> cells;  ///< to be split, by level of a lattice refined so; ascending
+  int refinement = 0;  ///< levels below a voxel
+  /// To be split, by level of a lattice refined so, ascending.
+  std::vector<std::vector<MortonKey>> cells;
+  int coarsest_interface_level = 2;  ///< see OctreeOptions
 };
 
 /// Of a field all that follows: octree, lattice, moved points, cut tets. `finer` says where cells are halved;

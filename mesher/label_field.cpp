@@ -436,6 +436,14 @@ class LabelField::Sampler final : public FieldSampler {
   const Blocks::Block outside_;
 };
 
+bool LabelField::is_certain(const Vec3& point) const {
+  constexpr double cells_per_voxel = 2;
+  if (cells_per_voxel * voxels().cell_size > (1 + touching) * blocks_->voxel) return false;
+  const Vec3 at = to_nodes_ * point + first_node_;
+  // Of a voxel: rounding alone keeps a point off the centre it is meant to be at.
+  return (at - at.array().round().matrix()).cwiseAbs().maxCoeff() < touching;
+}
+
 std::unique_ptr<FieldSampler> LabelField::sampler() const { return std::make_unique<Sampler>(*this); }
 
 std::vector<MortonKey> LabelField::interface_voxels() const {

@@ -34,6 +34,8 @@ class LabelField final : public MaterialField {
   std::vector<MortonKey> interface_voxels() const override;
   std::vector<LeafOrigin> band_leaves(RegionIndex region) const override;
   bool knows_sheets() const override { return false; }
+  /// The centres of voxels, if cells are small enough that each has a point near its own.
+  bool is_certain(const Vec3& point) const override;
 
  private:
   class Sampler;

@@ -210,7 +210,7 @@ void LabelSmoother::add_missing_shares(int margin) {
       add_smoothed(missing_[l], missing_boxes_[l], margin + kernel_reach, given_back, fields_[l]);
 }
 
-void LabelSmoother::hold_own_labels(int) {
+void LabelSmoother::hold_own_labels() {
   for (const MixedNode& n : mixed_) {
     float others = -HUGE_VALF;
     for (std::uint16_t l : labels_near(n))
@@ -230,8 +230,12 @@ void LabelSmoother::distances_from_shares(int margin) {
   // Once more: rounding, and shares beyond what counts.
   for (const MixedNode& n : mixed_) {
     float others = HUGE_VALF;
-    for (std::uint16_t l : labels_near(n))
-      if (l != n.own) others = std::min(others, fields_[l][n.place]);
+    for (std::uint16_t l : labels_near(n)) {
+      if (l == n.own) continue;
+      float& other = fields_[l][n.place];
+      other = std::max(other, -band + 2 * least_distance);
+      others = std::min(others, other);
+    }
     float& own = fields_[n.own][n.place];
     own = std::min(own, others - 2 * least_distance);
   }
@@ -297,11 +301,10 @@ void LabelSmoother::smooth() {
     add_smoothed(indicator, boxes_[l], kernel_reach, 1, fields_[l]);
   }
   int margin = kernel_reach;
-  hold_own_labels(margin);
   for (int k = 0; k < back_projections; ++k) {
     add_missing_shares(margin + 1);
     margin += 1 + kernel_reach;
-    hold_own_labels(margin);
+    hold_own_labels();
   }
   static_assert(kernel_reach + back_projections * (1 + kernel_reach) + 1 == reach);
   distances_from_shares(margin);

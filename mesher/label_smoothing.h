@@ -22,7 +22,7 @@ namespace tetwright {
 ///  2. smoothing moves curved interfaces inwards and eats what is thin. How much of each voxel every label
 ///     has got (in eight sample points) is compared with what it should have, and the difference, smoothed
 ///     alike, is added: back projection, as in superresolution (Irani & Peleg 1991, section 3). Twice;
-///  3. after each step a node's own label is made the largest by a margin (Whitaker 2000, "Reducing aliasing
+///  3. after each time a node's own label is made the largest by a margin (Whitaker 2000, "Reducing aliasing
 ///     artifacts in iso-surfaces of binary volumes", constrains smoothing likewise);
 ///  4. shares u become distances -probit(u), which are right for a flat interface;
 ///  5. where four voxels around an edge alternate between two labels, the one that is rarer around there is
@@ -72,7 +72,7 @@ class LabelSmoother {
   /// Adds the smoothed `from` to `to`, as far as it reaches within `margin` nodes of the border.
   void add_smoothed(const Field& from, const Box& box, int margin, float factor, Field& to);
   void add_missing_shares(int margin);
-  void hold_own_labels(int margin);
+  void hold_own_labels();
   void distances_from_shares(int margin);
   void connect_rarer_labels();
   std::span<const std::uint16_t> labels_near(const MixedNode& n) const {

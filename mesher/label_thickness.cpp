@@ -124,12 +124,35 @@ class Opening {
   std::vector<std::uint8_t> holds_, runs_;
 };
 
+/// True if the face-connected island of a voxel has fewer than `count` voxels.
+bool in_small_island(const PreparedLabels& labels, std::size_t voxel, std::size_t count) {
+  const std::array<int, 3>& n = labels.size;
+  const std::array<std::size_t, 3> steps{1, static_cast<std::size_t>(n[0]),
+                                         static_cast<std::size_t>(n[0]) * n[1]};
+  std::vector<std::size_t> island{voxel};
+  for (std::size_t k = 0; k < island.size(); ++k)
+    for (int a = 0; a < 3; ++a) {
+      const std::size_t at = island[k] / steps[a] % static_cast<std::size_t>(n[a]);
+      const auto visit = [&](std::size_t beside) {
+        if (labels.regions[beside] == labels.regions[voxel] &&
+            std::find(island.begin(), island.end(), beside) == island.end())
+          island.push_back(beside);
+      };
+      if (at > 0) visit(island[k] - steps[a]);
+      if (at + 1 < static_cast<std::size_t>(n[a])) visit(island[k] + steps[a]);
+      if (island.size() >= count) return false;
+    }
+  return true;
+}
+
 }  // namespace
 
 ThinLabels find_thin_labels(const PreparedLabels& labels, const GridFrame& frame, const Progress* progress) {
   constexpr double cells_enough = 2;
   constexpr double slack = 1e-6;  // of a voxel: two cells of half a voxel are one
   constexpr int longest_box = 200;
+  // Voxels of an island that two cells to a voxel give no shape to.
+  constexpr std::size_t small_island = 8;
   // How far from the centre of a thin voxel its interfaces may be, voxels.
   constexpr double around = 0.75;
   const Vec3 spacing = labels.directions.colwise().norm();
@@ -138,15 +161,31 @@ ThinLabels find_thin_labels(const PreparedLabels& labels, const GridFrame& frame
   const Vec3 reach = around * to_grid.cwiseAbs().rowwise().sum();
 
   ThinLabels thin;
+  // Larger cells hold an interface only where all is kept that finer ones promise.
+  constexpr double largest_cell = 0.5 + slack;  // voxels
+  int& coarsest = thin.finer.coarsest_interface_level;
+  while (coarsest > 0 && std::ldexp(frame.cell_size, coarsest) > largest_cell * spacing.minCoeff())
+    --coarsest;
   std::vector<std::vector<MortonKey>> by_depth;
+  std::vector<std::size_t> voxels;
+  bool islands_done = false;
   for (int depth = 0; depth <= most_refinement; ++depth) {
     const double cell = std::ldexp(frame.cell_size, -depth);
     Sides sides;
     for (int a = 0; a < 3; ++a)
       sides[a] =
           std::clamp(static_cast<int>(std::ceil(cells_enough * cell / spacing[a] - slack)), 1, longest_box);
-    if (sides == Sides{1, 1, 1}) break;
-    const std::vector<std::size_t> voxels = Opening(labels, sides, progress).thin_voxels();
+    if (sides != Sides{1, 1, 1}) {
+      voxels = Opening(labels, sides, progress).thin_voxels();
+    } else {
+      // Two cells to every voxel, too few for what is hardly larger than one.
+      if (islands_done) break;
+      islands_done = true;
+      if (depth == 0) voxels = Opening(labels, {2, 2, 2}, progress).thin_voxels();
+      std::erase_if(voxels, [&](std::size_t v) {
+        return labels.regions[v] == outside_region || !in_small_island(labels, v, small_island);
+      });
+    }
     if (voxels.empty()) break;
     const auto index_of = [&](std::size_t i) {
       const auto nx = static_cast<std::size_t>(labels.size[0]), ny = static_cast<std::size_t>(labels.size[1]);

@@ -35,6 +35,7 @@ class LevelSetField final : public MaterialField {
   std::vector<MortonKey> interface_voxels() const override;
   std::vector<LeafOrigin> band_leaves(RegionIndex region) const override;
   bool knows_sheets() const override { return level_sets_.size() > 1; }
+  bool is_certain(const Vec3&) const override { return false; }
 
   const std::vector<std::shared_ptr<const LevelSet>>& level_sets() const { return level_sets_; }
   const std::vector<RegionTerm>& terms(RegionIndex region) const { return level_set_regions_[region].terms; }

@@ -94,6 +94,9 @@ class MaterialField : public ReferenceSurface {
   virtual std::vector<LeafOrigin> band_leaves(RegionIndex region) const = 0;
   /// True if sheets between level sets can be told from other thin parts, see FieldSampler::thinnest_sheet().
   virtual bool knows_sheets() const = 0;
+  /// True for places whose lattice points stay where they are: what is known about the region there is known
+  /// exactly, and promised.
+  virtual bool is_certain(const Vec3& point) const = 0;
 
   const GridFrame& voxels() const { return voxels_; }
   const GridFrame& frame() const { return frame_; }  ///< of the lattice

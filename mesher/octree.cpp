@@ -12,10 +12,6 @@ namespace {
 /// Cells per task where a cell takes about a microsecond.
 constexpr std::size_t grain = 2048;
 
-/// The largest cells that may hold an interface, in levels above a voxel: their tests read every corner of
-/// voxels in the cell, and their own corners must mostly be within the narrow band.
-constexpr int coarsest_interface_level = 2;
-
 /// The parents (level l + 1) that must be split because the cell `key` of level l is: its own, and those of
 /// its neighbours across faces and edges, which then exist as cells of level l.
 void append_parents(MortonKey key, const std::array<int, 3>& size, std::vector<MortonKey>& out) {
@@ -172,7 +168,7 @@ Octree build_octree(const MaterialField& field, const OctreeOptions& options,
     for (MortonKey& key : holding) key >>= 3;
     holding.erase(std::unique(holding.begin(), holding.end()), holding.end());
     const int voxel_steps = level - voxel_level;
-    if (voxel_steps > coarsest_interface_level || options.adaptivity <= 0) return holding;
+    if (voxel_steps > options.coarsest_interface_level || options.adaptivity <= 0) return holding;
     const std::vector<MortonKey> failed = parallel_collect<MortonKey>(
         0, holding.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
           const std::unique_ptr<FieldSampler> owned = field.sampler();

@@ -42,6 +42,9 @@ Octree build_octree(const std::array<int, 3>& cells, int root_level, const Split
 struct OctreeOptions {
   bool uniform = false;      ///< cells of one voxel everywhere (the frame's root level must be 0)
   double adaptivity = 0.05;  ///< how far a coarse cell may misplace an interface, in voxels
+  /// The largest cells that may hold an interface, in levels above a voxel: their tests read every corner of
+  /// voxels in the cell, and their own corners must mostly be within the narrow band.
+  int coarsest_interface_level = 2;
 };
 
 /// The octree for a field: cells of one voxel at interfaces, save where linear interpolation over a coarser

@@ -162,6 +162,7 @@ class Mover {
   /// What there is to know about a point with a cut too near to it; nothing for others.
   std::optional<Candidate> candidate(Index p, FieldSampler& sampler) const {
     const RegionIndex own = lattice_.first_region[p];
+    if (field_.is_certain(lattice_.positions[p])) return std::nullopt;
     const std::optional<RegionSet> regions = pure_regions(lattice_, p);
     if (!regions) return std::nullopt;
     double nearest = 0, nearest_share = 0;
@@ -351,6 +352,7 @@ class Mover {
   }
 
   void mend(Index p, FieldSampler& sampler) {
+    if (!lattice_.is_on[p] && field_.is_certain(lattice_.positions[p])) return;
     std::vector<Vec3> places;
     const Vec3 from = lattice_.positions[p], to_middle = middle_of_star(p) - from;
     if (lattice_.is_on[p]) {
