@@ -19,6 +19,9 @@ constexpr float sure_lead = 0.4F;
 constexpr float least_lead = 0.1F;
 /// The same as a distance, voxels.
 constexpr float least_distance = 0.125F;
+/// Where two labels share a face of voxels, no third one comes nearer to its middle, voxels: else contacts
+/// would shrink to nearly nothing, and no tet fits around them.
+constexpr float least_contact = 0.25F;
 /// Standard deviation of the smoothing, and the slope of probit(u) in t = 2u - 1 at 0.
 constexpr float deviation = 1.0F, probit_slope = 1.2533141F;
 /// |2u - 1| is cut off here; the distance is LabelSmoother::band then.
@@ -241,53 +244,77 @@ void LabelSmoother::distances_from_shares(int margin) {
   }
 }
 
-void LabelSmoother::connect_rarer_labels() {
+void LabelSmoother::hold_contacts() {
   // Lifts are taken from the distances as they were, so that they do not depend on the order.
-  struct Lift {
-    int place;
-    std::uint16_t label;
-    float by;
-  };
   std::vector<Lift> lifts;
-  constexpr int low = reach - 1, high = side - reach + 1;
-  constexpr std::array<int, 3> step{place(1, 0, 0), place(0, 1, 0), place(0, 0, 1)};
-  for (const MixedNode& n : mixed_) {
-    const std::array<int, 3> at{n.place % side, n.place / side % side, n.place / (side * side)};
+  for (const MixedNode& n : mixed_)
     for (int normal = 0; normal < 3; ++normal) {
-      const int a = (normal + 1) % 3, b = (normal + 2) % 3;
-      if (at[normal] < low || at[normal] >= high || at[a] < low || at[a] + 1 >= high || at[b] < low ||
-          at[b] + 1 >= high)
-        continue;
-      const std::array<int, 4> quad{n.place, n.place + step[a], n.place + step[b],
-                                    n.place + step[a] + step[b]};
-      const std::uint16_t p = own_[quad[0]], q = own_[quad[1]];
-      if (p == q || own_[quad[3]] != p || own_[quad[2]] != q) continue;
-      int p_count = 0, q_count = 0;
-      for (int k = -1; k <= 1; ++k)
-        for (int j = -1; j <= 2; ++j)
-          for (int i = -1; i <= 2; ++i) {
-            const std::uint16_t l = own_[n.place + i * step[a] + j * step[b] + k * step[normal]];
-            p_count += l == p;
-            q_count += l == q;
-          }
-      const bool connect_p = p_count < q_count || (p_count == q_count && p < q);
-      const std::uint16_t rare = connect_p ? p : q, other = connect_p ? q : p;
-      float lead = 0;
-      for (int v : quad) lead += fields_[rare][v] - fields_[other][v];
-      const float lack = lead + 4 * 2 * least_distance;
-      if (lack <= 0) continue;
-      for (int v : quad)
-        if (own_[v] == rare) lifts.push_back({v, rare, lack / 2});
+      hold_edge(n, normal, lifts);
+      hold_face(n, normal, lifts);
     }
-  }
   std::sort(lifts.begin(), lifts.end(), [](const Lift& x, const Lift& y) {
     return x.place != y.place ? x.place < y.place : x.by > y.by;
   });
   for (std::size_t i = 0; i < lifts.size(); ++i)
     if (i == 0 || lifts[i].place != lifts[i - 1].place) {
-      float& d = fields_[lifts[i].label][lifts[i].place];
+      float& d = fields_[own_[lifts[i].place]][lifts[i].place];
       d = std::max(d - lifts[i].by, -band);
     }
+}
+
+void LabelSmoother::hold_edge(const MixedNode& n, int normal, std::vector<Lift>& lifts) const {
+  const std::array<int, 3> at = position(n.place);
+  const int a = (normal + 1) % 3, b = (normal + 2) % 3;
+  if (!settled(at[normal]) || !settled(at[a]) || !settled(at[a] + 1) || !settled(at[b]) ||
+      !settled(at[b] + 1))
+    return;
+  const std::array<int, 4> quad{n.place, n.place + steps[a], n.place + steps[b],
+                                n.place + steps[a] + steps[b]};
+  const std::uint16_t p = own_[quad[0]], p2 = own_[quad[3]], q = own_[quad[1]], q2 = own_[quad[2]];
+  if (p == q || p == q2 || p2 == q || p2 == q2 || (p != p2 && q != q2)) return;
+  bool connect_p = p == p2;
+  if (p == p2 && q == q2) {
+    int p_count = 0, q_count = 0;
+    for (int k = -1; k <= 1; ++k)
+      for (int j = -1; j <= 2; ++j)
+        for (int i = -1; i <= 2; ++i) {
+          const std::uint16_t l = own_[n.place + i * steps[a] + j * steps[b] + k * steps[normal]];
+          p_count += l == p;
+          q_count += l == q;
+        }
+    connect_p = p_count < q_count || (p_count == q_count && p < q);
+  }
+  const std::uint16_t connected = connect_p ? p : q;
+  float lack = 0;
+  for (const std::uint16_t other : connect_p ? std::array{q, q2} : std::array{p, p2}) {
+    float lead = 0;
+    for (int v : quad) lead += fields_[connected][v] - fields_[other][v];
+    lack = std::max(lack, lead + 4 * 2 * least_distance);
+  }
+  if (lack <= 0) return;
+  for (int v : quad)
+    if (own_[v] == connected) lifts.push_back({v, lack / 2});
+}
+
+void LabelSmoother::hold_face(const MixedNode& n, int normal, std::vector<Lift>& lifts) const {
+  const int p = n.place, q = p + steps[normal];
+  const std::array<int, 3> at = position(p);
+  for (int a = 0; a < 3; ++a)
+    if (!settled(at[a]) || !settled(at[a] + (a == normal))) return;
+  const std::uint16_t here = own_[p], there = own_[q];
+  if (here == there) return;
+  const float at_p = fields_[there][p] - fields_[here][p], at_q = fields_[here][q] - fields_[there][q];
+  const float share = at_p / (at_p + at_q);  // both are positive: own labels are held
+  const float both = fields_[here][p] + share * (fields_[here][q] - fields_[here][p]);
+  float lack = 0;
+  // Labels near either node that matter there are near both: the nodes are neighbours.
+  for (std::uint16_t l : labels_near(n)) {
+    if (l == here || l == there) continue;
+    const float third = fields_[l][p] + share * (fields_[l][q] - fields_[l][p]);
+    lack = std::max(lack, both + 2 * least_contact - third);
+  }
+  if (lack <= 0) return;
+  for (int v : {p, q}) lifts.push_back({v, 2 * lack});
 }
 
 void LabelSmoother::smooth() {
@@ -308,7 +335,7 @@ void LabelSmoother::smooth() {
   }
   static_assert(kernel_reach + back_projections * (1 + kernel_reach) + 1 == reach);
   distances_from_shares(margin);
-  connect_rarer_labels();
+  hold_contacts();
 }
 
 }  // namespace tetwright

@@ -25,8 +25,11 @@ namespace tetwright {
 ///  3. after each time a node's own label is made the largest by a margin (Whitaker 2000, "Reducing aliasing
 ///     artifacts in iso-surfaces of binary volumes", constrains smoothing likewise);
 ///  4. shares u become distances -probit(u), which are right for a flat interface;
-///  5. where four voxels around an edge alternate between two labels, the one that is rarer around there is
-///     connected: a sheet one voxel thick that runs at a slant hangs together by such edges.
+///  5. where labels alternate in the four voxels around an edge, the two voxels of one label are connected;
+///  if
+///     both pairs are of one label, those of the one that is rarer around there: a sheet one voxel thick that
+///     runs at a slant hangs together by such edges, and labels that only touch in an edge are kept apart;
+///  6. labels that share a face of voxels have a contact of some size.
 ///
 /// Nodes of neighbouring tiles that are the same come out bit by bit the same.
 class LabelSmoother {
@@ -65,7 +68,13 @@ class LabelSmoother {
   };
 
   static constexpr int place(int x, int y, int z) { return (z * side + y) * side + x; }
+  static constexpr std::array<int, 3> position(int place) {
+    return {place % side, place / side % side, place / (side * side)};
+  }
+  /// True for nodes, along one axis, whose distances are final but for step 5 and 6.
+  static constexpr bool settled(int i) { return i >= reach - 1 && i <= side - reach; }
   static constexpr int volume = side * side * side;
+  static constexpr std::array<int, 3> steps{1, side, side* side};
 
   void number_labels();
   void find_mixed_nodes();
@@ -74,7 +83,14 @@ class LabelSmoother {
   void add_missing_shares(int margin);
   void hold_own_labels();
   void distances_from_shares(int margin);
-  void connect_rarer_labels();
+  /// What a node's own distance is to be less by.
+  struct Lift {
+    int place;
+    float by;
+  };
+  void hold_contacts();
+  void hold_edge(const MixedNode& n, int normal, std::vector<Lift>& lifts) const;
+  void hold_face(const MixedNode& n, int normal, std::vector<Lift>& lifts) const;
   std::span<const std::uint16_t> labels_near(const MixedNode& n) const {
     return {near_.data() + n.first_label, n.label_count};
   }
