@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "common/parallel.h"
+#include "common/parallel_sort.h"
 #include "common/predicates.h"
 #include "common/quality.h"
 
@@ -38,6 +38,36 @@ std::array<double, QualityHistogram::volume_bins - 1> volume_limits() {
   return limits;
 }
 
+void count_interfaces(const TetMesh& mesh, MeshStatistics& out) {
+  const std::vector<InterfaceTriangle>& triangles = mesh.interfaces;
+  using Pairs = std::map<MaterialPair, InterfaceStatistics>;
+  std::vector<Pairs> parts((triangles.size() + part_size - 1) / part_size);
+  std::vector<std::uint64_t> edges(3 * triangles.size());  // smaller id above the larger one
+  parallel_chunks(parts.size(), [&](std::size_t p, unsigned) {
+    Pairs::value_type* last_pair = nullptr;
+    const std::size_t last = std::min(triangles.size(), (p + 1) * part_size);
+    for (std::size_t i = p * part_size; i < last; ++i) {
+      const InterfaceTriangle& t = triangles[i];
+      const Vec3& a = mesh.points[t.ids[0]];
+      if (!last_pair || last_pair->first != t.pair()) last_pair = &*parts[p].try_emplace(t.pair()).first;
+      ++last_pair->second.triangles;
+      last_pair->second.area += 0.5 * (mesh.points[t.ids[1]] - a).cross(mesh.points[t.ids[2]] - a).norm();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto [low, high] = std::minmax(t.ids[k], t.ids[(k + 1) % 3]);
+        edges[3 * i + k] = std::uint64_t{low} << 32 | high;
+      }
+    }
+  });
+  for (const Pairs& part : parts)
+    for (const auto& [pair, statistics] : part) {
+      out.interfaces[pair].triangles += statistics.triangles;
+      out.interfaces[pair].area += statistics.area;
+    }
+  parallel_sort(edges);
+  for (std::size_t i = 0; i + 2 < edges.size(); ++i)
+    out.junction_edges += edges[i] == edges[i + 2] && (i == 0 || edges[i - 1] != edges[i]);
+}
+
 }  // namespace
 
 MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
@@ -45,6 +75,7 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
   out.tets = mesh.tets.size();
   out.points = mesh.points.size();
   if (mesh.tets.empty()) return out;
+  count_interfaces(mesh, out);
 
   std::vector<double> angles(mesh.tets.size()), volumes(mesh.tets.size());
   std::vector<PartStatistics> parts((mesh.tets.size() + part_size - 1) / part_size);

@@ -1,5 +1,7 @@
 #include "mesher/field_builder.h"
 
+#include <array>
+
 #include "common/error.h"
 #include "common/parallel_sort.h"
 #include "mesher/level_set_field.h"
@@ -56,14 +58,19 @@ void write_fields(const MaterialField& field, const std::string& path) {
                                                                          std::span<float, leaf_points> out) {
       const std::unique_ptr<FieldSampler> sampler = on_voxels->sampler();
       for (int i = 0; i < leaf_points; ++i) {
-        const int x = i / (leaf_side * leaf_side), y = i / leaf_side % leaf_side, z = i % leaf_side;
-        sampler->values_at_voxel(leaf[0] + x, leaf[1] + y, leaf[2] + z, {&number, 1},
-                                 &out[static_cast<std::size_t>(i)]);
+        const int x = leaf[0] + i / (leaf_side * leaf_side), y = leaf[1] + i / leaf_side % leaf_side,
+                  z = leaf[2] + i % leaf_side;
+        // Its own distance need not pass 0 where it meets others: of what is thin it may be above all along.
+        const NearestRegion there = sampler->nearest_at_voxel(x, y, z);
+        std::array<float, 2> both;
+        sampler->values_at_voxel(x, y, z, std::array{number, there.region}, both.data());
+        out[static_cast<std::size_t>(i)] =
+            there.region == number ? -there.margin : 0.5F * (both[0] - both[1]);
       }
     };
     sources.push_back(std::move(source));
   }
-  write_level_sets(path, field.voxels(), sources);
+  write_level_sets(path, field.voxels(), on_voxels->band(), sources);
 }
 
 }  // namespace tetwright

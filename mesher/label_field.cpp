@@ -538,6 +538,9 @@ std::vector<LeafOrigin> LabelField::band_leaves(RegionIndex region) const {
           low = low.cwiseMin(at);
           high = high.cwiseMax(at);
         }
+        // Where cells are larger than the band, what is across an interface may be beyond all that is known.
+        low -= Vec3::Ones();
+        high += Vec3::Ones();
         const auto leaf = [](double x) { return static_cast<int>(std::floor(x / leaf_side)) * leaf_side; };
         for (int z = leaf(low[2]); z <= high[2]; z += leaf_side)
           for (int y = leaf(low[1]); y <= high[1]; y += leaf_side)

@@ -55,8 +55,14 @@ DistanceGrid::Ptr unsigned_distances(std::span<const Vec3> points, std::span<con
   return grid;
 }
 
-void fill_beyond_band(DistanceGrid& grid, float band) {
+void fill_beyond_band(DistanceGrid& grid) {
+  constexpr auto band = static_cast<float>(level_set_band);
   openvdb::tools::signedFloodFillWithValues(grid.tree(), band, -band);
+}
+
+void fill_tiles_beyond_band(DistanceGrid& grid, float band) {
+  constexpr openvdb::Index level_above_leaves = 1;
+  openvdb::tools::signedFloodFillWithValues(grid.tree(), band, -band, true, 1, level_above_leaves);
 }
 
 LevelSet::LevelSet(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -38,8 +38,11 @@ void initialise_openvdb();
 DistanceGrid::Ptr unsigned_distances(std::span<const Vec3> points, std::span<const Triangle> triangles,
                                      Progress* progress);
 
-/// Gives all voxels and tiles that are not active the size `band` and the sign of the active ones beside
+/// Gives all voxels and tiles that are not active the band's size and the sign of the active ones beside
 /// them.
-void fill_beyond_band(DistanceGrid& grid, float band = level_set_band);
+void fill_beyond_band(DistanceGrid& grid);
+
+/// Gives tiles alone the size `band` and the sign of the voxels beside them, active or not.
+void fill_tiles_beyond_band(DistanceGrid& grid, float band);
 
 }  // namespace tetwright

@@ -90,7 +90,8 @@ class MaterialField : public ReferenceSurface {
   virtual std::shared_ptr<const MaterialField> refined(int refinement) const = 0;
   /// The voxels that hold an interface, as ascending Morton keys of their lower corners.
   virtual std::vector<MortonKey> interface_voxels() const = 0;
-  /// The leaves of 8 x 8 x 8 voxel corners where a region's distance is within the band, ascending.
+  /// The leaves of 8 x 8 x 8 voxel corners where a region's distance is within the band or an edge of voxels
+  /// passes its surface, ascending.
   virtual std::vector<LeafOrigin> band_leaves(RegionIndex region) const = 0;
   /// True if sheets between level sets can be told from other thin parts, see FieldSampler::thinnest_sheet().
   virtual bool knows_sheets() const = 0;

@@ -89,8 +89,9 @@ struct MeshedSurface {
   MesherReport report;
 };
 
-/// Writes the signed distances of each material (not of a kept outside) as a level set of its name to a .vdb
-/// file. Throws OutputError.
+/// Writes the signed distances of each material (not of a kept outside) from where it meets others, which is
+/// half of how much nearer the nearest other region is, as a level set of its name to a .vdb file. Throws
+/// OutputError.
 void write_fields(const MaterialField& field, const std::string& path);
 
 /// What meshing would take.

@@ -1,6 +1,7 @@
 #include "mesher/vdb_files.h"
 
 #include <openvdb/io/Stream.h>
+#include <openvdb/tools/Dense.h>
 #include <openvdb/tools/VolumeToMesh.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 
 #include "common/error.h"
 #include "common/formats/atomic_file.h"
+#include "common/formats/voxel_data.h"
 #include "common/parallel.h"
 #include "mesher/level_set_grid.h"
 #include "mesher/vdb_structure.h"
@@ -42,24 +44,34 @@ bool has_both_signs(const DistanceGrid& grid) {
   return positive && negative;
 }
 
-/// The grid itself if it is a level set, else nothing.
-DistanceGrid::Ptr level_set_of(VdbGrid& grid, const std::string& file) {
-  const bool without_kind = grid.kind == "unknown";
-  if (grid.alone.empty() || !(without_kind || grid.kind == "level set")) return nullptr;
-  DistanceGrid::Ptr distances;
+/// What OpenVDB makes of a grid that was taken apart; its bytes are gone then.
+template <class Grid>
+typename Grid::Ptr grid_of(VdbGrid& grid, const std::string& file) {
+  typename Grid::Ptr made;
   try {
     std::istringstream stream(std::exchange(grid.alone, {}));
     // OpenVDB itself does not look whether its reading worked.
     stream.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
     const auto grids = openvdb::io::Stream(stream, false).getGrids();
-    distances = openvdb::gridPtrCast<DistanceGrid>(grids->at(0));
+    made = openvdb::gridPtrCast<Grid>(grids->at(0));
   } catch (const std::exception&) {  // of OpenVDB or the stream
   }
-  if (!distances) throw InputError(file, 0, "the grid '" + grid.name + "' is damaged; write it again");
+  if (!made) throw InputError(file, 0, "the grid '" + grid.name + "' is damaged; write it again");
+  return made;
+}
+
+/// The grid itself if it is a level set, else nothing.
+DistanceGrid::Ptr level_set_of(VdbGrid& grid, const std::string& file) {
+  const bool without_kind = grid.kind == "unknown";
+  if (grid.type != "float" || grid.alone.empty() || !(without_kind || grid.kind == "level set"))
+    return nullptr;
+  DistanceGrid::Ptr distances = grid_of<DistanceGrid>(grid, file);
   if (without_kind && !(distances->background() > 0 && has_both_signs(*distances))) return nullptr;
   distances->setGridClass(openvdb::GRID_LEVEL_SET);
   return distances;
 }
+
+bool has_whole_numbers(const VdbGrid& grid) { return grid.type == "int32" || grid.type == "int64"; }
 
 /// As in "density (fog volume, float)".
 std::string described(const VdbGrid& grid) {
@@ -117,9 +129,59 @@ TriangleMesh surface_of(DistanceGrid& grid) {
   return mesh;
 }
 
-DistanceGrid::Ptr make_grid(const GridFrame& frame, const LevelSetSource& source) {
+/// Throws InputError at a number that is no label.
+template <class Grid>
+void check_labels(const Grid& grid, const std::string& file, const std::string& name) {
+  const auto check = [&](std::int64_t value) {
+    if (!std::in_range<MaterialTag>(value))
+      throw InputError(file, 0,
+                       "the grid '" + name + "' has the value " + std::to_string(value) +
+                           ", which is no label of 32 bits; number the labels from 0");
+  };
+  check(grid.background());
+  for (auto value = grid.cbeginValueAll(); value; ++value) check(*value);
+}
+
+template <class Grid>
+LabelVolume volume_of(const Grid& grid, std::size_t most_voxels, const std::string& file,
+                      const std::string& name) {
+  if constexpr (!std::is_same_v<typename Grid::ValueType, MaterialTag>) check_labels(grid, file, name);
+  if (grid.activeVoxelCount() == 0)
+    throw InputError(file, 0, "the grid '" + name + "' has no active voxel; set those of the volume active");
+  const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+  LabelVolume volume;
+  std::uint64_t room = most_voxels;
+  std::string size;
+  for (int a = 0; a < 3; ++a) {
+    const auto n = static_cast<std::uint64_t>(std::int64_t{box.max()[a]} - box.min()[a] + 1);
+    room /= n;
+    size += (a ? " x " : "") + std::to_string(n);
+    volume.size[a] = static_cast<int>(n);
+  }
+  if (room == 0)
+    throw InputError(file, 0,
+                     "the active voxels of the grid '" + name + "' reach over " + size +
+                         " voxels, more than " + std::to_string(most_voxels) +
+                         "; crop the volume or make it coarser");
+  // OpenVDB multiplies row vectors from the left: steps along the axes are rows.
+  const openvdb::math::Mat4d to_world = grid.transform().baseMap()->getAffineMap()->getMat4();
+  const openvdb::Vec3d first = grid.indexToWorld(box.min());
+  for (int row = 0; row < 3; ++row) {
+    volume.origin[row] = first[row];
+    for (int column = 0; column < 3; ++column) volume.directions(row, column) = to_world(column, row);
+  }
+  check_geometry(volume, file);
+  volume.labels.resize(static_cast<std::size_t>(box.volume()));
+  openvdb::tools::Dense<MaterialTag, openvdb::tools::LayoutXYZ> dense(box, volume.labels.data());
+  openvdb::tools::copyToDense(grid, dense);
+  return volume;
+}
+
+DistanceGrid::Ptr make_grid(const GridFrame& frame, double band_cells, const LevelSetSource& source) {
   const auto size = static_cast<float>(frame.cell_size);
-  const auto band = static_cast<float>(level_set_band);
+  const auto band = static_cast<float>(band_cells);
+  // What was cut off may be rounded.
+  const float true_below = band * (1 - 1e-5F);
   const auto grid = DistanceGrid::create(size * band);
   std::vector<DistanceLeaf*> leaves(source.leaves.size());
   for (std::size_t i = 0; i < leaves.size(); ++i) {
@@ -131,13 +193,13 @@ DistanceGrid::Ptr make_grid(const GridFrame& frame, const LevelSetSource& source
     for (std::size_t i = begin; i < end; ++i) {
       source.distances(source.leaves[i], values);
       for (openvdb::Index k = 0; k < leaf_points; ++k)
-        if (std::abs(values[k]) < band)
+        if (std::abs(values[k]) < true_below)
           leaves[i]->setValueOn(k, size * values[k]);
         else
           leaves[i]->setValueOff(k, std::copysign(size * band, values[k]));
     }
   });
-  fill_beyond_band(*grid, size * band);
+  fill_tiles_beyond_band(*grid, size * band);
   grid->setName(source.name);
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
   // OpenVDB multiplies row vectors from the left: steps along the axes are rows.
@@ -176,7 +238,9 @@ std::vector<NamedSurface> read_level_sets(const std::string& file) {
   std::vector<NamedSurface> surfaces;
   std::set<std::string> names;
   std::string others;
+  bool whole_numbers = false;
   for (VdbGrid& grid : take_apart(file)) {
+    whole_numbers |= has_whole_numbers(grid);
     const DistanceGrid::Ptr level_set = level_set_of(grid, file);
     if (!level_set) {
       others += (others.empty() ? "" : ", ") + described(grid);
@@ -199,17 +263,47 @@ std::vector<NamedSurface> read_level_sets(const std::string& file) {
   }
   if (surfaces.empty())
     throw InputError(file, 0,
-                     "has no level set of floats; there is " + (others.empty() ? "nothing in it" : others));
+                     std::string("has no level set of floats") +
+                         (whole_numbers ? "" : " and no grid of whole numbers") + "; there is " +
+                         (others.empty() ? "nothing in it" : others));
   return surfaces;
 }
 
-void write_level_sets(const std::string& file, const GridFrame& frame,
+std::optional<LabelVolume> read_label_grid(const std::string& file, std::size_t most_voxels) {
+  initialise_openvdb();
+  std::vector<VdbGrid> grids = take_apart(file);
+  std::vector<VdbGrid*> whole;
+  for (VdbGrid& grid : grids)
+    if (has_whole_numbers(grid)) whole.push_back(&grid);
+  if (whole.empty()) return std::nullopt;
+  for (VdbGrid& grid : grids)
+    if (level_set_of(grid, file)) return std::nullopt;
+  VdbGrid& grid = *whole.front();
+  if (whole.size() > 1) {
+    std::string names;
+    for (const VdbGrid* g : whole) names += (names.empty() ? "'" : ", '") + g->name + "'";
+    throw InputError(file, 0,
+                     "has " + std::to_string(whole.size()) + " grids of whole numbers, " + names +
+                         "; keep the one of the labels");
+  }
+  if (!grid.fault.empty()) throw InputError(file, 0, grid.fault);
+  if (grid.alone.empty())
+    throw InputError(file, 0,
+                     "the grid '" + grid.name +
+                         "' is no tree of its own of the usual kind (5, 4, 3); "
+                         "write a copy of it");
+  if (grid.type == "int32")
+    return volume_of(*grid_of<openvdb::Int32Grid>(grid, file), most_voxels, file, grid.name);
+  return volume_of(*grid_of<openvdb::Int64Grid>(grid, file), most_voxels, file, grid.name);
+}
+
+void write_level_sets(const std::string& file, const GridFrame& frame, double band_cells,
                       std::span<const LevelSetSource> level_sets) {
   initialise_openvdb();
   std::string bytes;
   try {
     openvdb::GridPtrVec grids;
-    for (const LevelSetSource& source : level_sets) grids.push_back(make_grid(frame, source));
+    for (const LevelSetSource& source : level_sets) grids.push_back(make_grid(frame, band_cells, source));
     std::ostringstream stream;
     openvdb::io::Stream(stream).write(grids);
     bytes = std::move(stream).str();

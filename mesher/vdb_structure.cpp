@@ -21,7 +21,7 @@ constexpr std::string_view no_identifier = "00000000-0000-0000-0000-000000000000
 constexpr std::uint32_t zipped = 1, mask_compressed = 2, blosc = 4;
 /// Logarithms of the children of a node along each axis: below the root, below that, and of leaves.
 constexpr std::array<int, 3> node_levels{5, 4, 3};
-constexpr std::string_view half_suffix = "_HalfFloat", float_tree = "Tree_float_5_4_3";
+constexpr std::string_view half_suffix = "_HalfFloat", usual_tree = "_5_4_3";
 
 constexpr std::size_t values_of(int level) { return std::size_t{1} << 3 * node_levels[level]; }
 
@@ -70,19 +70,21 @@ struct Mask {
   }
 };
 
-/// Walks over one grid's tree of floats.
+/// Walks over one grid's tree of numbers.
 class TreeWalk {
  public:
-  TreeWalk(Cursor& cursor, std::uint32_t compression, bool half)
-      : cursor_(cursor), compression_(compression), half_(half) {}
+  /// Values of `bytes` each; `half` if those of nodes are written as half floats.
+  TreeWalk(Cursor& cursor, std::uint32_t compression, std::size_t bytes, bool half)
+      : cursor_(cursor), compression_(compression), bytes_(bytes), half_(half) {}
 
   void tree() {
     require(cursor_.number<std::int32_t>() == 1);  // buffers
-    cursor_.number<float>();                       // background
+    cursor_.take(bytes_);                          // background
     const auto tiles = cursor_.number<std::uint32_t>(), children = cursor_.number<std::uint32_t>();
     for (std::uint32_t i = 0; i < tiles; ++i) {
       origin();
-      cursor_.take(sizeof(float) + 1);  // value, active
+      cursor_.take(bytes_);                           // value
+      require(cursor_.number<unsigned char>() <= 1);  // active
     }
     for (std::uint32_t i = 0; i < children; ++i) {
       origin();
@@ -127,11 +129,11 @@ class TreeWalk {
     // that is written; 3 to 5: two values, with a mask of who has which; 6: all.
     const auto layout = cursor_.number<std::int8_t>();
     require(layout >= 0 && layout <= 6);
-    if (layout == 2 || layout == 4 || layout == 5) cursor_.number<float>();
-    if (layout == 5) cursor_.number<float>();
+    if (layout == 2 || layout == 4 || layout == 5) cursor_.take(bytes_);
+    if (layout == 5) cursor_.take(bytes_);
     if (layout >= 3 && layout <= 5) mask(level);
     const bool only_active = compression_ & mask_compressed && layout != 6;
-    data((only_active ? active : values_of(level)) * (half_ ? 2 : 4));
+    data((only_active ? active : values_of(level)) * (half_ ? 2 : bytes_));
   }
 
   void data(std::size_t size) {
@@ -163,6 +165,7 @@ class TreeWalk {
 
   Cursor& cursor_;
   std::uint32_t compression_;
+  std::size_t bytes_;
   bool half_;
   std::size_t leaves_ = 0;
   std::set<std::array<std::int32_t, 3>> origins_;
@@ -190,6 +193,11 @@ void transform(Cursor& cursor) {
   if (kind == numbers.end())
     throw std::runtime_error("is damaged or has a frustum for a transform; resample it to a box");
   cursor.take(static_cast<std::size_t>(kind->second) * sizeof(double));
+}
+
+/// The bytes of a value of the types that are walked over; 0 for others.
+std::size_t value_bytes(std::string_view type) {
+  return type == "float" || type == "int32" ? 4 : type == "int64" ? 8 : 0;
 }
 
 template <class T>
@@ -264,20 +272,33 @@ std::vector<VdbGrid> take_apart_vdb(std::string_view bytes) {
     grid.kind = entry("class", "unknown");
     grid.type = type.substr(std::min(type.size(), type.find('_') + 1));
     grid.type = grid.type.substr(0, grid.type.find('_'));
-    if (type == float_tree && !shares_tree) {
-      const std::size_t transform_start = cursor.position();
-      transform(cursor);
-      const std::string_view transform_bytes = cursor.since(transform_start);
-      const std::size_t tree_start = cursor.position();
-      TreeWalk(cursor, compression, half).tree();
-      grid.alone =
-          file_of_one(header, full_type, compression, half, transform_bytes, cursor.since(tree_start));
-    } else if (has_offsets) {
-      cursor.move_to(end);
-    } else {
+    const std::size_t bytes_each = value_bytes(grid.type);
+    const bool is_float = grid.type == "float";
+    const bool known =
+        bytes_each > 0 && type == "Tree_" + grid.type + std::string(usual_tree) && !shares_tree;
+    if (known) {
+      Cursor ahead = cursor;
+      try {
+        const std::size_t transform_start = ahead.position();
+        transform(ahead);
+        const std::string_view transform_bytes = ahead.since(transform_start);
+        const std::size_t tree_start = ahead.position();
+        // Whole numbers are whole whatever is said of them.
+        TreeWalk(ahead, compression, bytes_each, half && is_float).tree();
+        grid.alone = file_of_one(header, is_float ? full_type : type, compression, half && is_float,
+                                 transform_bytes, ahead.since(tree_start));
+        cursor = ahead;
+        continue;
+      } catch (const std::runtime_error& e) {
+        // A level set is wanted of the file, or else this one: then it is told.
+        if (is_float || !has_offsets) throw;
+        grid.fault = e.what();
+      }
+    }
+    if (!has_offsets)
       throw std::runtime_error("has a grid of another kind, '" + grid.name +
                                "', and no offsets to pass it over; write it again with its level sets alone");
-    }
+    cursor.move_to(end);
   }
   return grids;
 }

@@ -284,7 +284,7 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
       "4 nothing to mesh, 5 could not be written or out of memory, 130 interrupted.");
   constexpr const char* surfaces =
       "Surfaces: .ply .obj .stl .off, level sets: .vdb; each a material, later ones carve earlier ones. Or "
-      "segmented volumes: .nrrd .nhdr .mhd .mha .nii .nii.gz .inr .inr.gz";
+      "segmented volumes: .nrrd .nhdr .mhd .mha .nii .nii.gz .inr .inr.gz, and .vdb of whole numbers";
   constexpr const char* meshes = "Tet mesh: .vtu .msh .mesh .vtk .node .ele";
   constexpr const char* mesh_out = "Where the mesh goes: .vtu .msh .mesh";
 

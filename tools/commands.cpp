@@ -16,6 +16,7 @@
 #include "common/formats/atomic_file.h"
 #include "common/formats/formats.h"
 #include "common/formats/label_names.h"
+#include "common/interfaces.h"
 #include "common/mesh_check.h"
 #include "common/mesh_statistics.h"
 #include "common/parallel.h"
@@ -170,18 +171,23 @@ class Run {
 
  private:
   /// A segmented volume says what all its materials are: it stands alone.
-  bool is_volume() const {
+  bool is_volume() {
     bool volume = false;
     const std::vector<std::string> inputs = all_inputs(line_);
     for (const std::string& file : inputs) volume |= file_kind(file) == FileKind::volume;
+    // A .vdb file shows what it is when it is opened.
+    for (const std::string& file : line_.inputs) {
+      if (!is_vdb(file)) continue;
+      vdb_labels_ = read_label_grid(file);
+      volume |= vdb_labels_.has_value();
+    }
     const bool choice = !line_.labels.empty() || !line_.label_names.empty() || line_.outside_label_given ||
                         line_.min_voxels_given;
     if (!volume) {
       if (choice)
         throw UsageError(
             "--labels, --label-names, --outside-label and --min-voxels are for segmented volumes, and no "
-            "input "
-            "is one");
+            "input is one");
       return false;
     }
     if (inputs.size() > 1 || line_.inputs.empty())
@@ -200,9 +206,11 @@ class Run {
     choice.outside_label = line_.outside_label;
     choice.min_voxels = line_.min_voxels;
     if (!line_.label_names.empty()) choice.names = read_label_names(line_.label_names);
-    LabelVolume volume = read_label_volume(file);
+    LabelVolume volume = vdb_labels_ ? std::move(*vdb_labels_) : read_label_volume(file);
+    vdb_labels_.reset();
     labels_ = prepare_labels(std::move(volume), file, choice, &progress_);
     report_.findings = labels_->findings;
+    report_.volume.emplace(*labels_);
   }
 
   MesherOptions common_options() const {
@@ -241,10 +249,9 @@ class Run {
     for (const std::string& file : line_.inputs) {
       if (is_vdb(file))
         for (NamedSurface& s : read_level_sets(file))
-          add(s.name.empty() ? std::filesystem::path(file).stem().string() : s.name, file,
-              std::move(s.surface));
+          add(s.name.empty() ? file_stem(file) : s.name, file, std::move(s.surface));
       else
-        add(std::filesystem::path(file).stem().string(), file, read_surface(file));
+        add(file_stem(file), file, read_surface(file));
     }
     for (const NamedValue& m : line_.materials) {
       if (!is_vdb(m.value)) {
@@ -427,6 +434,7 @@ class Run {
   InterruptHandler handler_;
   RunReport report_;
   PreparedInput input_;
+  std::optional<LabelVolume> vdb_labels_;  ///< of a .vdb file, until they are prepared
   std::optional<PreparedLabels> labels_;
   std::shared_ptr<const MaterialField> field_;  ///< while it is slid along, or where it is to be written
   TetMesh mesh_;
@@ -470,7 +478,7 @@ ExitStatus check(const CommandLine& line) {
   run.inputs = line.inputs;
   // Of two meshes it is enough that one has the field: what was made of the other has it as "material".
   const ReadTetMeshOptions options{line.material_field, line.before.empty()};
-  const ReadTetMesh read = read_tet_mesh(line.inputs.front(), options);
+  ReadTetMesh read = read_tet_mesh(line.inputs.front(), options);
   bool field_found = read.material_field == line.material_field;
   run.material_field = read.material_field;
   run.input_points = read.mesh.points.size();
@@ -487,6 +495,7 @@ ExitStatus check(const CommandLine& line) {
                                 {"count", f.count},
                                 {"places", f.places}});
   if (measurable) {
+    read.mesh.interfaces = find_interfaces(read.mesh);
     run.result = mesh_statistics(read.mesh, line.min_solid_angle);
     run.material_names = read.mesh.material_names;
     json["mesh"] = mesh_json(*run.result, run.material_names, line.min_solid_angle);

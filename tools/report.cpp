@@ -1,5 +1,6 @@
 #include "tools/report.h"
 
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 #include <functional>
@@ -22,6 +23,20 @@ std::string printable(std::string text) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < ' ') c = '?';
   return text;
+}
+
+/// As in "volume 40 x 30 x 20 voxels of 1 x 1 x 2.5, space unknown; labels 1 'bone', 2 'skin'".
+std::string volume_line(const VolumeReport& v) {
+  constexpr std::size_t most_labels = 8;
+  const Vec3 spacing = v.spacing();
+  std::string line = text("volume %d x %d x %d voxels of ", v.size[0], v.size[1], v.size[2]) +
+                     text("%.6g x %.6g x %.6g", spacing[0], spacing[1], spacing[2]) + ", space " +
+                     (v.space.empty() ? "unknown" : v.space) + "; " + text("%zu label", v.labels.size()) +
+                     (v.labels.size() == 1 ? ": " : "s: ");
+  for (std::size_t i = 0; i < std::min(most_labels, v.labels.size()); ++i)
+    line += (i ? ", " : "") + std::to_string(v.labels[i].tag) + " '" + v.labels[i].name + "'";
+  if (v.labels.size() > most_labels) line += ", ...";
+  return printable(line);
 }
 
 }  // namespace
@@ -51,6 +66,7 @@ void print_report(const CommandLine& line, const RunReport& run) {
   row("dihedral angles, degrees",
       [](const MeshStatistics& m) { return text("%.1f - %.1f", m.min_dihedral, m.max_dihedral); });
   std::printf("\n");
+  if (run.volume) std::printf("%s\n", volume_line(*run.volume).c_str());
   if (run.mesher)
     std::printf("resolution %d (cells of %.4g), ", run.mesher->resolution, run.mesher->cell_size);
   std::printf("%.2f s: read %.2f", run.seconds_total, run.seconds_read);

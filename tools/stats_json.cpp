@@ -2,6 +2,8 @@
 
 #include <sys/resource.h>
 
+#include <cmath>
+
 #include "common/parallel.h"
 
 namespace tetwright {
@@ -47,6 +49,29 @@ nlohmann::json iteration_json(const IterationReport& it) {
 
 nlohmann::json place_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
+nlohmann::json volume_json(const VolumeReport& v) {
+  nlohmann::json directions = nlohmann::json::array();
+  for (int a = 0; a < 3; ++a) directions.push_back(place_json(v.directions.col(a)));
+  const double voxel = std::abs(v.directions.determinant());
+  nlohmann::json labels = nlohmann::json::array(), lost = nlohmann::json::array();
+  for (const LabelMaterial& l : v.labels)
+    labels.push_back({{"tag", l.tag},
+                      {"name", l.name},
+                      {"voxels", l.voxels},
+                      {"voxels_in_file", l.voxels_in_file},
+                      {"volume", voxel * static_cast<double>(l.voxels)}});
+  for (const LostLabel& l : v.lost) lost.push_back({{"tag", l.tag}, {"name", l.name}, {"voxels", l.voxels}});
+  return {{"size", v.size},
+          {"spacing", place_json(v.spacing())},
+          {"directions", directions},
+          {"origin", place_json(v.origin)},
+          {"space", v.space.empty() ? "unknown" : v.space},
+          {"labels", labels},
+          {"lost", lost},
+          {"merged_islands", v.merged_islands},
+          {"merged_voxels", v.merged_voxels}};
+}
+
 }  // namespace
 
 std::size_t peak_bytes() {
@@ -69,8 +94,18 @@ nlohmann::json mesh_json(const MeshStatistics& m, const std::map<MaterialTag, st
                          {"tets", material.tets},
                          {"volume", material.volume}});
   }
+  nlohmann::json interfaces = nlohmann::json::array();
+  for (const auto& [pair, interface] : m.interfaces) {
+    nlohmann::json other;  // null: outside
+    if (pair.second) other = *pair.second;
+    interfaces.push_back({{"materials", nlohmann::json::array({pair.first, other})},
+                          {"triangles", interface.triangles},
+                          {"area", interface.area}});
+  }
   return {{"tets", m.tets},
           {"points", m.points},
+          {"interfaces", interfaces},
+          {"junction_edges", m.junction_edges},
           {"materials", materials},
           {"volume", m.volume},
           {"min_solid_angle", m.min_solid_angle},
@@ -97,6 +132,7 @@ nlohmann::json stats_json(const CommandLine& line, const RunReport& run) {
   }
   j["input"] = {{"files", run.inputs}, {"triangles", run.input_triangles}, {"points", run.input_points}};
   if (!run.material_field.empty()) j["input"]["material_field"] = run.material_field;
+  if (run.volume) j["input"]["volume"] = volume_json(*run.volume);
   nlohmann::json seconds = {
       {"read", run.seconds_read}, {"write", run.seconds_write}, {"total", run.seconds_total}};
   if (run.dense) j["dense"] = mesh_json(*run.dense, run.material_names, line.min_solid_angle);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/mesh_statistics.h"
+#include "mesher/label_input.h"
 #include "mesher/mesher.h"
 #include "simplify/simplify.h"
 #include "tools/command_line.h"
@@ -19,11 +20,35 @@ struct Shortfall {
   std::string held_back_by;  ///< the rule, from the rejection counts
 };
 
+/// What was read of a segmented volume: PreparedLabels without its voxels.
+struct VolumeReport {
+  explicit VolumeReport(const PreparedLabels& from)
+      : size(from.size),
+        origin(from.origin),
+        directions(from.directions),
+        space(from.space),
+        labels(from.materials),
+        lost(from.lost),
+        merged_islands(from.merged_islands),
+        merged_voxels(from.merged_voxels) {}
+  /// Between voxels along each axis, input units.
+  Vec3 spacing() const { return directions.colwise().norm(); }
+
+  std::array<int, 3> size;
+  Vec3 origin;
+  Eigen::Matrix3d directions;
+  std::string space;
+  std::vector<LabelMaterial> labels;
+  std::vector<LostLabel> lost;
+  std::size_t merged_islands, merged_voxels;
+};
+
 /// All that one run has to tell; what a command does not do stays empty.
 struct RunReport {
   std::vector<std::string> inputs;
   std::size_t input_triangles = 0, input_points = 0;
-  std::string material_field;  ///< of a tet mesh: where its materials came from
+  std::string material_field;          ///< of a tet mesh: where its materials came from
+  std::optional<VolumeReport> volume;  ///< where the input is one
   std::vector<InputFinding> findings;
   std::optional<MesherReport> mesher;
   std::optional<MeshStatistics> dense, result;

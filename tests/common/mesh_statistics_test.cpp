@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/interfaces.h"
 #include "common/parallel.h"
 #include "common/quality.h"
 #include "common/samples.h"
@@ -34,6 +35,20 @@ TEST(MeshStatistics, KuhnTets) {
   EXPECT_EQ(s.below_percent, 100);
   EXPECT_EQ(total(s.histogram), 768u);
   EXPECT_EQ(s.histogram.counts[10][16], 768u);  // 0.25 to 0.275 sr, 1 to sqrt(2) times the mean volume
+}
+
+TEST(MeshStatistics, InterfacesAndTheEdgesWhereTheyMeet) {
+  TetMesh mesh = std::get<TetMesh>(make_sample("two_materials"));
+  EXPECT_TRUE(mesh_statistics(mesh).interfaces.empty());
+  mesh.interfaces = find_interfaces(mesh);
+  const MeshStatistics s = mesh_statistics(mesh);
+  ASSERT_EQ(s.interfaces.size(), 3u);
+  // Two cubes of 4 x 4 x 4 cells side by side, two triangles to a cell's face.
+  for (const auto& [pair, faces] : std::map<MaterialPair, int>{{{1, {}}, 5}, {{1, 2}, 1}, {{2, {}}, 5}}) {
+    EXPECT_EQ(s.interfaces.at(pair).triangles, 32u * faces);
+    EXPECT_NEAR(s.interfaces.at(pair).area, faces, 1e-13);
+  }
+  EXPECT_EQ(s.junction_edges, 16u);
 }
 
 TEST(MeshStatistics, TheRegularTetIsInTheLastAngleBin) {

@@ -40,7 +40,8 @@ class VdbFiles : public testing::Test {
       for (int k = 0; k < leaf_points; ++k)
         values[k] = static_cast<float>(sampler.at_node(o[0] + k / 64, o[1] + k / 8 % 8, o[2] + k % 8));
     };
-    write_level_sets(file, frame, std::vector<LevelSetSource>{{name, level_set->leaves(), read}});
+    write_level_sets(file, frame, level_set_band,
+                     std::vector<LevelSetSource>{{name, level_set->leaves(), read}});
   }
 
   void write_grids(const std::string& file, const openvdb::GridPtrVec& grids) const {
@@ -48,8 +49,17 @@ class VdbFiles : public testing::Test {
   }
 
   std::string message_of(const std::string& file) const {
+    return message_of(file, [&] { read_level_sets(file); });
+  }
+  std::string label_message_of(const std::string& file) const {
+    return message_of(file, [&] { read_label_grid(file); });
+  }
+
+ private:
+  template <class Read>
+  static std::string message_of(const std::string& file, const Read& read) {
     try {
-      read_level_sets(file);
+      read();
     } catch (const InputError& e) {
       EXPECT_TRUE(std::string_view(e.what()).starts_with(file + ": ")) << e.what();
       EXPECT_EQ(std::string_view(e.what()).find('\n'), std::string_view::npos);
@@ -58,7 +68,6 @@ class VdbFiles : public testing::Test {
     return "";
   }
 
- private:
   TemporaryFolder folder_;
 };
 
@@ -169,7 +178,8 @@ TEST_F(VdbFiles, SaysWhatIsWrong) {
   write_file_atomically(file, "");
   EXPECT_EQ(message_of(file), "is not a .vdb file");
   write_grids(file, {});
-  EXPECT_EQ(message_of(file), "has no level set of floats; there is nothing in it");
+  EXPECT_EQ(message_of(file),
+            "has no level set of floats and no grid of whole numbers; there is nothing in it");
 
   const auto fog = ball("density");
   fog->setGridClass(openvdb::GRID_FOG_VOLUME);
@@ -220,6 +230,157 @@ TEST_F(VdbFiles, DamagedFiles) {
     try {
       read_level_sets(file);
     } catch (const InputError&) {
+    }
+  }
+}
+
+/// Labels i + 10 j + 100 k at the indices (-2, 5, 100) to (1, 7, 101), and an inactive 7 beyond.
+template <class Grid>
+typename Grid::Ptr label_grid(const std::string& name) {
+  const auto grid = Grid::create(-1);
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 2; ++k) grid->tree().setValue({i - 2, j + 5, k + 100}, i + 10 * j + 100 * k);
+  grid->tree().setValueOff({0, 6, 100}, 77);
+  grid->tree().setValueOff({1, 6, 100}, -1);
+  grid->tree().setValueOff({5, 5, 100}, 7);
+  grid->setName(name);
+  openvdb::Mat4d matrix = openvdb::Mat4d::identity();
+  matrix.setRow(0, openvdb::Vec4d(0, 2, 0, 0));
+  matrix.setRow(1, openvdb::Vec4d(1, 0, 0.5, 0));
+  matrix.setRow(2, openvdb::Vec4d(0, 0, 3, 0));
+  matrix.setRow(3, openvdb::Vec4d(10, 20, 30, 1));
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
+  return grid;
+}
+
+void expect_labels(const std::optional<LabelVolume>& volume) {
+  ASSERT_TRUE(volume);
+  EXPECT_EQ(volume->size, (std::array<int, 3>{4, 3, 2}));
+  std::vector<MaterialTag> expected;
+  for (int k = 0; k < 2; ++k)
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 4; ++i) expected.push_back(i + 10 * j + 100 * k);
+  expected[6] = 77, expected[7] = -1;
+  EXPECT_EQ(volume->labels, expected);
+  EXPECT_EQ(volume->directions.col(0), Vec3(0, 2, 0));
+  EXPECT_EQ(volume->directions.col(1), Vec3(1, 0, 0.5));
+  EXPECT_EQ(volume->directions.col(2), Vec3(0, 0, 3));
+  EXPECT_LT((volume->origin - Vec3(15, 16, 332.5)).norm(), 1e-12);
+  EXPECT_EQ(volume->space, "");
+}
+
+TEST_F(VdbFiles, LabelsOfWholeNumbers) {
+  for (const std::uint32_t compression : {0u, 1u, 2u, 3u, 4u, 6u})
+    for (const bool half : {false, true}) {
+      const auto write = [&](const openvdb::GridBase::Ptr& grid) {
+        grid->setSaveFloatAsHalf(half);
+        openvdb::io::File out(path("a.vdb"));
+        out.setCompression(compression);
+        out.write(openvdb::GridPtrVec{grid});
+      };
+      write(label_grid<openvdb::Int32Grid>("labels"));
+      expect_labels(read_label_grid(path("a.vdb")));
+      write(label_grid<openvdb::Int64Grid>("labels"));
+      expect_labels(read_label_grid(path("a.vdb")));
+    }
+}
+
+TEST_F(VdbFiles, TilesOfLabels) {
+  const auto grid = openvdb::Int32Grid::create(0);
+  grid->tree().addTile(1, {0, 0, 0}, 3, true);       // 8 voxels to a side
+  grid->tree().addTile(1, {8, 0, 0}, 4, false);      // inactive, yet there
+  grid->tree().addTile(2, {128, 0, 0}, 5, true);     // 128 voxels
+  grid->tree().addTile(3, {-4096, 0, 0}, 6, false);  // beyond what is active
+  write_grids(path("a.vdb"), {grid});
+  const auto volume = read_label_grid(path("a.vdb"));
+  ASSERT_TRUE(volume);
+  EXPECT_EQ(volume->size, (std::array<int, 3>{256, 128, 128}));
+  EXPECT_EQ(volume->origin, Vec3::Zero());
+  std::map<MaterialTag, std::size_t> counts;
+  for (const MaterialTag label : volume->labels) ++counts[label];
+  EXPECT_EQ(counts[3], 512u);
+  EXPECT_EQ(counts[4], 512u);
+  EXPECT_EQ(counts[5], std::size_t{1} << 21);
+  EXPECT_EQ(counts[6], 0u);
+}
+
+TEST_F(VdbFiles, ALevelSetComesBeforeLabels) {
+  const std::string file = path("a.vdb");
+  const auto labels = label_grid<openvdb::Int32Grid>("labels");
+  write_grids(file, {labels, ball("b")});
+  EXPECT_FALSE(read_label_grid(file));
+  EXPECT_EQ(read_level_sets(file).size(), 1u);
+  // Also where the labels are no use.
+  labels->setTransform(
+      openvdb::math::Transform::createFrustumTransform(openvdb::BBoxd({0, 0, 0}, {10, 10, 10}), 0.5, 10));
+  write_grids(file, {labels, ball("b")});
+  EXPECT_FALSE(read_label_grid(file));
+  EXPECT_EQ(read_level_sets(file).size(), 1u);
+  const auto fog = ball("fog");
+  fog->setGridClass(openvdb::GRID_FOG_VOLUME);
+  write_grids(file, {fog});
+  EXPECT_FALSE(read_label_grid(file));
+  write_grids(file, {fog, label_grid<openvdb::Int32Grid>("labels")});
+  expect_labels(read_label_grid(file));
+}
+
+TEST_F(VdbFiles, SaysWhatIsWrongWithLabels) {
+  const std::string file = path("a.vdb");
+  const auto labels = label_grid<openvdb::Int32Grid>("a");
+  write_grids(file, {labels, label_grid<openvdb::Int64Grid>("b")});
+  EXPECT_EQ(label_message_of(file), "has 2 grids of whole numbers, 'a', 'b'; keep the one of the labels");
+  write_grids(file, {openvdb::Int32Grid::create(4)});
+  EXPECT_EQ(label_message_of(file), "the grid '' has no active voxel; set those of the volume active");
+  const auto large = label_grid<openvdb::Int32Grid>("large");
+  large->tree().addTile(3, {4096, 0, 0}, 3, true);
+  write_grids(file, {large});
+  EXPECT_NE(label_message_of(file).find("more than 2147483648;"), std::string::npos);
+  const auto wide = label_grid<openvdb::Int64Grid>("wide");
+  wide->tree().setValue({0, 5, 100}, std::int64_t{1} << 31);
+  write_grids(file, {wide});
+  EXPECT_EQ(
+      label_message_of(file),
+      "the grid 'wide' has the value 2147483648, which is no label of 32 bits; number the labels from 0");
+  labels->setTransform(
+      openvdb::math::Transform::createFrustumTransform(openvdb::BBoxd({0, 0, 0}, {10, 10, 10}), 0.5, 10));
+  write_grids(file, {labels});
+  EXPECT_NE(label_message_of(file).find("frustum"), std::string::npos);
+  EXPECT_THROW(read_label_grid(path("missing.vdb")), InputError);
+}
+
+// As for level sets.
+TEST_F(VdbFiles, DamagedLabels) {
+  // Voxels far away that damage sets active are refused before they take memory.
+  constexpr std::size_t most_voxels = 1 << 20;
+  const std::string file = path("damaged.vdb");
+  for (const std::uint32_t compression : {0u, 2u, 3u, 6u}) {
+    {
+      openvdb::io::File out(path("a.vdb"));
+      out.setCompression(compression);
+      const auto grid = openvdb::Int32Grid::create(0);
+      for (int i = 0; i < 20; ++i) grid->tree().setValue({i, i % 7, i % 3}, i);
+      grid->setName("labels");
+      out.write(openvdb::GridPtrVec{grid});
+    }
+    const std::string whole = read_whole_file(path("a.vdb"));
+    const std::size_t step = std::max<std::size_t>(3, whole.size() / 200);
+    for (std::size_t length = 0; length < whole.size(); length += step) {
+      put(file, whole.substr(0, length));
+      EXPECT_THROW(read_label_grid(file, most_voxels), InputError) << compression << ' ' << length;
+    }
+    Random random(compression);
+    for (int k = 0; k < 200; ++k) {
+      std::string bytes = whole;
+      const std::size_t reach = k % 2 ? bytes.size() : std::min<std::size_t>(bytes.size(), 1500);
+      for (int n = 0; n <= k % 3; ++n)
+        bytes[static_cast<std::size_t>(random.uniform() * static_cast<double>(reach))] =
+            static_cast<char>(random.uniform() * 256);
+      put(file, bytes);
+      try {
+        read_label_grid(file, most_voxels);
+      } catch (const InputError&) {
+      }
     }
   }
 }

@@ -40,6 +40,10 @@ TEST(StatsJson, FollowsItsSchema) {
   stats("simplify " + (f / "d.vtu") + " -o " + (f / "s.vtu") + " --target-tets 3");
   stats("improve " + (f / "s.vtu") + " -o " + (f / "i.vtu"));
   stats("check " + (f / "d.vtu"));
+  stats("sample organs -o " + (f / "o.nrrd"));
+  const auto organs = stats("mesh " + (f / "o.nrrd") + " -o " + (f / "o.vtu"));
+  EXPECT_EQ(organs["input"]["volume"]["labels"].size(), organs["result"]["materials"].size());
+  EXPECT_FALSE(organs["result"]["interfaces"].empty());
   auto j = stats("prepare " + (f / "t.ply") + " -o " + (f / "p.vtu") + " --target-tets 1000 --threads 2");
   EXPECT_EQ(j["threads"], 2);
   EXPECT_EQ(j["result"]["materials"][0]["name"], "t");

@@ -1,0 +1,195 @@
+// Segmented volumes as the program's users meet them.
+#include <gtest/gtest.h>
+
+#include <openvdb/io/File.h>
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "common/formats/formats.h"
+#include "common/samples.h"
+#include "tests/tools/program.h"
+
+namespace tetwright {
+namespace {
+
+class Volumes : public testing::Test {
+ protected:
+  Volumes() { write_sample("organs", path("organs.nrrd")); }
+  std::string path(const std::string& name) const { return folder_ / name; }
+  std::string mesh(const std::string& inputs) const {
+    return "mesh " + inputs + " -o " + path("out.vtu") + " --stats " + path("s.json");
+  }
+
+  /// The status, one line on stderr with all that is expected in it, no file.
+  void expect_refused(const std::string& inputs, int status, const std::vector<std::string>& said) const {
+    const std::size_t files = folder_.entries();
+    const Answer a = run(mesh(inputs));
+    EXPECT_EQ(a.status, status) << inputs << '\n' << a.err;
+    EXPECT_EQ(a.out, "") << inputs;
+    EXPECT_EQ(a.err.rfind("tetwright: ", 0), 0u) << a.err;
+    EXPECT_EQ(std::count(a.err.begin(), a.err.end(), '\n'), 1) << a.err;
+    for (const std::string& s : said) EXPECT_NE(a.err.find(s), std::string::npos) << a.err << "lacks: " << s;
+    EXPECT_EQ(folder_.entries(), files) << inputs;
+  }
+
+  /// A NRRD of 2 x 2 x 2 voxels of one byte, with lines of the header replaced or added.
+  std::string write_small(const std::string& name, const std::string& type, const std::string& more,
+                          const std::string& body) const {
+    put(path(name), "NRRD0004\ntype: " + type + "\nencoding: raw\nendian: little\n" + more + "\n" + body);
+    return path(name);
+  }
+
+  TemporaryFolder folder_;
+};
+
+const std::string cube = "dimension: 3\nsizes: 2 2 2\n";
+
+TEST_F(Volumes, ReportAndStatistics) {
+  const Answer a = run(mesh(path("organs.nrrd")));
+  ASSERT_EQ(a.status, 0) << a.err;
+  EXPECT_NE(a.out.find("volume 48 x 48 x 48 voxels of 0.75 x 0.75 x 1.25, space left-posterior-superior; "
+                       "5 labels: 1 'label_1', "),
+            std::string::npos)
+      << a.out;
+  const auto stats = nlohmann::json::parse(contents(path("s.json")));
+  const auto volume = stats["input"]["volume"];
+  EXPECT_EQ(volume["size"], nlohmann::json({48, 48, 48}));
+  EXPECT_EQ(volume["spacing"], nlohmann::json({0.75, 0.75, 1.25}));
+  EXPECT_EQ(volume["directions"], nlohmann::json({{0.75, 0.0, 0.0}, {0.0, 0.75, 0.0}, {0.0, 0.0, 1.25}}));
+  EXPECT_EQ(volume["space"], "left-posterior-superior");
+  EXPECT_GT(volume["merged_islands"], 0);
+  ASSERT_EQ(volume["labels"].size(), 5u);
+  for (std::size_t i = 0; i < 5; ++i) {
+    const auto label = volume["labels"][i];
+    EXPECT_EQ(label["tag"], i + 1);
+    const double expected = label["volume"];
+    EXPECT_NEAR(expected, label["voxels"].get<double>() * 0.75 * 0.75 * 1.25, 1e-9 * expected);
+  }
+  // The body, which the skin wraps, has all interfaces there are.
+  const auto interfaces = stats["result"]["interfaces"];
+  EXPECT_EQ(stats["dense"]["interfaces"], interfaces);
+  EXPECT_GT(interfaces.size(), 4u);
+  EXPECT_GT(stats["result"]["junction_edges"], 0);
+  EXPECT_TRUE(std::any_of(interfaces.begin(), interfaces.end(),
+                          [](const auto& i) { return i["materials"][1].is_null(); }));
+  // A check of the file finds the same ones.
+  const auto checked = nlohmann::json::parse(run("check --json " + path("out.vtu")).out)["mesh"];
+  EXPECT_EQ(checked["interfaces"], interfaces);
+  EXPECT_EQ(checked["junction_edges"], stats["result"]["junction_edges"]);
+}
+
+TEST_F(Volumes, TheFieldsThatWereMeshed) {
+  ASSERT_EQ(run(mesh(path("organs.nrrd")) + " --write-sdf " + path("fields.vdb")).status, 0);
+  const auto first = nlohmann::json::parse(contents(path("s.json")))["result"]["materials"];
+  ASSERT_EQ(run(mesh(path("fields.vdb")) + " --voxel-size 0.75").status, 0);
+  const auto again = nlohmann::json::parse(contents(path("s.json")))["result"];
+  ASSERT_EQ(again["materials"].size(), first.size());
+  for (std::size_t m = 0; m < first.size(); ++m) {
+    const double volume = first[m]["volume"];
+    // Cells of one voxel show a skin of one voxel thinner than it is, but there.
+    const double tolerance = first[m]["tag"] == 4 ? 0.5 : 0.05;
+    EXPECT_EQ(again["materials"][m]["name"], first[m]["name"]);
+    EXPECT_NEAR(again["materials"][m]["volume"].get<double>(), volume, tolerance * volume) << m;
+  }
+}
+
+TEST_F(Volumes, GridsOfOpenVdb) {
+  openvdb::initialize();
+  const auto organs = std::get<LabelVolume>(make_sample("organs"));
+  const auto grid = openvdb::Int32Grid::create(0);
+  std::size_t n = 0;
+  for (int k = 0; k < organs.size[2]; ++k)
+    for (int j = 0; j < organs.size[1]; ++j)
+      for (int i = 0; i < organs.size[0]; ++i) grid->tree().setValue({i, j, k}, organs.labels[n++]);
+  openvdb::Mat4d matrix = openvdb::Mat4d::identity();
+  for (int a = 0; a < 3; ++a) matrix(a, a) = organs.directions(a, a), matrix(3, a) = organs.origin[a];
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
+  grid->setName("segments");
+  const auto write = [&](const openvdb::GridPtrVec& grids) {
+    openvdb::io::File(path("organs.vdb")).write(grids);
+  };
+  write({grid});
+  ASSERT_EQ(run(mesh(path("organs.nrrd"))).status, 0);
+  const std::string as_nrrd = contents(path("out.vtu"));
+  const Answer a = run(mesh(path("organs.vdb")) + " --labels 1-9");
+  ASSERT_EQ(a.status, 0) << a.err;
+  EXPECT_TRUE(contents(path("out.vtu")) == as_nrrd);
+  EXPECT_EQ(nlohmann::json::parse(contents(path("s.json")))["input"]["volume"]["space"], "unknown");
+  expect_refused(path("organs.vdb") + " --layer skin=1", 2, {"--layer", "segmented volume"});
+  expect_refused(path("organs.vdb") + " " + path("organs.nrrd"), 2, {"only input"});
+  expect_refused("--material m=" + path("organs.vdb"), 3, {"no level set", "segments (no class, int32)"});
+  const auto other = grid->deepCopy();
+  other->setName("others");
+  write({grid, other});
+  expect_refused(path("organs.vdb"), 3, {"2 grids", "'segments', 'others'"});
+  write({openvdb::Vec3SGrid::create()});
+  expect_refused(path("organs.vdb"), 3, {"no level set", "no grid of whole numbers", "vec3s"});
+}
+
+TEST_F(Volumes, BodiesThatDoNotFit) {
+  const std::string whole = contents(path("organs.nrrd"));
+  for (const double share : {0.1, 0.5, 0.99}) {
+    put(path("cut.nrrd"),
+        whole.substr(0, static_cast<std::size_t>(share * static_cast<double>(whole.size()))));
+    expect_refused(path("cut.nrrd"), 3, {"cut.nrrd"});
+  }
+  write_small("short.nrrd", "uchar", cube, "1234567");
+  expect_refused(path("short.nrrd"), 3, {"short.nrrd", "2 x 2 x 2", "8 bytes", "7", "cut short"});
+  write_small("large.nrrd", "uchar", "dimension: 3\nsizes: 2000 2000 2000\n", "12345678");
+  expect_refused(path("large.nrrd"), 3, {"large.nrrd", "2000", "voxels"});
+  write_small("none.nrrd", "uchar", "dimension: 3\nsizes: 0 2 2\n", "");
+  expect_refused(path("none.nrrd"), 3, {"none.nrrd", "0"});
+}
+
+TEST_F(Volumes, WhatIsNoLabel) {
+  write_small("colours.nrrd", "uchar", "dimension: 4\nsizes: 3 2 2 2\nkinds: RGB-color space space space\n",
+              std::string(24, '\1'));
+  expect_refused(path("colours.nrrd"), 3, {"colours.nrrd"});
+  write_small("complex.nrrd", "complex", cube, std::string(64, '\1'));
+  expect_refused(path("complex.nrrd"), 3, {"complex.nrrd", "complex"});
+  const float values[8] = {0, 1, 1, 1, 1, 2.5F, 1, 1};
+  write_small("scan.nrrd", "float", cube, std::string(reinterpret_cast<const char*>(values), sizeof values));
+  expect_refused(path("scan.nrrd"), 3, {"scan.nrrd", "voxel (1, 0, 1)", "2.5", "not a whole number"});
+}
+
+TEST_F(Volumes, HeadersWithoutSense) {
+  write_small("flat.nrrd", "uchar",
+              cube + "space: left-posterior-superior\nspace directions: (1,0,0) (0,1,0) (1,1,0)\n",
+              std::string(8, '\1'));
+  expect_refused(path("flat.nrrd"), 3, {"flat.nrrd", "one plane"});
+  put(path("apart.nhdr"), "NRRD0004\ntype: uchar\nencoding: raw\n" + cube + "data file: gone.raw\n\n");
+  expect_refused(path("apart.nhdr"), 3, {"gone.raw"});
+  put(path("apart.mhd"),
+      "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = "
+      "gone.raw\n");
+  expect_refused(path("apart.mhd"), 3, {"gone.raw"});
+  expect_refused(path("missing.nii.gz"), 3, {"missing.nii.gz"});
+}
+
+TEST_F(Volumes, LabelsThatAreNotThere) {
+  expect_refused(path("organs.nrrd") + " --labels 1,77", 3, {"organs.nrrd", "77", "1", "5"});
+  write_small("empty.nrrd", "uchar", cube, std::string(8, '\0'));
+  expect_refused(path("empty.nrrd"), 4, {"empty.nrrd"});
+  write_small("seven.nrrd", "uchar", cube, std::string(8, '\7'));
+  expect_refused(path("seven.nrrd") + " --outside-label 7", 4, {"seven.nrrd"});
+}
+
+TEST_F(Volumes, CallsThatDoNotFit) {
+  write_sample("sphere", path("ball.off"));
+  const std::string organs = path("organs.nrrd"), ball = path("ball.off");
+  for (const std::string& both : {organs + " " + ball, ball + " " + organs, organs + " " + organs,
+                                  organs + " --material b=" + ball, ball + " --material b=" + organs})
+    expect_refused(both, 2, {"only input"});
+  expect_refused(organs + " --layer skin=1", 2, {"--layer"});
+  expect_refused(organs + " --nested cavity", 2, {"--nested"});
+  expect_refused(ball + " --labels 1", 2, {"--labels", "segmented volumes"});
+  expect_refused(ball + " --min-voxels 4", 2, {"--min-voxels", "segmented volumes"});
+  expect_refused(organs + " --labels 5-1", 2, {"5-1"});
+  expect_refused(organs + " --label-names " + path("none.txt"), 3, {"none.txt"});
+  expect_refused("--material b=" + organs, 2, {"only input"});
+}
+
+}  // namespace
+}  // namespace tetwright
