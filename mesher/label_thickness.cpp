@@ -168,7 +168,7 @@ ThinLabels find_thin_labels(const PreparedLabels& labels, const GridFrame& frame
     --coarsest;
   std::vector<std::vector<MortonKey>> by_depth;
   std::vector<std::size_t> voxels;
-  bool islands_done = false;
+  int island_levels = 0;
   for (int depth = 0; depth <= most_refinement; ++depth) {
     const double cell = std::ldexp(frame.cell_size, -depth);
     Sides sides;
@@ -179,8 +179,8 @@ ThinLabels find_thin_labels(const PreparedLabels& labels, const GridFrame& frame
       voxels = Opening(labels, sides, progress).thin_voxels();
     } else {
       // Two cells to every voxel, too few for what is hardly larger than one.
-      if (islands_done) break;
-      islands_done = true;
+      if (island_levels == 2) break;
+      ++island_levels;
       if (depth == 0) voxels = Opening(labels, {2, 2, 2}, progress).thin_voxels();
       std::erase_if(voxels, [&](std::size_t v) {
         return labels.regions[v] == outside_region || !in_small_island(labels, v, small_island);
