@@ -6,21 +6,12 @@
 
 #include "common/parallel_sort.h"
 #include "mesher/field_builder.h"
+#include "mesher/label_blocks.h"
 #include "mesher/label_depth.h"
-#include "mesher/label_smoothing.h"
 
 namespace tetwright {
 
 namespace {
-
-/// Nodes around the volume: as far as smoothing carries a label beyond it.
-constexpr int padding = 4;
-constexpr int block_cells = 8, block_nodes = block_cells + 1;
-constexpr int block_volume = block_nodes * block_nodes * block_nodes;
-constexpr int blocks_per_tile = LabelSmoother::cells / block_cells;
-/// Distances are kept as 16-bit whole numbers of this many to a voxel: finer than any decision.
-constexpr float units_per_voxel = 15000;
-constexpr auto band_units = static_cast<std::int16_t>(LabelSmoother::band * units_per_voxel);
 
 /// Cells that only touch a cell of nodes by as much, in cells, hold nothing of it.
 constexpr double touching = 1e-6;
@@ -48,6 +39,12 @@ struct LocalAxes {
   Eigen::Matrix3d axes, to_local;
 };
 
+constexpr int padding = LabelBlocks::padding;
+constexpr int block_cells = LabelBlocks::cells, block_nodes = LabelBlocks::nodes;
+constexpr int block_volume = LabelBlocks::volume;
+constexpr float units_per_voxel = LabelBlocks::units_per_voxel;
+constexpr std::int16_t band_units = LabelBlocks::band_units;
+
 }  // namespace
 
 double voxel_size(const PreparedLabels& labels) { return labels.directions.colwise().norm().minCoeff(); }
@@ -70,205 +67,58 @@ GridFrame label_frame(const PreparedLabels& labels, double cell_size, bool unifo
   return frame;
 }
 
-/// Distances at the nodes, shared by the fields of all refinements.
-struct LabelField::Blocks {
-  /// The labels that come near a block are channels first, first + 1, ...; none where one label is alone.
-  struct Block {
-    std::uint32_t first = 0;
-    std::uint16_t count = 0;
-    RegionIndex alone = outside_region;
-  };
-
-  std::array<int, 3> counts{};  ///< blocks along each axis
-  std::vector<Block> blocks;
-  std::vector<RegionIndex> channels;
-  std::vector<std::int16_t> values;  ///< block_volume for each channel, x fastest
-  double voxel = 1;                  ///< smallest spacing, input units
-  double least_slope = 1;            ///< smallest spacing by largest
-  Eigen::Matrix3d to_index;          ///< from local positions
-  Vec3 origin;                       ///< first voxel's centre, input units
+/// What the fields of all refinements share.
+struct LabelField::Shared {
+  LabelBlocks blocks;
+  double voxel;              ///< smallest spacing, input units
+  double least_slope;        ///< smallest spacing by largest
+  Eigen::Matrix3d to_index;  ///< from local positions
+  Vec3 origin;               ///< first voxel's centre, input units
   /// For cells larger than a voxel, which reach beyond where distances are cut off; else empty.
   LabelDepths depths;
-
-  const Block& block(int x, int y, int z) const {
-    return blocks[(static_cast<std::size_t>(z) * counts[1] + y) * counts[0] + x];
-  }
-  const std::int16_t* channel(std::uint32_t number) const {
-    return values.data() + static_cast<std::size_t>(number) * block_volume;
-  }
 };
-
-namespace {
-
-/// What one tile adds.
-struct TileBlocks {
-  struct Made {
-    std::array<int, 3> at;
-    std::uint32_t first;
-    std::uint16_t count;
-    RegionIndex alone;
-  };
-  std::vector<Made> blocks;
-  std::vector<RegionIndex> channels;
-  std::vector<std::int16_t> values;
-};
-
-/// Copies the voxels around a tile; false if all are of one region, which is the first.
-bool copy_voxels(const PreparedLabels& labels, const std::array<int, 3>& tile, std::span<RegionIndex> out) {
-  constexpr int side = LabelSmoother::side;
-  const std::array<int, 3>& size = labels.size;
-  std::array<int, 3> low;  // first index copied
-  for (int a = 0; a < 3; ++a) low[a] = tile[a] * LabelSmoother::cells - LabelSmoother::reach - padding;
-  const int from = std::clamp(-low[0], 0, side), to = std::clamp(size[0] - low[0], from, side);
-  bool alike = true;
-  RegionIndex first = outside_region;
-  RegionIndex* row = out.data();
-  for (int z = 0; z < side; ++z)
-    for (int y = 0; y < side; ++y, row += side) {
-      const int iy = low[1] + y, iz = low[2] + z;
-      if (iy < 0 || iz < 0 || iy >= size[1] || iz >= size[2]) {
-        std::fill(row, row + side, outside_region);
-      } else {
-        const RegionIndex* in =
-            labels.regions.data() + (static_cast<std::size_t>(iz) * size[1] + iy) * size[0] + (low[0] + from);
-        std::fill(row, row + from, outside_region);
-        std::copy(in, in + (to - from), row + from);
-        std::fill(row + to, row + side, outside_region);
-      }
-      if (y == 0 && z == 0) first = row[0];
-      if (alike)
-        for (int x = 0; x < side; ++x) alike &= row[x] == first;
-    }
-  return !alike;
-}
-
-void add_block(const LabelSmoother& smoother, const std::array<int, 3>& in_tile, const std::array<int, 3>& at,
-               TileBlocks& out) {
-  TileBlocks::Made made{at, static_cast<std::uint32_t>(out.channels.size()), 0, outside_region};
-  std::array<std::int16_t, block_volume> values;
-  for (std::size_t l = 0; l < smoother.labels().size(); ++l) {
-    std::int16_t smallest = band_units, largest = -band_units;
-    int i = 0;
-    for (int z = 0; z < block_nodes; ++z)
-      for (int y = 0; y < block_nodes; ++y)
-        for (int x = 0; x < block_nodes; ++x, ++i) {
-          const float d = smoother.distance(l, in_tile[0] * block_cells + x, in_tile[1] * block_cells + y,
-                                            in_tile[2] * block_cells + z);
-          values[i] = static_cast<std::int16_t>(std::lrint(units_per_voxel * d));
-          smallest = std::min(smallest, values[i]);
-          largest = std::max(largest, values[i]);
-        }
-    if (smallest >= band_units) continue;
-    if (largest <= -band_units) made.alone = smoother.labels()[l];
-    out.channels.push_back(smoother.labels()[l]);
-    out.values.insert(out.values.end(), values.begin(), values.end());
-    ++made.count;
-  }
-  if (made.count == 1) {
-    made.alone = out.channels.back();
-    made.count = 0;
-    out.channels.pop_back();
-    out.values.resize(out.values.size() - block_volume);
-  }
-  out.blocks.push_back(made);
-}
-
-}  // namespace
 
 std::shared_ptr<const LabelField> LabelField::make(const PreparedLabels& labels, const GridFrame& frame,
                                                    bool keep_outside, Progress* progress) {
-  auto made = std::make_shared<Blocks>();
-  std::array<int, 3> tiles;
-  for (int a = 0; a < 3; ++a) {
-    made->counts[a] = (labels.size[a] + 2 * padding - 1 + block_cells - 1) / block_cells;
-    tiles[a] = (made->counts[a] + blocks_per_tile - 1) / blocks_per_tile;
-  }
-  const auto product = [](const std::array<int, 3>& n) {
-    return static_cast<std::size_t>(n[0]) * n[1] * n[2];
-  };
-  made->blocks.resize(product(made->counts));
+  auto made = std::make_shared<Shared>();
+  made->blocks = make_label_blocks(labels, progress);
   made->voxel = voxel_size(labels);
   made->least_slope = made->voxel / labels.directions.colwise().norm().maxCoeff();
   made->to_index = LocalAxes(labels.directions).to_local.inverse();
   made->origin = labels.origin;
   if (frame.cell_size > (1 + touching) * made->voxel) made->depths = label_depths(labels);
-
-  constexpr std::size_t grain = 32;  // tiles to a task, a millisecond each where labels meet
-  const std::size_t tile_count = product(tiles);
-  std::vector<TileBlocks> parts((tile_count + grain - 1) / grain);
-  parallel_for(0, parts.size(), 1, [&](std::size_t part_begin, std::size_t part_end) {
-    if (progress) progress->throw_if_cancelled();
-    LabelSmoother smoother;
-    for (std::size_t part = part_begin; part < part_end; ++part)
-      for (std::size_t t = part * grain; t < std::min(tile_count, (part + 1) * grain); ++t) {
-        const auto number = static_cast<int>(t);
-        const std::array<int, 3> tile{number % tiles[0], number / tiles[0] % tiles[1],
-                                      number / (tiles[0] * tiles[1])};
-        const bool mixed = copy_voxels(labels, tile, smoother.voxels());
-        if (mixed) smoother.smooth();
-        for (int k = 0; k < blocks_per_tile * blocks_per_tile * blocks_per_tile; ++k) {
-          const std::array<int, 3> in_tile{k % blocks_per_tile, k / blocks_per_tile % blocks_per_tile,
-                                           k / (blocks_per_tile * blocks_per_tile)};
-          std::array<int, 3> at;
-          bool inside = true;
-          for (int a = 0; a < 3; ++a) {
-            at[a] = tile[a] * blocks_per_tile + in_tile[a];
-            inside &= at[a] < made->counts[a];
-          }
-          if (!inside) continue;
-          if (mixed)
-            add_block(smoother, in_tile, at, parts[part]);
-          else
-            parts[part].blocks.push_back({at, 0, 0, smoother.voxels()[0]});
-        }
-      }
-  });
-  std::size_t channel_count = 0;
-  for (const TileBlocks& p : parts) channel_count += p.channels.size();
-  made->channels.reserve(channel_count);
-  made->values.reserve(channel_count * block_volume);
-  for (TileBlocks& p : parts) {
-    const auto first = static_cast<std::uint32_t>(made->channels.size());
-    for (const TileBlocks::Made& b : p.blocks)
-      made->blocks[(static_cast<std::size_t>(b.at[2]) * made->counts[1] + b.at[1]) * made->counts[0] +
-                   b.at[0]] = {first + b.first, b.count, b.alone};
-    made->channels.insert(made->channels.end(), p.channels.begin(), p.channels.end());
-    made->values.insert(made->values.end(), p.values.begin(), p.values.end());
-    p = {};
-  }
-
   std::vector<FieldRegion> regions{{keep_outside ? outside_name : "", outside_tag}};
   for (const LabelMaterial& m : labels.materials) regions.push_back({m.name, m.tag});
   return std::shared_ptr<const LabelField>(new LabelField(std::move(made), frame, std::move(regions), 0));
 }
 
-double LabelField::band_in_cells(const Blocks& blocks, const GridFrame& voxels) {
+double LabelField::band_in_cells(const Shared& shared, const GridFrame& voxels) {
   // As for level sets where it can be had, which is what lattice edges need.
-  return blocks.depths.steps.empty() ? LabelSmoother::band * blocks.voxel / voxels.cell_size : level_set_band;
+  return shared.depths.steps.empty() ? LabelSmoother::band * shared.voxel / voxels.cell_size : level_set_band;
 }
 
-LabelField::LabelField(std::shared_ptr<const Blocks> blocks, const GridFrame& voxels,
+LabelField::LabelField(std::shared_ptr<const Shared> shared, const GridFrame& voxels,
                        std::vector<FieldRegion> regions, int refinement)
-    : MaterialField(voxels, std::move(regions), LabelSmoother::band * blocks->voxel / voxels.cell_size,
-                    refinement),
-      blocks_(std::move(blocks)),
-      to_nodes_(blocks_->to_index * frame().cell_size),
-      first_node_(blocks_->to_index * (frame().axes.transpose() * (frame().origin - blocks_->origin)) +
+    : MaterialField(voxels, std::move(regions), band_in_cells(*shared, voxels), refinement),
+      shared_(std::move(shared)),
+      to_nodes_(shared_->to_index * frame().cell_size),
+      first_node_(shared_->to_index * (frame().axes.transpose() * (frame().origin - shared_->origin)) +
                   Vec3::Constant(padding)) {}
 
 LabelField::~LabelField() = default;
 
 std::shared_ptr<const MaterialField> LabelField::refined(int refinement) const {
-  return std::shared_ptr<const LabelField>(new LabelField(blocks_, voxels(), regions(), refinement));
+  return std::shared_ptr<const LabelField>(new LabelField(shared_, voxels(), regions(), refinement));
 }
 
 class LabelField::Sampler final : public FieldSampler {
  public:
   explicit Sampler(const LabelField& f)
-      : FieldSampler(std::ldexp(1, f.refinement()), f.blocks_->least_slope),
+      : FieldSampler(std::ldexp(1, f.refinement()), f.shared_->least_slope),
         field_(f),
-        blocks_(*f.blocks_),
-        per_unit_(f.blocks_->voxel / f.frame().cell_size / units_per_voxel),
+        shared_(*f.shared_),
+        blocks_(f.shared_->blocks),
+        per_unit_(f.shared_->voxel / f.frame().cell_size / units_per_voxel),
         cells_per_voxel_(std::ldexp(1, f.refinement())) {}
 
   NearestRegion nearest(const Vec3& point) override {
@@ -304,7 +154,7 @@ class LabelField::Sampler final : public FieldSampler {
  private:
   /// A block, the cell in it, and where in the cell.
   struct Place {
-    const Blocks::Block* block;
+    const LabelBlocks::Block* block;
     int node;
     std::array<double, 3> share;
   };
@@ -378,7 +228,7 @@ class LabelField::Sampler final : public FieldSampler {
   };
   /// Nothing where distances are not cut off, or nothing more is known than that.
   std::optional<Far> beyond_band(const Place& p, const Vec3& point) const {
-    if (blocks_.depths.steps.empty()) return std::nullopt;
+    if (shared_.depths.steps.empty()) return std::nullopt;
     const NearestRegion first = nearest(p).first;
     const double cut_off = per_unit_ * band_units;
     // Rounding and interpolation leave a little less than the band.
@@ -386,14 +236,14 @@ class LabelField::Sampler final : public FieldSampler {
     const Vec3 index = field_.to_nodes_ * point + field_.first_node_ - Vec3::Constant(padding);
     Vec3 by_voxels;
     const double per_voxel = per_unit_ * units_per_voxel;
-    const double depth = per_voxel * blocks_.depths.at(index, by_voxels);
+    const double depth = per_voxel * shared_.depths.at(index, by_voxels);
     if (depth <= cut_off) return std::nullopt;
     return Far{first.region, depth, per_voxel * (field_.to_nodes_.transpose() * by_voxels)};
   }
 
   /// The region that has the place and the next one.
   std::pair<NearestRegion, RegionIndex> nearest(const Place& p) const {
-    const Blocks::Block& b = *p.block;
+    const LabelBlocks::Block& b = *p.block;
     const auto band = static_cast<float>(field_.band());
     if (b.count == 0) return {{b.alone, band}, b.alone};
     double smallest = HUGE_VAL, next = HUGE_VAL;
@@ -430,15 +280,16 @@ class LabelField::Sampler final : public FieldSampler {
   }
 
   const LabelField& field_;
-  const Blocks& blocks_;
+  const Shared& shared_;
+  const LabelBlocks& blocks_;
   const double per_unit_;         ///< lattice units
   const double cells_per_voxel_;  ///< of the frame's, not the volume's
-  const Blocks::Block outside_;
+  const LabelBlocks::Block outside_;
 };
 
 bool LabelField::is_certain(const Vec3& point) const {
   constexpr double cells_per_voxel = 2;
-  if (cells_per_voxel * voxels().cell_size > (1 + touching) * blocks_->voxel) return false;
+  if (cells_per_voxel * voxels().cell_size > (1 + touching) * shared_->voxel) return false;
   const Vec3 at = to_nodes_ * point + first_node_;
   // Of a voxel: rounding alone keeps a point off the centre it is meant to be at.
   return (at - at.array().round().matrix()).cwiseAbs().maxCoeff() < touching;
@@ -447,11 +298,11 @@ bool LabelField::is_certain(const Vec3& point) const {
 std::unique_ptr<FieldSampler> LabelField::sampler() const { return std::make_unique<Sampler>(*this); }
 
 std::vector<MortonKey> LabelField::interface_voxels() const {
-  const Blocks& all = *blocks_;
-  const Eigen::Matrix3d to_cells = (all.to_index * voxels().cell_size).inverse();
-  const Vec3 first =
-      all.to_index * (voxels().axes.transpose() * (voxels().origin - all.origin)) + Vec3::Constant(padding);
-  const bool finer = voxels().cell_size < (1 - touching) * all.voxel;
+  const LabelBlocks& all = shared_->blocks;
+  const Eigen::Matrix3d to_cells = (shared_->to_index * voxels().cell_size).inverse();
+  const Vec3 first = shared_->to_index * (voxels().axes.transpose() * (voxels().origin - shared_->origin)) +
+                     Vec3::Constant(padding);
+  const bool finer = voxels().cell_size < (1 - touching) * shared_->voxel;
   const auto rows = static_cast<std::size_t>(all.counts[1]) * all.counts[2];
   std::vector<MortonKey> keys = parallel_collect<MortonKey>(
       0, rows, 1, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
@@ -459,7 +310,7 @@ std::vector<MortonKey> LabelField::interface_voxels() const {
         for (std::size_t row = begin; row < end; ++row)
           for (int bx = 0; bx < all.counts[0]; ++bx) {
             const int by = static_cast<int>(row) % all.counts[1], bz = static_cast<int>(row) / all.counts[1];
-            const Blocks::Block& b = all.block(bx, by, bz);
+            const LabelBlocks::Block& b = all.block(bx, by, bz);
             if (b.count == 0) continue;
             std::array<std::int16_t, block_volume> smallest;
             smallest.fill(INT16_MAX);
@@ -519,15 +370,15 @@ std::vector<MortonKey> LabelField::interface_voxels() const {
 }
 
 std::vector<LeafOrigin> LabelField::band_leaves(RegionIndex region) const {
-  const Blocks& all = *blocks_;
-  const Eigen::Matrix3d to_cells = (all.to_index * voxels().cell_size).inverse();
-  const Vec3 first =
-      all.to_index * (voxels().axes.transpose() * (voxels().origin - all.origin)) + Vec3::Constant(padding);
+  const LabelBlocks& all = shared_->blocks;
+  const Eigen::Matrix3d to_cells = (shared_->to_index * voxels().cell_size).inverse();
+  const Vec3 first = shared_->to_index * (voxels().axes.transpose() * (voxels().origin - shared_->origin)) +
+                     Vec3::Constant(padding);
   std::vector<LeafOrigin> leaves;
   for (int bz = 0; bz < all.counts[2]; ++bz)
     for (int by = 0; by < all.counts[1]; ++by)
       for (int bx = 0; bx < all.counts[0]; ++bx) {
-        const Blocks::Block& b = all.block(bx, by, bz);
+        const LabelBlocks::Block& b = all.block(bx, by, bz);
         const auto channels = all.channels.begin() + b.first;
         if (std::find(channels, channels + b.count, region) == channels + b.count) continue;
         Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;

@@ -39,13 +39,13 @@ class LabelField final : public MaterialField {
 
  private:
   class Sampler;
-  struct Blocks;
+  struct Shared;
 
-  static double band_in_cells(const Blocks& blocks, const GridFrame& voxels);
-  LabelField(std::shared_ptr<const Blocks> blocks, const GridFrame& voxels, std::vector<FieldRegion> regions,
+  static double band_in_cells(const Shared& shared, const GridFrame& voxels);
+  LabelField(std::shared_ptr<const Shared> shared, const GridFrame& voxels, std::vector<FieldRegion> regions,
              int refinement);
 
-  std::shared_ptr<const Blocks> blocks_;
+  std::shared_ptr<const Shared> shared_;
   Eigen::Matrix3d to_nodes_;  ///< lattice units to nodes
   Vec3 first_node_;           ///< where the lattice's origin is, in nodes
 };

@@ -19,11 +19,15 @@ constexpr float sure_lead = 0.4F;
 constexpr float least_lead = 0.1F;
 /// The same as a distance, voxels.
 constexpr float least_distance = 0.125F;
+/// The same for the middle of an edge where two voxels of a label are connected.
+constexpr float least_connection = 0.0625F;
 /// Where two labels share a face of voxels, no third one comes nearer to its middle, voxels: else contacts
 /// would shrink to nearly nothing, and no tet fits around them.
 constexpr float least_contact = 0.25F;
 /// Standard deviation of the smoothing, and the slope of probit(u) in t = 2u - 1 at 0.
 constexpr float deviation = 1.0F, probit_slope = 1.2533141F;
+/// What a share changes by from one side of a flat interface to the other, a voxel away.
+constexpr float share_per_voxel = 0.8F;
 /// |2u - 1| is cut off here; the distance is LabelSmoother::band then.
 constexpr float most_excess = 0.95F;
 
@@ -31,6 +35,13 @@ constexpr float most_excess = 0.95F;
 float distance_from_share(float u) {
   const float t = std::clamp(2 * u - 1, -most_excess, most_excess);
   return -deviation * probit_slope * t / std::sqrt(std::sqrt(1 - t * t));
+}
+
+/// Where a node's label still lacks most of its voxel it is a rod, or a single voxel, narrower than the
+/// kernel can give back: its centre is put nearly as far inside as it would be of the voxel itself.
+float distance_from_lack(float lack) {
+  constexpr float from = 0.3F, to = 0.8F, deepest = 0.8F;
+  return deepest * std::clamp((lack - from) / (to - from), 0.0F, 1.0F);
 }
 
 }  // namespace
@@ -76,6 +87,7 @@ void LabelSmoother::number_labels() {
 void LabelSmoother::find_mixed_nodes() {
   mixed_.clear();
   near_.clear();
+  mixed_at_.assign(volume, -1);
   std::vector<std::uint16_t> found;
   for (int z = 1; z + 1 < side; ++z)
     for (int y = 1; y + 1 < side; ++y)
@@ -91,10 +103,11 @@ void LabelSmoother::find_mixed_nodes() {
                 found.push_back(row[k]);
           }
         if (found.empty()) continue;
+        mixed_at_[here] = static_cast<std::int32_t>(mixed_.size());
         found.push_back(own);
         std::sort(found.begin(), found.end());
-        mixed_.push_back(
-            {here, own, static_cast<std::uint16_t>(found.size()), static_cast<std::uint32_t>(near_.size())});
+        mixed_.push_back({here, own, static_cast<std::uint16_t>(found.size()),
+                          static_cast<std::uint32_t>(near_.size()), 0});
         near_.insert(near_.end(), found.begin(), found.end());
       }
 }
@@ -152,8 +165,8 @@ void LabelSmoother::add_missing_shares(int margin) {
   // along each axis.
   std::vector<std::array<float, 8>> samples;
   std::vector<float> got;
-  for (const MixedNode& n : mixed_) {
-    const std::array<int, 3> at{n.place % side, n.place / side % side, n.place / (side * side)};
+  for (MixedNode& n : mixed_) {
+    const std::array<int, 3> at = position(n.place);
     if (*std::min_element(at.begin(), at.end()) < margin ||
         *std::max_element(at.begin(), at.end()) >= side - margin)
       continue;
@@ -199,6 +212,7 @@ void LabelSmoother::add_missing_shares(int margin) {
     }
     for (std::size_t l = 0; l < near.size(); ++l) {
       const float lack = (near[l] == n.own ? 1.0F : 0.0F) - got[l];
+      if (near[l] == n.own) n.lack = lack;
       if (lack == 0) continue;
       missing_[near[l]][n.place] = lack;
       Box& b = missing_boxes_[near[l]];
@@ -240,7 +254,7 @@ void LabelSmoother::distances_from_shares(int margin) {
       others = std::min(others, other);
     }
     float& own = fields_[n.own][n.place];
-    own = std::min(own, others - 2 * least_distance);
+    own = std::min(own, others - 2 * std::max(least_distance, distance_from_lack(n.lack)));
   }
 }
 
@@ -289,7 +303,7 @@ void LabelSmoother::hold_edge(const MixedNode& n, int normal, std::vector<Lift>&
   for (const std::uint16_t other : connect_p ? std::array{q, q2} : std::array{p, p2}) {
     float lead = 0;
     for (int v : quad) lead += fields_[connected][v] - fields_[other][v];
-    lack = std::max(lack, lead + 4 * 2 * least_distance);
+    lack = std::max(lack, lead + 4 * 2 * least_connection);
   }
   if (lack <= 0) return;
   for (int v : quad)
@@ -317,7 +331,72 @@ void LabelSmoother::hold_face(const MixedNode& n, int normal, std::vector<Lift>&
   for (int v : {p, q}) lifts.push_back({v, 2 * lack});
 }
 
-void LabelSmoother::smooth() {
+void LabelSmoother::grow(std::span<const float> growth) {
+  for (const MixedNode& n : mixed_)
+    for (std::uint16_t l : labels_near(n)) {
+      float& u = fields_[l][n.place];
+      // Where the label's interface is; far from it nothing changes.
+      const float near = std::clamp(4 * u * (1 - u), 0.0F, 1.0F);
+      u += share_per_voxel * growth[labels_[l]] * near;
+    }
+}
+
+std::vector<LabelSmoother::Share> LabelSmoother::shares() const {
+  std::vector<Share> sums(labels_.size());
+  std::vector<std::uint16_t> candidates;
+  std::vector<std::array<float, 8>> corners;
+  for (int z = reach; z < reach + cells; ++z)
+    for (int y = reach; y < reach + cells; ++y)
+      for (int x = reach; x < reach + cells; ++x) {
+        std::array<int, 8> places;
+        bool alike = true;
+        for (int k = 0; k < 8; ++k) {
+          places[k] = place(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2));
+          alike &= own_[places[k]] == own_[places[0]];
+        }
+        if (alike) {
+          sums[own_[places[0]]].volume += 1;
+          continue;
+        }
+        for (int k : {1, 2, 4})
+          if (own_[places[k]] != own_[places[0]]) {
+            sums[own_[places[0]]].faces += 1;
+            sums[own_[places[k]]].faces += 1;
+          }
+        candidates.clear();
+        for (int p : places)
+          if (mixed_at_[p] >= 0)
+            for (std::uint16_t l : labels_near(mixed_[mixed_at_[p]]))
+              if (std::find(candidates.begin(), candidates.end(), l) == candidates.end())
+                candidates.push_back(l);
+        corners.resize(candidates.size());
+        for (std::size_t l = 0; l < candidates.size(); ++l)
+          for (int k = 0; k < 8; ++k) corners[l][k] = fields_[candidates[l]][places[k]];
+        // Eight samples, each for an eighth of the cell, shared where an interface passes it.
+        constexpr float sample_side = 0.5F;
+        for (int s = 0; s < 8; ++s) {
+          const float sx = s & 1 ? 0.75F : 0.25F, sy = s & 2 ? 0.75F : 0.25F, sz = s & 4 ? 0.75F : 0.25F;
+          float first = HUGE_VALF, second = HUGE_VALF;
+          std::size_t winner = 0, next = 0;
+          for (std::size_t l = 0; l < candidates.size(); ++l) {
+            const auto& c = corners[l];
+            const auto mix = [](float a, float b, float share) { return a + share * (b - a); };
+            const float d = mix(mix(mix(c[0], c[1], sx), mix(c[2], c[3], sx), sy),
+                                mix(mix(c[4], c[5], sx), mix(c[6], c[7], sx), sy), sz);
+            if (d < first)
+              second = first, next = winner, first = d, winner = l;
+            else if (d < second)
+              second = d, next = l;
+          }
+          const double share = std::min(1.0, 0.5 + 0.5 * (second - first) / sample_side);
+          sums[candidates[winner]].volume += share / 8;
+          sums[candidates[next]].volume += (1 - share) / 8;
+        }
+      }
+  return sums;
+}
+
+void LabelSmoother::smooth(std::span<const float> growth) {
   number_labels();
   find_mixed_nodes();
   for (std::size_t l = 0; l < labels_.size(); ++l) {
@@ -333,6 +412,8 @@ void LabelSmoother::smooth() {
     margin += 1 + kernel_reach;
     hold_own_labels();
   }
+  grow(growth);
+  hold_own_labels();
   static_assert(kernel_reach + back_projections * (1 + kernel_reach) + 1 == reach);
   distances_from_shares(margin);
   hold_contacts();

@@ -24,12 +24,15 @@ namespace tetwright {
 ///     alike, is added: back projection, as in superresolution (Irani & Peleg 1991, section 3). Twice;
 ///  3. after each time a node's own label is made the largest by a margin (Whitaker 2000, "Reducing aliasing
 ///     artifacts in iso-surfaces of binary volumes", constrains smoothing likewise);
-///  4. shares u become distances -probit(u), which are right for a flat interface;
-///  5. where labels alternate in the four voxels around an edge, the two voxels of one label are connected;
+///     What still lacks most of its voxel then, rods and single voxels, is put inside by hand;
+///  4. what a label has too much or too little of all the same, taken over the whole volume, is evened out by
+///     growing it a little all around; who makes the tiles finds out how much, from shares();
+///  5. shares u become distances -probit(u), which are right for a flat interface;
+///  6. where labels alternate in the four voxels around an edge, the two voxels of one label are connected;
 ///  if
 ///     both pairs are of one label, those of the one that is rarer around there: a sheet one voxel thick that
 ///     runs at a slant hangs together by such edges, and labels that only touch in an edge are kept apart;
-///  6. labels that share a face of voxels have a contact of some size.
+///  7. labels that share a face of voxels have a contact of some size.
 ///
 /// Nodes of neighbouring tiles that are the same come out bit by bit the same.
 class LabelSmoother {
@@ -45,7 +48,9 @@ class LabelSmoother {
 
   /// The labels of side^3 voxels, x fastest; the tile is in their middle. Two or more labels.
   std::span<RegionIndex> voxels() { return raw_; }
-  void smooth();
+  /// `growth`, by region: by how much each is to be larger all around, voxels; at most most_growth in size.
+  void smooth(std::span<const float> growth);
+  static constexpr float most_growth = 0.35F;
 
   /// The labels there were, ascending.
   std::span<const RegionIndex> labels() const { return labels_; }
@@ -53,6 +58,12 @@ class LabelSmoother {
   float distance(std::size_t label, int x, int y, int z) const {
     return fields_[label][place(x + reach, y + reach, z + reach)];
   }
+  /// What each of labels() has of the tile's cells^3 cells between nodes, in voxels, and how many faces its
+  /// voxels have there with others.
+  struct Share {
+    double volume = 0, faces = 0;
+  };
+  std::vector<Share> shares() const;
 
  private:
   using Field = std::vector<float>;
@@ -65,13 +76,14 @@ class LabelSmoother {
     int place;
     std::uint16_t own, label_count;
     std::uint32_t first_label;
+    float lack;  ///< the share of its voxel that its own label had not got when it was last looked
   };
 
   static constexpr int place(int x, int y, int z) { return (z * side + y) * side + x; }
   static constexpr std::array<int, 3> position(int place) {
     return {place % side, place / side % side, place / (side * side)};
   }
-  /// True for nodes, along one axis, whose distances are final but for step 5 and 6.
+  /// True for nodes, along one axis, whose distances are final but for steps 6 and 7.
   static constexpr bool settled(int i) { return i >= reach - 1 && i <= side - reach; }
   static constexpr int volume = side * side * side;
   static constexpr std::array<int, 3> steps{1, side, side* side};
@@ -82,6 +94,7 @@ class LabelSmoother {
   void add_smoothed(const Field& from, const Box& box, int margin, float factor, Field& to);
   void add_missing_shares(int margin);
   void hold_own_labels();
+  void grow(std::span<const float> growth);
   void distances_from_shares(int margin);
   /// What a node's own distance is to be less by.
   struct Lift {
@@ -103,6 +116,7 @@ class LabelSmoother {
   std::vector<Field> fields_, missing_;
   std::vector<Box> missing_boxes_;
   std::vector<MixedNode> mixed_;
+  std::vector<std::int32_t> mixed_at_;  ///< by place: number in mixed_, or -1
   std::vector<std::uint16_t> near_;
   Field rows_, slices_;
 };

@@ -1,0 +1,202 @@
+#include "mesher/label_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/parallel.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr int blocks_per_tile = LabelSmoother::cells / LabelBlocks::cells;
+
+/// What one tile adds.
+struct TileBlocks {
+  struct Made {
+    std::array<int, 3> at;
+    std::uint32_t first;
+    std::uint16_t count;
+    RegionIndex alone;
+  };
+  std::vector<Made> blocks;
+  std::vector<RegionIndex> channels;
+  std::vector<std::int16_t> values;
+  std::vector<std::pair<RegionIndex, LabelSmoother::Share>> shares;
+};
+
+/// Copies the voxels around a tile; false if all are of one region, which is the first.
+bool copy_voxels(const PreparedLabels& labels, const std::array<int, 3>& tile, std::span<RegionIndex> out) {
+  constexpr int side = LabelSmoother::side;
+  const std::array<int, 3>& size = labels.size;
+  std::array<int, 3> low;  // first index copied
+  for (int a = 0; a < 3; ++a)
+    low[a] = tile[a] * LabelSmoother::cells - LabelSmoother::reach - LabelBlocks::padding;
+  const int from = std::clamp(-low[0], 0, side), to = std::clamp(size[0] - low[0], from, side);
+  bool alike = true;
+  RegionIndex first = outside_region;
+  RegionIndex* row = out.data();
+  for (int z = 0; z < side; ++z)
+    for (int y = 0; y < side; ++y, row += side) {
+      const int iy = low[1] + y, iz = low[2] + z;
+      if (iy < 0 || iz < 0 || iy >= size[1] || iz >= size[2]) {
+        std::fill(row, row + side, outside_region);
+      } else {
+        const RegionIndex* in =
+            labels.regions.data() + (static_cast<std::size_t>(iz) * size[1] + iy) * size[0] + (low[0] + from);
+        std::fill(row, row + from, outside_region);
+        std::copy(in, in + (to - from), row + from);
+        std::fill(row + to, row + side, outside_region);
+      }
+      if (y == 0 && z == 0) first = row[0];
+      if (alike)
+        for (int x = 0; x < side; ++x) alike &= row[x] == first;
+    }
+  return !alike;
+}
+
+void add_block(const LabelSmoother& smoother, const std::array<int, 3>& in_tile, const std::array<int, 3>& at,
+               TileBlocks& out) {
+  TileBlocks::Made made{at, static_cast<std::uint32_t>(out.channels.size()), 0, outside_region};
+  std::array<std::int16_t, LabelBlocks::volume> values;
+  for (std::size_t l = 0; l < smoother.labels().size(); ++l) {
+    std::int16_t smallest = LabelBlocks::band_units, largest = -LabelBlocks::band_units;
+    int i = 0;
+    for (int z = 0; z < LabelBlocks::nodes; ++z)
+      for (int y = 0; y < LabelBlocks::nodes; ++y)
+        for (int x = 0; x < LabelBlocks::nodes; ++x, ++i) {
+          const float d =
+              smoother.distance(l, in_tile[0] * LabelBlocks::cells + x, in_tile[1] * LabelBlocks::cells + y,
+                                in_tile[2] * LabelBlocks::cells + z);
+          values[i] = static_cast<std::int16_t>(std::lrint(LabelBlocks::units_per_voxel * d));
+          smallest = std::min(smallest, values[i]);
+          largest = std::max(largest, values[i]);
+        }
+    if (smallest >= LabelBlocks::band_units) continue;
+    if (largest <= -LabelBlocks::band_units) made.alone = smoother.labels()[l];
+    out.channels.push_back(smoother.labels()[l]);
+    out.values.insert(out.values.end(), values.begin(), values.end());
+    ++made.count;
+  }
+  if (made.count == 1) {
+    made.alone = out.channels.back();
+    made.count = 0;
+    out.channels.pop_back();
+    out.values.resize(out.values.size() - LabelBlocks::volume);
+  }
+  out.blocks.push_back(made);
+}
+
+/// Tile number `t` of `tiles`, and those of its blocks that there are, of `blocks`.
+void make_tile(const PreparedLabels& labels, int t, const std::array<int, 3>& tiles,
+               const std::array<int, 3>& blocks, std::span<const float> growth, LabelSmoother& smoother,
+               TileBlocks& out) {
+  const std::array<int, 3> tile{t % tiles[0], t / tiles[0] % tiles[1], t / (tiles[0] * tiles[1])};
+  out = {};
+  const bool mixed = copy_voxels(labels, tile, smoother.voxels());
+  if (mixed) {
+    smoother.smooth(growth);
+    const std::vector<LabelSmoother::Share> shares = smoother.shares();
+    for (std::size_t l = 0; l < shares.size(); ++l) out.shares.emplace_back(smoother.labels()[l], shares[l]);
+  } else if (const RegionIndex alone = smoother.voxels()[0]; alone != outside_region) {
+    constexpr double all = LabelSmoother::cells * LabelSmoother::cells * LabelSmoother::cells;
+    out.shares.push_back({alone, {all, 0}});
+  }
+  for (int k = 0; k < blocks_per_tile * blocks_per_tile * blocks_per_tile; ++k) {
+    const std::array<int, 3> in_tile{k % blocks_per_tile, k / blocks_per_tile % blocks_per_tile,
+                                     k / (blocks_per_tile * blocks_per_tile)};
+    std::array<int, 3> at;
+    bool inside = true;
+    for (int a = 0; a < 3; ++a) {
+      at[a] = tile[a] * blocks_per_tile + in_tile[a];
+      inside &= at[a] < blocks[a];
+    }
+    if (!inside) continue;
+    if (mixed)
+      add_block(smoother, in_tile, at, out);
+    else
+      out.blocks.push_back({at, 0, 0, smoother.voxels()[0]});
+  }
+}
+
+/// How often growth is adjusted: labels affect their neighbours.
+constexpr int most_rounds = 3;
+
+/// Grows or shrinks those labels whose volume is off; false if there is none. `changed` tells which.
+bool adjust_growth(const PreparedLabels& labels, const std::vector<TileBlocks>& parts,
+                   std::vector<float>& growth, std::vector<std::uint8_t>& changed) {
+  // Of the label's voxels; the mesh adds a few tenths of a percent.
+  constexpr double tolerance = 0.004;
+  std::vector<double> volumes(growth.size(), 0), areas(growth.size(), 0);
+  for (const TileBlocks& p : parts)
+    for (const auto& [region, share] : p.shares) {
+      volumes[region] += share.volume;
+      areas[region] += share.faces;
+    }
+  bool any = false;
+  for (std::size_t r = 1; r < growth.size(); ++r) {
+    const auto voxels = static_cast<double>(labels.materials[r - 1].voxels);
+    const double lacks = voxels - volumes[r];
+    changed[r] = 0;
+    if (std::abs(lacks) <= tolerance * voxels || areas[r] <= 0) continue;
+    const float before = growth[r];
+    growth[r] = std::clamp(static_cast<float>(before + lacks / areas[r]), -LabelSmoother::most_growth,
+                           LabelSmoother::most_growth);
+    changed[r] = growth[r] != before;
+    any |= changed[r];
+  }
+  changed[outside_region] = 0;
+  return any;
+}
+
+}  // namespace
+
+LabelBlocks make_label_blocks(const PreparedLabels& labels, const Progress* progress) {
+  LabelBlocks made;
+  std::array<int, 3> tiles;
+  for (int a = 0; a < 3; ++a) {
+    made.counts[a] =
+        (labels.size[a] + 2 * LabelBlocks::padding - 1 + LabelBlocks::cells - 1) / LabelBlocks::cells;
+    tiles[a] = (made.counts[a] + blocks_per_tile - 1) / blocks_per_tile;
+  }
+  const auto product = [](const std::array<int, 3>& n) {
+    return static_cast<std::size_t>(n[0]) * n[1] * n[2];
+  };
+  made.blocks.resize(product(made.counts));
+
+  const std::size_t tile_count = product(tiles);
+  std::vector<TileBlocks> parts(tile_count);
+  std::vector<float> growth(labels.materials.size() + 1, 0);
+  // Volumes are evened out in a few rounds; only tiles where something changes are made again.
+  std::vector<std::uint8_t> changed(growth.size(), 1);
+  for (int round = 0;; ++round) {
+    constexpr std::size_t grain = 16;  // tiles to a task, a millisecond each where labels meet
+    parallel_for(0, tile_count, grain, [&](std::size_t begin, std::size_t end) {
+      if (progress) progress->throw_if_cancelled();
+      LabelSmoother smoother;
+      for (std::size_t t = begin; t < end; ++t) {
+        const bool again = round == 0 || std::any_of(parts[t].shares.begin(), parts[t].shares.end(),
+                                                     [&](const auto& v) { return changed[v.first]; });
+        if (again) make_tile(labels, static_cast<int>(t), tiles, made.counts, growth, smoother, parts[t]);
+      }
+    });
+    if (round == most_rounds || !adjust_growth(labels, parts, growth, changed)) break;
+  }
+  std::size_t channel_count = 0;
+  for (const TileBlocks& p : parts) channel_count += p.channels.size();
+  made.channels.reserve(channel_count);
+  made.values.reserve(channel_count * LabelBlocks::volume);
+  for (TileBlocks& p : parts) {
+    const auto first = static_cast<std::uint32_t>(made.channels.size());
+    for (const TileBlocks::Made& b : p.blocks)
+      made.blocks[(static_cast<std::size_t>(b.at[2]) * made.counts[1] + b.at[1]) * made.counts[0] + b.at[0]] =
+          {first + b.first, b.count, b.alone};
+    made.channels.insert(made.channels.end(), p.channels.begin(), p.channels.end());
+    made.values.insert(made.values.end(), p.values.begin(), p.values.end());
+    p = {};
+  }
+
+  return made;
+}
+
+}  // namespace tetwright
