@@ -1,0 +1,164 @@
+#include "mesher/label_smoothing.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "common/random.h"
+
+namespace tetwright {
+namespace {
+
+constexpr int cells = LabelSmoother::cells, nodes = LabelSmoother::nodes, reach = LabelSmoother::reach;
+using Labels = std::function<RegionIndex(int x, int y, int z)>;
+using Node = std::array<int, 3>;
+
+/// Distances of each label at the nodes of the tile whose first node is `first`.
+std::map<Node, std::map<RegionIndex, float>> distances(LabelSmoother& smoother, const Node& first,
+                                                       const Labels& label) {
+  std::size_t i = 0;
+  for (int z = -reach; z < nodes + reach; ++z)
+    for (int y = -reach; y < nodes + reach; ++y)
+      for (int x = -reach; x < nodes + reach; ++x)
+        smoother.voxels()[i++] = label(first[0] + x, first[1] + y, first[2] + z);
+  smoother.smooth();
+  std::map<Node, std::map<RegionIndex, float>> all;
+  for (std::size_t l = 0; l < smoother.labels().size(); ++l)
+    for (int z = 0; z < nodes; ++z)
+      for (int y = 0; y < nodes; ++y)
+        for (int x = 0; x < nodes; ++x)
+          all[{first[0] + x, first[1] + y, first[2] + z}][smoother.labels()[l]] =
+              smoother.distance(l, x, y, z);
+  return all;
+}
+
+/// The same random label at a place whoever asks.
+Labels noise(std::uint64_t seed, std::uint32_t labels, int coarseness = 1) {
+  return [=](int x, int y, int z) {
+    const auto part = [&](int v) { return static_cast<std::uint64_t>((v + 1000) / coarseness); };
+    return static_cast<RegionIndex>(Random(seed, part(x) * 4096 + part(y), part(z)).below(labels));
+  };
+}
+
+struct Named {
+  const char* what;
+  Labels labels;
+};
+std::vector<Named> all_labels() {
+  return {{"noise of two", noise(1, 2)},
+          {"noise of five", noise(2, 5)},
+          {"noise of many", noise(3, 30)},
+          {"coarse noise", noise(4, 6, 4)},
+          {"sheet", [](int x, int y, int z) { return RegionIndex(z == (x + y) / 3 + 4 ? 2 : 7); }},
+          {"edge-connected sheet", [](int x, int, int z) { return RegionIndex(z == x  ? 2
+                                                                              : z > x ? 1
+                                                                                      : 3); }},
+          {"checkerboard", [](int x, int y, int z) { return RegionIndex((x + y + z + 300) % 2); }},
+          {"one voxel", [](int x, int y, int z) { return RegionIndex(x == 8 && y == 8 && z == 8); }},
+          {"ball", [](int x, int y, int z) {
+             return RegionIndex((x - 14) * (x - 14) + (y - 9) * (y - 9) + (z - 8) * (z - 8) < 60 ? 65535 : 3);
+           }}};
+}
+
+TEST(LabelSmoothing, NodesOfNeighbouringTilesAreTheSameBits) {
+  // One smoother after the other and one smoother for all: nothing of the last tile may stay.
+  LabelSmoother used;
+  for (const Named& n : all_labels()) {
+    SCOPED_TRACE(n.what);
+    const auto here = distances(used, {0, 0, 0}, n.labels);
+    for (const Node& step : {Node{cells, 0, 0}, Node{0, -cells, cells}}) {
+      LabelSmoother fresh;
+      const auto there = distances(fresh, step, n.labels);
+      EXPECT_EQ(there, distances(used, step, n.labels));
+      std::size_t shared = 0;
+      for (const auto& [node, of_labels] : here) {
+        const auto other = there.find(node);
+        if (other == there.end()) continue;
+        ++shared;
+        for (const auto& [label, d] : of_labels) {
+          const auto its = other->second.find(label);
+          // A label that one tile does not see at all is far away in the other.
+          ASSERT_EQ(d, its == other->second.end() ? LabelSmoother::band : its->second)
+              << "label " << label << " at " << node[0] << " " << node[1] << " " << node[2];
+        }
+      }
+      EXPECT_GT(shared, 0u);
+    }
+  }
+}
+
+TEST(LabelSmoothing, EachNodeIsItsOwnLabels) {
+  LabelSmoother smoother;
+  for (const Named& n : all_labels()) {
+    SCOPED_TRACE(n.what);
+    for (const auto& [node, of_labels] : distances(smoother, {0, 0, 0}, n.labels)) {
+      const RegionIndex own = n.labels(node[0], node[1], node[2]);
+      for (const auto& [label, d] : of_labels) {
+        ASSERT_LE(std::abs(d), LabelSmoother::band + 0.01F);
+        if (label == own) continue;
+        ASSERT_LT(of_labels.at(own), d) << label << " at " << node[0] << " " << node[1];
+      }
+    }
+  }
+}
+
+TEST(LabelSmoothing, AFlatInterfaceIsWhereTheVoxelsHaveIt) {
+  LabelSmoother smoother;
+  const auto all = distances(smoother, {0, 0, 0}, [](int, int y, int) { return RegionIndex(y < 8 ? 4 : 6); });
+  for (const auto& [node, of_labels] : all) {
+    const double d = node[1] - 7.5;
+    if (std::abs(d) > 1) continue;
+    EXPECT_NEAR(of_labels.at(4), d, 0.1) << node[1];
+    EXPECT_NEAR(of_labels.at(6), -of_labels.at(4), 1e-6);
+  }
+}
+
+TEST(LabelSmoothing, ASlantedInterfaceIsNearlyFlat) {
+  // Half a voxel from the lowest centres above and the highest below.
+  constexpr double a = 0.37, b = 0.21;
+  LabelSmoother smoother;
+  const auto height = [](int x, int y) { return 3.2 + a * x + b * y; };
+  const auto all = distances(smoother, {0, 0, 0},
+                             [&](int x, int y, int z) { return RegionIndex(z < height(x, y) ? 1 : 2); });
+  const double slope = std::sqrt(1 + a * a + b * b);
+  double sum = 0;
+  int count = 0;
+  for (const auto& [node, of_labels] : all) {
+    const double d = (node[2] - height(node[0], node[1])) / slope;
+    if (std::abs(d) > 0.8) continue;
+    EXPECT_NEAR(of_labels.at(1), d, 0.3);
+    sum += (of_labels.at(1) - d) * (of_labels.at(1) - d), ++count;
+  }
+  EXPECT_LT(std::sqrt(sum / count), 0.12);
+}
+
+TEST(LabelSmoothing, NumbersOfLabelsDoNotMatter) {
+  LabelSmoother first, second;
+  const Labels labels = noise(9, 4, 3);
+  constexpr std::array<RegionIndex, 4> numbers{5, 17, 40000, 65000};
+  const auto one = distances(first, {0, 0, 0}, labels);
+  const auto other =
+      distances(second, {0, 0, 0}, [&](int x, int y, int z) { return numbers[labels(x, y, z)]; });
+  for (const auto& [node, of_labels] : one)
+    for (const auto& [label, d] : of_labels) ASSERT_EQ(d, other.at(node).at(numbers[label]));
+}
+
+TEST(LabelSmoothing, TurnedAndMirroredVoxelsGiveTheSame) {
+  LabelSmoother smoother;
+  const Labels labels = noise(10, 3, 3);
+  const auto one = distances(smoother, {0, 0, 0}, labels);
+  const auto turned = distances(smoother, {0, 0, 0}, [&](int x, int y, int z) { return labels(y, z, x); });
+  const auto mirrored =
+      distances(smoother, {0, 0, 0}, [&](int x, int y, int z) { return labels(16 - x, y, z); });
+  for (const auto& [node, of_labels] : one)
+    for (const auto& [label, d] : of_labels) {
+      ASSERT_NEAR(d, turned.at({node[2], node[0], node[1]}).at(label), 1e-4);
+      ASSERT_NEAR(d, mirrored.at({16 - node[0], node[1], node[2]}).at(label), 1e-4);
+    }
+}
+
+}  // namespace
+}  // namespace tetwright
