@@ -109,7 +109,6 @@ MeshedSurface mesh_field(std::shared_ptr<const MaterialField> field,
                          const std::vector<MortonKey>& interface_voxels, const FinerCells& finer,
                          const MesherOptions& options, MesherReport report, Stages& stages,
                          const std::function<void(const std::vector<std::uint8_t>&)>& check_there) {
-  stages.begin("octree");
   MeshedSurface result;
   Progress* progress = stages.progress();
   report.refinement = finer.refinement;
@@ -124,7 +123,7 @@ MeshedSurface mesh_field(std::shared_ptr<const MaterialField> field,
       {static_cast<std::size_t>(lattice_tets_expected),
        static_cast<std::size_t>((report.refinement > 0 ? bytes_per_refined_tet : bytes_per_lattice_tet) *
                                 lattice_tets_expected)});
-  report.seconds_octree += stages.seconds();
+  report.seconds_octree = stages.seconds();
 
   stages.begin("lattice");
   LatticePoints points = lattice_points(octree);

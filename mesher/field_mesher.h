@@ -55,9 +55,10 @@ struct FinerCells {
   int coarsest_interface_level = 2;  ///< see OctreeOptions
 };
 
-/// Of a field all that follows: octree, lattice, moved points, cut tets. `finer` says where cells are halved;
-/// `check_there` is handed a flag for each region, 0 for one that nothing is left of, and throws if one is
-/// missed. Fills the rest of `report`. Throws what it throws, OutputError, Interrupted.
+/// Of a field all that follows, within the stage "octree": octree, lattice, moved points, cut tets. `finer`
+/// says where cells are halved; `check_there` is handed a flag for each region, 0 for one that nothing is
+/// left of, and throws if one is missed. Fills the rest of `report`. Throws what it throws, OutputError,
+/// Interrupted.
 MeshedSurface mesh_field(std::shared_ptr<const MaterialField> field,
                          const std::vector<MortonKey>& interface_voxels, const FinerCells& finer,
                          const MesherOptions& options, MesherReport report, Stages& stages,

@@ -120,34 +120,55 @@ void make_tile(const PreparedLabels& labels, int t, const std::array<int, 3>& ti
 }
 
 /// How often growth is adjusted: labels affect their neighbours.
-constexpr int most_rounds = 3;
+constexpr int most_rounds = 4;
 
-/// Grows or shrinks those labels whose volume is off; false if there is none. `changed` tells which.
-bool adjust_growth(const PreparedLabels& labels, const std::vector<TileBlocks>& parts,
-                   std::vector<float>& growth, std::vector<std::uint8_t>& changed) {
-  // Of the label's voxels; the mesh adds a few tenths of a percent.
-  constexpr double tolerance = 0.004;
-  std::vector<double> volumes(growth.size(), 0), areas(growth.size(), 0);
-  for (const TileBlocks& p : parts)
-    for (const auto& [region, share] : p.shares) {
-      volumes[region] += share.volume;
-      areas[region] += share.faces;
+/// How much each label is grown all around, and what became of it.
+struct Growth {
+  std::vector<float> growth;          ///< by region, voxels
+  std::vector<std::uint8_t> changed;  ///< by region: since the tiles were made last
+  std::vector<double> volumes, slopes;
+
+  explicit Growth(std::size_t regions)
+      : growth(regions, 0), changed(regions, 1), volumes(regions, 0), slopes(regions, 0) {}
+
+  /// Looks at the tiles; false if no label's volume is off.
+  bool adjust(const PreparedLabels& labels, const std::vector<TileBlocks>& tiles) {
+    // Of the label's voxels; the mesh adds a few tenths of a percent.
+    constexpr double tolerance = 0.004;
+    // How slopes may differ from the voxels' faces: these are more than the interface's area, but a label
+    // that is held in place does not give way all over.
+    constexpr double flattest = 0.25, steepest = 1.25;
+    std::vector<double> now(growth.size(), 0), faces(growth.size(), 0);
+    for (const TileBlocks& t : tiles)
+      for (const auto& [region, share] : t.shares) {
+        now[region] += share.volume;
+        faces[region] += share.faces;
+      }
+    std::vector<float> before = growth;
+    for (std::size_t r = 1; r < growth.size(); ++r) {
+      const auto voxels = static_cast<double>(labels.materials[r - 1].voxels);
+      if (faces[r] <= 0) continue;
+      if (slopes[r] <= 0) slopes[r] = faces[r];
+      if (const double step = last_step_.empty() ? 0 : last_step_[r]; step != 0)
+        slopes[r] = std::clamp((now[r] - volumes[r]) / step, flattest * faces[r], steepest * faces[r]);
+      if (std::abs(voxels - now[r]) > tolerance * voxels)
+        growth[r] = std::clamp(static_cast<float>(growth[r] + (voxels - now[r]) / slopes[r]),
+                               -LabelSmoother::most_growth, LabelSmoother::most_growth);
     }
-  bool any = false;
-  for (std::size_t r = 1; r < growth.size(); ++r) {
-    const auto voxels = static_cast<double>(labels.materials[r - 1].voxels);
-    const double lacks = voxels - volumes[r];
-    changed[r] = 0;
-    if (std::abs(lacks) <= tolerance * voxels || areas[r] <= 0) continue;
-    const float before = growth[r];
-    growth[r] = std::clamp(static_cast<float>(before + lacks / areas[r]), -LabelSmoother::most_growth,
-                           LabelSmoother::most_growth);
-    changed[r] = growth[r] != before;
-    any |= changed[r];
+    volumes = std::move(now);
+    bool any = false;
+    last_step_.assign(growth.size(), 0);
+    for (std::size_t r = 0; r < growth.size(); ++r) {
+      last_step_[r] = static_cast<double>(growth[r]) - before[r];
+      changed[r] = growth[r] != before[r];
+      any |= changed[r] != 0;
+    }
+    return any;
   }
-  changed[outside_region] = 0;
-  return any;
-}
+
+ private:
+  std::vector<double> last_step_;
+};
 
 }  // namespace
 
@@ -166,9 +187,8 @@ LabelBlocks make_label_blocks(const PreparedLabels& labels, const Progress* prog
 
   const std::size_t tile_count = product(tiles);
   std::vector<TileBlocks> parts(tile_count);
-  std::vector<float> growth(labels.materials.size() + 1, 0);
   // Volumes are evened out in a few rounds; only tiles where something changes are made again.
-  std::vector<std::uint8_t> changed(growth.size(), 1);
+  Growth growth(labels.materials.size() + 1);
   for (int round = 0;; ++round) {
     constexpr std::size_t grain = 16;  // tiles to a task, a millisecond each where labels meet
     parallel_for(0, tile_count, grain, [&](std::size_t begin, std::size_t end) {
@@ -176,11 +196,12 @@ LabelBlocks make_label_blocks(const PreparedLabels& labels, const Progress* prog
       LabelSmoother smoother;
       for (std::size_t t = begin; t < end; ++t) {
         const bool again = round == 0 || std::any_of(parts[t].shares.begin(), parts[t].shares.end(),
-                                                     [&](const auto& v) { return changed[v.first]; });
-        if (again) make_tile(labels, static_cast<int>(t), tiles, made.counts, growth, smoother, parts[t]);
+                                                     [&](const auto& v) { return growth.changed[v.first]; });
+        if (again)
+          make_tile(labels, static_cast<int>(t), tiles, made.counts, growth.growth, smoother, parts[t]);
       }
     });
-    if (round == most_rounds || !adjust_growth(labels, parts, growth, changed)) break;
+    if (round == most_rounds || !growth.adjust(labels, parts)) break;
   }
   std::size_t channel_count = 0;
   for (const TileBlocks& p : parts) channel_count += p.channels.size();

@@ -159,7 +159,6 @@ MeshedSurface mesh_labels(const PreparedLabels& labels, const MesherOptions& opt
     report.thin_parts.push_back({p.region == outside_region ? "" : field->regions()[p.region].name, p.places,
                                  voxels.to_input(p.first), true});
   const std::vector<MortonKey> interface_voxels = field->interface_voxels();
-  report.seconds_octree = stages.seconds();
   return mesh_field(field, interface_voxels, thin.finer, options, std::move(report), stages,
                     [&](const std::vector<std::uint8_t>& there) { check_all_there(labels, there); });
 }

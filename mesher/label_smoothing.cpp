@@ -242,19 +242,21 @@ void LabelSmoother::distances_from_shares(int margin) {
     for (int z = margin; z < side - margin; ++z)
       for (int y = margin; y < side - margin; ++y) {
         float* row = &fields_[l][place(0, y, z)];
-        for (int x = margin; x < side - margin; ++x) row[x] = distance_from_share(row[x]);
+        for (int x = margin; x < side - margin; ++x)
+          row[x] = std::clamp(distance_from_share(row[x]), -band, band);
       }
-  // Once more: rounding, and shares beyond what counts.
+  // Once more, with what shares beyond 0 and 1 did not say; no distance leaves the band.
   for (const MixedNode& n : mixed_) {
+    const float lead = 2 * std::max(least_distance, distance_from_lack(n.lack));
     float others = HUGE_VALF;
     for (std::uint16_t l : labels_near(n)) {
       if (l == n.own) continue;
       float& other = fields_[l][n.place];
-      other = std::max(other, -band + 2 * least_distance);
+      other = std::max(other, lead - band);
       others = std::min(others, other);
     }
     float& own = fields_[n.own][n.place];
-    own = std::min(own, others - 2 * std::max(least_distance, distance_from_lack(n.lack)));
+    own = std::min(own, others - lead);
   }
 }
 

@@ -31,7 +31,7 @@ class Opening {
     return parallel_collect<std::size_t>(
         0, holds_.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<std::size_t>& out) {
           for (std::size_t i = begin; i < end; ++i)
-            if (!holds_[i] && !(regions_[i] == outside_region && near_border(i)) && !beside_thick(i))
+            if (!holds_[i] && !(regions_[i] == outside_region && in_box_from_beyond(i)) && !beside_thick(i))
               out.push_back(i);
         });
   }
@@ -94,14 +94,37 @@ class Opening {
       }
   }
 
-  /// Boxes of outside that begin before the volume were not looked for.
-  bool near_border(std::size_t i) const {
+  /// True for outside in a box that begins before the volume, which sweep() does not look for: tried one by
+  /// one.
+  bool in_box_from_beyond(std::size_t i) const {
+    std::array<int, 3> at, low;
+    std::size_t rest = i;
+    bool near_border = false;
     for (int a = 0; a < 3; ++a) {
       const auto n = static_cast<std::size_t>(size_[a]);
-      if (i % n < static_cast<std::size_t>(sides_[a])) return true;
-      i /= n;
+      at[a] = static_cast<int>(rest % n);
+      rest /= n;
+      near_border |= at[a] < sides_[a] - 1;
     }
+    if (!near_border) return false;
+    for (low[2] = at[2] - sides_[2] + 1; low[2] <= at[2]; ++low[2])
+      for (low[1] = at[1] - sides_[1] + 1; low[1] <= at[1]; ++low[1])
+        for (low[0] = at[0] - sides_[0] + 1; low[0] <= at[0]; ++low[0])
+          if (box_is_outside(low)) return true;
     return false;
+  }
+  bool box_is_outside(const std::array<int, 3>& low) const {
+    std::array<int, 3> from, to;
+    for (int a = 0; a < 3; ++a) {
+      from[a] = std::max(0, low[a]);
+      to[a] = std::min(size_[a], low[a] + sides_[a]);
+    }
+    for (int z = from[2]; z < to[2]; ++z)
+      for (int y = from[1]; y < to[1]; ++y)
+        for (int x = from[0]; x < to[0]; ++x)
+          if (regions_[(static_cast<std::size_t>(z) * size_[1] + y) * size_[0] + x] != outside_region)
+            return false;
+    return true;
   }
 
   /// What sticks out of a thick part by a voxel is roughness, which smoothing takes away.

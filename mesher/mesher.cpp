@@ -234,7 +234,6 @@ MeshedSurface mesh_surfaces(const PreparedInput& input, const MesherOptions& opt
   };
   add_thin(sheets.too_thin, true);
   add_thin(find_thin_parts(*field, interface_voxels), false);
-  report.seconds_octree = stages.seconds();
 
   return mesh_field(field, interface_voxels, {sheets.refinement, std::move(sheets.cells)}, options,
                     std::move(report), stages,

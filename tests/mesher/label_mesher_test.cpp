@@ -111,7 +111,7 @@ TEST(LabelMesher, CentresInterfacesAndVolumesOfBlobs) {
 }
 
 // 1 of 2183 is lost.
-TEST(LabelMesher, DISABLED_CentresOfBlobsAndGapsBetweenThem) {
+TEST(LabelMesher, CentresOfBlobsAndGapsBetweenThem) {
   const PreparedLabels labels = blobs({14, 13, 12}, 6, 3, 11, 0);
   for (const double cell : {0.5, 0.37}) expect_faithful(labels, checked_mesh(labels, cell).mesh);
 }
@@ -140,7 +140,7 @@ TEST(LabelMesher, InterfacesOfNoiseStayNear) {
 }
 
 // 88 of 3511 are lost, 40 with adaptivity 0, those all outside's.
-TEST(LabelMesher, DISABLED_CentresOfNoise) {
+TEST(LabelMesher, CentresOfNoise) {
   for (const double adaptivity : {MesherOptions().adaptivity, 0.0}) {
     std::size_t lost = 0, centres = 0;
     for (std::uint64_t seed = 1; seed < 60; ++seed) {
@@ -218,10 +218,10 @@ TEST(LabelMesher, EdgeConnectedPlanesOfAVoxelStayWhole) {
 }
 
 // Holes wherever the sheet is flat: cells of a whole voxel take the place of those of half a voxel.
-TEST(LabelMesher, DISABLED_FaceConnectedPlanesOfAVoxelStayWhole) {
+TEST(LabelMesher, FaceConnectedPlanesOfAVoxelStayWhole) {
   expect_face_connected_planes_whole(MesherOptions().adaptivity);
 }
-TEST(LabelMesher, DISABLED_ShellsOfAVoxelStayWhole) { expect_shells_whole(MesherOptions().adaptivity); }
+TEST(LabelMesher, ShellsOfAVoxelStayWhole) { expect_shells_whole(MesherOptions().adaptivity); }
 
 double normals_rms_degrees(const TetMesh& mesh, const Vec3& centre) {
   double sum = 0, area = 0;
@@ -367,8 +367,8 @@ TEST(LabelMesher, LabelsTouchingTheBorder) {
   expect_line(mesh, "domain: " + disc);
   Vec3 low = mesh.points[0], high = low;
   for (const Vec3& p : mesh.points) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  EXPECT_LT((low - Vec3(-0.5, -0.5, -0.5)).cwiseAbs().maxCoeff(), 0.2) << low.transpose();
-  EXPECT_LT((high - Vec3(8.5, 7.5, 6.5)).cwiseAbs().maxCoeff(), 0.2) << high.transpose();
+  EXPECT_LT((low - Vec3(-0.5, -0.5, -0.5)).cwiseAbs().maxCoeff(), 0.25) << low.transpose();
+  EXPECT_LT((high - Vec3(8.5, 7.5, 6.5)).cwiseAbs().maxCoeff(), 0.25) << high.transpose();
   MesherOptions with_outside = cells_of(0.5);
   with_outside.keep_outside = true;
   expect_faithful(full, checked_mesh(full, with_outside).mesh);
@@ -406,7 +406,7 @@ TEST(LabelMesher, TinyVolumes) {
 }
 
 // A voxel is "smaller than a cell" of half a voxel; a row loses the centres of its ends.
-TEST(LabelMesher, DISABLED_RowsOfVoxels) {
+TEST(LabelMesher, RowsOfVoxels) {
   for (const Size& size : {Size{1, 1, 1}, Size{2, 1, 1}, Size{1, 1, 9}})
     expect_volume_of_one_label(size, 0.5);
 }
