@@ -325,38 +325,51 @@ CutMesh cut_lattice(const LabelledLattice& lattice) {
     Tet tet;
     RegionIndex region;
   };
-  const std::vector<CutTet> cut = parallel_collect<CutTet>(
-      0, lattice.tets.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<CutTet>& out) {
-        Pieces pieces;
-        for (std::size_t i = begin; i < end; ++i) {
-          const Tet& t = lattice.tets[i];
-          RegionIndex region;
-          const Fate f = fate(lattice, t, region);
-          if (f == Fate::whole) out.push_back({t, region});
-          if (f != Fate::cut) continue;
-          const int n = cut_tet_well(cut_case(lattice, t), pieces, [&](int a, int b) -> const Vec3& {
-            return cut_points[cuts.edge(t[a], t[b])];
-          });
-          for (int p = 0; p < n; ++p) {
-            if (pieces[p].region == outside_region && !lattice.keep_outside) continue;
-            CutTet piece{{}, pieces[p].region};
-            for (int k = 0; k < 4; ++k) {
-              std::array<int, 4> c;
-              const int corners = corners_of(pieces[p].vertices[k], c);
-              piece.tet[k] = corners == 1   ? t[c[0]]
-                             : corners == 2 ? first_cut + cuts.edge(t[c[0]], t[c[1]])
-                             : corners == 3 ? first_cut + cuts.face(t[c[0]], t[c[1]], t[c[2]])
-                                            : first_cut + cuts.tet(static_cast<Index>(i));
-            }
-            out.push_back(piece);
+  // Parts of the lattice, each with its pieces, which go from there to their places: a list of them all would
+  // be as large as the mesh.
+  std::vector<std::vector<CutTet>> parts((lattice.tets.size() + grain - 1) / grain);
+  parallel_for(0, parts.size(), 1, [&](std::size_t first_part, std::size_t last_part) {
+    for (std::size_t part = first_part; part < last_part; ++part) {
+      std::vector<CutTet>& out = parts[part];
+      const std::size_t begin = part * grain, end = std::min(begin + grain, lattice.tets.size());
+      Pieces pieces;
+      for (std::size_t i = begin; i < end; ++i) {
+        const Tet& t = lattice.tets[i];
+        RegionIndex region;
+        const Fate f = fate(lattice, t, region);
+        if (f == Fate::whole) out.push_back({t, region});
+        if (f != Fate::cut) continue;
+        const int n = cut_tet_well(cut_case(lattice, t), pieces, [&](int a, int b) -> const Vec3& {
+          return cut_points[cuts.edge(t[a], t[b])];
+        });
+        for (int p = 0; p < n; ++p) {
+          if (pieces[p].region == outside_region && !lattice.keep_outside) continue;
+          CutTet piece{{}, pieces[p].region};
+          for (int k = 0; k < 4; ++k) {
+            std::array<int, 4> c;
+            const int corners = corners_of(pieces[p].vertices[k], c);
+            piece.tet[k] = corners == 1   ? t[c[0]]
+                           : corners == 2 ? first_cut + cuts.edge(t[c[0]], t[c[1]])
+                           : corners == 3 ? first_cut + cuts.face(t[c[0]], t[c[1]], t[c[2]])
+                                          : first_cut + cuts.tet(static_cast<Index>(i));
           }
+          out.push_back(piece);
         }
-      });
+      }
+    }
+  });
+  std::vector<std::size_t> starts(parts.size() + 1, 0);
+  for (std::size_t part = 0; part < parts.size(); ++part)
+    starts[part + 1] = starts[part] + parts[part].size();
   CutMesh mesh;
-  mesh.tets.resize(cut.size());
-  mesh.regions.resize(cut.size());
-  parallel_for(0, cut.size(), 4 * grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) mesh.tets[i] = cut[i].tet, mesh.regions[i] = cut[i].region;
+  mesh.tets.resize(starts.back());
+  mesh.regions.resize(starts.back());
+  parallel_for(0, parts.size(), 1, [&](std::size_t first_part, std::size_t last_part) {
+    for (std::size_t part = first_part; part < last_part; ++part) {
+      std::size_t i = starts[part];
+      for (const CutTet& c : parts[part]) mesh.tets[i] = c.tet, mesh.regions[i++] = c.region;
+      std::vector<CutTet>().swap(parts[part]);
+    }
   });
   compact(lattice, cut_points, mesh);
   return mesh;

@@ -147,7 +147,9 @@ MeshedSurface mesh_field(std::shared_ptr<const MaterialField> field,
   report.seconds_move = stages.seconds();
 
   stages.begin("cutting");
+  lattice.stars.forget_tets();
   CutMesh cut = cut_lattice(lattice);
+  lattice = {};
   // Moves and specks may have taken what had few lattice points.
   check_there(regions_there(*field, cut.regions));
   result.mesh = to_input_units(std::move(cut), *field);

@@ -26,6 +26,8 @@ class StarMap {
     const Index s = slots_[point];
     return {tets_.data() + starts_[s], tets_.data() + starts_[s + 1]};
   }
+  /// Gives the memory of the tets back; tets() is not to be called any more.
+  void forget_tets() { std::vector<Index>().swap(tets_); }
 
  private:
   std::vector<Index> points_, slots_;
