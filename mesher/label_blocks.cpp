@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/error.h"
 #include "common/parallel.h"
 
 namespace tetwright {
@@ -59,6 +60,7 @@ void add_block(const LabelSmoother& smoother, const std::array<int, 3>& in_tile,
                TileBlocks& out) {
   TileBlocks::Made made{at, static_cast<std::uint32_t>(out.channels.size()), 0, outside_region};
   std::array<std::int16_t, LabelBlocks::volume> values;
+  bool all_far = true;
   for (std::size_t l = 0; l < smoother.labels().size(); ++l) {
     std::int16_t smallest = LabelBlocks::band_units, largest = -LabelBlocks::band_units;
     int i = 0;
@@ -74,12 +76,12 @@ void add_block(const LabelSmoother& smoother, const std::array<int, 3>& in_tile,
         }
     if (smallest >= LabelBlocks::band_units) continue;
     if (largest <= -LabelBlocks::band_units) made.alone = smoother.labels()[l];
+    all_far &= largest <= -LabelBlocks::band_units;
     out.channels.push_back(smoother.labels()[l]);
     out.values.insert(out.values.end(), values.begin(), values.end());
     ++made.count;
   }
-  if (made.count == 1) {
-    made.alone = out.channels.back();
+  if (made.count == 1 && all_far) {
     made.count = 0;
     out.channels.pop_back();
     out.values.resize(out.values.size() - LabelBlocks::volume);
@@ -95,6 +97,12 @@ void make_tile(const PreparedLabels& labels, int t, const std::array<int, 3>& ti
   out = {};
   const bool mixed = copy_voxels(labels, tile, smoother.voxels());
   if (mixed) {
+    if (smoother.number_labels() > LabelSmoother::most_labels)
+      throw InputError(
+          labels.file, 0,
+          "has more than " + std::to_string(LabelSmoother::most_labels) + " labels within " +
+              std::to_string(LabelSmoother::side) +
+              " voxels, like an image of gray values; give a segmented volume, or choose --labels");
     smoother.smooth(growth);
     const std::vector<LabelSmoother::Share> shares = smoother.shares();
     for (std::size_t l = 0; l < shares.size(); ++l) out.shares.emplace_back(smoother.labels()[l], shares[l]);
@@ -133,8 +141,8 @@ struct Growth {
 
   /// Looks at the tiles; false if no label's volume is off.
   bool adjust(const PreparedLabels& labels, const std::vector<TileBlocks>& tiles) {
-    // Of the label's voxels; the mesh adds a few tenths of a percent.
-    constexpr double tolerance = 0.004;
+    // Of the label's voxels; the mesh adds a few tenths of a percent. Small labels are not promised as much.
+    constexpr double tolerance = 0.004, tolerance_small = 0.02, small = 1000;
     // How slopes may differ from the voxels' faces: these are more than the interface's area, but a label
     // that is held in place does not give way all over.
     constexpr double flattest = 0.25, steepest = 1.25;
@@ -151,7 +159,7 @@ struct Growth {
       if (slopes[r] <= 0) slopes[r] = faces[r];
       if (const double step = last_step_.empty() ? 0 : last_step_[r]; step != 0)
         slopes[r] = std::clamp((now[r] - volumes[r]) / step, flattest * faces[r], steepest * faces[r]);
-      if (std::abs(voxels - now[r]) > tolerance * voxels)
+      if (std::abs(voxels - now[r]) > (voxels > small ? tolerance : tolerance_small) * voxels)
         growth[r] = std::clamp(static_cast<float>(growth[r] + (voxels - now[r]) / slopes[r]),
                                -LabelSmoother::most_growth, LabelSmoother::most_growth);
     }

@@ -374,6 +374,7 @@ std::vector<LeafOrigin> LabelField::band_leaves(RegionIndex region) const {
   const Eigen::Matrix3d to_cells = (shared_->to_index * voxels().cell_size).inverse();
   const Vec3 first = shared_->to_index * (voxels().axes.transpose() * (voxels().origin - shared_->origin)) +
                      Vec3::Constant(padding);
+  const double around = std::max(1.0, std::ceil(std::ldexp(band(), -refinement())));
   std::vector<LeafOrigin> leaves;
   for (int bz = 0; bz < all.counts[2]; ++bz)
     for (int by = 0; by < all.counts[1]; ++by)
@@ -389,9 +390,9 @@ std::vector<LeafOrigin> LabelField::band_leaves(RegionIndex region) const {
           low = low.cwiseMin(at);
           high = high.cwiseMax(at);
         }
-        // Where cells are larger than the band, what is across an interface may be beyond all that is known.
-        low -= Vec3::Ones();
-        high += Vec3::Ones();
+        // Where cells are large, what is across an interface may be beyond all that is known.
+        low -= Vec3::Constant(around);
+        high += Vec3::Constant(around);
         const auto leaf = [](double x) { return static_cast<int>(std::floor(x / leaf_side)) * leaf_side; };
         for (int z = leaf(low[2]); z <= high[2]; z += leaf_side)
           for (int y = leaf(low[1]); y <= high[1]; y += leaf_side)

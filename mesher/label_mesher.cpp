@@ -20,8 +20,8 @@ constexpr double tets_per_face = 45;
 constexpr double tets_per_cell = 12;
 /// Peak memory for each dense tet.
 constexpr double bytes_per_tet = 140;
-/// For each voxel while its distances are made: regions, and what is kept for blocks where labels meet.
-constexpr double bytes_per_voxel = 16;
+/// For each voxel: its label in the file and region, and what thin labels take to be found.
+constexpr double bytes_per_voxel = 8;
 /// Dense tets for each tet that is wanted in the end.
 constexpr double dense_per_target = 5;
 /// Finer cells show nothing more of voxels.
@@ -75,6 +75,12 @@ FaceAreas face_areas(const PreparedLabels& labels) {
           add(0, x + 1 < n[0], 1);
           add(1, y + 1 < n[1], row);
           add(2, z + 1 < counts.size(), slice);
+          // The first voxels along an axis have a face to the outside beyond, too.
+          if (here != outside_region) {
+            counts[z][0] += x == 0;
+            counts[z][1] += y == 0;
+            counts[z][2] += z == 0;
+          }
         }
     }
   });
@@ -131,7 +137,12 @@ double cell_size_for_target(const PreparedLabels& labels, std::size_t target_tet
   // Tets grow with the square of the cells.
   const double at_voxel = static_cast<double>(estimate(labels, areas, voxel, {}).tets);
   const double finer = std::sqrt(std::max(1.0, wanted / std::max(1.0, at_voxel)));
-  return voxel / std::min(finer, static_cast<double>(most_cells_per_voxel));
+  return std::max(voxel / std::min(finer, static_cast<double>(most_cells_per_voxel)),
+                  longest_side(labels) / largest_resolution);
+}
+
+double default_cell_size(const PreparedLabels& labels) {
+  return std::max(voxel_size(labels), longest_side(labels) / largest_resolution);
 }
 
 MeshedSurface mesh_labels(const PreparedLabels& labels, const MesherOptions& options, Progress* progress) {

@@ -22,8 +22,9 @@ namespace tetwright {
 ///  2. smoothing moves curved interfaces inwards and eats what is thin. How much of each voxel every label
 ///     has got (in eight sample points) is compared with what it should have, and the difference, smoothed
 ///     alike, is added: back projection, as in superresolution (Irani & Peleg 1991, section 3). Twice;
-///  3. after each time a node's own label is made the largest by a margin (Whitaker 2000, "Reducing aliasing
-///     artifacts in iso-surfaces of binary volumes", constrains smoothing likewise);
+///  3. after each back projection, and after step 4, a node's own label is made the largest by a margin
+///  (Whitaker
+///     2000, "Reducing aliasing artifacts in iso-surfaces of binary volumes", constrains smoothing likewise);
 ///     What still lacks most of its voxel then, rods and single voxels, is put inside by hand;
 ///  4. what a label has too much or too little of all the same, taken over the whole volume, is evened out by
 ///     growing it a little all around; who makes the tiles finds out how much, from shares();
@@ -32,7 +33,7 @@ namespace tetwright {
 ///  if
 ///     both pairs are of one label, those of the one that is rarer around there: a sheet one voxel thick that
 ///     runs at a slant hangs together by such edges, and labels that only touch in an edge are kept apart;
-///  7. labels that share a face of voxels have a contact of some size.
+///  7. labels that share a face of voxels have a contact of some size, as far as 6 and the band leave room.
 ///
 /// Nodes of neighbouring tiles that are the same come out bit by bit the same.
 class LabelSmoother {
@@ -48,9 +49,13 @@ class LabelSmoother {
 
   /// The labels of side^3 voxels, x fastest; the tile is in their middle. Two or more labels.
   std::span<RegionIndex> voxels() { return raw_; }
-  /// `growth`, by region: by how much each is to be larger all around, voxels; at most most_growth in size.
+  /// Lists and counts the labels, of which there may be most_labels: each takes a third of a megabyte.
+  std::size_t number_labels();
+  static constexpr std::size_t most_labels = 1024;
+  /// To be called after that. `growth`, by region: by how much each is to be larger all around, voxels; at
+  /// most most_growth in size.
   void smooth(std::span<const float> growth);
-  static constexpr float most_growth = 0.35F;
+  static constexpr float most_growth = 0.7F;
 
   /// The labels there were, ascending.
   std::span<const RegionIndex> labels() const { return labels_; }
@@ -88,7 +93,6 @@ class LabelSmoother {
   static constexpr int volume = side * side * side;
   static constexpr std::array<int, 3> steps{1, side, side* side};
 
-  void number_labels();
   void find_mixed_nodes();
   /// Adds the smoothed `from` to `to`, as far as it reaches within `margin` nodes of the border.
   void add_smoothed(const Field& from, const Box& box, int margin, float factor, Field& to);

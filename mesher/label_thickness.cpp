@@ -31,7 +31,7 @@ class Opening {
     return parallel_collect<std::size_t>(
         0, holds_.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<std::size_t>& out) {
           for (std::size_t i = begin; i < end; ++i)
-            if (!holds_[i] && !(regions_[i] == outside_region && in_box_from_beyond(i)) && !beside_thick(i))
+            if (!holds_[i] && !beside_thick(i) && !(regions_[i] == outside_region && in_box_from_beyond(i)))
               out.push_back(i);
         });
   }
@@ -107,6 +107,9 @@ class Opening {
       near_border |= at[a] < sides_[a] - 1;
     }
     if (!near_border) return false;
+    // Boxes as large as that are for cells much larger than voxels, where so small a gap counts for little.
+    constexpr int most_tried = 512;
+    if (sides_[0] * sides_[1] * sides_[2] > most_tried) return true;
     for (low[2] = at[2] - sides_[2] + 1; low[2] <= at[2]; ++low[2])
       for (low[1] = at[1] - sides_[1] + 1; low[1] <= at[1]; ++low[1])
         for (low[0] = at[0] - sides_[0] + 1; low[0] <= at[0]; ++low[0])
@@ -176,6 +179,8 @@ ThinLabels find_thin_labels(const PreparedLabels& labels, const GridFrame& frame
   constexpr int longest_box = 200;
   // Voxels of an island that two cells to a voxel give no shape to.
   constexpr std::size_t small_island = 8;
+  // Each takes thousands of tets: they are for volumes that hold nothing else, not for noise.
+  constexpr std::size_t most_island_voxels = 32;
   // How far from the centre of a thin voxel its interfaces may be, voxels.
   constexpr double around = 0.75;
   const Vec3 spacing = labels.directions.colwise().norm();
@@ -208,6 +213,7 @@ ThinLabels find_thin_labels(const PreparedLabels& labels, const GridFrame& frame
       std::erase_if(voxels, [&](std::size_t v) {
         return labels.regions[v] == outside_region || !in_small_island(labels, v, small_island);
       });
+      if (voxels.size() > most_island_voxels) break;
     }
     if (voxels.empty()) break;
     const auto index_of = [&](std::size_t i) {
@@ -216,17 +222,15 @@ ThinLabels find_thin_labels(const PreparedLabels& labels, const GridFrame& frame
                   static_cast<double>(i / (nx * ny)));
     };
     if (depth == most_refinement) {
+      std::vector<ThinPart> parts;
+      for (std::size_t r = 0; r <= labels.materials.size(); ++r)
+        parts.push_back({static_cast<RegionIndex>(r), 0, Vec3::Zero()});
       for (std::size_t i : voxels) {
-        const RegionIndex region = labels.regions[i];
-        const auto part = std::find_if(thin.too_thin.begin(), thin.too_thin.end(),
-                                       [&](const ThinPart& p) { return p.region == region; });
-        if (part == thin.too_thin.end())
-          thin.too_thin.push_back({region, 1, first + to_grid * index_of(i)});
-        else
-          ++part->places;
+        ThinPart& part = parts[labels.regions[i]];
+        if (part.places++ == 0) part.first = first + to_grid * index_of(i);
       }
-      std::sort(thin.too_thin.begin(), thin.too_thin.end(),
-                [](const ThinPart& a, const ThinPart& b) { return a.region < b.region; });
+      for (const ThinPart& p : parts)
+        if (p.places > 0) thin.too_thin.push_back(p);
       break;
     }
     by_depth.push_back(parallel_collect<MortonKey>(

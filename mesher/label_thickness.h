@@ -17,9 +17,9 @@ struct ThinLabels {
 
 /// Where a cube of two cells fits into a label around a voxel, the label is thick there (an opening, Serra
 /// 1982), and so it is beside such a cube; elsewhere the cells around the voxel are halved, until it fits or
-/// they are 1/2^most_refinement. Islands of fewer than eight voxels take eight cells to a voxel. Cells of up
-/// to about a voxel that could be larger than the frame's where an interface is plain are split by the same
-/// rule. Two bytes for each voxel while it works. Throws Interrupted.
+/// they are 1/2^most_refinement. Islands of fewer than eight voxels, where these are few, take eight cells to
+/// a voxel. Cells of up to about a voxel that could be larger than the frame's where an interface is plain
+/// are split by the same rule. Two bytes for each voxel while it works. Throws Interrupted.
 ThinLabels find_thin_labels(const PreparedLabels& labels, const GridFrame& frame, const Progress* progress);
 
 }  // namespace tetwright

@@ -123,8 +123,11 @@ MeshedSurface mesh_labels(const PreparedLabels& labels, const MesherOptions& opt
 /// Estimates from the faces between voxels of different labels. Throws as mesh_labels() does for options.
 MesherEstimate estimate_mesh(const PreparedLabels& labels, const MesherOptions& options);
 
-/// The largest cells that give five dense tets or more for each of `target_tets`, at most a voxel. UsageError
-/// for a target of 0.
+/// One cell to the smallest spacing, as far as a volume so long can have.
+double default_cell_size(const PreparedLabels& labels);
+
+/// The largest cells that give about five dense tets or more for each of `target_tets`, at most those of
+/// default_cell_size(), at least a quarter of a voxel. UsageError for a target of 0.
 double cell_size_for_target(const PreparedLabels& labels, std::size_t target_tets);
 
 /// The resolution that gives about 40 dense tets for each of `target_tets`, which is what a simplification

@@ -154,7 +154,7 @@ LabelVolume volume_of(const Grid& grid, std::size_t most_voxels, const std::stri
   std::string size;
   for (int a = 0; a < 3; ++a) {
     const auto n = static_cast<std::uint64_t>(std::int64_t{box.max()[a]} - box.min()[a] + 1);
-    room /= n;
+    room = n < std::uint64_t{1} << 31 ? room / n : 0;
     size += (a ? " x " : "") + std::to_string(n);
     volume.size[a] = static_cast<int>(n);
   }

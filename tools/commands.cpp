@@ -56,6 +56,7 @@ void check_stats_path(const CommandLine& line) {
   std::vector<std::string> others =
       line.command == Command::sample ? std::vector<std::string>() : all_inputs(line);
   others.push_back(line.write_sdf);
+  others.push_back(line.label_names);
   others.push_back(line.output);
   others.push_back(line.before);
   std::error_code ignored;
@@ -235,7 +236,7 @@ class Run {
     if (!line_.resolution && line_.voxel_size == 0)
       options.voxel_size = line_.command == Command::prepare
                                ? cell_size_for_target(*labels_, line_.target_tets)
-                               : voxel_size(*labels_);
+                               : default_cell_size(*labels_);
     return options;
   }
 

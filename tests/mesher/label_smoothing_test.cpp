@@ -24,6 +24,7 @@ std::map<Node, std::map<RegionIndex, float>> distances(LabelSmoother& smoother, 
     for (int y = -reach; y < nodes + reach; ++y)
       for (int x = -reach; x < nodes + reach; ++x)
         smoother.voxels()[i++] = label(first[0] + x, first[1] + y, first[2] + z);
+  smoother.number_labels();
   smoother.smooth(std::vector<float>(1 << 16, 0.0F));
   std::map<Node, std::map<RegionIndex, float>> all;
   for (std::size_t l = 0; l < smoother.labels().size(); ++l)

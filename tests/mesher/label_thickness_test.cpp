@@ -92,6 +92,7 @@ std::vector<Vec3> voxels_by_the_rules(const PreparedLabels& labels, const GridFr
   std::vector<Vec3> thin =
       thin_by_the_rules(labels, thin_depths > 0 ? box_sides(labels, frame, thin_depths - 1) : Size{2, 2, 2});
   std::erase_if(thin, [&](const Vec3& v) { return !in_small_island(labels, v); });
+  if (thin.size() > 32) thin.clear();
   return thin;
 }
 
