@@ -6,21 +6,17 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
-#include <new>
 
 namespace tetwright {
 
 namespace {
 
-/// At the end of the program TBB's threads are waited for: else the last of them takes the library apart
-/// while the program is already going.
-class WaitForThreads {
- public:
-  ~WaitForThreads() { (void)tbb::finalize(handle_, std::nothrow); }
-
- private:
-  tbb::task_scheduler_handle handle_{tbb::attach{}};
-};
+/// Keeps TBB's threads until the process ends, which stops them wherever they are. Otherwise the last of them
+/// would take the library apart while the program is already going; and waiting for them takes minutes where
+/// other programs keep all processors busy.
+void keep_threads() {
+  [[maybe_unused]] static const auto* const never_released = new tbb::task_scheduler_handle(tbb::attach{});
+}
 
 }  // namespace
 
@@ -36,7 +32,7 @@ unsigned tbb_concurrency() { return static_cast<unsigned>(std::max(1, tbb::info:
 
 void tbb_loop(std::size_t count, unsigned threads, void (*body)(const void* context, std::size_t i),
               const void* context) {
-  static const WaitForThreads wait_for_threads;
+  keep_threads();
   tbb::task_arena arena(static_cast<int>(threads));
   arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { body(context, i); }); });
 }

@@ -40,6 +40,8 @@ std::vector<MortonKey> LevelSet::interface_cells() const {
   return keys;
 }
 
+std::vector<LeafOrigin> LevelSet::leaves() const { return {}; }
+
 struct LevelSetSampler::Impl {
   const LevelSet::Impl& ball;
 };

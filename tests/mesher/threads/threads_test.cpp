@@ -3,6 +3,9 @@
 
 #include "common/parallel.h"
 #include "mesher/cutting.h"
+#include "mesher/label_field.h"
+#include "mesher/label_thickness.h"
+#include "mesher/level_set_field.h"
 #include "mesher/point_mover.h"
 #include "mesher/thin_parts.h"
 
@@ -21,7 +24,7 @@ CutMesh mesh_with(unsigned threads) {
   const GridFrame frame = make_grid_frame(Vec3::Constant(-1.5), Vec3::Constant(1.5), 0.08, false);
   const auto first = LevelSet::of_surface(ball(Vec3::Zero(), 1), frame, nullptr);
   const auto second = LevelSet::of_surface(ball({0.7, 0.1, 0}, 0.8), frame, nullptr);
-  const MaterialField field(frame, {first, second},
+  const LevelSetField field(frame, {first, second},
                             {{"", 0, {{0, true, 0}, {1, true, 1}}},
                              {"a", 1, {{0, false, 0}, {1, true, 1}}},
                              {"b", 2, {{1, false, 1}}}});
@@ -45,6 +48,24 @@ TEST(MesherThreads, TheSameOnOneAndOnEight) {
   EXPECT_EQ(one.points, eight.points);
   EXPECT_EQ(one.tets, eight.tets);
   EXPECT_EQ(one.regions, eight.regions);
+}
+
+TEST(LabelThreads, TheSameOnOneAndOnEight) {
+  // Enough tiles for several tasks, in which labels meet.
+  PreparedLabels labels;
+  labels.size = {90, 60, 60};
+  labels.materials = {{"a", 1, 1, 1}, {"b", 2, 1, 1}};
+  for (int z = 0; z < 60; ++z)
+    for (int y = 0; y < 60; ++y)
+      for (int x = 0; x < 90; ++x)
+        labels.regions.push_back(static_cast<RegionIndex>((x / 7 + y / 5 + z / 6) % 3));
+  const auto keys_with = [&](unsigned threads) {
+    const ThreadLimit limit(threads);
+    const GridFrame frame = label_frame(labels, 1, false);
+    const auto field = LabelField::make(labels, frame, false, nullptr);
+    return std::pair(field->interface_voxels(), find_thin_labels(labels, frame, nullptr).finer.cells);
+  };
+  EXPECT_EQ(keys_with(1), keys_with(8));
 }
 
 }  // namespace
