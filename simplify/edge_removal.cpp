@@ -74,7 +74,7 @@ Outcome prepare_surface(Task& task, const BlockRules& rules, Index s, Index t, R
   const Vec3 &a = mesh.position(ring.a), &b = mesh.position(ring.b), &ps = mesh.position(s),
              &pt = mesh.position(t);
   const double swept = std::fabs(orient3d_value(a, b, ps, pt)) / 6;
-  const int materials = across == outside_region ? 1 : 2;
+  const int materials = across == beyond_mesh ? 1 : 2;
   if (rules.gamma * materials * portable_cbrt(swept) > rules.largest_error) return Outcome::surface_error;
   // No fold: every new triangle looks the way both old ones look.
   const std::array<Vec3, 2> before{normal_of(a, ps, b), normal_of(a, b, pt)};
@@ -158,13 +158,13 @@ Outcome try_remove(Task& task, const BlockRules& rules, const FlipReach& reach, 
   if (cavity.added.size() > n && !task.slots.reserve(cavity.added.size() - n)) return Outcome::no_room;
   if (dimension == 2) {
     const Outcome o = prepare_surface(task, rules, chains[0].front(), chains[0].back(), regions[0],
-                                      ring.closed ? regions[1] : outside_region);
+                                      ring.closed ? regions[1] : beyond_mesh);
     if (o != Outcome::done) {
       task.cells.release();
       return o;
     }
   }
-  std::array<VolumeLedger::Change, 2> volumes{{{regions[0], 0}, {outside_region, 0}}};
+  std::array<VolumeLedger::Change, 2> volumes{{{regions[0], 0}, {beyond_mesh, 0}}};
   if (dimension == 2) {
     double gained = 0;
     for (const NewTet& t : cavity.added)

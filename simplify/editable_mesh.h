@@ -15,7 +15,7 @@ namespace tetwright {
 
 /// Number of a material inside an EditableMesh (its tags in ascending order), or outside.
 using Region = std::uint32_t;
-inline constexpr Region outside_region = 0xffffffffu;
+inline constexpr Region beyond_mesh = 0xffffffffu;
 
 /// A tet that can be edited by several tasks. 40 bytes.
 struct TetRecord {
@@ -108,7 +108,7 @@ class EditableMesh {
   /// The region on the other side of a face.
   Region region_across(Index t, int face) const {
     const Index other = tets_[t].neighbours[face];
-    return other == no_index ? outside_region : tets_[other].region;
+    return other == no_index ? beyond_mesh : tets_[other].region;
   }
   /// Where `point` stands in tet t, which has it.
   int slot_of(Index t, Index point) const {

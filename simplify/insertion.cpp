@@ -243,8 +243,8 @@ Outcome try_edge(Task& task, const BlockRules& rules, Index tet, int edge, Inser
     task.edit.removed.push_back(triangle(mesh, ring.a, ring.b, p));
   };
   if (!ring.closed) {
-    sheet(ring.points.front(), ring.regions.front(), outside_region);
-    sheet(ring.points.back(), ring.regions.back(), outside_region);
+    sheet(ring.points.front(), ring.regions.front(), beyond_mesh);
+    sheet(ring.points.back(), ring.regions.back(), beyond_mesh);
   }
   for (std::size_t i = ring.closed ? 0 : 1; i < n; ++i) {
     const Region before = ring.regions[(i + n - 1) % n];

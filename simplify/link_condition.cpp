@@ -31,7 +31,7 @@ bool link_condition(const EditableMesh& mesh, const Star& star, std::size_t b, L
 
   bool a_on_boundary = false, a_on_junction = false;
   for (const Star::Sheet& s : star.sheets) {
-    const bool outside = s.across == outside_region;
+    const bool outside = s.across == beyond_mesh;
     a_on_boundary |= outside;
     if (outside) {
       ++boundary_at_a[s.first];
@@ -160,7 +160,7 @@ bool link_condition(const EditableMesh& mesh, const Star& star, std::size_t b, L
   // of K.
   for (const Star::Sheet& s : star.sheets) {
     if (s.first == b || s.second == b) continue;
-    const bool outside = s.across == outside_region;
+    const bool outside = s.across == beyond_mesh;
     if (!ab_on_interface && !outside) continue;
     if (common[s.first].sheets == 0 || common[s.second].sheets == 0) continue;
     // Is (b, first, second) an interface triangle?

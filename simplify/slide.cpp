@@ -178,7 +178,7 @@ Slide::Slide(const EditableMesh& mesh, const ReferenceSurface* given) : given_(g
 std::optional<Vec3> Slide::onto_surface(const Vec3& p, Region first, Region second, double most) const {
   if (!given_) return surfaces_.nearest(p, first, second, most);
   const auto tag = [&](Region r) -> ReferenceSurface::Region {
-    if (r == outside_region) return {};
+    if (r == beyond_mesh) return {};
     return mesh_->tag(r);
   };
   const auto place = given_->project(mesh_->to_input(p), tag(first), tag(second), most / mesh_->scale());

@@ -53,7 +53,7 @@ Outcome Star::gather(const EditableMesh& mesh, Index centre_point, HeldLocks& he
         if (across == region || other < tet) continue;  // an inner interface is met twice
         sheets.push_back({a, b, region, across});
       } else {
-        sheets.push_back({a, b, region, outside_region});
+        sheets.push_back({a, b, region, beyond_mesh});
       }
       ++sheet_count[a];
       ++sheet_count[b];

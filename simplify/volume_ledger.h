@@ -35,7 +35,7 @@ class VolumeLedger {
   template <class Changes>
   bool book(const Changes& changes) {
     for (const Change& c : changes) {
-      if (c.region == outside_region || allowed_.empty()) continue;
+      if (c.region == beyond_mesh || allowed_.empty()) continue;
       // Relaxed here and below: the numbers carry no other data.
       const double now = net_[c.region].load(std::memory_order_relaxed), then = now + c.volume;
       if (std::fabs(then) > allowed_[c.region] && std::fabs(then) > std::fabs(now)) return false;
@@ -62,7 +62,7 @@ class VolumeLedger {
   template <class Changes>
   void add(const Changes& changes, double sign) {
     for (const Change& c : changes)
-      if (c.region != outside_region && !allowed_.empty())
+      if (c.region != beyond_mesh && !allowed_.empty())
         net_[c.region].fetch_add(sign * c.volume, std::memory_order_relaxed);
   }
 

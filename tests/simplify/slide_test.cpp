@@ -44,11 +44,11 @@ TEST(Slide, KnowsSurfacesByTheirMaterialsAndJunctionCurves) {
   const auto interface = slide.onto_surface(at(1.7, 2.2, 2.1), 0, 1, s);
   ASSERT_TRUE(interface);
   EXPECT_NEAR((*interface - at(2, 2.2, 2.1)).norm(), 0, 1e-12);
-  const auto boundary = slide.onto_surface(at(1, 2.2, 0.3), 0, outside_region, s);
+  const auto boundary = slide.onto_surface(at(1, 2.2, 0.3), 0, beyond_mesh, s);
   ASSERT_TRUE(boundary);
   EXPECT_NEAR((*boundary - at(1, 2.2, 0)).norm(), 0, 1e-12);
   EXPECT_FALSE(
-      slide.onto_surface(at(3, 2.2, 0.3), 0, outside_region, 0.5 * s));  // there it is the other's boundary
+      slide.onto_surface(at(3, 2.2, 0.3), 0, beyond_mesh, 0.5 * s));  // there it is the other's boundary
   const auto curve = slide.onto_curve(at(2.1, 3, 0.2), s);
   ASSERT_TRUE(curve);
   EXPECT_NEAR((*curve - at(2, 3, 0)).norm(), 0, 1e-12);

@@ -19,7 +19,7 @@ TEST(VolumeLedger, BooksWithinItsBoundsAndBackTowardsThem) {
   EXPECT_EQ(ledger.strain(), 0);
   EXPECT_TRUE(ledger.book(Changes{{0, 0.06 * half}, {1, -0.06 * half}}));
   EXPECT_NEAR(ledger.strain(), 0.6, 1e-12);
-  EXPECT_FALSE(ledger.book(Changes{{0, 0.05 * half}, {outside_region, -1}}));
+  EXPECT_FALSE(ledger.book(Changes{{0, 0.05 * half}, {beyond_mesh, -1}}));
   EXPECT_FALSE(ledger.book(Changes{{0, -0.01 * half}, {1, -0.05 * half}}));  // one of two is enough
   EXPECT_NEAR(ledger.strain(), 0.6, 1e-12);
   EXPECT_TRUE(ledger.book(Changes{{0, -0.06 * half}, {1, 0.06 * half}}));
