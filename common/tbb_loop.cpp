@@ -14,9 +14,13 @@ namespace {
 /// Keeps TBB's threads until the process ends, which stops them wherever they are. Otherwise the last of them
 /// would take the library apart while the program is already going; and waiting for them takes minutes where
 /// other programs keep all processors busy.
-void keep_threads() {
-  [[maybe_unused]] static const auto* const never_released = new tbb::task_scheduler_handle(tbb::attach{});
-}
+struct KeptThreads {
+  KeptThreads() : handle(tbb::attach{}) {}
+  ~KeptThreads() {}  // the handle is never released
+  union {
+    tbb::task_scheduler_handle handle;
+  };
+};
 
 }  // namespace
 
@@ -32,7 +36,7 @@ unsigned tbb_concurrency() { return static_cast<unsigned>(std::max(1, tbb::info:
 
 void tbb_loop(std::size_t count, unsigned threads, void (*body)(const void* context, std::size_t i),
               const void* context) {
-  keep_threads();
+  static const KeptThreads kept_threads;
   tbb::task_arena arena(static_cast<int>(threads));
   arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { body(context, i); }); });
 }
