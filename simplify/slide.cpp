@@ -172,6 +172,14 @@ Slide::Slide(const EditableMesh& mesh, const ReferenceSurface* given) : given_(g
     }
     i = j;
   }
+  // Where other than two segments meet, curves end or branch.
+  std::vector<std::uint32_t> degrees(points.points.size(), 0);
+  for (const NearestTree::Item& s : segments)
+    for (Index p : {s.corners[0], s.corners[1]}) ++degrees[p];
+  std::vector<NearestTree::Item> corners;
+  for (Index p = 0; p < degrees.size(); ++p)
+    if (degrees[p] != 2) corners.push_back({{p, p, p}, 0, 0});
+  corners_ = NearestTree(points.points, std::move(corners));
   curves_ = NearestTree(std::move(points.points), std::move(segments));
 }
 

@@ -9,8 +9,8 @@
 
 namespace tetwright {
 
-/// Triangles or segments (triangles with two equal corners) for nearest-point queries: a tree of boxes over
-/// them in Morton order, four to a leaf.
+/// Triangles, segments and points (triangles with equal corners) for nearest-point queries: a tree of boxes
+/// over them in Morton order, four to a leaf.
 class NearestTree {
  public:
   struct Item {
@@ -51,9 +51,13 @@ class Slide {
   bool has_surface() const { return given_ || !surfaces_.empty(); }
   /// The nearest point of a junction curve within `most`; safe concurrently.
   std::optional<Vec3> onto_curve(const Vec3& p, double most) const { return curves_.nearest(p, 0, 0, most); }
+  /// The same of a point where junction curves end or branch.
+  std::optional<Vec3> onto_corner(const Vec3& p, double most) const {
+    return corners_.nearest(p, 0, 0, most);
+  }
 
  private:
-  NearestTree surfaces_, curves_;
+  NearestTree surfaces_, curves_, corners_;
   const ReferenceSurface* given_ = nullptr;
   const EditableMesh* mesh_ = nullptr;
 };

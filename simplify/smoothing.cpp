@@ -54,15 +54,18 @@ Vec3 keep_volumes(const Star& star, Vec3 step) {
 }
 
 /// Fills task.edit with the interface triangles before and after; false if one is too far from the reference.
+/// At junctions find_place() saw to it, by the point itself: where three regions meet in a loop smaller than
+/// a tet, the reference has no interface between two of them a little beside it.
 bool surface_edit(Task& task, const BlockRules& rules, const Vec3& to) {
   const Star& star = task.star;
+  const bool at_junction = star.dimension() < 2;
   task.edit.clear();
   for (const Star::Sheet& s : star.sheets) {
     const Triangle ids{star.centre, star.points[s.first], star.points[s.second]};
     const Vec3 &p = star.positions[s.first], &q = star.positions[s.second];
     task.edit.removed.push_back({ids, {star.centre_position, p, q}});
     task.edit.added.push_back({ids, {to, p, q}});
-    if (!near_reference(rules, task.edit.added.back(), s.inside, s.across)) return false;
+    if (!at_junction && !near_reference(rules, task.edit.added.back(), s.inside, s.across)) return false;
   }
   return true;
 }
@@ -113,17 +116,17 @@ Outcome move_to(Task& task, const BlockRules& rules, const Vec3& to, const std::
 
 /// Directions that a point of the given dimension may be moved in without leaving its surface or curve.
 std::array<Vec3, 3> free_directions(const Star& star, int dimension, bool leave_surface, int& count) {
-  if (dimension == 3) {
+  if (dimension == 3 || leave_surface) {
     count = 3;
     return {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
   }
   if (dimension == 2) {
-    count = leave_surface ? 3 : 2;
+    count = 2;
     const Vec3 normal = star.gradients.front().change.normalized();
     int axis;
     normal.cwiseAbs().minCoeff(&axis);
     const Vec3 u = normal.cross(Vec3::Unit(axis)).normalized();
-    return {u, normal.cross(u), normal};
+    return {u, normal.cross(u), Vec3::Zero()};
   }
   count = 1;
   Vec3 along = Vec3::Zero();
@@ -162,7 +165,7 @@ void sort_by_quality(Star& star) {
 bool find_place(Star& star, const EditableMesh& mesh, const BlockRules& rules, int dimension, float limit,
                 Placement& found) {
   sort_by_quality(star);
-  const bool leave_surface = rules.leave_surface && rules.slide && dimension == 2;
+  const bool leave_surface = rules.leave_surface && rules.slide && dimension < 3;
   int directions_count;
   const std::array<Vec3, 3> directions = free_directions(star, dimension, leave_surface, directions_count);
   double shortest2 = std::numeric_limits<double>::infinity();
@@ -185,10 +188,10 @@ bool find_place(Star& star, const EditableMesh& mesh, const BlockRules& rules, i
   const auto placed = [&](Vec3 to) -> std::optional<Vec3> {
     if (rules.slide && dimension < 3) {
       const Star::Sheet& s = star.sheets.front();
-      const auto on = dimension == 2
-                          ? rules.slide->onto_surface(to, s.inside, s.across,
-                                                      leave_surface ? rules.largest_distance : reach)
-                          : rules.slide->onto_curve(to, reach);
+      const double most = leave_surface ? rules.largest_distance : reach;
+      const auto on = dimension == 2   ? rules.slide->onto_surface(to, s.inside, s.across, most)
+                      : dimension == 1 ? rules.slide->onto_curve(to, most)
+                                       : rules.slide->onto_corner(to, most);
       if (!on) return {};
       if (!leave_surface) to = *on + offset;
     }
@@ -310,7 +313,7 @@ Outcome smooth(Task& task, const BlockRules& rules) {
 Outcome optimise(Task& task, const BlockRules& rules) {
   Star& star = task.star;
   const int dimension = star.dimension();
-  if (dimension == 0) return Outcome::material_rule;
+  if (star.pinned || (dimension == 0 && !(rules.leave_surface && rules.slide))) return Outcome::material_rule;
   star.compute_gradients();
   thread_local Placement place;
   if (!find_place(star, task.mesh, rules, dimension, least_gain * star.poorest, place))

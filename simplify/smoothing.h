@@ -17,8 +17,10 @@ struct Placement {
 /// ascent of the poorest by the active-set method (Freitag, Jones & Plassmann 1995; Freitag & Ollivier-Gooch
 /// 1997), gradients by differences. A point of an interface (dimension 2) moves in the tangent plane and is
 /// brought back onto the surface (BlockRules::slide), one of a junction curve (1) along it; without a slide
-/// they keep the volumes of both sides. Error(op) stays within E. True if a place better than `limit` was
-/// found; the star is not changed but for the order of its tets. gradients must be computed.
+/// they keep the volumes of both sides. With BlockRules::leave_surface all of them and corners (0) move
+/// freely near where they belong: loops of a junction curve that are smaller than a tet open up. Error(op)
+/// stays within E. True if a place better than `limit` was found; the star is not changed but for the order
+/// of its tets. gradients must be computed.
 bool find_place(Star& star, const EditableMesh& mesh, const BlockRules& rules, int dimension, float limit,
                 Placement& found);
 
@@ -28,7 +30,8 @@ bool find_place(Star& star, const EditableMesh& mesh, const BlockRules& rules, i
 /// self_intersection. The star is used up.
 Outcome smooth(Task& task, const BlockRules& rules);
 
-/// Moves the centre of the gathered star where find_place() says. Same answers.
+/// Moves the centre of the gathered star where find_place() says; corners only with leave_surface. Same
+/// answers.
 Outcome optimise(Task& task, const BlockRules& rules);
 
 /// Moves the centre of the gathered star, if it lies on an interface, along its normal to where its interface

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "common/interfaces.h"
 #include "common/mesh_check.h"
 #include "common/mesh_statistics.h"
 #include "common/parallel.h"
@@ -37,6 +38,26 @@ TEST(Improve, BettersTheShapesAndKeepsTheRest) {
     ASSERT_FALSE(report.iterations.empty());
     for (const IterationReport& it : report.iterations) EXPECT_EQ(it.kind, "improve");
   }
+}
+
+TEST(Improve, OpensLoopsOfJunctionCurvesThatAreSmallerThanATet) {
+  // Two materials that touch through a hole in a third one, a hundredth of a tet wide.
+  TetMesh mesh = grid_mesh({7, 7, 8}, [](int x, int y, int z) {
+    const bool hole = x == 3 && y == 3;
+    return Tag((z == 3 || z == 4) && !hole ? 3 : z < 4 ? 1 : 2);
+  });
+  for (Vec3& p : mesh.points)
+    if (std::abs(p.x() - 3.5) < 1 && std::abs(p.y() - 3.5) < 1 && p.z() == 4)
+      p = Vec3(3.5 + 0.01 * (p.x() - 3.5), 3.5 + 0.01 * (p.y() - 3.5), 4);
+  ASSERT_TRUE(check_mesh(mesh).empty());
+  ASSERT_LT(mesh_statistics(mesh).min_solid_angle, 0.001);
+  const TetMesh after = improve(mesh, ImproveOptions());
+  EXPECT_TRUE(check_mesh(after).empty());
+  for (const std::string& d : topology_differences(topology(mesh), topology(after))) ADD_FAILURE() << d;
+  const MeshStatistics is = mesh_statistics(after);
+  EXPECT_GT(is.min_dihedral, 15);
+  EXPECT_GT(is.min_solid_angle, 0.05);
+  EXPECT_EQ(interface_groups(find_interfaces(after)).size(), 6u);  // 1|2 is still among them
 }
 
 TEST(Improve, OnlyBelowLeavesTheRestAlone) {

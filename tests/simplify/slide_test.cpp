@@ -55,5 +55,21 @@ TEST(Slide, KnowsSurfacesByTheirMaterialsAndJunctionCurves) {
   EXPECT_FALSE(slide.onto_curve(at(2, 2, 2), s));
 }
 
+TEST(Slide, KnowsWhereJunctionCurvesBranch) {
+  Workbench w(grid_mesh({4, 4, 4}, [](int x, int y, int z) {
+    return std::optional<MaterialTag>(z < 2 ? 1 : x < 2 ? 2 : y < 2 ? 3 : 4);
+  }));
+  const Slide slide(w.mesh, nullptr);
+  const double s = w.mesh.scale();
+  const auto at = [&](double x, double y, double z) { return w.mesh.to_working({x, y, z}); };
+  const auto corner = slide.onto_corner(at(2.2, 1.9, 2.3), s);
+  ASSERT_TRUE(corner);
+  EXPECT_NEAR((*corner - at(2, 2, 2)).norm(), 0, 1e-12);
+  const auto on_boundary = slide.onto_corner(at(2.1, 2, 3.8), s);
+  ASSERT_TRUE(on_boundary);
+  EXPECT_NEAR((*on_boundary - at(2, 2, 4)).norm(), 0, 1e-12);
+  EXPECT_FALSE(slide.onto_corner(at(2, 0.9, 2), 0.5 * s));  // a curve alone
+}
+
 }  // namespace
 }  // namespace tetwright

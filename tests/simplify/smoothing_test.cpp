@@ -70,6 +70,30 @@ TEST(Smoothing, ACornerStays) {
   EXPECT_EQ(optimise(*w.task, w.rules), Outcome::material_rule);
 }
 
+TEST(Smoothing, ACornerMayLeaveItsPlaceALittleWhereThatIsAsked) {
+  const auto material = [](int x, int y, int z) { return Tag(z < 2 ? 1 : x < 2 ? 2 : y < 2 ? 3 : 4); };
+  TetMesh mesh = grid_mesh({4, 4, 4}, material);
+  for (Vec3& p : mesh.points)
+    if (p == Vec3(2, 2, 2)) p = Vec3(2.5, 2.45, 2.4);
+  Workbench w(mesh);
+  const Slide slide(w.mesh, nullptr);
+  w.rules.slide = &slide;
+  w.rules.leave_surface = true;
+  w.rules.largest_distance = 0.2 * w.mesh.scale();
+  const Index p = w.at(2.5, 2.45, 2.4);
+  float poorest = w.star(p).poorest;
+  for (int k = 0; k < 10; ++k) {
+    w.star(p);
+    if (optimise(*w.task, w.rules) != Outcome::done) break;
+    EXPECT_GT(w.star(p).poorest, poorest);
+    poorest = w.star(p).poorest;
+  }
+  const double moved = (w.mesh.to_input(w.mesh.position(p)) - Vec3(2.5, 2.45, 2.4)).norm();
+  EXPECT_GT(moved, 0.1);
+  EXPECT_LE(moved, 0.2 + 1e-9);  // from where it was at first, however often it moves
+  w.expect_sound();
+}
+
 TEST(Smoothing, AJunctionPointStaysOnAStraightCurve) {
   TetMesh mesh = grid_mesh({4, 4, 4}, [](int x, int, int) { return Tag(x < 2 ? 1 : 2); });
   for (Vec3& p : mesh.points)
