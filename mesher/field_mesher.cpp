@@ -28,6 +28,9 @@ constexpr double most_tets = 2e9;
 constexpr double tets_per_leaf = 12;
 /// Measured: 40 bytes where most leaves are outside (uniform), 100 where sheets are refined for.
 constexpr double bytes_per_lattice_tet = 40, bytes_per_refined_tet = 100;
+/// Coordinates must resolve a finest cell this finely, or rounding them could turn a thin tet over.
+constexpr double cell_share_of_rounding = 0x1p-20;
+
 /// True for a point on a face of the frame's box, which is the mesh's boundary where outside is kept.
 bool on_box(const Vec3& point, const GridFrame& frame) {
   for (int k = 0; k < 3; ++k)
@@ -81,7 +84,8 @@ std::string number_text(double v) {
   return text;
 }
 
-void check_options(const MesherOptions& options) {
+double finest_cell_size(const MesherOptions& options, double longest_side, double largest_coordinate,
+                        const std::string& file) {
   if (options.voxel_size != 0 && !(options.voxel_size > 0 && std::isfinite(options.voxel_size)))
     throw UsageError("the voxel size must be a positive number, not " + number_text(options.voxel_size));
   if (options.voxel_size == 0 &&
@@ -90,6 +94,17 @@ void check_options(const MesherOptions& options) {
                      std::to_string(largest_resolution) + ", not " + std::to_string(options.resolution));
   if (!(options.adaptivity >= 0 && std::isfinite(options.adaptivity)))
     throw UsageError("the adaptivity must be 0 or more finest cells, not " + number_text(options.adaptivity));
+  const double h = options.voxel_size > 0 ? options.voxel_size : longest_side / options.resolution;
+  if (longest_side > h * (largest_resolution + 0.5))
+    throw UsageError("a voxel size of " + number_text(h) + " gives " + number_text(longest_side / h) +
+                     " cells along the longest side; at most " + std::to_string(largest_resolution) +
+                     " are possible");
+  if (largest_coordinate * 0x1p-52 > h * cell_share_of_rounding)
+    throw InputError(file, 0,
+                     "with coordinates up to " + number_text(largest_coordinate) + " cells of " +
+                         number_text(h) +
+                         " cannot be told apart safely; move it nearer to the origin or take larger cells");
+  return h;
 }
 
 void check_memory(const MesherEstimate& e) {

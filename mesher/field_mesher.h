@@ -41,8 +41,11 @@ inline constexpr double bytes_at_least = 64e6;
 /// machine has.
 void check_memory(const MesherEstimate& estimate);
 
-/// Throws UsageError for option values out of range.
-void check_options(const MesherOptions& options);
+/// The finest cell's edge, input units, of an input whose longest side and largest coordinate are given.
+/// Throws UsageError for option values out of range, InputError (about `file`) where coordinates are too
+/// large for cells so small.
+double finest_cell_size(const MesherOptions& options, double longest_side, double largest_coordinate,
+                        const std::string& file);
 
 /// "%.6g", for messages.
 std::string number_text(double value);

@@ -156,6 +156,12 @@ std::vector<LabelMaterial> name_materials(const LabelChoice& choice, const std::
   });
   const auto twice = std::adjacent_find(by_name.begin(), by_name.end(),
                                         [](const auto* a, const auto* b) { return a->name == b->name; });
+  const auto outside =
+      std::find_if(materials.begin(), materials.end(), [](const auto& m) { return m.name == "outside"; });
+  if (outside != materials.end())
+    throw UsageError("label " + std::to_string(outside->tag) +
+                     " is called 'outside', which is what is around all of them; make it the outside label "
+                     "with --outside-label, or give it another name with --label-names");
   if (twice != by_name.end())
     throw UsageError("labels " + std::to_string(twice[0]->tag) + " and " + std::to_string(twice[1]->tag) +
                      " are both called '" + twice[0]->name + "'; give one another name with --label-names");

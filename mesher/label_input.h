@@ -63,8 +63,9 @@ struct PreparedLabels {
 /// no island reaches the number, nothing is merged and the findings say so. The same for any number of
 /// threads.
 ///
-/// Throws InputError (a chosen label that isn't there, with those that are; more than 60,000 labels),
-/// NothingToMeshError (all voxels are outside), Interrupted.
+/// Throws UsageError (ranges and names that cannot be: the outside label chosen, two labels of one name, one
+/// called "outside"), InputError (a chosen label that isn't there, with those that are; more than 60,000
+/// labels), NothingToMeshError (all voxels are outside), Interrupted.
 PreparedLabels prepare_labels(LabelVolume volume, const std::string& file, const LabelChoice& choice,
                               Progress* progress);
 

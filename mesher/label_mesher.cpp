@@ -26,8 +26,6 @@ constexpr double bytes_per_voxel = 8;
 constexpr double dense_per_target = 5;
 /// Finer cells show nothing more of voxels.
 constexpr int most_cells_per_voxel = 4;
-/// Coordinates must resolve a finest cell this finely, or rounding them could turn a thin tet over.
-constexpr double cell_share_of_rounding = 0x1p-20;
 
 double longest_side(const PreparedLabels& labels) {
   const Vec3 spacing = labels.directions.colwise().norm();
@@ -37,19 +35,8 @@ double longest_side(const PreparedLabels& labels) {
 }
 
 double cell_size(const PreparedLabels& labels, const MesherOptions& options) {
-  check_options(options);
   const double longest = longest_side(labels);
-  const double h = options.voxel_size > 0 ? options.voxel_size : longest / options.resolution;
-  if (longest > h * (largest_resolution + 0.5))
-    throw UsageError("a voxel size of " + number_text(h) + " gives " + number_text(longest / h) +
-                     " cells along the longest side; at most " + std::to_string(largest_resolution) +
-                     " are possible");
-  const double farthest = labels.origin.cwiseAbs().maxCoeff() + longest;
-  if (farthest * 0x1p-52 > h * cell_share_of_rounding)
-    throw InputError(labels.file, 0,
-                     "with coordinates up to " + number_text(farthest) + " cells of " + number_text(h) +
-                         " cannot be told apart safely; move the origin nearer or take larger cells");
-  return h;
+  return finest_cell_size(options, longest, labels.origin.cwiseAbs().maxCoeff() + longest, labels.file);
 }
 
 /// Areas of the faces between voxels of different regions, input units: with outside, and among materials.

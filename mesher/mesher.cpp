@@ -43,9 +43,6 @@ constexpr double dense_per_target = 40;
 constexpr double most_dense_tets = 20e6;
 constexpr int smallest_target_resolution = 32;
 
-/// Coordinates must resolve a finest cell this finely, or rounding them could turn a thin tet over.
-constexpr double cell_share_of_rounding = 0x1p-20;
-
 double longest_side(const PreparedInput& input) { return (input.high - input.low).maxCoeff(); }
 
 double farthest_coordinate(const PreparedInput& input) {
@@ -54,20 +51,7 @@ double farthest_coordinate(const PreparedInput& input) {
 
 /// The finest cell's edge in input units.
 double cell_size(const PreparedInput& input, const MesherOptions& options) {
-  check_options(options);
-  const double longest = longest_side(input);
-  const double h = options.voxel_size > 0 ? options.voxel_size : longest / options.resolution;
-  if (longest > h * (largest_resolution + 0.5))
-    throw UsageError("a voxel size of " + number_text(h) + " gives " + number_text(longest / h) +
-                     " cells along the longest side; at most " + std::to_string(largest_resolution) +
-                     " are possible");
-  const double farthest = farthest_coordinate(input);
-  if (farthest * 0x1p-52 > h * cell_share_of_rounding)
-    throw InputError(
-        input.bodies[0].file, 0,
-        "with coordinates up to " + number_text(farthest) + " cells of " + number_text(h) +
-            " cannot be told apart safely; move the surface nearer to the origin or take larger cells");
-  return h;
+  return finest_cell_size(options, longest_side(input), farthest_coordinate(input), input.bodies[0].file);
 }
 
 MesherEstimate estimate(const PreparedInput& input, double h, bool uniform, bool keep_outside) {

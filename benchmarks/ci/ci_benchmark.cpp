@@ -90,14 +90,13 @@ void repeatedly(benchmark::State& state, const Work& work) {
 #define TETWRIGHT_CI(function, name) \
   BENCHMARK(function)->Name(name)->Unit(benchmark::kMillisecond)->UseRealTime()
 
-void run_mesher(benchmark::State& state, const PreparedInput& input, int resolution, bool uniform) {
-  MesherOptions options;
-  options.resolution = resolution;
-  options.uniform = uniform;
+/// Times `mesh()`, which makes a MeshedSurface.
+template <class Mesh>
+void run_mesher(benchmark::State& state, const Mesh& mesh) {
   MeshedSurface meshed;
   double sdf = 0, octree = 0, lattice = 0, move = 0, cut = 0;
   repeatedly(state, [&] {
-    meshed = mesh_surfaces(input, options, nullptr);
+    meshed = mesh();
     sdf += meshed.report.seconds_sdf;
     octree += meshed.report.seconds_octree;
     lattice += meshed.report.seconds_lattice;
@@ -113,6 +112,13 @@ void run_mesher(benchmark::State& state, const PreparedInput& input, int resolut
   count_mesh(state, meshed.mesh);
 }
 
+void run_mesher(benchmark::State& state, const PreparedInput& input, int resolution, bool uniform) {
+  MesherOptions options;
+  options.resolution = resolution;
+  options.uniform = uniform;
+  run_mesher(state, [&] { return mesh_surfaces(input, options, nullptr); });
+}
+
 void mesh_adaptive(benchmark::State& state) { run_mesher(state, input_of("knot"), 90, false); }
 TETWRIGHT_CI(mesh_adaptive, "mesh/adaptive");
 
@@ -121,6 +127,24 @@ TETWRIGHT_CI(mesh_uniform, "mesh/uniform");
 
 void mesh_layered(benchmark::State& state) { run_mesher(state, layered_input(), 40, false); }
 TETWRIGHT_CI(mesh_layered, "mesh/layered");
+
+const LabelVolume& organs() {
+  static const LabelVolume volume = std::get<LabelVolume>(make_sample("organs"));
+  return volume;
+}
+
+void choose_labels(benchmark::State& state) {
+  repeatedly(state, [&] { benchmark::DoNotOptimize(prepare_labels(organs(), "organs", {}, nullptr)); });
+}
+TETWRIGHT_CI(choose_labels, "prepare_labels");
+
+void mesh_organs(benchmark::State& state) {
+  const PreparedLabels labels = prepare_labels(organs(), "organs", {}, nullptr);
+  MesherOptions options;
+  options.voxel_size = default_cell_size(labels);
+  run_mesher(state, [&] { return mesh_labels(labels, options, nullptr); });
+}
+TETWRIGHT_CI(mesh_organs, "mesh/labels");
 
 void prepare_surfaces(benchmark::State& state) {
   const TriangleMesh surface = surface_of("open_sphere");

@@ -136,6 +136,14 @@ TEST(LabelInput, TwoLabelsOfOneName) {
   EXPECT_EQ(prepare({0, 1, 2, 4}, choice).materials.size(), 3u);  // no matter that the 9 would be
 }
 
+TEST(LabelInput, NoLabelIsCalledOutsideButTheOutsideLabel) {
+  LabelChoice choice = unmerged();
+  choice.names = {{0, "outside"}, {3, "outside"}};
+  const std::string message = refusal<UsageError>({0, 1, 3}, choice);
+  EXPECT_NE(message.find("label 3 is called 'outside'"), std::string::npos) << message;
+  EXPECT_EQ(prepare({0, 1}, choice).materials.size(), 1u);
+}
+
 TEST(LabelInput, NothingToMesh) {
   EXPECT_NE(
       refusal<NothingToMeshError>({0, 0}, unmerged()).find("scan.nrrd: all voxels have the outside label 0"),
