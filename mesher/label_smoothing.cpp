@@ -45,6 +45,21 @@ float distance_from_lack(float lack) {
   return deepest * std::clamp((lack - from) / (to - from), 0.0F, 1.0F);
 }
 
+/// Slope along an axis of the difference between two trilinear functions at sample point s of a cell, a
+/// quarter from its ends; the functions by their values at its corners.
+float slope(const std::array<float, 8>& a, const std::array<float, 8>& b, int s, int axis) {
+  float sum = 0;
+  for (int k = 0; k < 8; ++k) {
+    if (k >> axis & 1) continue;
+    float weight = 1;
+    for (int other = 0; other < 3; ++other)
+      if (other != axis) weight *= (k >> other & 1) == (s >> other & 1) ? 0.75F : 0.25F;
+    const int up = k | 1 << axis;
+    sum += weight * ((a[up] - b[up]) - (a[k] - b[k]));
+  }
+  return sum;
+}
+
 }  // namespace
 
 LabelSmoother::LabelSmoother()
@@ -240,7 +255,7 @@ void LabelSmoother::hold_own_labels() {
   }
 }
 
-void LabelSmoother::distances_from_shares(int margin) {
+void LabelSmoother::distances_from_shares(int margin, std::span<const float> growth) {
   for (std::size_t l = 0; l < labels_.size(); ++l)
     for (int z = margin; z < side - margin; ++z)
       for (int y = margin; y < side - margin; ++y) {
@@ -250,7 +265,9 @@ void LabelSmoother::distances_from_shares(int margin) {
       }
   // Once more, with what shares beyond 0 and 1 did not say; no distance leaves the band.
   for (const MixedNode& n : mixed_) {
-    const float lead = 2 * std::max(least_distance, distance_from_lack(n.lack));
+    // What grew less was put too deep by hand.
+    const float by_hand = distance_from_lack(n.lack) + std::min(0.0F, growth[labels_[n.own]]);
+    const float lead = 2 * std::max(least_distance, by_hand);
     float others = HUGE_VALF;
     for (std::uint16_t l : labels_near(n)) {
       if (l == n.own) continue;
@@ -393,7 +410,12 @@ std::vector<LabelSmoother::Share> LabelSmoother::shares() const {
             else if (d < second)
               second = d, next = l;
           }
-          const double share = std::min(1.0, 0.5 + 0.5 * (second - first) / sample_side);
+          // The lead of one over the other changes by this much from the sample point to the farthest corner.
+          float half = 0;
+          for (int axis = 0; axis < 3; ++axis)
+            half += std::abs(slope(corners[winner], corners[next], s, axis));
+          half *= 0.5F * sample_side;
+          const double share = second - first < half ? 0.5 + 0.5 * (second - first) / half : 1.0;
           sums[candidates[winner]].volume += share / 8;
           sums[candidates[next]].volume += (1 - share) / 8;
         }
@@ -419,7 +441,7 @@ void LabelSmoother::smooth(std::span<const float> growth) {
   grow(growth);
   hold_own_labels();
   static_assert(kernel_reach + back_projections * (1 + kernel_reach) + 1 == reach);
-  distances_from_shares(margin);
+  distances_from_shares(margin, growth);
   hold_contacts();
 }
 

@@ -99,7 +99,7 @@ class LabelSmoother {
   void add_missing_shares(int margin);
   void hold_own_labels();
   void grow(std::span<const float> growth);
-  void distances_from_shares(int margin);
+  void distances_from_shares(int margin, std::span<const float> growth);
   /// What a node's own distance is to be less by.
   struct Lift {
     int place;

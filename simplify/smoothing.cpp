@@ -184,14 +184,22 @@ bool find_place(Star& star, const EditableMesh& mesh, const BlockRules& rules, i
       offset = normal * normal.dot(star.centre_position - *on);
     }
   }
-  /// Where a step leads: back onto the surface or curve.
+  /// What belongs to a place: the nearest of the surface, the curve or the corners.
+  const auto nearest = [&](const Vec3& to, double most) {
+    const Star::Sheet& s = star.sheets.front();
+    return dimension == 2   ? rules.slide->onto_surface(to, s.inside, s.across, most)
+           : dimension == 1 ? rules.slide->onto_curve(to, most)
+                            : rules.slide->onto_corner(to, most);
+  };
+  // Chords of a curve may have left a point farther away than it could go by itself: it goes no farther.
+  double farthest = rules.largest_distance;
+  if (leave_surface && dimension < 2)
+    if (const auto on = nearest(star.centre_position, std::numeric_limits<double>::infinity()))
+      farthest = std::max(farthest, (*on - star.centre_position).norm());
+  /// Where a step leads: back onto the surface or curve, or near it.
   const auto placed = [&](Vec3 to) -> std::optional<Vec3> {
     if (rules.slide && dimension < 3) {
-      const Star::Sheet& s = star.sheets.front();
-      const double most = leave_surface ? rules.largest_distance : reach;
-      const auto on = dimension == 2   ? rules.slide->onto_surface(to, s.inside, s.across, most)
-                      : dimension == 1 ? rules.slide->onto_curve(to, most)
-                                       : rules.slide->onto_corner(to, most);
+      const auto on = nearest(to, leave_surface ? farthest : reach);
       if (!on) return {};
       if (!leave_surface) to = *on + offset;
     }
