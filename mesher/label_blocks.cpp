@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 
 #include "common/error.h"
 #include "common/parallel.h"
@@ -23,7 +25,8 @@ struct TileBlocks {
   std::vector<Made> blocks;
   std::vector<RegionIndex> channels;
   std::vector<std::int16_t> values;
-  std::vector<std::pair<RegionIndex, LabelSmoother::Share>> shares;
+  std::vector<std::pair<RegionIndex, double>> shares;  ///< voxels of each label
+  std::vector<LabelSmoother::Contact> contacts;
 };
 
 /// Copies the voxels around a tile; false if all are of one region, which is the first.
@@ -104,11 +107,12 @@ void make_tile(const PreparedLabels& labels, int t, const std::array<int, 3>& ti
               std::to_string(LabelSmoother::side) +
               " voxels, like an image of gray values; give a segmented volume, or choose --labels");
     smoother.smooth(growth);
-    const std::vector<LabelSmoother::Share> shares = smoother.shares();
+    const std::vector<double> shares = smoother.shares();
     for (std::size_t l = 0; l < shares.size(); ++l) out.shares.emplace_back(smoother.labels()[l], shares[l]);
+    out.contacts = smoother.contacts();
   } else if (const RegionIndex alone = smoother.voxels()[0]; alone != outside_region) {
     constexpr double all = LabelSmoother::cells * LabelSmoother::cells * LabelSmoother::cells;
-    out.shares.push_back({alone, {all, 0}});
+    out.shares.emplace_back(alone, all);
   }
   for (int k = 0; k < blocks_per_tile * blocks_per_tile * blocks_per_tile; ++k) {
     const std::array<int, 3> in_tile{k % blocks_per_tile, k / blocks_per_tile % blocks_per_tile,
@@ -131,51 +135,108 @@ void make_tile(const PreparedLabels& labels, int t, const std::array<int, 3>& ti
 constexpr int most_rounds = 4;
 
 /// How much each label is grown all around, and what became of it.
-struct Growth {
-  std::vector<float> growth;          ///< by region, voxels
-  std::vector<std::uint8_t> changed;  ///< by region: since the tiles were made last
-  std::vector<double> volumes, slopes;
-
+///
+/// Where label r touches label s by f faces, growing r by d gains it about f * d voxels there and growing s
+/// takes them away again. So the steps that even out the volumes of labels that are off solve a system of
+/// one equation for each of them; how much less than its faces a label gives way is learnt from step to step.
+class Growth {
+ public:
   explicit Growth(std::size_t regions)
-      : growth(regions, 0), changed(regions, 1), volumes(regions, 0), slopes(regions, 0) {}
+      : growth_(regions, 0), step_(regions, 0), volumes_(regions, 0), give_(regions, 1) {}
+
+  const std::vector<float>& growth() const { return growth_; }  ///< by region, voxels
+  /// Whether it was changed by the last adjust(), or there was none yet.
+  bool changed(RegionIndex region) const { return !begun_ || step_[region] != 0; }
 
   /// Looks at the tiles; false if no label's volume is off.
   bool adjust(const PreparedLabels& labels, const std::vector<TileBlocks>& tiles) {
+    if (!begun_) list_contacts(tiles);
+    std::vector<double> now(growth_.size(), 0);
+    for (const TileBlocks& t : tiles)
+      for (const auto& [region, volume] : t.shares) now[region] += volume;
+    if (begun_) learn(now);
+    begun_ = true;
+    volumes_ = std::move(now);
+    return solve(labels);
+  }
+
+ private:
+  struct Contact {
+    RegionIndex with;
+    double faces;
+  };
+  std::span<const Contact> contacts(std::size_t region) const {
+    return {contacts_.data() + starts_[region], contacts_.data() + starts_[region + 1]};
+  }
+
+  void list_contacts(const std::vector<TileBlocks>& tiles) {
+    std::map<std::pair<RegionIndex, RegionIndex>, double> faces;
+    for (const TileBlocks& t : tiles)
+      for (const LabelSmoother::Contact& c : t.contacts) {
+        faces[{c.first, c.second}] += c.faces;
+        faces[{c.second, c.first}] += c.faces;
+      }
+    starts_.assign(growth_.size() + 1, 0);
+    for (const auto& [pair, count] : faces) {
+      contacts_.push_back({pair.second, count});
+      ++starts_[pair.first + 1u];
+    }
+    std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+  }
+
+  /// Compares what the last steps did with what they should have done.
+  void learn(const std::vector<double>& now) {
+    // Voxels' faces are more than the interface's area, and a label that is held in place does not give way
+    // all over.
+    constexpr double least_give = 0.25, most_give = 1.25;
+    constexpr double telling = 1e-3;  ///< share of the volume; less of a step says little
+    for (std::size_t r = 1; r < growth_.size(); ++r) {
+      double expected = 0;
+      for (const Contact& c : contacts(r)) expected += c.faces * (step_[r] - step_[c.with]);
+      if (std::abs(expected) > telling * volumes_[r])
+        give_[r] = std::clamp((now[r] - volumes_[r]) / expected, least_give, most_give);
+    }
+  }
+
+  bool solve(const PreparedLabels& labels) {
     // Of the label's voxels; the mesh adds a few tenths of a percent. Small labels are not promised as much.
     constexpr double tolerance = 0.004, tolerance_small = 0.02, small = 1000;
-    // How slopes may differ from the voxels' faces: these are more than the interface's area, but a label
-    // that is held in place does not give way all over.
-    constexpr double flattest = 0.25, steepest = 1.25;
-    std::vector<double> now(growth.size(), 0), faces(growth.size(), 0);
-    for (const TileBlocks& t : tiles)
-      for (const auto& [region, share] : t.shares) {
-        now[region] += share.volume;
-        faces[region] += share.faces;
-      }
-    std::vector<float> before = growth;
-    for (std::size_t r = 1; r < growth.size(); ++r) {
+    constexpr int sweeps = 30;  // of Gauss and Seidel; outside and what is not off stay where they are
+    std::vector<RegionIndex> off;
+    for (std::size_t r = 1; r < growth_.size(); ++r) {
+      step_[r] = 0;
       const auto voxels = static_cast<double>(labels.materials[r - 1].voxels);
-      if (faces[r] <= 0) continue;
-      if (slopes[r] <= 0) slopes[r] = faces[r];
-      if (const double step = last_step_.empty() ? 0 : last_step_[r]; step != 0)
-        slopes[r] = std::clamp((now[r] - volumes[r]) / step, flattest * faces[r], steepest * faces[r]);
-      if (std::abs(voxels - now[r]) > (voxels > small ? tolerance : tolerance_small) * voxels)
-        growth[r] = std::clamp(static_cast<float>(growth[r] + (voxels - now[r]) / slopes[r]),
-                               -LabelSmoother::most_growth, LabelSmoother::most_growth);
+      if (!contacts(r).empty() &&
+          std::abs(voxels - volumes_[r]) > (voxels > small ? tolerance : tolerance_small) * voxels)
+        off.push_back(static_cast<RegionIndex>(r));
     }
-    volumes = std::move(now);
+    for (int sweep = 0; sweep < sweeps; ++sweep)
+      for (RegionIndex r : off) {
+        double gain = (static_cast<double>(labels.materials[r - 1u].voxels) - volumes_[r]) / give_[r];
+        double faces = 0;
+        for (const Contact& c : contacts(r)) {
+          gain += c.faces * step_[c.with];
+          faces += c.faces;
+        }
+        const double most = LabelSmoother::most_growth;
+        step_[r] = std::clamp(growth_[r] + gain / faces, -most, most) - growth_[r];
+      }
     bool any = false;
-    last_step_.assign(growth.size(), 0);
-    for (std::size_t r = 0; r < growth.size(); ++r) {
-      last_step_[r] = static_cast<double>(growth[r]) - before[r];
-      changed[r] = growth[r] != before[r];
-      any |= changed[r] != 0;
+    for (RegionIndex r : off) {
+      const float before = growth_[r];
+      growth_[r] = static_cast<float>(before + step_[r]);
+      step_[r] = static_cast<double>(growth_[r]) - before;
+      any |= step_[r] != 0;
     }
     return any;
   }
 
- private:
-  std::vector<double> last_step_;
+  bool begun_ = false;
+  std::vector<float> growth_;
+  std::vector<double> step_, volumes_;
+  std::vector<double> give_;  ///< by region: what it gains or loses for each face and voxel of a step
+  std::vector<std::size_t> starts_;
+  std::vector<Contact> contacts_;  ///< rows by region
 };
 
 }  // namespace
@@ -204,9 +265,9 @@ LabelBlocks make_label_blocks(const PreparedLabels& labels, const Progress* prog
       LabelSmoother smoother;
       for (std::size_t t = begin; t < end; ++t) {
         const bool again = round == 0 || std::any_of(parts[t].shares.begin(), parts[t].shares.end(),
-                                                     [&](const auto& v) { return growth.changed[v.first]; });
+                                                     [&](const auto& v) { return growth.changed(v.first); });
         if (again)
-          make_tile(labels, static_cast<int>(t), tiles, made.counts, growth.growth, smoother, parts[t]);
+          make_tile(labels, static_cast<int>(t), tiles, made.counts, growth.growth(), smoother, parts[t]);
       }
     });
     if (round == most_rounds || !growth.adjust(labels, parts)) break;

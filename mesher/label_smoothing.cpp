@@ -45,19 +45,23 @@ float distance_from_lack(float lack) {
   return deepest * std::clamp((lack - from) / (to - from), 0.0F, 1.0F);
 }
 
-/// Slope along an axis of the difference between two trilinear functions at sample point s of a cell, a
-/// quarter from its ends; the functions by their values at its corners.
-float slope(const std::array<float, 8>& a, const std::array<float, 8>& b, int s, int axis) {
-  float sum = 0;
-  for (int k = 0; k < 8; ++k) {
-    if (k >> axis & 1) continue;
-    float weight = 1;
-    for (int other = 0; other < 3; ++other)
-      if (other != axis) weight *= (k >> other & 1) == (s >> other & 1) ? 0.75F : 0.25F;
-    const int up = k | 1 << axis;
-    sum += weight * ((a[up] - b[up]) - (a[k] - b[k]));
-  }
-  return sum;
+float mix(float a, float b, float share) { return a + share * (b - a); }
+
+/// The value of a trilinear function at a place in a cell, by its values at the corners.
+float value_at(const std::array<float, 8>& c, const std::array<float, 3>& at) {
+  return mix(mix(mix(c[0], c[1], at[0]), mix(c[2], c[3], at[0]), at[1]),
+             mix(mix(c[4], c[5], at[0]), mix(c[6], c[7], at[0]), at[1]), at[2]);
+}
+
+/// The sum of the sizes of the difference's slopes along the axes.
+float slopes_at(const std::array<float, 8>& a, const std::array<float, 8>& b,
+                const std::array<float, 3>& at) {
+  std::array<float, 8> d;
+  for (int k = 0; k < 8; ++k) d[k] = a[k] - b[k];
+  const float x = mix(mix(d[1] - d[0], d[3] - d[2], at[1]), mix(d[5] - d[4], d[7] - d[6], at[1]), at[2]);
+  const float y = mix(mix(d[2] - d[0], d[3] - d[1], at[0]), mix(d[6] - d[4], d[7] - d[5], at[0]), at[2]);
+  const float z = mix(mix(d[4] - d[0], d[5] - d[1], at[0]), mix(d[6] - d[2], d[7] - d[3], at[0]), at[1]);
+  return std::abs(x) + std::abs(y) + std::abs(z);
 }
 
 }  // namespace
@@ -363,8 +367,27 @@ void LabelSmoother::grow(std::span<const float> growth) {
     }
 }
 
-std::vector<LabelSmoother::Share> LabelSmoother::shares() const {
-  std::vector<Share> sums(labels_.size());
+std::vector<LabelSmoother::Contact> LabelSmoother::contacts() const {
+  std::vector<std::uint32_t> pairs;
+  for (int z = reach; z < reach + cells; ++z)
+    for (int y = reach; y < reach + cells; ++y)
+      for (int x = reach; x < reach + cells; ++x) {
+        const int here = place(x, y, z);
+        for (int step : steps)
+          if (const auto [low, high] = std::minmax(own_[here], own_[here + step]); low != high)
+            pairs.push_back(std::uint32_t{low} << 16 | high);
+      }
+  std::sort(pairs.begin(), pairs.end());
+  std::vector<Contact> found;
+  for (std::size_t i = 0, j; i < pairs.size(); i = j) {
+    for (j = i; j < pairs.size() && pairs[j] == pairs[i];) ++j;
+    found.push_back({labels_[pairs[i] >> 16], labels_[pairs[i] & 0xffff], static_cast<std::uint32_t>(j - i)});
+  }
+  return found;
+}
+
+std::vector<double> LabelSmoother::shares() const {
+  std::vector<double> sums(labels_.size(), 0.0);
   std::vector<std::uint16_t> candidates;
   std::vector<std::array<float, 8>> corners;
   for (int z = reach; z < reach + cells; ++z)
@@ -377,14 +400,9 @@ std::vector<LabelSmoother::Share> LabelSmoother::shares() const {
           alike &= own_[places[k]] == own_[places[0]];
         }
         if (alike) {
-          sums[own_[places[0]]].volume += 1;
+          sums[own_[places[0]]] += 1;
           continue;
         }
-        for (int k : {1, 2, 4})
-          if (own_[places[k]] != own_[places[0]]) {
-            sums[own_[places[0]]].faces += 1;
-            sums[own_[places[k]]].faces += 1;
-          }
         candidates.clear();
         for (int p : places)
           if (mixed_at_[p] >= 0)
@@ -394,30 +412,28 @@ std::vector<LabelSmoother::Share> LabelSmoother::shares() const {
         corners.resize(candidates.size());
         for (std::size_t l = 0; l < candidates.size(); ++l)
           for (int k = 0; k < 8; ++k) corners[l][k] = fields_[candidates[l]][places[k]];
-        // Eight samples, each for an eighth of the cell, shared where an interface passes it.
-        constexpr float sample_side = 0.5F;
-        for (int s = 0; s < 8; ++s) {
-          const float sx = s & 1 ? 0.75F : 0.25F, sy = s & 2 ? 0.75F : 0.25F, sz = s & 4 ? 0.75F : 0.25F;
+        // Samples, each for the box around it, shared where an interface passes that.
+        constexpr int along = 4;
+        constexpr float sample_side = 1.0F / along;
+        constexpr double sample_volume = 1.0 / (along * along * along);
+        for (int i = 0; i < along * along * along; ++i) {
+          const std::array<float, 3> at{(static_cast<float>(i % along) + 0.5F) * sample_side,
+                                        (static_cast<float>(i / along % along) + 0.5F) * sample_side,
+                                        (static_cast<float>(i / (along * along)) + 0.5F) * sample_side};
           float first = HUGE_VALF, second = HUGE_VALF;
           std::size_t winner = 0, next = 0;
           for (std::size_t l = 0; l < candidates.size(); ++l) {
-            const auto& c = corners[l];
-            const auto mix = [](float a, float b, float share) { return a + share * (b - a); };
-            const float d = mix(mix(mix(c[0], c[1], sx), mix(c[2], c[3], sx), sy),
-                                mix(mix(c[4], c[5], sx), mix(c[6], c[7], sx), sy), sz);
+            const float d = value_at(corners[l], at);
             if (d < first)
               second = first, next = winner, first = d, winner = l;
             else if (d < second)
               second = d, next = l;
           }
-          // The lead of one over the other changes by this much from the sample point to the farthest corner.
-          float half = 0;
-          for (int axis = 0; axis < 3; ++axis)
-            half += std::abs(slope(corners[winner], corners[next], s, axis));
-          half *= 0.5F * sample_side;
+          // The lead of one over the other changes by this much from the sample to the box's corners.
+          const float half = 0.5F * sample_side * slopes_at(corners[winner], corners[next], at);
           const double share = second - first < half ? 0.5 + 0.5 * (second - first) / half : 1.0;
-          sums[candidates[winner]].volume += share / 8;
-          sums[candidates[next]].volume += (1 - share) / 8;
+          sums[candidates[winner]] += share * sample_volume;
+          sums[candidates[next]] += (1 - share) * sample_volume;
         }
       }
   return sums;

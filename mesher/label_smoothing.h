@@ -27,7 +27,7 @@ namespace tetwright {
 ///     2000, "Reducing aliasing artifacts in iso-surfaces of binary volumes", constrains smoothing likewise);
 ///     What still lacks most of its voxel then, rods and single voxels, is put inside by hand;
 ///  4. what a label has too much or too little of all the same, taken over the whole volume, is evened out by
-///     growing it a little all around; who makes the tiles finds out how much, from shares();
+///     growing it a little all around; who makes the tiles finds out how much, from shares() and contacts();
 ///  5. shares u become distances -probit(u), which are right for a flat interface;
 ///  6. where labels alternate in the four voxels around an edge, the two voxels of one label are connected;
 ///  if
@@ -63,12 +63,15 @@ class LabelSmoother {
   float distance(std::size_t label, int x, int y, int z) const {
     return fields_[label][place(x + reach, y + reach, z + reach)];
   }
-  /// What each of labels() has of the tile's cells^3 cells between nodes, in voxels, and how many faces its
-  /// voxels have there with others.
-  struct Share {
-    double volume = 0, faces = 0;
+  /// What each of labels() has of the tile's cells^3 cells between nodes, voxels: within 2 %, save for rods
+  /// much narrower than a voxel.
+  std::vector<double> shares() const;
+  /// Faces between voxels of two labels of the tile, each pair once, ascending.
+  struct Contact {
+    RegionIndex first, second;  ///< first < second
+    std::uint32_t faces;
   };
-  std::vector<Share> shares() const;
+  std::vector<Contact> contacts() const;
 
  private:
   using Field = std::vector<float>;

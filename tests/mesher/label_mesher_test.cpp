@@ -218,6 +218,18 @@ TEST(LabelMesher, FaceConnectedPlanesOfAVoxelStayWhole) {
 }
 TEST(LabelMesher, ShellsOfAVoxelStayWhole) { expect_shells_whole(MesherOptions().adaptivity); }
 
+TEST(LabelMesher, VolumesOfSheetsOfAVoxel) {
+  for (const Sides& sides : {Sides{1, 1}, {0, 1}}) {
+    SCOPED_TRACE(::testing::Message() << sides.below << " within, " << sides.above);
+    const PreparedLabels labels = make_labels({26, 26, 26}, [&](int x, int y, int z) {
+      const double r = length(x - 12.5, y - 12.5, z - 12.5);
+      return r > 11 ? 0 : r > 10 ? sides.above : r > 9 ? 2 : sides.below;
+    });
+    EXPECT_GT(labels.materials.back().voxels, LabelFidelity::many_voxels);
+    expect_faithful(labels, checked_mesh(labels, 0.5).mesh);
+  }
+}
+
 double normals_rms_degrees(const TetMesh& mesh, const Vec3& centre) {
   double sum = 0, area = 0;
   for (const InterfaceTriangle& t : mesh.interfaces) {

@@ -91,6 +91,74 @@ TEST(LabelSmoothing, NodesOfNeighbouringTilesAreTheSameBits) {
   }
 }
 
+/// Voxels of each label in the tile's cells, by very many samples of the trilinear distances.
+std::map<RegionIndex, double> sampled_shares(const LabelSmoother& smoother, int along) {
+  std::map<RegionIndex, double> sums;
+  const auto value = [&](std::size_t l, double x, double y, double z) {
+    const int i = static_cast<int>(x), j = static_cast<int>(y), k = static_cast<int>(z);
+    double sum = 0;
+    for (int c = 0; c < 8; ++c)
+      sum += (c & 1 ? x - i : 1 - x + i) * (c & 2 ? y - j : 1 - y + j) * (c & 4 ? z - k : 1 - z + k) *
+             static_cast<double>(smoother.distance(l, i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)));
+    return sum;
+  };
+  for (int k = 0; k < cells * along; ++k)
+    for (int j = 0; j < cells * along; ++j)
+      for (int i = 0; i < cells * along; ++i) {
+        double least = HUGE_VAL;
+        RegionIndex winner = 0;
+        for (std::size_t l = 0; l < smoother.labels().size(); ++l)
+          if (const double d = value(l, (i + 0.5) / along, (j + 0.5) / along, (k + 0.5) / along); d < least)
+            least = d, winner = smoother.labels()[l];
+        sums[winner] += 1.0 / (along * along * along);
+      }
+  return sums;
+}
+
+TEST(LabelSmoothing, SharesAreTheVolumes) {
+  for (const Named& n : all_labels()) {
+    SCOPED_TRACE(n.what);
+    LabelSmoother smoother;
+    distances(smoother, {0, 0, 0}, n.labels);
+    if (smoother.labels().size() > 8) continue;  // too much to sample
+    // Rods from corner to corner are narrower than two of its samples.
+    const double tolerance = std::string_view(n.what) == "checkerboard" ? 0.15 : 0.02;
+    std::map<RegionIndex, double> exact = sampled_shares(smoother, 9);
+    const std::vector<double> shares = smoother.shares();
+    double sum = 0;
+    for (std::size_t l = 0; l < shares.size(); ++l) {
+      const double volume = exact[smoother.labels()[l]];
+      EXPECT_NEAR(shares[l], volume, tolerance * volume + 0.1) << smoother.labels()[l];
+      sum += shares[l];
+    }
+    EXPECT_NEAR(sum, cells * cells * cells, 1e-3);
+  }
+}
+
+TEST(LabelSmoothing, ContactsAreTheFacesBetweenVoxels) {
+  for (const Named& n : all_labels()) {
+    SCOPED_TRACE(n.what);
+    LabelSmoother smoother;
+    const Node first{-7, 3, 20};
+    distances(smoother, first, n.labels);
+    std::map<std::pair<RegionIndex, RegionIndex>, std::uint32_t> faces;
+    for (int z = first[2]; z < first[2] + cells; ++z)
+      for (int y = first[1]; y < first[1] + cells; ++y)
+        for (int x = first[0]; x < first[0] + cells; ++x)
+          for (const Node& to : {Node{x + 1, y, z}, {x, y + 1, z}, {x, y, z + 1}}) {
+            const RegionIndex a = n.labels(x, y, z), b = n.labels(to[0], to[1], to[2]);
+            if (a != b) ++faces[std::minmax(a, b)];
+          }
+    std::vector<std::pair<RegionIndex, RegionIndex>> found;
+    for (const LabelSmoother::Contact& c : smoother.contacts()) {
+      EXPECT_EQ(c.faces, faces[std::pair(c.first, c.second)]);
+      found.emplace_back(c.first, c.second);
+    }
+    EXPECT_EQ(found.size(), faces.size());
+    EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
+  }
+}
+
 TEST(LabelSmoothing, EachNodeIsItsOwnLabels) {
   LabelSmoother smoother;
   for (const Named& n : all_labels()) {
