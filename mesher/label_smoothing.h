@@ -23,16 +23,14 @@ namespace tetwright {
 ///     has got (in eight sample points) is compared with what it should have, and the difference, smoothed
 ///     alike, is added: back projection, as in superresolution (Irani & Peleg 1991, section 3). Twice;
 ///  3. after each back projection, and after step 4, a node's own label is made the largest by a margin
-///  (Whitaker
-///     2000, "Reducing aliasing artifacts in iso-surfaces of binary volumes", constrains smoothing likewise);
-///     What still lacks most of its voxel then, rods and single voxels, is put inside by hand;
+///     (Whitaker 2000, "Reducing aliasing artifacts in iso-surfaces of binary volumes", constrains smoothing
+///     likewise); what still lacks most of its voxel then, rods and single voxels, is put inside by hand;
 ///  4. what a label has too much or too little of all the same, taken over the whole volume, is evened out by
 ///     growing it a little all around; who makes the tiles finds out how much, from shares() and contacts();
 ///  5. shares u become distances -probit(u), which are right for a flat interface;
-///  6. where labels alternate in the four voxels around an edge, the two voxels of one label are connected;
-///  if
-///     both pairs are of one label, those of the one that is rarer around there: a sheet one voxel thick that
-///     runs at a slant hangs together by such edges, and labels that only touch in an edge are kept apart;
+///  6. where labels alternate in the four voxels around an edge, the two voxels of one label are connected,
+///     of two such pairs those of the label that is rarer around there: a sheet one voxel thick that runs at
+///     a slant hangs together by such edges, and labels that only touch in an edge are kept apart;
 ///  7. labels that share a face of voxels have a contact of some size, as far as 6 and the band leave room.
 ///
 /// Nodes of neighbouring tiles that are the same come out bit by bit the same.
