@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "common/parallel.h"
 #include "common/parallel_sort.h"
 #include "common/predicates.h"
 #include "common/quality.h"
@@ -24,9 +25,9 @@ struct PartStatistics {
   double max_dihedral = -std::numeric_limits<double>::infinity();
 };
 
-std::size_t angle_bin(double angle) {
-  return std::min(QualityHistogram::angle_bins - 1,
-                  static_cast<std::size_t>(angle / QualityHistogram::angle_step));
+std::uint8_t angle_bin(double angle) {
+  return static_cast<std::uint8_t>(std::min(QualityHistogram::angle_bins - 1,
+                                            static_cast<std::size_t>(angle / QualityHistogram::angle_step)));
 }
 
 /// Lower ends of the bins behind the first, as shares of the mean. Half steps are sqrt(2), no logarithm.
@@ -36,6 +37,31 @@ std::array<double, QualityHistogram::volume_bins - 1> volume_limits() {
     limits[i] = std::ldexp(QualityHistogram::smallest_relative_volume * ((i + 1) % 2 ? std::sqrt(2.0) : 1.0),
                            static_cast<int>((i + 1) / 2));
   return limits;
+}
+
+/// Six times, so that whole numbers add up without rounding.
+double volume_six_times(const TetMesh& mesh, const Tet& t) {
+  return orient3d_value(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]);
+}
+
+/// By volume over the mean volume.
+QualityHistogram histogram(const TetMesh& mesh, const std::vector<std::uint8_t>& bin_of_angle, double mean) {
+  const auto limits = volume_limits();
+  std::vector<QualityHistogram> parts(thread_count());
+  parallel_chunks((mesh.tets.size() + part_size - 1) / part_size, [&](std::size_t p, unsigned worker) {
+    const std::size_t last = std::min(mesh.tets.size(), (p + 1) * part_size);
+    for (std::size_t t = p * part_size; t < last; ++t) {
+      const double relative = mean > 0 ? volume_six_times(mesh, mesh.tets[t]) / 6 / mean : 0.0;
+      const auto bin =
+          static_cast<std::size_t>(std::upper_bound(limits.begin(), limits.end(), relative) - limits.begin());
+      ++parts[worker].counts[bin_of_angle[t]][bin];
+    }
+  });
+  QualityHistogram all;
+  for (const QualityHistogram& part : parts)
+    for (std::size_t a = 0; a < QualityHistogram::angle_bins; ++a)
+      for (std::size_t v = 0; v < QualityHistogram::volume_bins; ++v) all.counts[a][v] += part.counts[a][v];
+  return all;
 }
 
 void count_interfaces(const TetMesh& mesh, MeshStatistics& out) {
@@ -77,7 +103,7 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
   if (mesh.tets.empty()) return out;
   count_interfaces(mesh, out);
 
-  std::vector<double> angles(mesh.tets.size()), volumes(mesh.tets.size());
+  std::vector<std::uint8_t> bin_of_angle(mesh.tets.size());
   std::vector<PartStatistics> parts((mesh.tets.size() + part_size - 1) / part_size);
   parallel_chunks(parts.size(), [&](std::size_t p, unsigned) {
     PartStatistics& part = parts[p];
@@ -87,8 +113,7 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
     for (std::size_t t = p * part_size; t < last; ++t) {
       const Tet& v = mesh.tets[t];
       const std::array<Vec3, 4> x{mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]};
-      // Six times, so that whole numbers add up without rounding.
-      const double volume = orient3d_value(x[0], x[1], x[2], x[3]);
+      const double volume = volume_six_times(mesh, v);
       double angle = orient3d(x[0], x[1], x[2], x[3]) > 0 ? min_solid_angle(x[0], x[1], x[2], x[3]) : 0.0;
       // Coordinates beyond 1e100 overflow: such a tet is of no use either.
       if (!std::isfinite(angle)) angle = 0;
@@ -106,8 +131,7 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
         if (dihedral < part.min_dihedral) part.min_dihedral = dihedral;
         if (dihedral > part.max_dihedral) part.max_dihedral = dihedral;
       }
-      angles[t] = angle;
-      volumes[t] = volume / 6;
+      bin_of_angle[t] = angle_bin(angle);
     }
   });
 
@@ -138,14 +162,7 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
     out.max_dihedral = all.max_dihedral;
   }
 
-  const auto limits = volume_limits();
-  const double mean = out.volume / n;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    const double relative = mean > 0 ? volumes[t] / mean : 0.0;
-    const auto bin =
-        static_cast<std::size_t>(std::upper_bound(limits.begin(), limits.end(), relative) - limits.begin());
-    ++out.histogram.counts[angle_bin(angles[t])][bin];
-  }
+  out.histogram = histogram(mesh, bin_of_angle, out.volume / n);
   return out;
 }
 

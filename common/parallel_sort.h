@@ -54,15 +54,15 @@ std::vector<T> parallel_collect(std::size_t begin, std::size_t end, std::size_t 
     for (std::size_t k = first; k < last; ++k)
       body(begin + k * grain, std::min(end, begin + (k + 1) * grain), parts[k]);
   });
-  std::vector<std::size_t> starts(parts.size() + 1, 0);
-  for (std::size_t k = 0; k < parts.size(); ++k) starts[k + 1] = starts[k] + parts[k].size();
-  std::vector<T> all(starts.back());
-  parallel_for(0, parts.size(), 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t k = first; k < last; ++k) {
-      std::copy(parts[k].begin(), parts[k].end(), all.begin() + static_cast<std::ptrdiff_t>(starts[k]));
-      std::vector<T>().swap(parts[k]);
-    }
-  });
+  std::size_t size = 0;
+  for (const std::vector<T>& part : parts) size += part.size();
+  // What is only reserved takes no memory yet: parts go as their copies come.
+  std::vector<T> all;
+  all.reserve(size);
+  for (std::vector<T>& part : parts) {
+    all.insert(all.end(), part.begin(), part.end());
+    std::vector<T>().swap(part);
+  }
   return all;
 }
 

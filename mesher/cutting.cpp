@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 
 #include "common/error.h"
 #include "common/parallel_sort.h"
@@ -232,6 +233,9 @@ struct Cuts {
           RegionIndex unused;
           for (std::size_t i = begin; i < end; ++i)
             if (fate(lattice, lattice.tets[i], unused) == Fate::cut) body(lattice.tets[i], out);
+          // Most tets that share an edge are near each other: a few of its keys are left.
+          std::sort(out.begin(), out.end());
+          out.erase(std::unique(out.begin(), out.end()), out.end());
         });
     parallel_sort_unique(keys);
     return keys;
@@ -316,7 +320,7 @@ double worst_piece_tangent(const LabelledLattice& lattice, const Tet& t) {
   return worst;
 }
 
-CutMesh cut_lattice(const LabelledLattice& lattice) {
+CutMesh cut_lattice(LabelledLattice lattice) {
   const Cuts cuts(lattice);
   const std::vector<Vec3> cut_points = cuts.points(lattice);
   const auto first_cut = static_cast<Index>(lattice.positions.size());
@@ -325,16 +329,15 @@ CutMesh cut_lattice(const LabelledLattice& lattice) {
     Tet tet;
     RegionIndex region;
   };
-  // Parts of the lattice, each with its pieces, which go from there to their places: a list of them all would
-  // be as large as the mesh.
-  std::vector<std::vector<CutTet>> parts((lattice.tets.size() + grain - 1) / grain);
+  // What each part of the lattice becomes takes its place.
+  std::vector<std::vector<CutTet>> parts(lattice.tets.piece_count());
   parallel_for(0, parts.size(), 1, [&](std::size_t first_part, std::size_t last_part) {
     for (std::size_t part = first_part; part < last_part; ++part) {
       std::vector<CutTet>& out = parts[part];
-      const std::size_t begin = part * grain, end = std::min(begin + grain, lattice.tets.size());
+      const std::span<const Tet> tets = lattice.tets.piece(part);
       Pieces pieces;
-      for (std::size_t i = begin; i < end; ++i) {
-        const Tet& t = lattice.tets[i];
+      for (std::size_t i = 0; i < tets.size(); ++i) {
+        const Tet& t = tets[i];
         RegionIndex region;
         const Fate f = fate(lattice, t, region);
         if (f == Fate::whole) out.push_back({t, region});
@@ -350,27 +353,29 @@ CutMesh cut_lattice(const LabelledLattice& lattice) {
             const int corners = corners_of(pieces[p].vertices[k], c);
             piece.tet[k] = corners == 1   ? t[c[0]]
                            : corners == 2 ? first_cut + cuts.edge(t[c[0]], t[c[1]])
-                           : corners == 3 ? first_cut + cuts.face(t[c[0]], t[c[1]], t[c[2]])
-                                          : first_cut + cuts.tet(static_cast<Index>(i));
+                           : corners == 3
+                               ? first_cut + cuts.face(t[c[0]], t[c[1]], t[c[2]])
+                               : first_cut + cuts.tet(static_cast<Index>(part * TetList::piece_size + i));
           }
           out.push_back(piece);
         }
       }
+      lattice.tets.give_back(part);
     }
   });
-  std::vector<std::size_t> starts(parts.size() + 1, 0);
-  for (std::size_t part = 0; part < parts.size(); ++part)
-    starts[part + 1] = starts[part] + parts[part].size();
+  lattice.forget_stars();
+  std::size_t size = 0;
+  for (const std::vector<CutTet>& part : parts) size += part.size();
   CutMesh mesh;
-  mesh.tets.resize(starts.back());
-  mesh.regions.resize(starts.back());
-  parallel_for(0, parts.size(), 1, [&](std::size_t first_part, std::size_t last_part) {
-    for (std::size_t part = first_part; part < last_part; ++part) {
-      std::size_t i = starts[part];
-      for (const CutTet& c : parts[part]) mesh.tets[i] = c.tet, mesh.regions[i++] = c.region;
-      std::vector<CutTet>().swap(parts[part]);
+  mesh.tets.reserve(size);
+  mesh.regions.reserve(size);
+  for (std::vector<CutTet>& part : parts) {
+    for (const CutTet& c : part) {
+      mesh.tets.push_back(c.tet);
+      mesh.regions.push_back(c.region);
     }
-  });
+    std::vector<CutTet>().swap(part);
+  }
   compact(lattice, cut_points, mesh);
   return mesh;
 }

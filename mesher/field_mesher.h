@@ -62,9 +62,8 @@ struct FinerCells {
 /// says where cells are halved; `check_there` is handed a flag for each region, 0 for one that nothing is
 /// left of, and throws if one is missed. Fills the rest of `report`. Throws what it throws, OutputError,
 /// Interrupted.
-MeshedSurface mesh_field(std::shared_ptr<const MaterialField> field,
-                         const std::vector<MortonKey>& interface_voxels, const FinerCells& finer,
-                         const MesherOptions& options, MesherReport report, Stages& stages,
+MeshedSurface mesh_field(std::shared_ptr<const MaterialField> field, std::vector<MortonKey> interface_voxels,
+                         FinerCells finer, const MesherOptions& options, MesherReport report, Stages& stages,
                          const std::function<void(const std::vector<std::uint8_t>&)>& check_there);
 
 }  // namespace tetwright

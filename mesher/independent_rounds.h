@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "common/parallel_sort.h"
+#include "common/parallel.h"
 #include "mesher/labelled_lattice.h"
 
 namespace tetwright {
@@ -18,24 +18,7 @@ namespace tetwright {
 class IndependentRounds {
  public:
   explicit IndependentRounds(const LabelledLattice& lattice)
-      : stars_(lattice.stars), reserved_(lattice.stars.points().size(), free_) {
-    const std::vector<Index>& points = stars_.points();
-    starts_.assign(points.size() + 1, 0);
-    stars_by_slot_ = parallel_collect<Index>(
-        0, points.size(), 1024, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
-          for (std::size_t i = begin; i < end; ++i) {
-            const std::size_t first = out.size();
-            for (Index t : stars_.tets(points[i]))
-              for (Index q : lattice.tets[t])
-                if (const Index s = stars_.slot(q);
-                    s != no_index &&
-                    std::find(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), s) == out.end())
-                  out.push_back(s);
-            starts_[i + 1] = out.size() - first;
-          }
-        });
-    for (std::size_t i = 0; i < points.size(); ++i) starts_[i + 1] += starts_[i];
-  }
+      : lattice_(lattice), reserved_(lattice.stars.points().size(), free_) {}
 
   /// Block b has the points [starts[b], starts[b + 1]) of the list. Calls `body(blocks)`, concurrently, with
   /// lists of blocks; it may write what belongs to their points, and read what belongs to points one edge
@@ -47,13 +30,12 @@ class IndependentRounds {
     // Many enough to be worth a parallel loop, few enough that most do not meet.
     constexpr std::size_t smallest_round = 128, rounds_wanted = 48, grain = 4;
     const std::size_t blocks = starts.size() - 1, most = std::max(smallest_round, blocks / rounds_wanted);
-    const auto for_stars = [&](Index block, auto&& visit) {
-      for (std::size_t i = starts[block]; i < starts[block + 1]; ++i) {
-        const Index slot = stars_.slot(points[i]);
-        for (std::size_t k = starts_[slot]; k < starts_[slot + 1]; ++k) visit(reserved_[stars_by_slot_[k]]);
-      }
+    struct Block {
+      Index number;
+      std::vector<Index> slots;  ///< of the points of its closed stars, as far as those are near
     };
-    std::vector<Index> waiting, winners, losers;
+    std::vector<Block> waiting, losers;
+    std::vector<Index> winners;
     std::vector<std::uint8_t> wins;
     const auto for_waiting = [&](auto&& work) {
       parallel_for(0, waiting.size(), 4 * grain, [&](std::size_t begin, std::size_t end) {
@@ -61,31 +43,38 @@ class IndependentRounds {
       });
     };
     for (std::size_t next = 0, done = 0; done < blocks;) {
-      while (waiting.size() < most && next < blocks) waiting.push_back(static_cast<Index>(next++));
+      while (waiting.size() < most && next < blocks) waiting.push_back({static_cast<Index>(next++), {}});
       for_waiting([&](std::size_t i) {
-        for_stars(waiting[i], [&](std::uint32_t& slot) {
+        Block& block = waiting[i];
+        if (block.slots.empty())
+          block.slots = slots_around(points.subspan(
+              starts[block.number], starts[block.number + std::size_t{1}] - starts[block.number]));
+        for (Index slot : block.slots) {
           // The smallest number wins, in whatever order they come; relaxed, read after the loop.
-          std::atomic_ref<std::uint32_t> holder(slot);
+          std::atomic_ref<std::uint32_t> holder(reserved_[slot]);
           std::uint32_t held = holder.load(std::memory_order_relaxed);
-          while (waiting[i] < held &&
-                 !holder.compare_exchange_weak(held, waiting[i], std::memory_order_relaxed)) {
+          while (block.number < held &&
+                 !holder.compare_exchange_weak(held, block.number, std::memory_order_relaxed)) {
           }
-        });
+        }
       });
       wins.assign(waiting.size(), 0);
       for_waiting([&](std::size_t i) {
-        bool all = true;
-        for_stars(waiting[i], [&](std::uint32_t& slot) { all &= slot == waiting[i]; });
-        wins[i] = all;
+        const Block& block = waiting[i];
+        wins[i] = std::all_of(block.slots.begin(), block.slots.end(),
+                              [&](Index slot) { return reserved_[slot] == block.number; });
       });
       for_waiting([&](std::size_t i) {
-        for_stars(waiting[i], [&](std::uint32_t& slot) {
-          std::atomic_ref<std::uint32_t>(slot).store(free_, std::memory_order_relaxed);
-        });
+        for (Index slot : waiting[i].slots)
+          std::atomic_ref<std::uint32_t>(reserved_[slot]).store(free_, std::memory_order_relaxed);
       });
       winners.clear();
       losers.clear();
-      for (std::size_t i = 0; i < waiting.size(); ++i) (wins[i] ? winners : losers).push_back(waiting[i]);
+      for (std::size_t i = 0; i < waiting.size(); ++i)
+        if (wins[i])
+          winners.push_back(waiting[i].number);
+        else
+          losers.push_back(std::move(waiting[i]));
       parallel_for(0, winners.size(), grain, [&](std::size_t begin, std::size_t end) {
         body(std::span<const Index>(winners).subspan(begin, end - begin));
       });
@@ -98,11 +87,19 @@ class IndependentRounds {
  private:
   static constexpr std::uint32_t free_ = ~std::uint32_t{0};
 
-  const StarMap& stars_;
+  /// The slots of the points in the closed stars of some points, each once.
+  std::vector<Index> slots_around(std::span<const Index> points) const {
+    std::vector<Index> slots;
+    for (Index p : points)
+      for (Index t : lattice_.stars.tets(p))
+        for (Index q : lattice_.tets[t])
+          if (const Index s = lattice_.stars.slot(q); s != no_index) slots.push_back(s);
+    std::sort(slots.begin(), slots.end());
+    return {slots.begin(), std::unique(slots.begin(), slots.end())};
+  }
+
+  const LabelledLattice& lattice_;
   std::vector<std::uint32_t> reserved_;  ///< by slot, the block that holds the point
-  /// The closed star of each near point, as far as it is near: rows of slots.
-  std::vector<std::size_t> starts_;
-  std::vector<Index> stars_by_slot_;
 };
 
 }  // namespace tetwright

@@ -23,7 +23,7 @@ void mark(std::uint8_t& flag) { std::atomic_ref<std::uint8_t>(flag).store(1, std
 
 /// The points of tets with more than one region, ascending.
 std::vector<std::uint8_t> points_near_interfaces(const std::vector<RegionIndex>& regions,
-                                                 const std::vector<Tet>& tets) {
+                                                 const TetList& tets) {
   std::vector<std::uint8_t> near(regions.size(), 0);
   parallel_for(0, tets.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
@@ -34,8 +34,7 @@ std::vector<std::uint8_t> points_near_interfaces(const std::vector<RegionIndex>&
 }
 
 /// Gives specks another region; see label_lattice().
-std::size_t relabel_specks(std::vector<RegionIndex>& regions, const std::vector<Tet>& tets,
-                           const StarMap& stars) {
+std::size_t relabel_specks(std::vector<RegionIndex>& regions, const TetList& tets, const StarMap& stars) {
   std::vector<std::uint8_t> has_company(regions.size(), 0);
   parallel_for(0, tets.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -77,34 +76,6 @@ std::size_t relabel_specks(std::vector<RegionIndex>& regions, const std::vector<
 }
 
 }  // namespace
-
-StarMap::StarMap(std::vector<Index> points, std::size_t point_count, std::span<const Tet> tets)
-    : points_(std::move(points)) {
-  slots_.assign(point_count, no_index);
-  for (Index i = 0; i < points_.size(); ++i) slots_[points_[i]] = i;
-  // Counted, filled in whatever order the threads come, then each row sorted: the same rows in the end.
-  std::vector<Index> next(points_.size(), 0);
-  const auto for_each_corner = [&](auto&& body) {
-    parallel_for(0, tets.size(), grain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        for (Index v : tets[i])
-          if (const Index s = slots_[v]; s != no_index)
-            body(std::atomic_ref<Index>(next[s]).fetch_add(1, std::memory_order_relaxed), s, i);
-    });
-  };
-  for_each_corner([](Index, Index, std::size_t) {});
-  starts_.assign(points_.size() + 1, 0);
-  for (std::size_t s = 0; s < next.size(); ++s) starts_[s + 1] = starts_[s] + next[s];
-  std::fill(next.begin(), next.end(), 0);
-  tets_.resize(starts_.back());
-  for_each_corner(
-      [&](Index place, Index s, std::size_t i) { tets_[starts_[s] + place] = static_cast<Index>(i); });
-  parallel_for(0, points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s)
-      std::sort(tets_.begin() + static_cast<std::ptrdiff_t>(starts_[s]),
-                tets_.begin() + static_cast<std::ptrdiff_t>(starts_[s + 1]));
-  });
-}
 
 float LabelledLattice::gap(Index p, RegionIndex a, RegionIndex b) const {
   const std::span<const RegionIndex> regions = star_regions(p);
@@ -168,12 +139,20 @@ void LabelledLattice::list_star_regions(std::size_t region_count) {
   values_.assign(regions_.size(), 0);
 }
 
-LabelledLattice label_lattice(LatticePoints points, std::vector<NearestRegion> nearest, std::vector<Tet> tets,
+void LabelledLattice::forget_stars() {
+  stars = {};
+  std::vector<std::size_t>().swap(starts_);
+  std::vector<RegionIndex>().swap(regions_);
+  std::vector<float>().swap(values_);
+}
+
+LabelledLattice label_lattice(LatticePoints points, std::vector<NearestRegion> nearest, TetList tets,
                               std::size_t region_count, bool keep_outside, std::size_t* specks) {
   LabelledLattice lattice;
   lattice.keep_outside = keep_outside;
   lattice.positions = std::move(points.positions);
   lattice.is_centre = std::move(points.is_centre);
+  points = {};
   const std::size_t count = lattice.positions.size();
   std::vector<RegionIndex>& regions = lattice.first_region;
   regions.resize(count);
@@ -182,18 +161,12 @@ LabelledLattice label_lattice(LatticePoints points, std::vector<NearestRegion> n
   lattice.is_on.assign(count, 0);
 
   const std::vector<std::uint8_t> near = points_near_interfaces(regions, tets);
-  if (keep_outside)
-    lattice.tets = std::move(tets);
-  else
-    lattice.tets = parallel_collect<Tet>(0, tets.size(), grain,
-                                         [&](std::size_t begin, std::size_t end, std::vector<Tet>& out) {
-                                           for (std::size_t i = begin; i < end; ++i) {
-                                             bool matters = false;
-                                             for (Index v : tets[i])
-                                               matters |= near[v] || regions[v] != outside_region;
-                                             if (matters) out.push_back(tets[i]);
-                                           }
-                                         });
+  lattice.tets = std::move(tets);
+  if (!keep_outside)
+    lattice.tets.keep_if([&](const Tet& t) {
+      return std::any_of(t.begin(), t.end(),
+                         [&](Index v) { return near[v] || regions[v] != outside_region; });
+    });
   std::vector<Index> near_points;
   for (Index i = 0; i < count; ++i)
     if (near[i]) near_points.push_back(i);

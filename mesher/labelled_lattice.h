@@ -8,32 +8,10 @@
 #include "mesher/lattice.h"
 #include "mesher/material_field.h"
 #include "mesher/regions.h"
+#include "mesher/star_map.h"
+#include "mesher/tet_list.h"
 
 namespace tetwright {
-
-/// For the points near interfaces the tets they belong to: rows of one array.
-class StarMap {
- public:
-  StarMap() = default;
-  /// `points` ascending; `point_count` in all.
-  StarMap(std::vector<Index> points, std::size_t point_count, std::span<const Tet> tets);
-
-  const std::vector<Index>& points() const { return points_; }  ///< ascending
-  bool lists(Index point) const { return slots_[point] != no_index; }
-  Index slot(Index point) const { return slots_[point]; }  ///< place in points(), or no_index
-  /// The numbers of the tets around a listed point, ascending.
-  std::span<const Index> tets(Index point) const {
-    const Index s = slots_[point];
-    return {tets_.data() + starts_[s], tets_.data() + starts_[s + 1]};
-  }
-  /// Gives the memory of the tets back; tets() is not to be called any more.
-  void forget_tets() { std::vector<Index>().swap(tets_); }
-
- private:
-  std::vector<Index> points_, slots_;
-  std::vector<std::size_t> starts_;
-  std::vector<Index> tets_;
-};
 
 /// The tets of the lattice that matter and the region of every point: what is moved, then cut.
 ///
@@ -46,7 +24,7 @@ class LabelledLattice {
       is_centre;  ///< 1 for centres of leaves: long edges join alike points, short ones unlike
   std::vector<RegionIndex> first_region;  ///< of each point before it was moved onto an interface
   std::vector<std::uint8_t> is_on;        ///< 1 for points that were
-  std::vector<Tet> tets;                  ///< positive
+  TetList tets;                           ///< positive
   StarMap stars;                          ///< of the points of tets with more than one region
   bool keep_outside = false;
 
@@ -79,6 +57,8 @@ class LabelledLattice {
 
   /// Lists the regions of all stars; values are 0 then.
   void list_star_regions(std::size_t region_count);
+  /// Gives the memory of the stars, their regions and values back; none is to be asked for any more.
+  void forget_stars();
 
  private:
   std::vector<std::size_t> starts_;  ///< by slot
@@ -91,7 +71,7 @@ class LabelledLattice {
 /// their neighbours have, those outside first; `specks` (may be null) is how many there were. They are
 /// smaller than a cell: cracks and self-intersections that the grid hits by chance, and each would become a
 /// component or a cavity. `nearest` is the region of each point, of `region_count` in all.
-LabelledLattice label_lattice(LatticePoints points, std::vector<NearestRegion> nearest, std::vector<Tet> tets,
+LabelledLattice label_lattice(LatticePoints points, std::vector<NearestRegion> nearest, TetList tets,
                               std::size_t region_count, bool keep_outside, std::size_t* specks);
 
 /// Reads the signed distances of all stars. Where the field does not give a point its own region (specks,

@@ -162,15 +162,18 @@ LatticePoints lattice_points(const Octree& octree) {
               if (on_box(octree, box, axis, upper))
                 out.push_back(morton_encode(face_centre(box, axis, upper)) << 1);
         }
+        // Most of what repeats does so within a part: a quarter is left.
+        std::sort(out.begin(), out.end());
+        out.erase(std::unique(out.begin(), out.end()), out.end());
       });
   parallel_sort_unique(marked);
-  points.keys.resize(marked.size());
-  points.positions.resize(marked.size());
-  points.is_centre.resize(marked.size());
-  parallel_for(0, marked.size(), 8 * grain, [&](std::size_t begin, std::size_t end) {
+  points.keys = std::move(marked);
+  points.positions.resize(points.size());
+  points.is_centre.resize(points.size());
+  parallel_for(0, points.size(), 8 * grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      points.keys[i] = marked[i] >> 1;
-      points.is_centre[i] = marked[i] & 1;
+      points.is_centre[i] = points.keys[i] & 1;
+      points.keys[i] >>= 1;
       const HalfCells p = morton_decode(points.keys[i]);
       points.positions[i] = 0.5 * Vec3(p[0], p[1], p[2]);
     }
@@ -205,13 +208,17 @@ std::vector<std::uint8_t> far_outside(const std::vector<NearestRegion>& regions,
   return far;
 }
 
-std::vector<Tet> lattice_tets(const Octree& octree, const LatticePoints& points,
-                              const std::vector<std::uint8_t>* unwanted, int unwanted_level) {
-  return parallel_collect<Tet>(0, octree.size(), grain,
-                               [&](std::size_t begin, std::size_t end, std::vector<Tet>& out) {
-                                 TetEmitter emitter(octree, points, unwanted, unwanted_level, out);
-                                 for (std::size_t i = begin; i < end; ++i) emitter.leaf(i);
-                               });
+TetList lattice_tets(const Octree& octree, const LatticePoints& points,
+                     const std::vector<std::uint8_t>* unwanted, int unwanted_level) {
+  std::vector<std::vector<Tet>> parts((octree.size() + grain - 1) / grain);
+  parallel_for(0, parts.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t part = first; part < last; ++part) {
+      TetEmitter emitter(octree, points, unwanted, unwanted_level, parts[part]);
+      for (std::size_t i = part * grain; i < std::min(octree.size(), (part + 1) * grain); ++i)
+        emitter.leaf(i);
+    }
+  });
+  return TetList(std::move(parts));
 }
 
 }  // namespace tetwright

@@ -6,6 +6,7 @@
 #include "common/types.h"
 #include "mesher/material_field.h"
 #include "mesher/octree.h"
+#include "mesher/tet_list.h"
 
 namespace tetwright {
 
@@ -43,7 +44,7 @@ std::vector<std::uint8_t> far_outside(const std::vector<NearestRegion>& regions,
 ///
 /// With `unwanted` points given, tets of leaves up to the level `unwanted_level` whose points are all
 /// unwanted are left out.
-std::vector<Tet> lattice_tets(const Octree& octree, const LatticePoints& points,
-                              const std::vector<std::uint8_t>* unwanted = nullptr, int unwanted_level = 0);
+TetList lattice_tets(const Octree& octree, const LatticePoints& points,
+                     const std::vector<std::uint8_t>* unwanted = nullptr, int unwanted_level = 0);
 
 }  // namespace tetwright

@@ -31,8 +31,8 @@ constexpr double half_full_thickness = 1.6;
 constexpr double most_lattice_per_dense = 4;
 /// Dense tets of a uniform mesh for each finest cell of volume: the lattice has twelve.
 constexpr double tets_per_volume_uniform = 12;
-/// Peak memory for each dense tet, with the lattice outside; measured on scans, rounded up.
-constexpr double bytes_per_tet = 140;
+/// Peak memory for each dense tet, with the lattice outside; measured 54 on a scan, rounded up.
+constexpr double bytes_per_tet = 70;
 /// As thin_parts.h refines for sheets.
 constexpr double cells_per_sheet = 1.5, smallest_refined = 0.125;
 constexpr std::size_t most_materials = 60000;
@@ -208,7 +208,7 @@ MeshedSurface mesh_surfaces(const PreparedInput& input, const MesherOptions& opt
   report.seconds_sdf = stages.seconds();
 
   stages.begin("octree");
-  const std::vector<MortonKey> interface_voxels = field->interface_voxels();
+  std::vector<MortonKey> interface_voxels = field->interface_voxels();
   ThinSheets sheets;
   if (!options.uniform) sheets = find_thin_sheets(*field, interface_voxels);
   const auto add_thin = [&](const std::vector<ThinPart>& parts, bool refined) {
@@ -219,7 +219,7 @@ MeshedSurface mesh_surfaces(const PreparedInput& input, const MesherOptions& opt
   add_thin(sheets.too_thin, true);
   add_thin(find_thin_parts(*field, interface_voxels), false);
 
-  return mesh_field(field, interface_voxels, {sheets.refinement, std::move(sheets.cells)}, options,
+  return mesh_field(field, std::move(interface_voxels), {sheets.refinement, std::move(sheets.cells)}, options,
                     std::move(report), stages,
                     [&](const std::vector<std::uint8_t>& there) { check_all_there(input, *field, there); });
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
 #include <optional>
 #include <span>
 
@@ -76,18 +78,16 @@ std::vector<std::size_t> scatter_blocks(std::vector<Index>& items, Group&& group
 /// A point with a cut too near to it, and where it could go.
 struct Candidate {
   Index point;
-  bool at_junction;         ///< more than two regions in its star
-  int rank;                 ///< distance from where it should go, in steps
-  Vec3 projected;           ///< where all regions of the star meet, or the interface along the gradient
-  Vec3 on_edge;             ///< the nearest cut
-  RegionIndex beyond_edge;  ///< the region on the other side of that cut
-  double room;              ///< length of the edge with the nearest cut
+  Index other;     ///< the other end of the edge with the nearest cut
+  Vec3 projected;  ///< where all regions of the star meet, or the interface along the gradient
+  /// The edge with the nearest cut before any point was moved: of whole and half lattice units.
+  Eigen::Vector3f edge;
+  std::uint8_t at_junction;  ///< 1: more than two regions in its star
+  std::uint8_t rank;         ///< distance from where it should go, in steps
 
+  double room() const { return edge.cast<double>().norm(); }
   /// Points near junction curves go first: moved onto a sheet they could not reach the curve any more.
   int group() const { return at_junction ? rank : rank + static_cast<int>(distance_steps) + 1; }
-  bool operator<(const Candidate& o) const {
-    return group() != o.group() ? group() < o.group() : point < o.point;
-  }
 };
 
 class Mover {
@@ -100,27 +100,33 @@ class Mover {
     MoveCounts counts;
     counts.candidates = candidates_.size();
     std::vector<Index> order(candidates_.size());
-    for (Index i = 0; i < order.size(); ++i) order[i] = i;
+    std::iota(order.begin(), order.end(), Index{0});
     std::vector<Index> left = attempt(
-        order, [&](Index i) { return candidates_[i].group(); },
-        [&](Index i, FieldSampler&) { return move(candidates_[i]); });
+        std::move(order), [&](Index i) { return candidate(i).group(); },
+        [&](Index i, FieldSampler&) { return move(candidate(i)); });
     // Neighbours that moved since may have made room.
-    left = attempt(left, one_group, [&](Index i, FieldSampler& sampler) {
-      return move(candidates_[i]) || slide(candidates_[i], sampler);
+    left = attempt(std::move(left), one_group, [&](Index i, FieldSampler& sampler) {
+      return move(candidate(i)) || slide(candidate(i), sampler);
     });
     counts.moved = candidates_.size() - left.size();
     counts.pushed = left.size() - attempt(left, one_group, [&](Index i, FieldSampler& sampler) {
-                                    return push_away(candidates_[i], sampler);
+                                    return push_away(candidate(i), sampler);
                                   }).size();
     // The first sweep mends most; the others the few whose neighbours had to move first.
+    std::vector<Candidate>().swap(candidates_);
+    std::vector<Index>().swap(by_rank_);
     constexpr int sweeps = 4;
-    std::vector<Index> tets = tets_near_interfaces();
-    for (int sweep = 0; sweep < sweeps && !tets.empty(); ++sweep) tets = mend_poor_stars(tets);
+    std::vector<Index> tets = mend_poor_stars(lattice_.tets.size(), [](std::size_t i) { return i; });
+    for (int sweep = 1; sweep < sweeps && !tets.empty(); ++sweep)
+      tets = mend_poor_stars(tets.size(), [&](std::size_t i) { return tets[i]; });
     return counts;
   }
 
  private:
-  std::span<const Index> star(Index p) const { return lattice_.stars.tets(p); }
+  StarMap::Tets star(Index p) const { return lattice_.stars.tets(p); }
+
+  /// Number i in the order in which they are tried.
+  const Candidate& candidate(Index i) const { return candidates_[by_rank_[i]]; }
 
   static constexpr auto one_group = [](Index) { return 0; };
 
@@ -130,14 +136,14 @@ class Mover {
   std::vector<Index> attempt(std::vector<Index> list, Group&& group, Work&& work) {
     const std::vector<std::size_t> starts = scatter_blocks(list, group);
     std::vector<Index> points(list.size());
-    for (std::size_t k = 0; k < list.size(); ++k) points[k] = candidates_[list[k]].point;
+    for (std::size_t k = 0; k < list.size(); ++k) points[k] = candidate(list[k]).point;
     std::vector<std::uint8_t> done(list.size(), 0);
     run_blocks(points, starts,
                [&](std::size_t k, FieldSampler& sampler) { done[k] = work(list[k], sampler); });
     std::vector<Index> left;
     for (std::size_t k = 0; k < list.size(); ++k)
       if (!done[k]) left.push_back(list[k]);
-    parallel_sort(left, [&](Index a, Index b) { return candidates_[a].point < candidates_[b].point; });
+    parallel_sort(left, [&](Index a, Index b) { return by_rank_[a] < by_rank_[b]; });
     return left;
   }
 
@@ -160,12 +166,12 @@ class Mover {
   }
 
   /// What there is to know about a point with a cut too near to it; nothing for others.
-  std::optional<Candidate> candidate(Index p, FieldSampler& sampler) const {
+  std::optional<Candidate> as_candidate(Index p, FieldSampler& sampler) const {
     const RegionIndex own = lattice_.first_region[p];
     if (field_.is_certain(lattice_.positions[p])) return std::nullopt;
     const std::optional<RegionSet> regions = pure_regions(lattice_, p);
     if (!regions) return std::nullopt;
-    double nearest = 0, nearest_share = 0;
+    double nearest = 0;
     Index other = no_index;
     bool too_near = false;
     for (Index t : star(p))
@@ -177,7 +183,6 @@ class Mover {
         const double length = share * (lattice_.positions[q] - lattice_.positions[p]).norm();
         if (other == no_index || length < nearest || (length == nearest && q < other)) {
           nearest = length;
-          nearest_share = share;
           other = q;
         }
       }
@@ -185,29 +190,40 @@ class Mover {
     const Vec3 &from = lattice_.positions[p], &to = lattice_.positions[other];
     Candidate c;
     c.point = p;
+    c.other = other;
     c.at_junction = regions->size() > 2;
-    c.room = (to - from).norm();
-    c.on_edge = from + (to - from) * nearest_share;
-    c.beyond_edge = lattice_.first_region[other];
+    c.edge = (to - from).cast<float>();
     c.projected = from;
     // Past a ridge of the distance the gradient leads anywhere.
-    if (!sampler.project(*regions, c.projected) || (c.projected - from).norm() > c.room)
-      c.projected = c.on_edge;
+    if (!sampler.project(*regions, c.projected) || (c.projected - from).norm() > c.room())
+      c.projected = on_edge(c);
     const double distance = c.at_junction ? (c.projected - from).norm() : lattice_.margin(p);
-    c.rank = static_cast<int>(std::min(distance / c.room, 1.0) * distance_steps);
+    c.rank = static_cast<std::uint8_t>(std::min(distance / c.room(), 1.0) * distance_steps);
     return c;
   }
+
+  /// The nearest cut, as long as the point has not been moved.
+  Vec3 on_edge(const Candidate& c) const {
+    const double share = lattice_.cut_share(c.point, lattice_.first_region[c.point], c.other, beyond_edge(c));
+    return lattice_.positions[c.point] + c.edge.cast<double>() * share;
+  }
+  /// The region on the other side of that cut.
+  RegionIndex beyond_edge(const Candidate& c) const { return lattice_.first_region[c.other]; }
 
   void find_candidates() {
     const std::vector<Index>& near = lattice_.stars.points();
     candidates_ = parallel_collect<Candidate>(
-        0, near.size(), 1024, [&](std::size_t begin, std::size_t end, std::vector<Candidate>& out) {
+        0, near.size(), 1 << 13, [&](std::size_t begin, std::size_t end, std::vector<Candidate>& out) {
           const std::unique_ptr<FieldSampler> owned = field_.sampler();
           FieldSampler& sampler = *owned;
           for (std::size_t i = begin; i < end; ++i)
-            if (const std::optional<Candidate> c = candidate(near[i], sampler)) out.push_back(*c);
+            if (const std::optional<Candidate> c = as_candidate(near[i], sampler)) out.push_back(*c);
         });
-    parallel_sort(candidates_);
+    by_rank_.resize(candidates_.size());
+    std::iota(by_rank_.begin(), by_rank_.end(), Index{0});
+    parallel_sort(by_rank_, [&](Index a, Index b) {
+      return std::pair(candidates_[a].group(), a) < std::pair(candidates_[b].group(), b);
+    });
   }
 
   /// True if all tets around the point keep good angles with the point at `place`.
@@ -224,14 +240,15 @@ class Mover {
   }
 
   bool move(const Candidate& c) {
+    const Vec3 cut = on_edge(c);
     const bool projected = star_holds(c.point, c.projected);
-    if (!projected && !star_holds(c.point, c.on_edge)) return false;
+    if (!projected && !star_holds(c.point, cut)) return false;
     const std::optional<RegionSet> regions = regions_if_moved(lattice_, c.point);
     if (!regions) return false;
     // The cut of an edge is on one sheet, not on a curve.
-    const bool sheet = regions->size() == 2 && regions->contains(c.beyond_edge);
-    if (projected && (c.projected != c.on_edge || sheet)) return put(c.point, c.projected);
-    return sheet && star_holds(c.point, c.on_edge) && put(c.point, c.on_edge);
+    const bool sheet = regions->size() == 2 && regions->contains(beyond_edge(c));
+    if (projected && (c.projected != cut || sheet)) return put(c.point, c.projected);
+    return sheet && star_holds(c.point, cut) && put(c.point, cut);
   }
 
   bool put(Index p, const Vec3& place) {
@@ -261,7 +278,7 @@ class Mover {
     const Vec3 middle = middle_of_star(p);
     for (double share : {0.0, 0.5, 1.0}) {
       Vec3 place = lattice_.positions[p] + share * (middle - lattice_.positions[p]);
-      if (sampler.project(*regions, place) && (place - lattice_.positions[p]).norm() <= c.room &&
+      if (sampler.project(*regions, place) && (place - lattice_.positions[p]).norm() <= c.room() &&
           star_holds(p, place))
         return put(p, place);
     }
@@ -307,38 +324,30 @@ class Mover {
     const Index p = c.point;
     Vec3 gradient;
     const double value =
-        sampler.between(lattice_.first_region[p], c.beyond_edge, lattice_.positions[p], gradient);
+        sampler.between(lattice_.first_region[p], beyond_edge(c), lattice_.positions[p], gradient);
     const double slope = gradient.norm();
     if (!(slope > 0)) return false;
     std::vector<Vec3> places;
     for (double share : {0.15, 0.25, 0.35, 0.5})
-      if (const double step = share * c.room - std::abs(value); step > 0)
+      if (const double step = share * c.room() - std::abs(value); step > 0)
         places.push_back(lattice_.positions[p] - gradient * (step / slope));
     return take_best(p, places, sampler);
   }
 
-  std::vector<Index> tets_near_interfaces() const {
-    return parallel_collect<Index>(0, lattice_.tets.size(), 1 << 14,
-                                   [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
-                                     for (std::size_t i = begin; i < end; ++i)
-                                       for (Index v : lattice_.tets[i])
-                                         if (lattice_.stars.lists(v)) {
-                                           out.push_back(static_cast<Index>(i));
-                                           break;
-                                         }
-                                   });
-  }
-
-  /// Moves the points of those of the tets that have a piece that is still poor: points on an interface slide
-  /// along it, the others step about. Returns the tets that may be poor after that.
-  std::vector<Index> mend_poor_stars(const std::vector<Index>& tets) {
+  /// Moves the points near interfaces of those tets that have a piece that is still poor, of `count` tets
+  /// `tet(i)`: points on an interface slide along it, the others step about. Returns the tets that may be
+  /// poor after that.
+  template <class TetOf>
+  std::vector<Index> mend_poor_stars(std::size_t count, TetOf&& tet) {
     std::vector<Index> points = parallel_collect<Index>(
-        0, tets.size(), 1 << 12, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+        0, count, 1 << 12, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+          const auto near = [&](Index v) { return lattice_.stars.lists(v); };
           for (std::size_t i = begin; i < end; ++i) {
-            const Tet& t = lattice_.tets[tets[i]];
-            if (worst_piece_tangent(lattice_, t) >= smallest_tangent) continue;
-            for (Index v : t)
-              if (lattice_.stars.lists(v)) out.push_back(v);
+            const Tet& t = lattice_.tets[tet(i)];
+            if (std::none_of(t.begin(), t.end(), near) ||
+                worst_piece_tangent(lattice_, t) >= smallest_tangent)
+              continue;
+            std::copy_if(t.begin(), t.end(), std::back_inserter(out), near);
           }
         });
     parallel_sort_unique(points);
@@ -389,7 +398,8 @@ class Mover {
   const MaterialField& field_;
   IndependentRounds rounds_;
   Progress* progress_;
-  std::vector<Candidate> candidates_;
+  std::vector<Candidate> candidates_;  ///< in the order of their points
+  std::vector<Index> by_rank_;         ///< places in candidates_, by group, then point
 };
 
 }  // namespace

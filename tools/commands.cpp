@@ -163,6 +163,7 @@ class Run {
                                   : mesh_surfaces(input_, surface_options(), &progress_);
     if (line_.command == Command::prepare || !line_.write_sdf.empty()) field_ = dense.field;
     mesh_ = std::move(dense.mesh);
+    dense.field.reset();
     report_.mesher = dense.report;
     report_.seconds_mesh = watch.seconds();
     input_ = {};
@@ -332,7 +333,8 @@ class Run {
   }
 
   ExitStatus finish() {
-    report_.result = mesh_statistics(mesh_, line_.min_solid_angle);
+    // The dense mesh is the result where nothing was done to it.
+    report_.result = report_.simplify ? mesh_statistics(mesh_, line_.min_solid_angle) : report_.dense;
     report_.material_names = mesh_.material_names;
     note_volumes();
     if (report_.simplify) find_shortfall();

@@ -126,6 +126,10 @@ void check_output_file(const std::string& path) {
 }
 
 void write_file_atomically(const std::string& path, std::string_view bytes) {
+  write_file_atomically(path, [&](const ByteSink& sink) { sink(bytes); });
+}
+
+void write_file_atomically(const std::string& path, const std::function<void(const ByteSink&)>& content) {
   check_output_file(path);
   const std::string target = link_target(path);
   const FileSizeSignalIgnored ignored;
@@ -134,14 +138,16 @@ void write_file_atomically(const std::string& path, std::string_view bytes) {
   struct stat status;
   if (stat(target.c_str(), &status) == 0 && fchmod(temporary.file(), status.st_mode & 07777) != 0)
     fail(path, "permissions", errno);
-  while (!bytes.empty()) {
-    const ssize_t written = write(temporary.file(), bytes.data(), std::min(bytes.size(), piece_size));
-    if (written < 0) {
-      if (errno == EINTR) continue;
-      fail(path, "writing failed", errno);
+  content([&](std::string_view bytes) {
+    while (!bytes.empty()) {
+      const ssize_t written = write(temporary.file(), bytes.data(), std::min(bytes.size(), piece_size));
+      if (written < 0) {
+        if (errno == EINTR) continue;
+        fail(path, "writing failed", errno);
+      }
+      bytes.remove_prefix(static_cast<std::size_t>(written));
     }
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
+  });
   if (fsync(temporary.file()) != 0) fail(path, "syncing to the disk failed", errno);
   if (temporary.close() != 0) fail(path, "closing failed", errno);
   if (std::rename(temporary.path().c_str(), target.c_str()) != 0) fail(path, "renaming failed", errno);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -15,6 +16,12 @@ void check_output_file(const std::string& path);
 /// file size limit) nothing is left behind, an existing file is untouched and OutputError is thrown. SIGXFSZ
 /// is ignored meanwhile, for the whole process. Different files may be written concurrently.
 void write_file_atomically(const std::string& path, std::string_view bytes);
+
+/// Takes the bytes of a file piece by piece.
+using ByteSink = std::function<void(std::string_view)>;
+/// The same for a file that need not be in memory as a whole: `content` hands its bytes over. What that
+/// throws is thrown on, and nothing is left behind then.
+void write_file_atomically(const std::string& path, const std::function<void(const ByteSink&)>& content);
 
 /// All bytes of a file. Throws InputError if it can't be read or is a folder.
 std::string read_whole_file(const std::string& path);

@@ -58,17 +58,23 @@ ReadTetMesh read_ele_with_node(const std::string& path, const ReadTetMeshOptions
   return read_tetgen(read_whole_file(node), node, read_whole_file(path), path, options);
 }
 
+template <std::string (*write)(const TetMesh&)>
+void write_as_one(const TetMesh& mesh, const ByteSink& sink) {
+  sink(write(mesh));
+}
+
 struct TetFormat {
   const char* extension;
   ReadTetMesh (*read)(const std::string& path, const ReadTetMeshOptions& options);
-  std::string (*write)(const TetMesh& mesh);  ///< null: the format is only read
+  void (*write)(const TetMesh& mesh, const ByteSink& sink);  ///< null: the format is only read
 };
-constexpr std::array<TetFormat, 6> tet_formats{{{".vtu", read_one_file<read_vtu>, write_vtu},
-                                                {".msh", read_one_file<read_msh>, write_msh},
-                                                {".mesh", read_one_file<read_medit>, write_medit},
-                                                {".vtk", read_one_file<read_vtk>, nullptr},
-                                                {".node", read_node_with_ele, nullptr},
-                                                {".ele", read_ele_with_node, nullptr}}};
+constexpr std::array<TetFormat, 6> tet_formats{
+    {{".vtu", read_one_file<read_vtu>, write_vtu},
+     {".msh", read_one_file<read_msh>, write_as_one<write_msh>},
+     {".mesh", read_one_file<read_medit>, write_as_one<write_medit>},
+     {".vtk", read_one_file<read_vtk>, nullptr},
+     {".node", read_node_with_ele, nullptr},
+     {".ele", read_ele_with_node, nullptr}}};
 
 template <LabelVolume (*read)(std::string_view, const std::string&)>
 LabelVolume read_one_volume_file(const std::string& path) {
@@ -188,7 +194,7 @@ void write_surface(const TriangleMesh& mesh, const std::string& path) {
 
 void write_tet_mesh(const TetMesh& mesh, const std::string& path) {
   const TetFormat& format = need_format(tet_formats, path, FileKind::tet_mesh, FileUse::write);
-  write_file_atomically(path, format.write(mesh));
+  write_file_atomically(path, [&](const ByteSink& sink) { format.write(mesh, sink); });
 }
 
 void write_label_volume(const LabelVolume& volume, const std::string& path) {

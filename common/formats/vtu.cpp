@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <span>
 
 #include "common/error.h"
 #include "common/formats/byte_order.h"
@@ -181,28 +182,24 @@ class Reader {
   ReadTetMesh result_;
 };
 
-/// The numbers as little-endian bytes.
-template <class Number>
-class Bytes {
- public:
-  explicit Bytes(std::size_t n) { bytes_.reserve(n * sizeof(Number)); }
-  void add(Number value) {
-    auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(value);
-    if (!little_endian_machine) std::reverse(raw.begin(), raw.end());
-    bytes_.append(raw.data(), raw.size());
-  }
-  const std::string& get() const { return bytes_; }
-
- private:
-  std::string bytes_;
-};
-
-void append_array(std::string& out, const char* type, const std::string& name, const std::string& more,
-                  const std::string& bytes) {
-  out +=
-      std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\" " + more + "format=\"binary\">\n";
-  out += encode_vtu_array(bytes);
-  out += "\n</DataArray>\n";
+/// Hands over a data array of `size` numbers, the i-th of which is `number(i)`.
+template <class NumberAt>
+void write_array(const ByteSink& sink, const char* type, const std::string& name, const std::string& more,
+                 std::size_t size, NumberAt&& number) {
+  using Number = decltype(number(std::size_t{}));
+  sink(std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\" " + more +
+       "format=\"binary\">\n");
+  write_vtu_array(
+      size * sizeof(Number),
+      [&](std::size_t begin, std::span<char> bytes) {
+        for (std::size_t at = 0; at < bytes.size(); at += sizeof(Number)) {
+          auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(number((begin + at) / sizeof(Number)));
+          if (!little_endian_machine) std::reverse(raw.begin(), raw.end());
+          std::copy(raw.begin(), raw.end(), bytes.data() + at);
+        }
+      },
+      sink);
+  sink("\n</DataArray>\n");
 }
 
 /// In an attribute; control characters are not in it any more.
@@ -223,20 +220,18 @@ std::string escaped(const std::string& name) {
   return out;
 }
 
-void append_field(std::string& out, const MeshField& field, const std::string& name) {
-  const auto append = [&]<class Number>(Number, const char* type) {
-    Bytes<Number> bytes(field.values.size());
-    for (double value : field.values) bytes.add(static_cast<Number>(value));
-    append_array(out, type, escaped(name), "NumberOfComponents=\"" + std::to_string(field.components) + "\" ",
-                 bytes.get());
+void write_field(const ByteSink& sink, const MeshField& field, const std::string& name) {
+  const auto write = [&]<class Number>(Number, const char* type) {
+    write_array(sink, type, escaped(name), "NumberOfComponents=\"" + std::to_string(field.components) + "\" ",
+                field.values.size(), [&](std::size_t i) { return static_cast<Number>(field.values[i]); });
   };
   const auto narrow = [](double value) { return value >= INT32_MIN && value <= INT32_MAX; };
   if (!field.integer || !all_whole(field))
-    append(double{}, "Float64");
+    write(double{}, "Float64");
   else if (std::all_of(field.values.begin(), field.values.end(), narrow))
-    append(std::int32_t{}, "Int32");
+    write(std::int32_t{}, "Int32");
   else
-    append(std::int64_t{}, "Int64");
+    write(std::int64_t{}, "Int64");
 }
 
 }  // namespace
@@ -246,63 +241,54 @@ ReadTetMesh read_vtu(std::string_view bytes, const std::string& name, const Read
 }
 
 std::string write_vtu(const TetMesh& mesh) {
-  std::string out =
+  std::string out;
+  write_vtu(mesh, [&](std::string_view bytes) { out += bytes; });
+  return out;
+}
+
+void write_vtu(const TetMesh& mesh, const ByteSink& sink) {
+  sink(
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
       "byte_order=\"LittleEndian\" "
-      "header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
+      "header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n");
   if (!mesh.material_names.empty()) {
     // As numbers, since VTK's own string arrays are unknown to other readers.
-    Bytes<std::uint8_t> text(0);
+    std::string text;
     for (const auto& [tag, name] : mesh.material_names) {
-      std::string line;
-      append_number(line, tag);
-      line += '\t';
-      for (char c : name) line += static_cast<unsigned char>(c) < ' ' ? '_' : c;
-      line += '\n';
-      for (char c : line) text.add(static_cast<std::uint8_t>(c));
+      append_number(text, tag);
+      text += '\t';
+      for (char c : name) text += static_cast<unsigned char>(c) < ' ' ? '_' : c;
+      text += '\n';
     }
-    out += "<FieldData>\n";
-    append_array(out, "UInt8", names_field, "NumberOfTuples=\"" + std::to_string(text.get().size()) + "\" ",
-                 text.get());
-    out += "</FieldData>\n";
+    sink("<FieldData>\n");
+    write_array(sink, "UInt8", names_field, "NumberOfTuples=\"" + std::to_string(text.size()) + "\" ",
+                text.size(), [&](std::size_t i) { return text[i]; });
+    sink("</FieldData>\n");
   }
-  out += "<Piece NumberOfPoints=\"" + std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" +
-         std::to_string(mesh.tets.size()) + "\">\n<Points>\n";
-  {
-    Bytes<double> points(3 * mesh.points.size());
-    for (const Vec3& p : mesh.points)
-      for (int k = 0; k < 3; ++k) points.add(p[k]);
-    append_array(out, "Float64", "Points", "NumberOfComponents=\"3\" ", points.get());
-  }
-  out += "</Points>\n<Cells>\n";
-  {
-    Bytes<std::int64_t> connectivity(4 * mesh.tets.size());
-    for (const Tet& tet : mesh.tets)
-      for (Index vertex : tet) connectivity.add(vertex);
-    append_array(out, "Int64", "connectivity", "", connectivity.get());
-  }
-  {
-    Bytes<std::int64_t> offsets(mesh.tets.size());
-    for (std::size_t t = 1; t <= mesh.tets.size(); ++t) offsets.add(static_cast<std::int64_t>(4 * t));
-    append_array(out, "Int64", "offsets", "", offsets.get());
-  }
-  append_array(out, "UInt8", "types", "", std::string(mesh.tets.size(), static_cast<char>(tet_type)));
-  out += "</Cells>\n";
+  sink("<Piece NumberOfPoints=\"" + std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" +
+       std::to_string(mesh.tets.size()) + "\">\n<Points>\n");
+  write_array(sink, "Float64", "Points", "NumberOfComponents=\"3\" ", 3 * mesh.points.size(),
+              [&](std::size_t i) { return mesh.points[i / 3][static_cast<Eigen::Index>(i % 3)]; });
+  sink("</Points>\n<Cells>\n");
+  write_array(sink, "Int64", "connectivity", "", 4 * mesh.tets.size(),
+              [&](std::size_t i) { return std::int64_t{mesh.tets[i / 4][i % 4]}; });
+  write_array(sink, "Int64", "offsets", "", mesh.tets.size(),
+              [](std::size_t i) { return static_cast<std::int64_t>(4 * (i + 1)); });
+  write_array(sink, "UInt8", "types", "", mesh.tets.size(),
+              [](std::size_t) { return static_cast<std::uint8_t>(tet_type); });
+  sink("</Cells>\n");
   if (!mesh.point_fields.empty()) {
-    out += "<PointData>\n";
+    sink("<PointData>\n");
     const std::vector<std::string> names = field_names_to_write(mesh.point_fields, {});
-    for (std::size_t f = 0; f < names.size(); ++f) append_field(out, mesh.point_fields[f], names[f]);
-    out += "</PointData>\n";
+    for (std::size_t f = 0; f < names.size(); ++f) write_field(sink, mesh.point_fields[f], names[f]);
+    sink("</PointData>\n");
   }
-  out += "<CellData Scalars=\"material\">\n";
-  {
-    Bytes<std::int32_t> materials(mesh.tets.size());
-    for (MaterialTag tag : mesh.materials) materials.add(tag);
-    append_array(out, "Int32", "material", "", materials.get());
-  }
+  sink("<CellData Scalars=\"material\">\n");
+  write_array(sink, "Int32", "material", "", mesh.tets.size(),
+              [&](std::size_t i) { return std::int32_t{mesh.materials[i]}; });
   const std::vector<std::string> names = field_names_to_write(mesh.cell_fields, {"material"});
-  for (std::size_t f = 0; f < names.size(); ++f) append_field(out, mesh.cell_fields[f], names[f]);
-  return out + "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+  for (std::size_t f = 0; f < names.size(); ++f) write_field(sink, mesh.cell_fields[f], names[f]);
+  sink("</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
 }
 
 }  // namespace tetwright

@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/formats/atomic_file.h"
 #include "common/formats/read_tet_mesh_result.h"
 
 namespace tetwright {
@@ -20,5 +21,8 @@ ReadTetMesh read_vtu(std::string_view bytes, const std::string& name, const Read
 /// Int64 where they are integers. Tets only: the cell fields are those of a solver's elements, and readers
 /// that take every cell for an element would stumble over interface triangles.
 std::string write_vtu(const TetMesh& mesh);
+/// The same for a file that is larger than what should be in memory: some MB and the compressed numbers of
+/// one array at a time.
+void write_vtu(const TetMesh& mesh, const ByteSink& sink);
 
 }  // namespace tetwright

@@ -228,39 +228,54 @@ std::vector<std::int64_t> VtuData::integers(pugi::xml_node array, std::size_t mo
   return values<std::int64_t>(array, most);
 }
 
-std::string encode_vtu_array(std::string_view bytes) {
+void write_vtu_array(std::size_t size, const std::function<void(std::size_t begin, std::span<char>)>& fill,
+                     const ByteSink& sink) {
   constexpr std::size_t block_size = std::size_t{1} << 18;
   // A good deal faster than zlib's default of 6, and a few percent larger.
   constexpr int level = 4;
-  const std::size_t blocks = (bytes.size() + block_size - 1) / block_size;
+  const std::size_t blocks = (size + block_size - 1) / block_size;
   std::vector<std::string> packed(blocks);
-  parallel_chunks(blocks, [&](std::size_t b, unsigned) {
-    const std::string_view block = bytes.substr(b * block_size, block_size);
-    uLongf size = compressBound(block.size());
-    packed[b].resize(size);
-    TETWRIGHT_CHECK(compress2(reinterpret_cast<Bytef*>(packed[b].data()), &size,
-                              reinterpret_cast<const Bytef*>(block.data()), block.size(), level) == Z_OK);
-    packed[b].resize(size);
+  struct Buffers {
+    std::vector<char> raw, packed;
+  };
+  std::vector<Buffers> buffers(thread_count());
+  parallel_chunks(blocks, [&](std::size_t b, unsigned worker) {
+    auto& [raw, out] = buffers[worker];
+    raw.resize(std::min(block_size, size - b * block_size));
+    fill(b * block_size, raw);
+    uLongf packed_size = compressBound(raw.size());
+    out.resize(packed_size);
+    TETWRIGHT_CHECK(compress2(reinterpret_cast<Bytef*>(out.data()), &packed_size,
+                              reinterpret_cast<const Bytef*>(raw.data()), raw.size(), level) == Z_OK);
+    packed[b].assign(out.data(), packed_size);
   });
-  std::string header, data;
-  const auto append_size = [&](std::size_t size) {
-    auto raw = std::bit_cast<std::array<char, 4>>(static_cast<std::uint32_t>(size));
+  std::string header;
+  const auto append_size = [&](std::size_t n) {
+    auto raw = std::bit_cast<std::array<char, 4>>(static_cast<std::uint32_t>(n));
     if (!little_endian_machine) std::reverse(raw.begin(), raw.end());
     header.append(raw.data(), raw.size());
   };
   append_size(blocks);
   if (blocks > 0) {
     append_size(block_size);
-    append_size(bytes.size() % block_size);  // 0: the last one is full
-    for (const std::string& p : packed) {
-      append_size(p.size());
-      data += p;
-    }
+    append_size(size % block_size);  // 0: the last one is full
+    for (const std::string& p : packed) append_size(p.size());
   }
-  std::string out;
-  append_base64(out, header);
-  append_base64(out, data);
-  return out;
+  std::string text;
+  append_base64(text, header);
+  // All blocks are one stream: three bytes that make four letters may lie in two of them.
+  std::string data;
+  for (std::string& p : packed) {
+    data += p;
+    std::string().swap(p);
+    const std::size_t whole = data.size() / 3 * 3;
+    append_base64(text, std::string_view(data).substr(0, whole));
+    data.erase(0, whole);
+    sink(text);
+    text.clear();
+  }
+  append_base64(text, data);
+  sink(text);
 }
 
 }  // namespace tetwright

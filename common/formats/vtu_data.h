@@ -1,10 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <pugixml.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "common/formats/atomic_file.h"
 
 namespace tetwright {
 
@@ -47,6 +51,10 @@ class VtuData {
 
 /// Compresses with zlib in blocks (in parallel) and encodes as VTK does inline: for format="binary",
 /// header_type="UInt32", compressor="vtkZLibDataCompressor".
-std::string encode_vtu_array(std::string_view bytes);
+/// `fill(begin, bytes)` is called concurrently and writes the array's bytes from `begin` on, as many as there
+/// is room for; blocks begin at multiples of 2^18. Of the array, `size` bytes long, only what is compressed
+/// is in memory as a whole.
+void write_vtu_array(std::size_t size, const std::function<void(std::size_t begin, std::span<char>)>& fill,
+                     const ByteSink& sink);
 
 }  // namespace tetwright

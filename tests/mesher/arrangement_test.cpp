@@ -46,7 +46,7 @@ TEST(Arrangement, ANeckIsNotClosed) {
 TEST(Arrangement, NoTetLiesFlatOnTheInterface) {
   LabelledLattice lattice = make_lattice([](const Vec3& p) { return p.z() < 2.75 ? 1 : 0; });
   const Index p = point_at(lattice, {3, 3, 3});
-  for (Index v : lattice.tets[lattice.stars.tets(p)[0]])
+  for (Index v : lattice.tets[*lattice.stars.tets(p).begin()])
     if (v != p) lattice.is_on[v] = 1;
   EXPECT_FALSE(regions_if_moved(lattice, p));
 }

@@ -33,7 +33,7 @@ TEST(Cutting, CutsAreSharedAndOffTheEnds) {
     worst = std::min(worst, min_solid_angle_tangent(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]],
                                                     mesh.points[t[3]]));
   double expected = 4;
-  for (const Tet& t : lattice.tets)
+  for (const Tet& t : lattice.tets.all())
     if (lattice.stars.lists(t[0]) || lattice.stars.lists(t[1]) || lattice.stars.lists(t[2]) ||
         lattice.stars.lists(t[3]))
       expected = std::min(expected, worst_piece_tangent(lattice, t));

@@ -17,7 +17,7 @@ TEST(LabelledLattice, DropsTetsFarOutside) {
   const LabelledLattice lattice =
       make_lattice([](const Vec3& p) { return (p - Vec3(2, 2, 2)).norm() < 1.2 ? 1 : 0; });
   EXPECT_LT(lattice.tets.size(), 3u * 180u * 4u + 6u * 36u * 4u);
-  for (const Tet& t : lattice.tets)
+  for (const Tet& t : lattice.tets.all())
     EXPECT_TRUE(std::any_of(t.begin(), t.end(),
                             [&](Index v) { return lattice.first_region[v] == 1 || lattice.stars.lists(v); }));
 }

@@ -15,7 +15,7 @@ TEST(Lattice, FillsTheBoxWithoutTJunctions) {
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     const Octree octree = make_random_octree(seed);
     const LatticePoints points = lattice_points(octree);
-    const std::vector<Tet> tets = lattice_tets(octree, points);
+    const std::vector<Tet> tets = lattice_tets(octree, points).all();
     const double box = static_cast<double>(octree.cells[0]) * octree.cells[1] * octree.cells[2];
     EXPECT_NEAR(volume(points.positions, tets), box, 1e-9 * box);
 
@@ -61,7 +61,7 @@ TEST(Lattice, EqualCells) {
     const auto low = morton_decode(octree.leaf(i).key);
     EXPECT_EQ(points.positions[points.leaf_centres[i]], Vec3(low[0] + 0.5, low[1] + 0.5, low[2] + 0.5));
   }
-  const std::vector<Tet> tets = lattice_tets(octree, points);
+  const std::vector<Tet> tets = lattice_tets(octree, points).all();
   EXPECT_EQ(tets.size(), 3u * 48u * 4u + 6u * 16u * 4u);
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_EQ(points.find(points.keys[i]), i);

@@ -19,7 +19,7 @@ inline LabelledLattice make_lattice(const std::function<RegionIndex(const Vec3&)
     nearest.push_back({region(p), 1});
     most = std::max(most, nearest.back().region);
   }
-  std::vector<Tet> tets = lattice_tets(octree, points);
+  TetList tets = lattice_tets(octree, points);
   LabelledLattice lattice =
       label_lattice(std::move(points), std::move(nearest), std::move(tets), most + 1u, false, specks);
   for (Index p : lattice.stars.points())

@@ -15,7 +15,7 @@ LabelledLattice lattice_of(const MaterialField& field) {
   const Octree octree = build_octree(field, {false, 0.05}, field.interface_voxels(), {}, nullptr);
   LatticePoints points = lattice_points(octree);
   std::vector<NearestRegion> regions = lattice_regions(points, field);
-  std::vector<Tet> tets = lattice_tets(octree, points);
+  TetList tets = lattice_tets(octree, points);
   LabelledLattice lattice = label_lattice(std::move(points), std::move(regions), std::move(tets),
                                           field.regions().size(), false, nullptr);
   read_star_values(lattice, field);
@@ -24,7 +24,7 @@ LabelledLattice lattice_of(const MaterialField& field) {
 
 double poor_share(const LabelledLattice& lattice) {
   std::size_t count = 0, all = 0;
-  for (const Tet& t : lattice.tets) {
+  for (const Tet& t : lattice.tets.all()) {
     if (!lattice.stars.lists(t[0]) && !lattice.stars.lists(t[1]) && !lattice.stars.lists(t[2]) &&
         !lattice.stars.lists(t[3]))
       continue;
@@ -56,7 +56,7 @@ void expect_moves_well(const std::vector<TriangleMesh>& surfaces, double cell, d
       EXPECT_LT(std::abs(sampler.between((*regions)[0], (*regions)[k], lattice.positions[p], unused)), 0.3);
     }
   }
-  for (const Tet& t : lattice.tets) {
+  for (const Tet& t : lattice.tets.all()) {
     const auto& x = lattice.positions;
     ASSERT_GE(min_solid_angle(x[t[0]], x[t[1]], x[t[2]], x[t[3]]), 0.1 - 1e-12);
     ASSERT_FALSE(lattice.is_on[t[0]] && lattice.is_on[t[1]] && lattice.is_on[t[2]] && lattice.is_on[t[3]]);

@@ -55,7 +55,7 @@ TEST(LabelNames, AtMost255BytesLong) {
   const std::string longest(255, 'n');
   EXPECT_EQ(parse("1 " + longest), (Names{{1, longest}}));
   const std::string message = error_of<InputError>([&] { parse("1 a\n2 " + longest + "n\n"); });
-  EXPECT_NE(message.find("f:2: label 2 has a name of 256 bytes"), std::string::npos) << message;
+  EXPECT_NE(message.find("f: line 2: label 2 has a name of 256 bytes"), std::string::npos) << message;
 }
 
 TEST(LabelNames, FromAFile) {

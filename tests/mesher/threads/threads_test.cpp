@@ -34,7 +34,7 @@ CutMesh mesh_with(unsigned threads) {
       build_octree(field, {false, 0.05}, interfaces, find_thin_sheets(field, interfaces).cells, nullptr);
   LatticePoints points = lattice_points(octree);
   std::vector<NearestRegion> regions = lattice_regions(points, field);
-  std::vector<Tet> tets = lattice_tets(octree, points);
+  TetList tets = lattice_tets(octree, points);
   LabelledLattice lattice =
       label_lattice(std::move(points), std::move(regions), std::move(tets), 3, false, nullptr);
   read_star_values(lattice, field);
