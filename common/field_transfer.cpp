@@ -27,7 +27,7 @@ constexpr std::size_t leaf_tets = 8;
 /// rounding of orient3d_value is about 1e-15, and below it weights would be noise.
 constexpr double flat_squared = 1e-28;
 
-struct Box {
+struct TetBox {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
   Vec3 high = Vec3::Constant(-std::numeric_limits<double>::infinity());
 
@@ -35,7 +35,7 @@ struct Box {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  void add(const Box& b) {
+  void add(const TetBox& b) {
     low = low.cwiseMin(b.low);
     high = high.cwiseMax(b.high);
   }
@@ -58,10 +58,10 @@ struct Box {
 using Weights = std::array<double, 4>;
 
 /// Corners of a tet.
-using Corners = std::array<Vec3, 4>;
+using TetCorners = std::array<Vec3, 4>;
 
 /// The weights of a point that the tet or its mirror image holds; nothing for others and in flat tets.
-std::optional<Weights> weights_inside(const Corners& c, const Vec3& p) {
+std::optional<Weights> weights_inside(const TetCorners& c, const Vec3& p) {
   const double volume = orient3d_value(c[0], c[1], c[2], c[3]);
   const double edges =
       (c[1] - c[0]).squaredNorm() * (c[2] - c[0]).squaredNorm() * (c[3] - c[0]).squaredNorm();
@@ -119,12 +119,12 @@ struct Nearest {
   Vec3 place = Vec3::Zero();
 };
 
-std::array<Vec3, 3> face_corners(const Corners& c, int face) {
+std::array<Vec3, 3> face_corners(const TetCorners& c, int face) {
   const auto& f = tet_faces[face];
   return {c[f[0]], c[f[1]], c[f[2]]};
 }
 
-Nearest nearest_on_faces(const Corners& c, const Vec3& p) {
+Nearest nearest_on_faces(const TetCorners& c, const Vec3& p) {
   Nearest best;
   for (int face = 0; face < 4; ++face) {
     const auto [a, b, d] = face_corners(c, face);
@@ -158,7 +158,7 @@ class TetTree {
     parallel_for(0, (tets_.size() + leaf_tets - 1) / leaf_tets, grain,
                  [&](std::size_t begin, std::size_t end) {
                    for (std::size_t leaf = begin; leaf < end; ++leaf) {
-                     Box& box = boxes_[leaves_ - 1 + leaf];
+                     TetBox& box = boxes_[leaves_ - 1 + leaf];
                      const std::size_t last = std::min(tets_.size(), (leaf + 1) * leaf_tets);
                      for (std::size_t i = leaf * leaf_tets; i < last; ++i)
                        for (const Vec3& p : corners(tets_[i])) box.add(p);
@@ -198,13 +198,13 @@ class TetTree {
   /// The tree of 2^32 tets is 29 deep, and each level leaves one entry behind.
   static constexpr std::size_t stack_size = 64;
 
-  Corners corners(Index t) const {
+  TetCorners corners(Index t) const {
     const Tet& v = mesh_.tets[t];
     return {mesh_.points[v[0]], mesh_.points[v[1]], mesh_.points[v[2]], mesh_.points[v[3]]};
   }
 
   void sort(Order order) {
-    Box whole;
+    TetBox whole;
     for (const Tet& t : mesh_.tets)
       for (const Index p : t) whole.add(mesh_.points[p]);
     const MortonGrid grid(whole.low, whole.high);
@@ -216,7 +216,7 @@ class TetTree {
     std::vector<Key> keys(tets_.size());
     parallel_for(0, keys.size(), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
-        Box box;
+        TetBox box;
         for (const Vec3& p : corners(static_cast<Index>(t))) box.add(p);
         keys[t] = {grid.key(box.low + (box.high - box.low) / 2),
                    order == Order::place ? 0 : mesh_.materials[t], static_cast<Index>(t)};
@@ -252,8 +252,8 @@ class TetTree {
         continue;
       }
       for (std::size_t i = here.begin; i < here.end; ++i) {
-        const Corners c = corners(tets_[i]);
-        Box box;
+        const TetCorners c = corners(tets_[i]);
+        TetBox box;
         for (const Vec3& q : c) box.add(q);
         if (!box.holds(p)) continue;
         if (const auto w = weights_inside(c, p)) return {tets_[i], *w};
@@ -286,8 +286,8 @@ class TetTree {
         continue;
       }
       for (std::size_t i = here.begin; i < here.end; ++i) {
-        const Corners c = corners(tets_[i]);
-        Box box;
+        const TetCorners c = corners(tets_[i]);
+        TetBox box;
         for (const Vec3& q : c) box.add(q);
         if (box.squared_distance(p) > best.squared_distance) continue;
         const Nearest n = nearest_on_faces(c, p);
@@ -307,7 +307,7 @@ class TetTree {
   const TetMesh& mesh_;
   std::vector<Index> tets_;  // in the tree's order
   std::size_t leaves_ = 0;   // a power of two; those beyond the tets are empty
-  std::vector<Box> boxes_;
+  std::vector<TetBox> boxes_;
 };
 
 /// Fields like `fields`, for another number of points or tets.

@@ -16,7 +16,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t grain = 4096;
+constexpr std::size_t element_grain = 4096;
 constexpr std::size_t listed_inverted = 3;
 
 int sign(const TetMesh& mesh, const Tet& t) {
@@ -39,7 +39,7 @@ double volume(const TetMesh& mesh, const Tet& t, double scale) {
 
 bool all_positive(const TetMesh& mesh) {
   std::atomic<bool> fine{true};
-  parallel_for(0, mesh.tets.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, mesh.tets.size(), element_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end && fine.load(std::memory_order_relaxed); ++t)
       if (sign(mesh, mesh.tets[t]) <= 0) fine.store(false, std::memory_order_relaxed);
   });
@@ -97,7 +97,7 @@ std::size_t merge_soup(TetMesh& mesh) {
   // Targets are never larger than their points, so that theirs are numbered anew before them.
   Index next = 0;
   for (std::size_t p = 0; p < target.size(); ++p) target[p] = target[p] == p ? next++ : target[target[p]];
-  parallel_for(0, mesh.tets.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, mesh.tets.size(), element_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
       for (Index& p : mesh.tets[t]) p = target[p];
   });
@@ -161,7 +161,7 @@ std::vector<Index> link_faces(const TetMesh& mesh) {
       for (std::size_t f = 0; f < 4; ++f)
         faces[next[smallest_of_face(tets[t], f)]++] = static_cast<Index>(4 * t + f);
   }
-  parallel_for(0, mesh.points.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, mesh.points.size(), element_grain, [&](std::size_t begin, std::size_t end) {
     struct Entry {
       Index middle, largest, face;
       bool even;
@@ -248,7 +248,7 @@ ForeignReport make_coherent(TetMesh& mesh) {
   if (!fine) {
     report.turned_tets = orient(mesh);
     const std::vector<Index> inverted = parallel_collect<Index>(
-        0, mesh.tets.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+        0, mesh.tets.size(), element_grain, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
           for (std::size_t t = begin; t < end; ++t)
             if (sign(mesh, mesh.tets[t]) <= 0) out.push_back(static_cast<Index>(t));
         });

@@ -9,7 +9,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t grain = 1 << 14;  // faces to a task, some nanoseconds each
+constexpr std::size_t face_grain = 1 << 14;  // faces to a task, some nanoseconds each
 
 /// A face of a tet, listed from its smallest id on so that the normal points out.
 Triangle outward_face(const Tet& tet, const Triangle& ids) {
@@ -27,7 +27,8 @@ std::vector<InterfaceTriangle> find_interfaces(const TetMesh& mesh,
                                                const std::vector<std::uint8_t>* candidates) {
   const std::vector<MeshFace> faces = mesh_faces(mesh.tets, mesh.points.size(), candidates);
   return parallel_collect<InterfaceTriangle>(
-      0, faces.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<InterfaceTriangle>& out) {
+      0, faces.size(), face_grain,
+      [&](std::size_t begin, std::size_t end, std::vector<InterfaceTriangle>& out) {
         for (std::size_t i = begin; i < end; ++i) {
           const MeshFace& f = faces[i];
           const MaterialTag first = mesh.materials[f.first];

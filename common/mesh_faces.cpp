@@ -11,9 +11,9 @@ namespace tetwright {
 namespace {
 
 /// A face in the bucket of its smallest vertex.
-struct Entry {
+struct FaceEntry {
   Index middle, largest, tet;
-  bool operator<(const Entry& other) const {
+  bool operator<(const FaceEntry& other) const {
     return std::tie(middle, largest, tet) < std::tie(other.middle, other.largest, other.tet);
   }
 };
@@ -55,14 +55,14 @@ std::vector<MeshFace> mesh_faces(std::span<const Tet> tets, std::size_t points,
   std::vector<std::size_t> begin(points + 2, 0);
   for_each_face(tets, candidates, [&](const Triangle& f, std::size_t) { ++begin[f[0] + std::size_t{2}]; });
   for (std::size_t i = 2; i < begin.size(); ++i) begin[i] += begin[i - 1];
-  std::vector<Entry> entries(begin.back());
+  std::vector<FaceEntry> entries(begin.back());
   for_each_face(tets, candidates, [&](const Triangle& f, std::size_t t) {
     entries[begin[f[0] + std::size_t{1}]++] = {f[1], f[2], static_cast<Index>(t)};
   });
 
   const std::size_t parts = (points + points_per_part - 1) / points_per_part;
   std::vector<std::size_t> part_begin(parts + 1, 0);
-  const auto same = [](const Entry& a, const Entry& b) {
+  const auto same = [](const FaceEntry& a, const FaceEntry& b) {
     return a.middle == b.middle && a.largest == b.largest;
   };
   parallel_chunks(parts, [&](std::size_t part, unsigned) {

@@ -14,7 +14,7 @@ namespace tetwright {
 namespace {
 
 /// Fixed, so that sums are rounded the same way for any number of threads.
-constexpr std::size_t part_size = 1 << 14;
+constexpr std::size_t statistics_grain = 1 << 14;
 
 struct PartStatistics {
   std::map<MaterialTag, MaterialStatistics> materials;
@@ -26,6 +26,7 @@ struct PartStatistics {
 };
 
 std::uint8_t angle_bin(double angle) {
+  static_assert(QualityHistogram::angle_bins <= 256);
   return static_cast<std::uint8_t>(std::min(QualityHistogram::angle_bins - 1,
                                             static_cast<std::size_t>(angle / QualityHistogram::angle_step)));
 }
@@ -48,9 +49,10 @@ double volume_six_times(const TetMesh& mesh, const Tet& t) {
 QualityHistogram histogram(const TetMesh& mesh, const std::vector<std::uint8_t>& bin_of_angle, double mean) {
   const auto limits = volume_limits();
   std::vector<QualityHistogram> parts(thread_count());
-  parallel_chunks((mesh.tets.size() + part_size - 1) / part_size, [&](std::size_t p, unsigned worker) {
-    const std::size_t last = std::min(mesh.tets.size(), (p + 1) * part_size);
-    for (std::size_t t = p * part_size; t < last; ++t) {
+  parallel_chunks((mesh.tets.size() + statistics_grain - 1) / statistics_grain, [&](std::size_t p,
+                                                                                    unsigned worker) {
+    const std::size_t last = std::min(mesh.tets.size(), (p + 1) * statistics_grain);
+    for (std::size_t t = p * statistics_grain; t < last; ++t) {
       const double relative = mean > 0 ? volume_six_times(mesh, mesh.tets[t]) / 6 / mean : 0.0;
       const auto bin =
           static_cast<std::size_t>(std::upper_bound(limits.begin(), limits.end(), relative) - limits.begin());
@@ -67,12 +69,12 @@ QualityHistogram histogram(const TetMesh& mesh, const std::vector<std::uint8_t>&
 void count_interfaces(const TetMesh& mesh, MeshStatistics& out) {
   const std::vector<InterfaceTriangle>& triangles = mesh.interfaces;
   using Pairs = std::map<MaterialPair, InterfaceStatistics>;
-  std::vector<Pairs> parts((triangles.size() + part_size - 1) / part_size);
+  std::vector<Pairs> parts((triangles.size() + statistics_grain - 1) / statistics_grain);
   std::vector<std::uint64_t> edges(3 * triangles.size());  // smaller id above the larger one
   parallel_chunks(parts.size(), [&](std::size_t p, unsigned) {
     Pairs::value_type* last_pair = nullptr;
-    const std::size_t last = std::min(triangles.size(), (p + 1) * part_size);
-    for (std::size_t i = p * part_size; i < last; ++i) {
+    const std::size_t last = std::min(triangles.size(), (p + 1) * statistics_grain);
+    for (std::size_t i = p * statistics_grain; i < last; ++i) {
       const InterfaceTriangle& t = triangles[i];
       const Vec3& a = mesh.points[t.ids[0]];
       if (!last_pair || last_pair->first != t.pair()) last_pair = &*parts[p].try_emplace(t.pair()).first;
@@ -104,13 +106,13 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
   count_interfaces(mesh, out);
 
   std::vector<std::uint8_t> bin_of_angle(mesh.tets.size());
-  std::vector<PartStatistics> parts((mesh.tets.size() + part_size - 1) / part_size);
+  std::vector<PartStatistics> parts((mesh.tets.size() + statistics_grain - 1) / statistics_grain);
   parallel_chunks(parts.size(), [&](std::size_t p, unsigned) {
     PartStatistics& part = parts[p];
     MaterialStatistics* material = nullptr;
     MaterialTag tag = 0;
-    const std::size_t last = std::min(mesh.tets.size(), (p + 1) * part_size);
-    for (std::size_t t = p * part_size; t < last; ++t) {
+    const std::size_t last = std::min(mesh.tets.size(), (p + 1) * statistics_grain);
+    for (std::size_t t = p * statistics_grain; t < last; ++t) {
       const Tet& v = mesh.tets[t];
       const std::array<Vec3, 4> x{mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]};
       const double volume = volume_six_times(mesh, v);

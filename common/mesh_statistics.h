@@ -56,8 +56,8 @@ struct MeshStatistics {
 };
 
 /// `threshold`: steradians; ids must be in range. Parallel; the result does not depend on the threads and is
-/// the same on every machine. About 0.2 s for a million tets, and of
-/// interfaces as much for a million triangles; those take 48 bytes each while they are counted, tets one.
+/// the same on every machine. About 0.2 s for a million tets and as much for a million interface triangles.
+/// Takes 48 bytes for each triangle, then one for each tet.
 MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold = 0.1);
 
 }  // namespace tetwright

@@ -11,7 +11,7 @@ namespace tetwright {
 
 namespace {
 
-struct Box {
+struct TriangleBox {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
   Vec3 high = -low;
 
@@ -19,11 +19,11 @@ struct Box {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  void add(const Box& b) {
+  void add(const TriangleBox& b) {
     low = low.cwiseMin(b.low);
     high = high.cwiseMax(b.high);
   }
-  bool meets(const Box& b) const {
+  bool meets(const TriangleBox& b) const {
     return (low.array() <= b.high.array()).all() && (b.low.array() <= high.array()).all();
   }
 };
@@ -44,7 +44,7 @@ class BoxTree {
   BoxTree(std::span<const Vec3> points, std::span<const Triangle> triangles) {
     const std::size_t n = triangles.size();
     boxes_.resize(n);
-    Box all;
+    TriangleBox all;
     for (std::size_t t = 0; t < n; ++t) {
       for (Index v : triangles[t]) boxes_[t].add(points[v]);
       all.add(boxes_[t]);
@@ -82,12 +82,12 @@ class BoxTree {
     return std::span(order_).subspan(begin, std::min(leaf_size, order_.size() - begin));
   }
 
-  const Box& box(Index triangle) const { return boxes_[triangle]; }
+  const TriangleBox& box(Index triangle) const { return boxes_[triangle]; }
 
   /// Calls `call(j)` for leaf `i` and each later leaf `j` whose box meets its own.
   template <class Call>
   void for_each_near_leaf(std::size_t i, const Call& call) const {
-    const Box& own = nodes_[leaves_ + i];
+    const TriangleBox& own = nodes_[leaves_ + i];
     std::size_t stack[2 * 64];
     std::size_t size = 0;
     stack[size++] = 1;
@@ -107,10 +107,10 @@ class BoxTree {
 
  private:
   static constexpr std::size_t leaf_size = 4;
-  std::vector<Box> boxes_;  ///< of the triangles
+  std::vector<TriangleBox> boxes_;  ///< of the triangles
   std::vector<Index> order_;
   std::size_t leaves_ = 0;
-  std::vector<Box> nodes_;
+  std::vector<TriangleBox> nodes_;
 };
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace tetwright {
 
 namespace {
 
-using Corners = std::array<Vec3, 3>;
+using TriangleCorners = std::array<Vec3, 3>;
 
 /// The three coordinate planes, as pairs of coordinates.
 constexpr std::array<std::pair<int, int>, 3> planes{{{0, 1}, {1, 2}, {2, 0}}};
@@ -56,7 +56,7 @@ bool segments_meet_3d(const Vec3& a, const Vec3& b, const Vec3& p, const Vec3& q
 
 /// Closed segment pq against the closed triangle t, which may be degenerate (a segment or a point).
 /// `side_p` and `side_q` are the sides of t's plane on which p and q lie.
-bool segment_meets_triangle(const Vec3& p, const Vec3& q, int side_p, int side_q, const Corners& t) {
+bool segment_meets_triangle(const Vec3& p, const Vec3& q, int side_p, int side_q, const TriangleCorners& t) {
   if (side_p * side_q > 0) return false;
   if (side_p != 0 || side_q != 0) {
     // The line crosses the plane in one point, inside t unless it passes two edges on different sides.
@@ -78,7 +78,7 @@ bool segment_meets_triangle(const Vec3& p, const Vec3& q, int side_p, int side_q
   return x == y && y == z;
 }
 
-std::array<int, 3> sides(const Corners& plane, const Corners& points) {
+std::array<int, 3> sides(const TriangleCorners& plane, const TriangleCorners& points) {
   std::array<int, 3> side;
   for (int k = 0; k < 3; ++k) side[k] = orient3d(plane[0], plane[1], plane[2], points[k]);
   return side;
@@ -88,7 +88,7 @@ bool all_on_one_side(const std::array<int, 3>& side) {
   return side[0] != 0 && side[0] == side[1] && side[1] == side[2];
 }
 
-bool boxes_apart(const Corners& f, const Corners& g) {
+bool boxes_apart(const TriangleCorners& f, const TriangleCorners& g) {
   for (int k = 0; k < 3; ++k) {
     const auto [f_low, f_high] = std::minmax({f[0][k], f[1][k], f[2][k]});
     const auto [g_low, g_high] = std::minmax({g[0][k], g[1][k], g[2][k]});
@@ -97,7 +97,7 @@ bool boxes_apart(const Corners& f, const Corners& g) {
   return false;
 }
 
-bool meet_unconnected(const Corners& f, const Corners& g) {
+bool meet_unconnected(const TriangleCorners& f, const TriangleCorners& g) {
   if (boxes_apart(f, g)) return false;
   const std::array<int, 3> g_side = sides(f, g);
   if (all_on_one_side(g_side)) return false;
@@ -113,7 +113,8 @@ bool meet_unconnected(const Corners& f, const Corners& g) {
 }
 
 /// The triangles share one vertex; f_other and g_other are the ends of the edges opposite it.
-bool meet_beside_vertex(const Corners& f, const Corners& g, const std::array<const Vec3*, 2>& f_other,
+bool meet_beside_vertex(const TriangleCorners& f, const TriangleCorners& g,
+                        const std::array<const Vec3*, 2>& f_other,
                         const std::array<const Vec3*, 2>& g_other) {
   const int f0 = orient3d(g[0], g[1], g[2], *f_other[0]), f1 = orient3d(g[0], g[1], g[2], *f_other[1]);
   if (f0 * f1 > 0) return false;

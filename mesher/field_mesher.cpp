@@ -135,7 +135,8 @@ MeshedSurface mesh_field(std::shared_ptr<const MaterialField> field, std::vector
   // Thin sheets may have taken far more cells than the surface alone.
   const double lattice_tets_expected = tets_per_leaf * static_cast<double>(octree.size());
   check_memory({static_cast<std::size_t>(lattice_tets_expected),
-                static_cast<std::size_t>(bytes_per_lattice_tet * lattice_tets_expected)});
+                static_cast<std::size_t>(std::max(bytes_per_lattice_tet, options.later_bytes_per_tet) *
+                                         lattice_tets_expected)});
   report.seconds_octree = stages.seconds();
 
   stages.begin("lattice");

@@ -14,7 +14,7 @@ namespace {
 
 using GridPoint = std::array<int, 3>;
 
-constexpr std::size_t grain = 256;
+constexpr std::size_t cap_grain = 256;
 
 GridPoint point_of(MortonKey key) {
   const auto p = morton_decode(key);
@@ -77,7 +77,7 @@ class CapFinder {
 
   void read_corners(const std::vector<MortonKey>& cells) {
     auto corners = parallel_collect<MortonKey>(
-        0, cells.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+        0, cells.size(), cap_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
           for (std::size_t i = begin; i < end; ++i)
             for (int k = 0; k < 8; ++k) {
               const MortonKey key = corner_key(point_of(cells[i]), k);
@@ -86,7 +86,7 @@ class CapFinder {
         });
     parallel_sort_unique(corners);
     std::vector<GridReading> readings(corners.size());
-    parallel_for(0, corners.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(0, corners.size(), cap_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const GridPoint p = point_of(corners[i]);
         readings[i] = read_(p[0], p[1], p[2]);
@@ -102,7 +102,7 @@ class CapFinder {
   }
 
   std::vector<GridEdge> cap_edges(const std::vector<MortonKey>& cells) const {
-    return parallel_collect<GridEdge>(0, cells.size(), grain,
+    return parallel_collect<GridEdge>(0, cells.size(), cap_grain,
                                       [&](std::size_t begin, std::size_t end, std::vector<GridEdge>& out) {
                                         for (std::size_t i = begin; i < end; ++i) {
                                           const std::array<GridReading, 8> corners = corners_of(cells[i]);
@@ -145,11 +145,11 @@ class CapFinder {
     parallel_sort(cells);
     TriangleMesh caps;
     caps.points.resize(cells.size());
-    parallel_for(0, cells.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(0, cells.size(), cap_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) caps.points[i] = net_point(cells[i]);
     });
     caps.triangles.resize(2 * edges_.size());
-    parallel_for(0, edges_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(0, edges_.size(), cap_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         std::array<Index, 4> q;
         const auto around = cells_around(edges_[i]);

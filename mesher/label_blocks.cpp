@@ -92,10 +92,11 @@ void add_block(const LabelSmoother& smoother, const std::array<int, 3>& in_tile,
   out.blocks.push_back(made);
 }
 
-/// Tile number `t` of `tiles`, and those of its blocks that there are, of `blocks`.
+/// Tile number `t` of `tiles`, and those of its blocks that there are, of `blocks`. Contacts depend on voxels
+/// alone: once is enough.
 void make_tile(const PreparedLabels& labels, int t, const std::array<int, 3>& tiles,
                const std::array<int, 3>& blocks, std::span<const float> growth, LabelSmoother& smoother,
-               TileBlocks& out) {
+               bool with_contacts, TileBlocks& out) {
   const std::array<int, 3> tile{t % tiles[0], t / tiles[0] % tiles[1], t / (tiles[0] * tiles[1])};
   out = {};
   const bool mixed = copy_voxels(labels, tile, smoother.voxels());
@@ -109,7 +110,7 @@ void make_tile(const PreparedLabels& labels, int t, const std::array<int, 3>& ti
     smoother.smooth(growth);
     const std::vector<double> shares = smoother.shares();
     for (std::size_t l = 0; l < shares.size(); ++l) out.shares.emplace_back(smoother.labels()[l], shares[l]);
-    out.contacts = smoother.contacts();
+    if (with_contacts) out.contacts = smoother.contacts();
   } else if (const RegionIndex alone = smoother.voxels()[0]; alone != outside_region) {
     constexpr double all = LabelSmoother::cells * LabelSmoother::cells * LabelSmoother::cells;
     out.shares.emplace_back(alone, all);
@@ -145,10 +146,10 @@ class Growth {
       : growth_(regions, 0), step_(regions, 0), volumes_(regions, 0), give_(regions, 1) {}
 
   const std::vector<float>& growth() const { return growth_; }  ///< by region, voxels
-  /// Whether it was changed by the last adjust(), or there was none yet.
-  bool changed(RegionIndex region) const { return !begun_ || step_[region] != 0; }
+  /// Whether it was changed by the last adjust().
+  bool changed(RegionIndex region) const { return step_[region] != 0; }
 
-  /// Looks at the tiles; false if no label's volume is off.
+  /// Looks at the tiles, the first time at their contacts too; false if no label's growth changes any more.
   bool adjust(const PreparedLabels& labels, const std::vector<TileBlocks>& tiles) {
     if (!begun_) list_contacts(tiles);
     std::vector<double> now(growth_.size(), 0);
@@ -267,7 +268,8 @@ LabelBlocks make_label_blocks(const PreparedLabels& labels, const Progress* prog
         const bool again = round == 0 || std::any_of(parts[t].shares.begin(), parts[t].shares.end(),
                                                      [&](const auto& v) { return growth.changed(v.first); });
         if (again)
-          make_tile(labels, static_cast<int>(t), tiles, made.counts, growth.growth(), smoother, parts[t]);
+          make_tile(labels, static_cast<int>(t), tiles, made.counts, growth.growth(), smoother, round == 0,
+                    parts[t]);
       }
     });
     if (round == most_rounds || !growth.adjust(labels, parts)) break;

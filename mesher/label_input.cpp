@@ -8,6 +8,7 @@
 
 #include "common/error.h"
 #include "common/parallel_sort.h"
+#include "mesher/field_builder.h"
 #include "mesher/label_islands.h"
 
 namespace tetwright {
@@ -18,7 +19,7 @@ constexpr std::size_t most_labels =
     60'000;                              // regions have numbers of 16 bits, of which few mean other things
 constexpr std::size_t most_listed = 30;  // labels in a message
 constexpr std::size_t most_named = 20;   // labels with a finding of their own
-constexpr std::size_t grain = 1 << 18;   // voxels
+constexpr std::size_t voxel_grain = 1 << 18;  // voxels
 
 using LabelRange = std::pair<MaterialTag, MaterialTag>;
 using LabelCount = std::pair<MaterialTag, std::size_t>;
@@ -84,7 +85,7 @@ std::vector<LabelCount> count_labels(const std::vector<MaterialTag>& labels, con
                            " labels; choose fewer with --labels, if these are labels and not gray values");
   };
   std::vector<LabelCount> found = parallel_collect<LabelCount>(
-      0, labels.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
+      0, labels.size(), voxel_grain, [&](std::size_t begin, std::size_t end, auto& out) {
         std::unordered_map<MaterialTag, std::size_t> counts;
         for_each_run(labels, begin, end, [&](std::size_t i, std::size_t j) {
           if (!chosen(labels[i])) return;
@@ -106,7 +107,7 @@ std::vector<LabelCount> count_labels(const std::vector<MaterialTag>& labels, con
 /// "1, 2, 3" for messages: the labels that are there, without the outside label.
 std::string labels_text(const std::vector<MaterialTag>& labels, MaterialTag outside) {
   std::vector<MaterialTag> found = parallel_collect<MaterialTag>(
-      0, labels.size(), grain, [&](std::size_t begin, std::size_t end, auto& out) {
+      0, labels.size(), voxel_grain, [&](std::size_t begin, std::size_t end, auto& out) {
         std::set<MaterialTag> smallest;
         for_each_run(labels, begin, end, [&](std::size_t i, std::size_t) {
           if (labels[i] == outside) return;
@@ -156,15 +157,15 @@ std::vector<LabelMaterial> name_materials(const LabelChoice& choice, const std::
   });
   const auto twice = std::adjacent_find(by_name.begin(), by_name.end(),
                                         [](const auto* a, const auto* b) { return a->name == b->name; });
+  if (twice != by_name.end())
+    throw UsageError("labels " + std::to_string(twice[0]->tag) + " and " + std::to_string(twice[1]->tag) +
+                     " are both called '" + twice[0]->name + "'; give one another name with --label-names");
   const auto outside =
-      std::find_if(materials.begin(), materials.end(), [](const auto& m) { return m.name == "outside"; });
+      std::find_if(materials.begin(), materials.end(), [](const auto& m) { return m.name == outside_name; });
   if (outside != materials.end())
     throw UsageError("label " + std::to_string(outside->tag) +
                      " is called 'outside', which is what is around all of them; make it the outside label "
                      "with --outside-label, or give it another name with --label-names");
-  if (twice != by_name.end())
-    throw UsageError("labels " + std::to_string(twice[0]->tag) + " and " + std::to_string(twice[1]->tag) +
-                     " are both called '" + twice[0]->name + "'; give one another name with --label-names");
   return materials;
 }
 
@@ -185,7 +186,7 @@ std::vector<RegionIndex> number_regions(const std::vector<MaterialTag>& labels,
     return at->tag == label ? static_cast<RegionIndex>(at - materials.begin() + 1) : outside_region;
   };
   std::vector<RegionIndex> regions(labels.size());
-  parallel_for(0, labels.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, labels.size(), voxel_grain, [&](std::size_t begin, std::size_t end) {
     for_each_run(labels, begin, end, [&](std::size_t i, std::size_t j) {
       std::fill(regions.begin() + static_cast<std::ptrdiff_t>(i),
                 regions.begin() + static_cast<std::ptrdiff_t>(j), region(labels[i]));
@@ -292,7 +293,7 @@ void Preparation::drop_lost() {
   }
   result_.materials = std::move(kept);
   if (result_.lost.empty()) return;
-  parallel_for(0, result_.regions.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, result_.regions.size(), voxel_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) result_.regions[i] = renumbered[result_.regions[i]];
   });
 }

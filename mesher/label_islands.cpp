@@ -82,9 +82,9 @@ class Islands {
 
 std::vector<Index> Islands::find_runs() const {
   const std::size_t rows = regions_.size() / width_;
-  const std::size_t grain = std::max<std::size_t>(1, (1 << 16) / width_);
+  const std::size_t rows_at_once = std::max<std::size_t>(1, (1 << 16) / width_);
   std::vector<Index> starts =
-      parallel_collect<Index>(0, rows, grain, [&](std::size_t begin, std::size_t end, auto& out) {
+      parallel_collect<Index>(0, rows, rows_at_once, [&](std::size_t begin, std::size_t end, auto& out) {
         throw_if_cancelled();
         for (std::size_t row = begin; row < end; ++row) {
           const RegionIndex* const r = regions_.data() + row * width_;

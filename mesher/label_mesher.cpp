@@ -93,7 +93,8 @@ MesherEstimate estimate(const PreparedLabels& labels, const FaceAreas& areas, do
   if (options.uniform)
     tets = tets_per_cell * voxel / (h * h * h) * (options.keep_outside ? all : static_cast<double>(inside));
   return {static_cast<std::size_t>(tets),
-          static_cast<std::size_t>(bytes_at_least + bytes_per_voxel * all + bytes_per_tet * tets)};
+          static_cast<std::size_t>(bytes_at_least + bytes_per_voxel * all +
+                                   std::max(bytes_per_tet, options.later_bytes_per_tet) * tets)};
 }
 
 void check_all_there(const PreparedLabels& labels, const std::vector<std::uint8_t>& there) {

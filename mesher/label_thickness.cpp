@@ -27,9 +27,10 @@ class Opening {
     // in a row; then every voxel of such a box is thick.
     for (int axis = 0; axis < 3; ++axis) sweep(axis, [&](int a, auto&&... p) { start_boxes(a, p...); });
     for (int axis = 0; axis < 3; ++axis) sweep(axis, [&](int a, auto&&... p) { fill_boxes(a, p...); });
-    constexpr std::size_t grain = 1 << 18;
+    constexpr std::size_t voxels_at_once = 1 << 18;
     return parallel_collect<std::size_t>(
-        0, holds_.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<std::size_t>& out) {
+        0, holds_.size(), voxels_at_once,
+        [&](std::size_t begin, std::size_t end, std::vector<std::size_t>& out) {
           for (std::size_t i = begin; i < end; ++i)
             if (!holds_[i] && !beside_thick(i) && !(regions_[i] == outside_region && in_box_from_beyond(i)))
               out.push_back(i);

@@ -11,7 +11,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t grain = 1 << 14;  // tets or points to a task, some nanoseconds each
+constexpr std::size_t lattice_grain = 1 << 14;  // tets or points to a task, some nanoseconds each
 
 bool mixed(const std::vector<RegionIndex>& regions, const Tet& t) {
   const RegionIndex r = regions[t[0]];
@@ -25,7 +25,7 @@ void mark(std::uint8_t& flag) { std::atomic_ref<std::uint8_t>(flag).store(1, std
 std::vector<std::uint8_t> points_near_interfaces(const std::vector<RegionIndex>& regions,
                                                  const TetList& tets) {
   std::vector<std::uint8_t> near(regions.size(), 0);
-  parallel_for(0, tets.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, tets.size(), lattice_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       if (mixed(regions, tets[i]))
         for (Index v : tets[i]) mark(near[v]);
@@ -36,7 +36,7 @@ std::vector<std::uint8_t> points_near_interfaces(const std::vector<RegionIndex>&
 /// Gives specks another region; see label_lattice().
 std::size_t relabel_specks(std::vector<RegionIndex>& regions, const TetList& tets, const StarMap& stars) {
   std::vector<std::uint8_t> has_company(regions.size(), 0);
-  parallel_for(0, tets.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, tets.size(), lattice_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Tet& t = tets[i];
       if (!mixed(regions, t)) continue;  // enough to find nearly all company; alone() finds the rest

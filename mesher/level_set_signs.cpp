@@ -11,7 +11,7 @@ namespace tetwright {
 namespace {
 
 /// Leaves for each task.
-constexpr std::size_t grain = 16;
+constexpr std::size_t band_grain = 16;
 
 float signed_value(float distance, bool inside) {
   const float size =
@@ -53,7 +53,7 @@ void sign_by_points(DistanceLeaf& leaf, const NodeWinding& winding) {
 std::vector<GridEdge> edges_to_cap(DistanceGrid& grid) {
   const std::vector<DistanceLeaf*> leaves = leaves_of(grid);
   return parallel_collect<GridEdge>(
-      0, leaves.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<GridEdge>& out) {
+      0, leaves.size(), band_grain, [&](std::size_t begin, std::size_t end, std::vector<GridEdge>& out) {
         const DistanceAccessor accessor(grid.constTree());
         for (std::size_t i = begin; i < end; ++i)
           for (auto value = leaves[i]->cbeginValueOn(); value; ++value)
@@ -74,7 +74,7 @@ void add_caps(DistanceGrid& grid, const TriangleMesh& caps, const NodeWinding& w
   const std::vector<DistanceLeaf*> sources = leaves_of(*cap_grid);
   std::vector<DistanceLeaf*> targets(sources.size());
   for (std::size_t i = 0; i < sources.size(); ++i) targets[i] = grid.tree().touchLeaf(sources[i]->origin());
-  parallel_for(0, sources.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, sources.size(), band_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       for (auto source = sources[i]->cbeginValueOn(); source; ++source) {
         const openvdb::Index at = source.pos();
@@ -119,7 +119,7 @@ double NodeWinding::at(int x, int y, int z) const {
 
 TriangleMesh sign_band(DistanceGrid& grid, const NodeWinding& winding, Progress* progress) {
   const std::vector<DistanceLeaf*> leaves = leaves_of(grid);
-  parallel_for(0, leaves.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, leaves.size(), band_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       if (winding.whole_numbers())
         sign_by_rows(*leaves[i], winding.closed());

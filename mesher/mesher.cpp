@@ -32,14 +32,14 @@ constexpr double most_lattice_per_dense = 4;
 /// Dense tets of a uniform mesh for each finest cell of volume: the lattice has twelve.
 constexpr double tets_per_volume_uniform = 12;
 /// Peak memory for each dense tet, with the lattice outside; measured 54 on a scan, rounded up.
-constexpr double bytes_per_tet = 70;
+constexpr double surface_bytes_per_tet = 70;
 /// As thin_parts.h refines for sheets.
 constexpr double cells_per_sheet = 1.5, smallest_refined = 0.125;
 constexpr std::size_t most_materials = 60000;
 /// A uniform grid has leaves and lattice points all over its box.
 constexpr double bytes_per_cell_uniform = 150;
 /// Dense tets for each tet that is wanted in the end: fewer leave the simplifier no choice, more take time.
-constexpr double dense_per_target = 40;
+constexpr double surface_dense_per_target = 40;
 constexpr double most_dense_tets = 20e6;
 constexpr int smallest_target_resolution = 32;
 
@@ -54,7 +54,8 @@ double cell_size(const PreparedInput& input, const MesherOptions& options) {
   return finest_cell_size(options, longest_side(input), farthest_coordinate(input), input.bodies[0].file);
 }
 
-MesherEstimate estimate(const PreparedInput& input, double h, bool uniform, bool keep_outside) {
+MesherEstimate estimate(const PreparedInput& input, double h, bool uniform, bool keep_outside,
+                        double later_bytes_per_tet = 0) {
   double tets = 0, cells = 0, bytes = bytes_at_least;
   const auto add = [&](const PreparedSurface& s, double sides) {
     const double area = s.area / (h * h), volume = std::max(0.0, s.volume) / (h * h * h);
@@ -83,7 +84,8 @@ MesherEstimate estimate(const PreparedInput& input, double h, bool uniform, bool
     if (keep_outside) tets = tets_per_volume_uniform * box;
   }
   return {static_cast<std::size_t>(tets),
-          static_cast<std::size_t>(bytes + bytes_per_tet * std::max(tets, tets_per_area_thick * cells / 2))};
+          static_cast<std::size_t>(bytes + std::max(surface_bytes_per_tet, later_bytes_per_tet) *
+                                               std::max(tets, tets_per_area_thick * cells / 2))};
 }
 
 /// Refuses an input of which a material has nothing left: which one, and what to do about it.
@@ -184,7 +186,8 @@ PreparedInput prepare_input(std::vector<MaterialSurface> surfaces, std::vector<M
 }
 
 MesherEstimate estimate_mesh(const PreparedInput& input, const MesherOptions& options) {
-  return estimate(input, cell_size(input, options), options.uniform, options.keep_outside);
+  return estimate(input, cell_size(input, options), options.uniform, options.keep_outside,
+                  options.later_bytes_per_tet);
 }
 
 MeshedSurface mesh_surfaces(const PreparedInput& input, const MesherOptions& options, Progress* progress) {
@@ -227,7 +230,7 @@ MeshedSurface mesh_surfaces(const PreparedInput& input, const MesherOptions& opt
 int resolution_for_target(const PreparedInput& input, std::size_t target_tets) {
   if (target_tets == 0) throw UsageError("the target must be at least one tet");
   const double longest = longest_side(input);
-  const double dense = std::min(most_dense_tets, dense_per_target * static_cast<double>(target_tets));
+  const double dense = std::min(most_dense_tets, surface_dense_per_target * static_cast<double>(target_tets));
   double area = 0;
   for (const PreparedInput::Body& b : input.bodies) area += b.surface.area;
   const auto enough = [&](int resolution) {

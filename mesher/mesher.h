@@ -22,6 +22,9 @@ struct MesherOptions {
       0.05;  ///< how far a coarser cell may misplace an interface, finest cells; 0: never coarser
   /// Mesh the outside too, in a box, as the material `outside` of tag 0.
   bool keep_outside = false;
+  /// What the caller will need for each dense tet afterwards, bytes: meshing is refused where that does not
+  /// fit.
+  double later_bytes_per_tet = 0;
 };
 
 /// A surface and the material it encloses.

@@ -10,7 +10,7 @@ namespace tetwright {
 namespace {
 
 /// Cells per task where a cell takes about a microsecond.
-constexpr std::size_t grain = 2048;
+constexpr std::size_t cell_grain = 2048;
 
 /// The parents (level l + 1) that must be split because the cell `key` of level l is: its own, and those of
 /// its neighbours across faces and edges, which then exist as cells of level l.
@@ -102,7 +102,7 @@ Octree build_octree(const std::array<int, 3>& cells, int root_level, const Split
     std::vector<MortonKey>& now = split_cells[static_cast<std::size_t>(level)];
     const std::vector<MortonKey>& below = split_cells[static_cast<std::size_t>(level - 1)];
     const std::array<int, 3> size{cells[0] >> (level - 1), cells[1] >> (level - 1), cells[2] >> (level - 1)};
-    now = parallel_collect<MortonKey>(0, below.size(), grain,
+    now = parallel_collect<MortonKey>(0, below.size(), cell_grain,
                                       [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
                                         for (std::size_t i = begin; i < end; ++i)
                                           append_parents(below[i], size, out);
@@ -134,7 +134,8 @@ Octree build_octree(const std::array<int, 3>& cells, int root_level, const Split
   for (int level = root_level; level > 0; --level) {
     const std::vector<MortonKey>& parents = split_cells[static_cast<std::size_t>(level)];
     const std::vector<std::uint64_t> children = parallel_collect<std::uint64_t>(
-        0, parents.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& out) {
+        0, parents.size(), cell_grain,
+        [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& out) {
           for (std::size_t i = begin; i < end; ++i)
             for (MortonKey child = 0; child < 8; ++child)
               if (const MortonKey key = parents[i] << 3 | child; !is_split(level - 1, key))
@@ -170,7 +171,7 @@ Octree build_octree(const MaterialField& field, const OctreeOptions& options,
     const int voxel_steps = level - voxel_level;
     if (voxel_steps > options.coarsest_interface_level || options.adaptivity <= 0) return holding;
     const std::vector<MortonKey> failed = parallel_collect<MortonKey>(
-        0, holding.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+        0, holding.size(), cell_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
           const std::unique_ptr<FieldSampler> owned = field.sampler();
           FieldSampler& sampler = *owned;
           for (std::size_t i = begin; i < end; ++i)
@@ -182,7 +183,7 @@ Octree build_octree(const MaterialField& field, const OctreeOptions& options,
     // Where cells of two sizes meet at the interface, the cut tets are poorer: coarse cells stay in the
     // inside of a patch only, which leaves out single ones.
     std::vector<MortonKey> split = parallel_collect<MortonKey>(
-        0, holding.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+        0, holding.size(), cell_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
           for (std::size_t i = begin; i < end; ++i)
             if (has_split_neighbour(holding[i], size, failed)) out.push_back(holding[i]);
         });

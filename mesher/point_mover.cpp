@@ -29,7 +29,7 @@ constexpr double smallest_tangent = 0.05004170837553879;
 
 /// "Nearest first" goes by steps of this share of an edge: along a flat face all points have nearly the same
 /// distance.
-constexpr double distance_steps = 32;
+constexpr double distance_steps = 32;  // a byte holds it
 
 /// Points that are worked on one after the other by one thread.
 constexpr std::size_t block_size = 16;
@@ -198,7 +198,7 @@ class Mover {
     if (!sampler.project(*regions, c.projected) || (c.projected - from).norm() > c.room())
       c.projected = on_edge(c);
     const double distance = c.at_junction ? (c.projected - from).norm() : lattice_.margin(p);
-    c.rank = static_cast<std::uint8_t>(std::min(distance / c.room(), 1.0) * distance_steps);
+    c.rank = static_cast<std::uint8_t>(std::clamp(distance / c.room(), 0.0, 1.0) * distance_steps);
     return c;
   }
 

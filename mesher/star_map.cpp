@@ -10,7 +10,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t grain = 1 << 14;  // tets to a task, some nanoseconds each
+constexpr std::size_t star_grain = 1 << 14;  // tets to a task, some nanoseconds each
 
 /// The list of tets is gone through once for each of so many parts of the points: their rows are not all
 /// there as plain numbers at a time.
@@ -35,7 +35,7 @@ StarMap::StarMap(std::vector<Index> points, std::size_t point_count, const TetLi
   // Counted, filled in whatever order the threads come, then each row sorted: the same rows in the end.
   std::vector<Index> counts(points_.size(), 0);
   const auto for_each_corner = [&](std::size_t first, std::size_t last, auto&& body) {
-    parallel_for(0, tets.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(0, tets.size(), star_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
         for (Index v : tets[i])
           if (const Index s = slots_[v]; s >= first && s < last)

@@ -86,7 +86,10 @@ class StarMap {
     return {bytes + offsets_[s + block], bytes + offsets_[s + block + 1]};
   }
   /// Gives the memory of the tets back; tets() is not to be called any more.
-  void forget_tets() { std::vector<std::vector<std::uint8_t>>().swap(blocks_); }
+  void forget_tets() {
+    std::vector<std::vector<std::uint8_t>>().swap(blocks_);
+    std::vector<std::uint32_t>().swap(offsets_);
+  }
 
  private:
   static constexpr Index block_rows = 4096;

@@ -125,12 +125,12 @@ class Patches {
 };
 
 void Patches::flood(const std::vector<Side>& sides, const std::string& file) {
-  struct Neighbour {
+  struct Beside {
     std::uint32_t triangle, other;
     std::uint32_t same_direction;
-    auto operator<=>(const Neighbour&) const = default;
+    auto operator<=>(const Beside&) const = default;
   };
-  std::vector<Neighbour> neighbours;
+  std::vector<Beside> neighbours;
   neighbours.reserve(sides.size());
   for_each_edge(sides, [&](std::span<const Side> edge) {
     if (edge.size() != 2) return;

@@ -9,7 +9,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t grain = 512;  // voxels to a task, a microsecond or more each
+constexpr std::size_t sheet_grain = 512;  // voxels to a task, a microsecond or more each
 
 /// A sheet of at least so many cells never tears: wherever it runs, a lattice point is inside.
 constexpr double sheet_cells = 1.5;
@@ -58,7 +58,7 @@ ThinSheets find_thin_sheets(const MaterialField& field, const std::vector<Morton
   ThinSheets sheets;
   if (!field.knows_sheets()) return sheets;
   std::vector<SheetCell> found =
-      parallel_collect<SheetCell>(0, interface_voxels.size(), grain,
+      parallel_collect<SheetCell>(0, interface_voxels.size(), sheet_grain,
                                   [&](std::size_t begin, std::size_t end, std::vector<SheetCell>& out) {
                                     const std::unique_ptr<FieldSampler> owned = field.sampler();
                                     FieldSampler& sampler = *owned;
@@ -89,7 +89,8 @@ std::vector<ThinPart> find_thin_parts(const MaterialField& field,
     RegionIndex region;
   };
   const std::vector<Found> found = parallel_collect<Found>(
-      0, interface_voxels.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<Found>& out) {
+      0, interface_voxels.size(), sheet_grain,
+      [&](std::size_t begin, std::size_t end, std::vector<Found>& out) {
         const std::unique_ptr<FieldSampler> owned = field.sampler();
         FieldSampler& sampler = *owned;
         for (std::size_t i = begin; i < end; ++i) {

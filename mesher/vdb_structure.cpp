@@ -60,7 +60,7 @@ class Cursor {
 };
 
 /// A mask of as many bits as a node has values.
-struct Mask {
+struct VoxelMask {
   std::string_view bits;
   bool operator[](std::size_t i) const { return static_cast<unsigned char>(bits[i / 8]) >> i % 8 & 1; }
   std::size_t count() const {
@@ -73,9 +73,9 @@ struct Mask {
 /// Walks over one grid's tree of numbers.
 class TreeWalk {
  public:
-  /// Values of `bytes` each; `half` if those of nodes are written as half floats.
-  TreeWalk(Cursor& cursor, std::uint32_t compression, std::size_t bytes, bool half)
-      : cursor_(cursor), compression_(compression), bytes_(bytes), half_(half) {}
+  /// Values of `bytes` each; `as_half` if those of nodes are written as half floats.
+  TreeWalk(Cursor& cursor, std::uint32_t compression, std::size_t bytes, bool as_half)
+      : cursor_(cursor), compression_(compression), bytes_(bytes), half_(as_half) {}
 
   void tree() {
     require(cursor_.number<std::int32_t>() == 1);  // buffers
@@ -106,7 +106,7 @@ class TreeWalk {
     require(origins_.insert(place).second);
   }
 
-  Mask mask(int level) { return {cursor_.take(values_of(level) / 8)}; }
+  VoxelMask mask(int level) { return {cursor_.take(values_of(level) / 8)}; }
 
   void node(int level) {
     if (level == 2) {
@@ -114,7 +114,7 @@ class TreeWalk {
       ++leaves_;
       return;
     }
-    const Mask children = mask(level), active = mask(level);
+    const VoxelMask children = mask(level), active = mask(level);
     values(level, active.count());
     for (std::size_t i = 0; i < values_of(level); ++i) {
       if (!children[i]) continue;
@@ -211,8 +211,8 @@ void put_text(std::string& bytes, std::string_view text) {
 }
 
 /// A file of one grid, without grids before it and without offsets to jump to.
-std::string file_of_one(std::string_view header, std::string_view type, std::uint32_t compression, bool half,
-                        std::string_view transform_bytes, std::string_view tree_bytes) {
+std::string file_of_one(std::string_view header, std::string_view type, std::uint32_t compression,
+                        bool as_half, std::string_view transform_bytes, std::string_view tree_bytes) {
   std::string bytes(header);
   bytes += '\0';  // no offsets
   bytes += no_identifier;
@@ -223,8 +223,8 @@ std::string file_of_one(std::string_view header, std::string_view type, std::uin
   put_text(bytes, "");                           // whose tree it shares
   bytes.append(3 * sizeof(std::int64_t), '\0');  // offsets
   put(bytes, compression);
-  put(bytes, std::uint32_t{half});  // metadata
-  if (half) {
+  put(bytes, std::uint32_t{as_half});  // metadata
+  if (as_half) {
     put_text(bytes, "is_saved_as_half_float");
     put_text(bytes, "bool");
     put_text(bytes, "\1");
@@ -255,8 +255,8 @@ std::vector<VdbGrid> take_apart_vdb(std::string_view bytes) {
   for (std::int32_t i = 0; i < count; ++i) {
     cursor.text();  // a name that is unique within the file
     const std::string_view full_type = cursor.text();
-    const bool half = full_type.ends_with(half_suffix);
-    const std::string_view type = full_type.substr(0, full_type.size() - (half ? half_suffix.size() : 0));
+    const bool as_half = full_type.ends_with(half_suffix);
+    const std::string_view type = full_type.substr(0, full_type.size() - (as_half ? half_suffix.size() : 0));
     const bool shares_tree = !cursor.text().empty();
     cursor.take(2 * sizeof(std::int64_t));  // where the grid and its values begin
     const auto end = cursor.number<std::uint64_t>();
@@ -284,8 +284,8 @@ std::vector<VdbGrid> take_apart_vdb(std::string_view bytes) {
         const std::string_view transform_bytes = ahead.since(transform_start);
         const std::size_t tree_start = ahead.position();
         // Whole numbers are whole whatever is said of them.
-        TreeWalk(ahead, compression, bytes_each, half && is_float).tree();
-        grid.alone = file_of_one(header, is_float ? full_type : type, compression, half && is_float,
+        TreeWalk(ahead, compression, bytes_each, as_half && is_float).tree();
+        grid.alone = file_of_one(header, is_float ? full_type : type, compression, as_half && is_float,
                                  transform_bytes, ahead.since(tree_start));
         cursor = ahead;
         continue;

@@ -15,7 +15,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t grain = 8192;  ///< tets or points a parallel loop hands out at a time
+constexpr std::size_t slot_grain = 8192;  ///< tets or points a parallel loop hands out at a time
 /// The mesh is squeezed and renumbered when fewer than this share of its slots are alive.
 constexpr double squeeze_below = 0.7;
 /// Free slots left for operations that add, as shares of what is alive; flips 2-3 add tets where collapses
@@ -75,7 +75,7 @@ void Engine::squeeze_if_sparse() {
 }
 
 void Engine::rate_all() {
-  parallel_for(0, mesh_.tet_slots(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, mesh_.tet_slots(), slot_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto t = static_cast<Index>(i);
       const Tet& p = mesh_.tet(t).points;
@@ -93,7 +93,7 @@ float Engine::cutoff(double percent) const {
   const auto bin = [](float q) { return std::bit_cast<std::uint32_t>(q) >> 16; };
   std::vector<std::atomic<std::uint32_t>> shared(bins);
   std::atomic<std::size_t> alive{0};
-  parallel_for(0, mesh_.tet_slots(), 16 * grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, mesh_.tet_slots(), 16 * slot_grain, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> counts(bins, 0);
     std::size_t count = 0;
     for (std::size_t t = begin; t < end; ++t) {
@@ -112,7 +112,7 @@ float Engine::cutoff(double percent) const {
   std::size_t b = 0;
   while (wanted >= shared[b]) wanted -= shared[b++];
   std::vector<float> in_bin = parallel_collect<float>(
-      0, mesh_.tet_slots(), grain, [&](std::size_t begin, std::size_t end, std::vector<float>& out) {
+      0, mesh_.tet_slots(), slot_grain, [&](std::size_t begin, std::size_t end, std::vector<float>& out) {
         for (std::size_t t = begin; t < end; ++t) {
           const TetRecord& r = mesh_.tet(static_cast<Index>(t));
           if (r.points[0] != no_index && bin(r.quality) == b) out.push_back(r.quality);
@@ -124,7 +124,7 @@ float Engine::cutoff(double percent) const {
 
 template <class Test>
 std::vector<ListedTet> Engine::tets_where(const Test& test) const {
-  return parallel_collect<ListedTet>(0, mesh_.tet_slots(), grain,
+  return parallel_collect<ListedTet>(0, mesh_.tet_slots(), slot_grain,
                                      [&](std::size_t begin, std::size_t end, std::vector<ListedTet>& out) {
                                        for (std::size_t t = begin; t < end; ++t) {
                                          const TetRecord& r = mesh_.tet(static_cast<Index>(t));
@@ -141,7 +141,7 @@ std::vector<ListedTet> Engine::poor_tets(float limit) const {
 template <class Mark>
 std::vector<Index> Engine::marked_points(const Mark& mark) const {
   std::vector<std::uint8_t> marks(mesh_.point_slots(), 0);
-  parallel_for(0, mesh_.tet_slots(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, mesh_.tet_slots(), slot_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const TetRecord& r = mesh_.tet(static_cast<Index>(t));
       if (r.points[0] == no_index) continue;
@@ -151,7 +151,7 @@ std::vector<Index> Engine::marked_points(const Mark& mark) const {
           std::atomic_ref<std::uint8_t>(marks[r.points[k]]).store(1, std::memory_order_relaxed);
     }
   });
-  return parallel_collect<Index>(0, marks.size(), grain,
+  return parallel_collect<Index>(0, marks.size(), slot_grain,
                                  [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
                                    for (std::size_t p = begin; p < end; ++p)
                                      if (marks[p]) out.push_back(static_cast<Index>(p));

@@ -15,7 +15,7 @@ namespace tetwright {
 namespace {
 
 constexpr std::size_t leaf_items = 4;
-constexpr std::size_t grain = 4096;
+constexpr std::size_t slide_grain = 4096;
 
 /// Rounded outward, so that a box in single precision holds what it must.
 float below(double x) {
@@ -59,7 +59,7 @@ NearestTree::NearestTree(std::vector<Vec3> points, std::vector<Item> items)
     std::uint32_t item;
   };
   std::vector<Key> keys(items_.size());
-  parallel_for(0, keys.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, keys.size(), slide_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Triangle& c = items_[i].corners;
       keys[i] = {grid.key((points_[c[0]] + points_[c[1]] + points_[c[2]]) / 3),
@@ -152,7 +152,7 @@ Slide::Slide(const EditableMesh& mesh, const ReferenceSurface* given) : given_(g
   }
   // The edges with other than two of the triangles: junction curves, and where the input is not manifold.
   std::vector<std::uint64_t> edges(3 * faces.size());
-  parallel_for(0, faces.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, faces.size(), slide_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       for (int k = 0; k < 3; ++k) {
         const Index p = faces[i].ids[k], q = faces[i].ids[(k + 1) % 3];

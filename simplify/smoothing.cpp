@@ -22,8 +22,9 @@ constexpr double first_step = 0.3;        ///< in shortest edges
 constexpr double difference_step = 1e-5;  ///< for gradients, in shortest edges
 constexpr float active_within = 1.15f;    ///< times the poorest quality: tets whose gradients count
 constexpr std::size_t most_active = 8;
-constexpr int hull_steps = 12;       ///< for the shortest vector of the gradients' hull
-constexpr float least_gain = 1.01f;  ///< factor on the poorest quality that is worth another round's work
+constexpr int hull_steps = 12;  ///< for the shortest vector of the gradients' hull
+constexpr float least_smoothing_gain =
+    1.01f;  ///< factor on the poorest quality that is worth another round's work
 /// How far from its surface a point may be to be brought back onto it, in shortest edges.
 constexpr double slide_reach = 0.5;
 constexpr double fit_reach = 1;  ///< the same for fit_to_surface()
@@ -54,18 +55,18 @@ Vec3 keep_volumes(const Star& star, Vec3 step) {
 }
 
 /// Fills task.edit with the interface triangles before and after; false if one is too far from the reference.
-/// At junctions find_place() saw to it, by the point itself: where three regions meet in a loop smaller than
-/// a tet, the reference has no interface between two of them a little beside it.
+/// At junctions that may be left find_place() saw to it, by the point itself: where three regions meet in a
+/// loop smaller than a tet, the reference has no interface between two of them a little beside it.
 bool surface_edit(Task& task, const BlockRules& rules, const Vec3& to) {
   const Star& star = task.star;
-  const bool at_junction = star.dimension() < 2;
+  const bool by_point = rules.leave_surface && star.dimension() < 2;
   task.edit.clear();
   for (const Star::Sheet& s : star.sheets) {
     const Triangle ids{star.centre, star.points[s.first], star.points[s.second]};
     const Vec3 &p = star.positions[s.first], &q = star.positions[s.second];
     task.edit.removed.push_back({ids, {star.centre_position, p, q}});
     task.edit.added.push_back({ids, {to, p, q}});
-    if (!at_junction && !near_reference(rules, task.edit.added.back(), s.inside, s.across)) return false;
+    if (!by_point && !near_reference(rules, task.edit.added.back(), s.inside, s.across)) return false;
   }
   return true;
 }
@@ -191,9 +192,12 @@ bool find_place(Star& star, const EditableMesh& mesh, const BlockRules& rules, i
            : dimension == 1 ? rules.slide->onto_curve(to, most)
                             : rules.slide->onto_corner(to, most);
   };
-  // Chords of a curve may have left a point farther away than it could go by itself: it goes no farther.
+  // Chords of a curve may have left a point farther away than it could go by itself: it goes no farther. A
+  // point of dimension 0 that is no end or branch of a curve (two sheets that touch there) has no place to
+  // stay near, unless a corner is that near.
   double farthest = rules.largest_distance;
-  if (leave_surface && dimension < 2)
+  if (leave_surface && dimension == 0 && !nearest(star.centre_position, farthest)) return false;
+  if (leave_surface && dimension == 1)
     if (const auto on = nearest(star.centre_position, std::numeric_limits<double>::infinity()))
       farthest = std::max(farthest, (*on - star.centre_position).norm());
   /// Where a step leads: back onto the surface or curve, or near it.
@@ -324,7 +328,7 @@ Outcome optimise(Task& task, const BlockRules& rules) {
   if (star.pinned || (dimension == 0 && !(rules.leave_surface && rules.slide))) return Outcome::material_rule;
   star.compute_gradients();
   thread_local Placement place;
-  if (!find_place(star, task.mesh, rules, dimension, least_gain * star.poorest, place))
+  if (!find_place(star, task.mesh, rules, dimension, least_smoothing_gain * star.poorest, place))
     return Outcome::quality;
   return move_to(task, rules, place.position, place.qualities);
 }

@@ -11,7 +11,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t grain = 4096;  ///< triangles a parallel loop hands out at a time
+constexpr std::size_t triangle_grain = 4096;  ///< triangles a parallel loop hands out at a time
 
 /// Cells that the largest triangle may span along an axis: bounds what one operation has to lock.
 constexpr double most_cells_across = 24;
@@ -61,7 +61,7 @@ void SurfaceGrid::build(const EditableMesh& mesh, double smallest_cell, std::siz
   {
     const std::vector<EditableMesh::InterfaceFace> faces = mesh.interface_faces();
     records_.resize(faces.size());
-    parallel_for(0, faces.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(0, faces.size(), triangle_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         MeshTriangle& triangle = records_[i];
         triangle.ids = faces[i].ids;
@@ -95,7 +95,7 @@ void SurfaceGrid::build(const EditableMesh& mesh, double smallest_cell, std::siz
   cells_.clear();
   cells_.resize(slots);
   locks_.reset(slots);
-  parallel_for(0, records_.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, records_.size(), triangle_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       for_cells(records_[i], [&](const Cell3& c) {
         const std::uint32_t s = slot(c);

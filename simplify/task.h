@@ -72,8 +72,8 @@ struct BlockRules {
   /// How far a new surface triangle's centre may lie from the reference (needs slide), working coordinates;
   /// 0: not looked at. Unlike E it does not add up over several operations.
   double largest_distance = 0;
-  /// Points of interfaces, junction curves and corners may also leave them by up to largest_distance where
-  /// that betters the shapes (needs slide).
+  /// Points of interfaces, junction curves and corners may also leave them by up to largest_distance (or as
+  /// far as they stand away already) where that betters the shapes (needs slide).
   bool leave_surface = false;
   const Slide* slide = nullptr;  ///< what surface points slide along; null: planes of constant volume
 };

@@ -19,7 +19,9 @@ int main(int argc, char** argv) {
   using tetwright::ExitStatus;
 #ifdef __GLIBC__
   // Large blocks go back to the system when they are freed. By itself glibc puts what is as large as blocks
-  // that were freed before into its heaps, where it stays: gigabytes between the stages.
+  // that were freed before into its heaps, where it stays: gigabytes between the stages. This is the
+  // threshold that glibc begins with; setting it keeps it there. Beyond 65,536 blocks at a time glibc takes
+  // its heaps.
   mallopt(M_MMAP_THRESHOLD, 128 << 10);
 #endif
   // A full disk must end in an error message, not in a signal.

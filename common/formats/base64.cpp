@@ -17,7 +17,7 @@ constexpr std::array<std::int8_t, 256> make_values() {
     values[static_cast<unsigned char>(alphabet[i])] = static_cast<std::int8_t>(i);
   return values;
 }
-constexpr std::array<std::int8_t, 256> values = make_values();
+constexpr std::array<std::int8_t, 256> base64_values = make_values();
 
 }  // namespace
 
@@ -44,7 +44,7 @@ bool Base64Reader::decode_quad() {
   int digits = 0, padding = 0;
   while (digits + padding < 4 && position_ < text_.size()) {
     const char c = text_[position_];
-    const std::int8_t digit = values[static_cast<unsigned char>(c)];
+    const std::int8_t digit = base64_values[static_cast<unsigned char>(c)];
     if (digit >= 0 && padding == 0) {
       v = v << 6 | static_cast<std::uint32_t>(digit);
       ++digits;

@@ -12,10 +12,10 @@ namespace tetwright {
 namespace {
 
 /// zlib makes at least one byte of 1032.
-constexpr std::uint64_t largest_ratio = 1032;
+constexpr std::uint64_t largest_gzip_ratio = 1032;
 
 /// zlib counts in 32 bits.
-constexpr std::size_t piece_size = std::size_t{1} << 30;
+constexpr std::size_t most_at_once = std::size_t{1} << 30;
 
 /// What is inflated to be dropped goes through a buffer of this size.
 constexpr std::uint64_t skip_size = std::uint64_t{1} << 16;
@@ -61,7 +61,7 @@ std::string_view ByteSource::take(std::size_t n) {
 
 std::string_view ByteSource::inflate_next(std::size_t n) {
   State& s = *state_;
-  n = std::min(n, piece_size);
+  n = std::min(n, most_at_once);
   if (s.buffer.size() < n) s.buffer.resize(n);
   s.stream.next_out = reinterpret_cast<Bytef*>(s.buffer.data());
   s.stream.avail_out = static_cast<uInt>(n);
@@ -71,7 +71,7 @@ std::string_view ByteSource::inflate_next(std::size_t n) {
       if (!bytes_.starts_with("\x1f\x8b") || inflateReset(&s.stream) != Z_OK) break;
       s.member_ended = false;
     }
-    const std::size_t given = std::min(bytes_.size(), piece_size);
+    const std::size_t given = std::min(bytes_.size(), most_at_once);
     const uInt room = s.stream.avail_out;
     s.stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes_.data()));  // zlib only reads them
     s.stream.avail_in = static_cast<uInt>(given);
@@ -104,7 +104,7 @@ std::uint64_t ByteSource::skip(std::uint64_t n) {
 std::uint64_t ByteSource::most_left() const {
   if (!packed()) return bytes_.size();
   // One more: what was read but not yet handed out.
-  const std::uint64_t most = (state_->packed_size + 1) * largest_ratio;
+  const std::uint64_t most = (state_->packed_size + 1) * largest_gzip_ratio;
   return most > taken_ ? most - taken_ : 0;
 }
 

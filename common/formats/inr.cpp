@@ -12,7 +12,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::string_view magic = "#INRIMAGE-4#{";
+constexpr std::string_view inr_magic = "#INRIMAGE-4#{";
 constexpr std::string_view header_end = "##}";
 /// Headers are a multiple of it.
 constexpr std::size_t block_size = 256;
@@ -21,10 +21,10 @@ constexpr std::size_t longest_header = 256 * block_size;
 std::string read_header_bytes(ByteSource& source) {
   std::string header(source.take(block_size));
   if (header.empty()) throw InputError(source.name() + ": the file is empty");
-  if (!header.starts_with(magic))
+  if (!header.starts_with(inr_magic))
     throw InputError(source.name(), 1,
                      "expected \"#INRIMAGE-4#{\" at the beginning, found " +
-                         in_quotes(std::string_view(header).substr(0, magic.size())) +
+                         in_quotes(std::string_view(header).substr(0, inr_magic.size())) +
                          "; is this an INR file?");
   for (;;) {
     if (const std::size_t end = header.find(header_end); end != std::string::npos) {

@@ -11,8 +11,8 @@ namespace tetwright {
 
 namespace {
 
-/// Bytes. Longer ones are no names, and not all programs read what is written of them.
-constexpr std::size_t longest_name = 255;
+/// Bytes. Two of them make the name of an interface, and Gmsh reads 255 bytes of one.
+constexpr std::size_t longest_label_name = 120;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 
@@ -104,9 +104,9 @@ std::string name_of(const Line& line, const std::string& file) {
   else if (name.starts_with('"'))
     fail("the name " + in_quotes(name.substr(1)) + " lacks its closing quote");
   if (name.empty()) fail("label " + std::string(line.tag) + " has no name");
-  if (name.size() > longest_name)
+  if (name.size() > longest_label_name)
     fail("label " + std::string(line.tag) + " has a name of " + std::to_string(name.size()) +
-         " bytes; at most " + std::to_string(longest_name) + " are possible");
+         " bytes; at most " + std::to_string(longest_label_name) + " are possible");
   if (std::any_of(name.begin(), name.end(), [](char c) { return (c >= 0 && c < ' ') || c == 127; }))
     fail("the name " + in_quotes(name) + " has a control character; is this a text file?");
   return std::string(name);

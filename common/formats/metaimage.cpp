@@ -13,7 +13,7 @@ namespace tetwright {
 
 namespace {
 
-VoxelType voxel_type(const HeaderFields& header) {
+VoxelType metaimage_voxel_type(const HeaderFields& header) {
   // A long has 4 bytes in these files, wherever they were written.
   constexpr std::array<std::pair<std::string_view, VoxelType>, 12> names{
       {{"met_char", VoxelType::int8},
@@ -38,7 +38,7 @@ VoxelType voxel_type(const HeaderFields& header) {
 }
 
 /// Up to and with the line that says where the voxels are.
-HeaderFields read_header(TextScanner& in) {
+HeaderFields read_metaimage_header(TextScanner& in) {
   if (in.left() == 0) in.fail("the file is empty");
   HeaderFields header(in.name());
   while (in.left() > 0) {
@@ -104,10 +104,10 @@ LabelVolume read_geometry(const HeaderFields& header) {
 
 LabelVolume read_metaimage(std::string_view bytes, const std::string& name, const FileReader& read) {
   TextScanner in(bytes, name);
-  const HeaderFields header = read_header(in);
+  const HeaderFields header = read_metaimage_header(in);
   LabelVolume volume = read_geometry(header);
   VoxelFormat format;
-  format.type = voxel_type(header);
+  format.type = metaimage_voxel_type(header);
   const bool big = flag(header, header.any_of({"elementbyteordermsb", "binarydatabyteordermsb"}), false);
   format.swap = big == little_endian_machine;
   const bool packed = flag(header, "compresseddata", false);

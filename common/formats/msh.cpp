@@ -13,7 +13,7 @@ namespace tetwright {
 namespace {
 
 constexpr std::int64_t triangle_type = 2;
-constexpr std::int64_t tet_type = 4;
+constexpr std::int64_t written_tet_type = 4;
 
 void append_name(std::string& out, int dimension, std::int64_t group, const std::string& name) {
   append_number(out, dimension);
@@ -71,7 +71,7 @@ std::string write_msh(const TetMesh& mesh) {
   std::sort(tags.begin(), tags.end());
   tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    append_element(out, t + 1, tet_type, mesh.materials[t],
+    append_element(out, t + 1, written_tet_type, mesh.materials[t],
                    std::lower_bound(tags.begin(), tags.end(), mesh.materials[t]) - tags.begin() + 1,
                    mesh.tets[t]);
   for (std::size_t i = 0; i < mesh.interfaces.size(); ++i) {

@@ -14,7 +14,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::int64_t tet_type = 4;
+constexpr std::int64_t msh_tet_type = 4;
 
 /// What Gmsh calls an element of a volume; null for points, lines, faces and unknown ones.
 const char* volume_element(std::int64_t type) {
@@ -55,9 +55,9 @@ const char* volume_element(std::int64_t type) {
   }
 }
 
-class Reader {
+class MshReader {
  public:
-  Reader(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options)
+  MshReader(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options)
       : in_(bytes, name), options_(options), bytes_(bytes) {}
 
   ReadTetMesh read() {
@@ -254,7 +254,7 @@ class Reader {
       const std::int64_t element = in_.integer("number of an element");
       const std::int64_t type = in_.integer("type of an element");
       const std::int64_t tags = in_.integer("number of tags");
-      if (type == tet_type) {
+      if (type == msh_tet_type) {
         std::int64_t physical = 0, geometrical = 0;
         for (std::int64_t k = 0; k < tags; ++k) {
           const std::int64_t tag = in_.integer("tag");
@@ -289,13 +289,13 @@ class Reader {
         in_.fail("the blocks have more elements than the " + std::to_string(n) + " that $Elements promises");
       done += in_block;
       const auto group = volume_to_group_.find(volume);
-      if (type == tet_type && in_block > 0) {
+      if (type == msh_tet_type && in_block > 0) {
         any_physical_ = any_physical_ || group != volume_to_group_.end();
         any_geometrical_ = true;
       }
       for (std::size_t i = 0; i < in_block; ++i) {
         const std::int64_t element = in_.integer("number of an element");
-        if (type == tet_type) {
+        if (type == msh_tet_type) {
           add_groups(group == volume_to_group_.end() ? 0 : group->second, volume);
           read_tet(element);
         } else if (dimension == 3 || volume_element(type)) {
@@ -369,7 +369,7 @@ class Reader {
 }  // namespace
 
 ReadTetMesh read_msh(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options) {
-  return Reader(bytes, name, options).read();
+  return MshReader(bytes, name, options).read();
 }
 
 }  // namespace tetwright

@@ -14,15 +14,15 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t header_size = 348;
+constexpr std::size_t nifti_header_size = 348;
 /// Header and four bytes that say whether extensions follow.
 constexpr std::size_t first_voxel = 352;
 
-class Header {
+class NiftiHeader {
  public:
-  Header(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {
+  NiftiHeader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {
     if (bytes_.empty()) fail("the file is empty");
-    if (bytes_.size() < header_size)
+    if (bytes_.size() < nifti_header_size)
       fail("only " + std::to_string(bytes_.size()) + " bytes, but the header has 348; the file is cut short");
     const auto size = load<std::int32_t>(bytes_.data(), false),
                other = load<std::int32_t>(bytes_.data(), true);
@@ -202,14 +202,14 @@ class Header {
 LabelVolume read_nifti(std::string_view bytes, const std::string& name) {
   ByteSource source(
       bytes, bytes.starts_with("\x1f\x8b") ? ByteSource::Packing::deflate : ByteSource::Packing::none, name);
-  const std::string header_bytes(source.take(header_size));
-  const Header header(header_bytes, name);
+  const std::string header_bytes(source.take(nifti_header_size));
+  const NiftiHeader header(header_bytes, name);
   LabelVolume volume;
   volume.size = header.size();
   header.read_geometry(volume);
   check_geometry(volume, name);
   const VoxelFormat format = header.format();
-  const std::size_t between = header.offset() - header_size;
+  const std::size_t between = header.offset() - nifti_header_size;
   if (source.skip(between) < between)
     throw InputError(name + ": the voxels begin at byte " + std::to_string(header.offset()) + " of " +
                      std::to_string(source.taken()) + "; the file is cut short");

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::int64_t most_axes = 16;  // the format's own limit
 
-VoxelType voxel_type(const HeaderFields& header) {
+VoxelType nrrd_voxel_type(const HeaderFields& header) {
   constexpr std::array<std::pair<std::string_view, VoxelType>, 32> names{
       {{"signed char", VoxelType::int8},
        {"int8", VoxelType::int8},
@@ -121,7 +121,7 @@ bool is_list(std::string_view value) {
 }
 
 /// Up to and with the empty line; a detached header may end without one.
-HeaderFields read_header(TextScanner& in) {
+HeaderFields read_nrrd_header(TextScanner& in) {
   if (in.left() == 0) in.fail("the file is empty");
   HeaderFields header(in.name());
   const std::string_view magic = in.rest_of_line();
@@ -189,9 +189,9 @@ std::vector<std::optional<Vec3>> vectors(const HeaderFields& header, const std::
 }
 
 /// The header's meaning.
-class Header {
+class NrrdHeader {
  public:
-  explicit Header(const HeaderFields& fields) : fields_(fields) {
+  explicit NrrdHeader(const HeaderFields& fields) : fields_(fields) {
     const std::int64_t dimension = fields_.integer("dimension");
     if (dimension < 3 || dimension > most_axes)
       fields_.fail("dimension",
@@ -357,17 +357,17 @@ bool is_swapped(const HeaderFields& header, VoxelType type) {
 
 LabelVolume read_nrrd(std::string_view bytes, const std::string& name, const FileReader& read) {
   TextScanner in(bytes, name);
-  const HeaderFields header = read_header(in);
+  const HeaderFields header = read_nrrd_header(in);
   const std::string encoding = header.lower_text("encoding");
   const bool gzip = encoding == "gzip" || encoding == "gz";
   const bool as_text = encoding == "txt" || encoding == "text" || encoding == "ascii";
   if (!gzip && !as_text && encoding != "raw")
     header.fail("encoding",
                 "encoding " + in_quotes(encoding) + " is not supported; save the volume as raw or gzip");
-  LabelVolume volume = Header(header).volume();
+  LabelVolume volume = NrrdHeader(header).volume();
   check_geometry(volume, name);
   VoxelFormat format;
-  format.type = voxel_type(header);
+  format.type = nrrd_voxel_type(header);
 
   const std::string data_field = header.any_of({"data file", "datafile"});
   DataFile file{name, {}};

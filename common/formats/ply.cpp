@@ -70,7 +70,7 @@ struct Element {
 
 enum class Encoding { ascii, little, big };
 
-struct Header {
+struct PlyHeader {
   Encoding encoding = Encoding::ascii;
   std::vector<Element> elements;
 };
@@ -115,8 +115,8 @@ void read_property(TextScanner& in, Element& element) {
   element.properties.push_back(property);
 }
 
-Header read_header(TextScanner& in) {
-  Header header;
+PlyHeader read_ply_header(TextScanner& in) {
+  PlyHeader header;
   if (in.at_end()) in.fail("the file is empty");
   if (const std::string_view magic = in.word(); magic != "ply")
     in.fail("expected \"ply\" at the beginning, found " + in_quotes(magic) + "; is this a PLY file?");
@@ -287,7 +287,7 @@ void read_element(Body& body, const Element& element, SurfaceBuilder& surface) {
 
 TriangleMesh read_ply(std::string_view bytes, const std::string& name) {
   TextScanner in(bytes, name);
-  const Header header = read_header(in);
+  const PlyHeader header = read_ply_header(in);
   const Element* vertex = nullptr;
   const Element* face = nullptr;
   for (const Element& e : header.elements) {

@@ -15,8 +15,8 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t header_size = 84;  ///< 80 bytes of anything and the number of triangles
-constexpr std::size_t record_size = 50;  ///< normal, three points, two bytes of attributes
+constexpr std::size_t stl_header_size = 84;  ///< 80 bytes of anything and the number of triangles
+constexpr std::size_t record_size = 50;      ///< normal, three points, two bytes of attributes
 
 /// Gives equal points the same number: open addressing, at most half full.
 class PointMerger {
@@ -68,7 +68,7 @@ TriangleMesh read_binary(std::string_view bytes, const std::string& name, std::s
   surface.reserve(triangles / 2, triangles);
   PointMerger merger(surface, triangles / 2);
   for (std::size_t t = 0; t < triangles; ++t) {
-    const std::size_t begin = header_size + t * record_size + 12;
+    const std::size_t begin = stl_header_size + t * record_size + 12;
     std::array<std::int64_t, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t at = begin + 12 * k;
@@ -133,13 +133,13 @@ TriangleMesh read_ascii(std::string_view bytes, const std::string& name) {
 TriangleMesh read_stl(std::string_view bytes, const std::string& name) {
   if (bytes.empty()) throw InputError(name + ": the file is empty");
   const bool says_solid = bytes.size() >= 5 && is_word(bytes.substr(0, 5), "solid");
-  if (bytes.size() < header_size) {
+  if (bytes.size() < stl_header_size) {
     if (says_solid) return read_ascii(bytes, name);
     throw InputError(name + ": only " + std::to_string(bytes.size()) +
                      " bytes, too short for an STL file; it is cut short or not STL");
   }
   const std::size_t triangles = load<std::uint32_t>(bytes.data() + 80, !little_endian_machine);
-  const std::size_t expected = header_size + triangles * record_size;
+  const std::size_t expected = stl_header_size + triangles * record_size;
   // Both kinds may begin with "solid": a binary file has the size its header says, and text has no zero
   // bytes.
   const bool has_zeros = bytes.find('\0') != std::string_view::npos;

@@ -22,7 +22,7 @@ constexpr std::int64_t most_voxels = std::int64_t{1} << 31;
 /// Bytes that are inflated before they become labels.
 constexpr std::size_t block_bytes = std::size_t{1} << 22;
 
-constexpr std::size_t grain = std::size_t{1} << 17;
+constexpr std::size_t voxel_grain = std::size_t{1} << 17;
 
 /// Directions are taken to be in one plane when the box of their unit vectors has less than this volume:
 /// far flatter than any scanner's gantry tilt, far above the rounding of float directions.
@@ -64,7 +64,7 @@ template <class Stored>
 std::size_t convert(const char* from, std::size_t n, const VoxelFormat& format, MaterialTag* labels) {
   const bool scaled = format.slope != 1 || format.intercept != 0;
   std::atomic<std::size_t> first_bad = n;
-  parallel_for(0, n, grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, n, voxel_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (to_label<Stored>(from + i * sizeof(Stored), format, scaled, labels[i])) continue;
       std::size_t before = first_bad;

@@ -14,8 +14,8 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::int64_t tet_type = 10;
-constexpr std::int64_t most_components = 1 << 16;
+constexpr std::int64_t vtk_tet_type = 10;
+constexpr std::int64_t most_vtk_components = 1 << 16;
 
 /// Cells of less than three dimensions, by VTK's numbers.
 bool is_flat_cell(std::int64_t type) {
@@ -76,9 +76,9 @@ std::string decoded(std::string_view name) {
   return field_name(out);
 }
 
-class Reader {
+class VtkReader {
  public:
-  Reader(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options)
+  VtkReader(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options)
       : in_(bytes, name), options_(options), cells_begin_(in_), types_begin_(in_) {}
 
   ReadTetMesh read() {
@@ -256,7 +256,7 @@ class Reader {
     const std::size_t points = result_.mesh.points.size();
     for (std::size_t c = 0; c < types_.size(); ++c) {
       const auto cell = [c] { return "cell " + std::to_string(c) + " (counted from 0)"; };
-      if (types_[c] != tet_type) {
+      if (types_[c] != vtk_tet_type) {
         if (!is_flat_cell(types_[c]))
           fail_at(types_begin_, c,
                   cell() + " is a " + cell_name(types_[c]) + " (type " + std::to_string(types_[c]) +
@@ -314,8 +314,9 @@ class Reader {
   }
 
   std::size_t checked_components(std::int64_t n) const {
-    if (n < 1 || n > most_components)
-      in_.fail(std::to_string(n) + " components; 1 to " + std::to_string(most_components) + " are possible");
+    if (n < 1 || n > most_vtk_components)
+      in_.fail(std::to_string(n) + " components; 1 to " + std::to_string(most_vtk_components) +
+               " are possible");
     return static_cast<std::size_t>(n);
   }
 
@@ -423,7 +424,7 @@ class Reader {
 }  // namespace
 
 ReadTetMesh read_vtk(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options) {
-  return Reader(bytes, name, options).read();
+  return VtkReader(bytes, name, options).read();
 }
 
 }  // namespace tetwright

@@ -17,13 +17,13 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::int64_t tet_type = 10;
+constexpr std::int64_t vtu_tet_type = 10;
 constexpr const char* names_field = "material_names";
-constexpr std::int64_t most_components = 1 << 16;
+constexpr std::int64_t most_vtu_components = 1 << 16;
 
-class Reader {
+class VtuReader {
  public:
-  Reader(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options)
+  VtuReader(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options)
       : data_(bytes, name), name_(name), options_(options), file_size_(bytes.size()) {}
 
   ReadTetMesh read() {
@@ -100,7 +100,7 @@ class Reader {
       if (end < begin || end > std::ssize(connectivity))
         data_.fail(offsets_node, "cell " + std::to_string(c) + " ends at " + std::to_string(end) + " of " +
                                      std::to_string(connectivity.size()) + "; the file is damaged");
-      if (types[c] == tet_type) {
+      if (types[c] == vtu_tet_type) {
         if (end - begin != 4)
           data_.fail(offsets_node, "cell " + std::to_string(c) + " is a tet of " +
                                        std::to_string(end - begin) + " points; the file is damaged");
@@ -136,9 +136,9 @@ class Reader {
       field.name = field_name(node.attribute("Name").as_string());
       const std::string_view text = node.attribute("NumberOfComponents").as_string("1");
       std::int64_t components = 0;
-      if (!parse_number(text, components) || components < 1 || components > most_components)
+      if (!parse_number(text, components) || components < 1 || components > most_vtu_components)
         data_.fail(node, "NumberOfComponents is " + in_quotes(text) + ", not a number from 1 to " +
-                             std::to_string(most_components));
+                             std::to_string(most_vtu_components));
       field.components = static_cast<int>(components);
       const auto per_item = static_cast<std::size_t>(components);
       field.values = data_.numbers(node, per_item * n);
@@ -237,7 +237,7 @@ void write_field(const ByteSink& sink, const MeshField& field, const std::string
 }  // namespace
 
 ReadTetMesh read_vtu(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options) {
-  return Reader(bytes, name, options).read();
+  return VtuReader(bytes, name, options).read();
 }
 
 std::string write_vtu(const TetMesh& mesh) {
@@ -275,7 +275,7 @@ void write_vtu(const TetMesh& mesh, const ByteSink& sink) {
   write_array(sink, "Int64", "offsets", "", mesh.tets.size(),
               [](std::size_t i) { return static_cast<std::int64_t>(4 * (i + 1)); });
   write_array(sink, "UInt8", "types", "", mesh.tets.size(),
-              [](std::size_t) { return static_cast<std::uint8_t>(tet_type); });
+              [](std::size_t) { return static_cast<std::uint8_t>(vtu_tet_type); });
   sink("</Cells>\n");
   if (!mesh.point_fields.empty()) {
     sink("<PointData>\n");

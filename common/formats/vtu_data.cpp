@@ -18,7 +18,7 @@ namespace tetwright {
 namespace {
 
 /// zlib makes at least one byte of 1032.
-constexpr std::uint64_t largest_ratio = 1032;
+constexpr std::uint64_t largest_zlib_ratio = 1032;
 
 /// The same interface as Base64Reader, for bytes as they are.
 class RawReader {
@@ -126,7 +126,7 @@ std::string VtuData::decode_from(Source source, pugi::xml_node array, std::size_
   }
   if (packed_total > left) fail(array, cut_short());
   // Compared before they are multiplied, so that nothing overflows.
-  const std::uint64_t possible = packed_total * largest_ratio;
+  const std::uint64_t possible = packed_total * largest_zlib_ratio;
   check_size(last, possible);
   // A single block may well be smaller than the block size.
   if (blocks > 1 || last == 0) check_size(block_size, possible);

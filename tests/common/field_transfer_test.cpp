@@ -12,7 +12,7 @@
 #include "tests/common/small_meshes.h"
 #include "tests/simplify/meshes.h"
 
-namespace tetwright {
+namespace tetwright::field_transfer_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -336,4 +336,4 @@ TEST(FieldTransfer, NothingToTakeFrom) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::field_transfer_test

@@ -12,7 +12,7 @@
 #include "tests/common/small_meshes.h"
 #include "tests/simplify/meshes.h"
 
-namespace tetwright {
+namespace tetwright::foreign_mesh_test {
 namespace {
 
 int sign(const TetMesh& mesh, const Tet& t) {
@@ -282,4 +282,4 @@ TEST(ForeignMesh, NoTets) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::foreign_mesh_test

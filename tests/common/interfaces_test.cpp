@@ -10,7 +10,7 @@
 #include "common/topology.h"
 #include "tests/common/small_meshes.h"
 
-namespace tetwright {
+namespace tetwright::interfaces_test {
 namespace {
 
 TetMesh sample(const char* name) { return std::get<TetMesh>(make_sample(name)); }
@@ -141,4 +141,4 @@ TEST(Interfaces, GroupsAndTheirNames) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::interfaces_test

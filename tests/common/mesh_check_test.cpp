@@ -8,7 +8,7 @@
 #include "common/samples.h"
 #include "tests/common/small_meshes.h"
 
-namespace tetwright {
+namespace tetwright::mesh_check_test {
 namespace {
 
 /// Names and counts, in order.
@@ -113,4 +113,4 @@ TEST(MeshCheck, TheSameForAnyThreads) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::mesh_check_test

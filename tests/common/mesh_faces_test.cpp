@@ -9,7 +9,7 @@
 #include "common/random.h"
 #include "tests/common/small_meshes.h"
 
-namespace tetwright {
+namespace tetwright::mesh_faces_test {
 namespace {
 
 TEST(MeshFaces, TwoTets) {
@@ -74,4 +74,4 @@ TEST(MeshFaces, CandidatesLeaveTheFacesOfThreeFlaggedPoints) {
 TEST(MeshFaces, Empty) { EXPECT_TRUE(mesh_faces({}, 0).empty()); }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::mesh_faces_test

@@ -10,7 +10,7 @@
 #include "common/samples.h"
 #include "tests/common/small_meshes.h"
 
-namespace tetwright {
+namespace tetwright::mesh_statistics_test {
 namespace {
 
 std::size_t total(const QualityHistogram& h) {
@@ -94,4 +94,4 @@ TEST(MeshStatistics, TheSameForAnyThreads) {
 TEST(MeshStatistics, Empty) { EXPECT_EQ(mesh_statistics({}).tets, 0u); }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::mesh_statistics_test

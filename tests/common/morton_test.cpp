@@ -4,7 +4,7 @@
 
 #include "common/random.h"
 
-namespace tetwright {
+namespace tetwright::morton_test {
 namespace {
 
 TEST(Morton, RoundTrip) {
@@ -25,4 +25,4 @@ TEST(Morton, ParentIsThreeBitsUp) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::morton_test

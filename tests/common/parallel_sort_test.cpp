@@ -4,7 +4,7 @@
 
 #include "common/random.h"
 
-namespace tetwright {
+namespace tetwright::parallel_sort_test {
 namespace {
 
 TEST(ParallelSort, AgreesWithStdSort) {
@@ -37,4 +37,4 @@ TEST(ParallelCollect, KeepsTheOrder) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::parallel_sort_test

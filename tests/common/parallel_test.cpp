@@ -10,7 +10,7 @@
 
 #include "common/random.h"
 
-namespace tetwright {
+namespace tetwright::parallel_test {
 namespace {
 
 TEST(Parallel, ForVisitsEachItemOnce) {
@@ -95,4 +95,4 @@ TEST(Parallel, LimitsNestAndEnd) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::parallel_test

@@ -7,7 +7,7 @@
 
 #include "common/random.h"
 
-namespace tetwright {
+namespace tetwright::point_table_test {
 namespace {
 
 TEST(PointTable, TheFirstOfEqualPointsStands) {
@@ -37,4 +37,4 @@ TEST(PointTable, MinusZeroIsZeroAndNaNIsNothing) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::point_table_test

@@ -7,7 +7,7 @@
 
 #include "common/random.h"
 
-namespace tetwright {
+namespace tetwright::point_triangle_test {
 namespace {
 
 TEST(PointTriangle, RegionsOfOneTriangle) {
@@ -42,4 +42,4 @@ TEST(PointTriangle, DegenerateOnesAreSegmentsAndPoints) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::point_triangle_test

@@ -7,7 +7,7 @@
 
 #include "common/random.h"
 
-namespace tetwright {
+namespace tetwright::portable_math_test {
 namespace {
 
 /// A value of random sign and an exponent between the two.
@@ -60,4 +60,4 @@ TEST(PortableMath, LogAgreesWithLibm) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::portable_math_test

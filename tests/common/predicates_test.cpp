@@ -4,7 +4,7 @@
 
 #include "common/random.h"
 
-namespace tetwright {
+namespace tetwright::predicates_test {
 namespace {
 
 Vec3 random_point(Random& random) { return {random.uniform(), random.uniform(), random.uniform()}; }
@@ -63,4 +63,4 @@ TEST(Predicates, ExtremeScalesAreExact) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::predicates_test

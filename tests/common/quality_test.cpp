@@ -6,7 +6,7 @@
 
 #include "common/random.h"
 
-namespace tetwright {
+namespace tetwright::quality_test {
 namespace {
 
 const std::array<Vec3, 4> regular{Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)};
@@ -77,4 +77,4 @@ TEST(Quality, PaperQualityHasThreeFactors) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::quality_test

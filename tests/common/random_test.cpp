@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-namespace tetwright {
+namespace tetwright::random_test {
 namespace {
 
 // The numbers are part of what makes results repeat between machines: they may never change.
@@ -58,4 +58,4 @@ TEST(Random, StreamsDiffer) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::random_test

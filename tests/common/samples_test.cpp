@@ -8,7 +8,7 @@
 #include "tests/common/formats/expect_error.h"
 #include "tests/common/formats/file_test.h"
 
-namespace tetwright {
+namespace tetwright::samples_test {
 namespace {
 
 using Samples = FileTest;
@@ -84,4 +84,4 @@ TEST_F(Samples, UnknownNamesListTheKnown) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::samples_test

@@ -7,7 +7,7 @@
 #include "common/samples.h"
 #include "common/triangle_intersection.h"
 
-namespace tetwright {
+namespace tetwright::self_intersection_test {
 namespace {
 
 TEST(SelfIntersection, SamplesHaveNone) {
@@ -56,4 +56,4 @@ TEST(SelfIntersection, FewTriangles) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::self_intersection_test

@@ -4,7 +4,7 @@
 
 #include "common/samples.h"
 
-namespace tetwright {
+namespace tetwright::surface_chains_test {
 namespace {
 
 TEST(SurfaceChains, ClosedSurfacesHaveTheirEulerNumbers) {
@@ -40,4 +40,4 @@ TEST(SurfaceChains, EdgesCountTheirTriangles) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::surface_chains_test

@@ -5,7 +5,7 @@
 #include "common/samples.h"
 #include "tests/common/small_meshes.h"
 
-namespace tetwright {
+namespace tetwright::topology_test {
 namespace {
 
 TetMesh sample(const char* name) { return std::get<TetMesh>(make_sample(name)); }
@@ -97,4 +97,4 @@ TEST(Topology, DoesNotDependOnNumbering) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::topology_test

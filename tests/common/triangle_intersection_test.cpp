@@ -8,7 +8,7 @@
 
 #include "common/random.h"
 
-namespace tetwright {
+namespace tetwright::triangle_intersection_test {
 namespace {
 
 MeshTriangle triangle(Triangle ids, Vec3 a, Vec3 b, Vec3 c) { return {ids, {a, b, c}}; }
@@ -200,4 +200,4 @@ TEST(TriangleIntersection, RepeatedIdsAreHarmless) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::triangle_intersection_test

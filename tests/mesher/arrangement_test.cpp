@@ -4,7 +4,7 @@
 
 #include "lattices.h"
 
-namespace tetwright {
+namespace tetwright::arrangement_test {
 namespace {
 
 std::vector<int> meeting(const LabelledLattice& lattice, const Vec3& p) {
@@ -99,4 +99,4 @@ TEST(Arrangement, PureRegionsOfTheClosedStar) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::arrangement_test

@@ -9,7 +9,7 @@
 
 #include "common/quality.h"
 
-namespace tetwright {
+namespace tetwright::cut_tet_test {
 namespace {
 
 /// The corners of the regular tet, positive.
@@ -116,4 +116,4 @@ TEST(CutTet, FacesAgreeWithTheNeighbours) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::cut_tet_test

@@ -10,7 +10,7 @@
 #include "lattices.h"
 #include "test_surfaces.h"
 
-namespace tetwright {
+namespace tetwright::cutting_test {
 namespace {
 
 TEST(Cutting, CutsAreSharedAndOffTheEnds) {
@@ -68,4 +68,4 @@ TEST(Cutting, FourRegionsMeetInAPoint) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::cutting_test

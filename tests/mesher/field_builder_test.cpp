@@ -10,7 +10,7 @@
 #include "test_surfaces.h"
 #include "tests/common/temporary_folder.h"
 
-namespace tetwright {
+namespace tetwright::field_builder_test {
 namespace {
 
 /// A ball of label 2 whose lower third is label 1, 32 voxels to a side, in space as `directions` say.
@@ -82,4 +82,4 @@ TEST(FieldBuilder, FieldsOfTurnedAndMirroredLabels) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::field_builder_test

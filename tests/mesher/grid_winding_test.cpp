@@ -4,7 +4,7 @@
 
 #include "test_surfaces.h"
 
-namespace tetwright {
+namespace tetwright::grid_winding_test {
 namespace {
 
 constexpr std::array<int, 3> cells{24, 24, 24};
@@ -56,4 +56,4 @@ TEST(GridWinding, BoxOnGridPoints) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::grid_winding_test

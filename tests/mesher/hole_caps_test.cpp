@@ -7,7 +7,7 @@
 
 #include "test_surfaces.h"
 
-namespace tetwright {
+namespace tetwright::hole_caps_test {
 namespace {
 
 const Vec3 centre(20.2, 19.7, 20.4);
@@ -59,4 +59,4 @@ TEST(HoleCaps, CanBeCancelled) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::hole_caps_test

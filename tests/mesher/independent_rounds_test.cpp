@@ -5,7 +5,7 @@
 #include "common/random.h"
 #include "lattices.h"
 
-namespace tetwright {
+namespace tetwright::independent_rounds_test {
 namespace {
 
 // Each point takes one more than the largest number within two edges: the result depends on the order.
@@ -49,4 +49,4 @@ TEST(IndependentRounds, AreLikeOneAfterTheOther) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::independent_rounds_test

@@ -10,7 +10,7 @@
 #include "common/random.h"
 #include "label_volumes.h"
 
-namespace tetwright {
+namespace tetwright::label_field_test {
 namespace {
 
 std::shared_ptr<const LabelField> make_field(const PreparedLabels& labels, double cell,
@@ -249,4 +249,4 @@ TEST(LabelField, TheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::label_field_test

@@ -8,7 +8,7 @@
 #include "common/random.h"
 #include "tests/common/formats/expect_error.h"
 
-namespace tetwright {
+namespace tetwright::label_input_test {
 namespace {
 
 /// One row of voxels, at (10, 20, 30) with steps of 2 along the y axis.
@@ -263,4 +263,4 @@ TEST(LabelInput, CanBeInterrupted) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::label_input_test

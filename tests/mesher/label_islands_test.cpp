@@ -9,7 +9,7 @@
 #include "common/parallel.h"
 #include "common/random.h"
 
-namespace tetwright {
+namespace tetwright::label_islands_test {
 namespace {
 
 using Size = std::array<int, 3>;
@@ -248,4 +248,4 @@ TEST(LabelIslands, CanBeInterrupted) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::label_islands_test

@@ -13,7 +13,7 @@
 #include "common/topology.h"
 #include "label_volumes.h"
 
-namespace tetwright {
+namespace tetwright::label_mesher_test {
 namespace {
 
 MesherOptions cells_of(double cell, double adaptivity = MesherOptions().adaptivity) {
@@ -483,4 +483,4 @@ TEST(LabelMesher, CoarseCellsKeepShells) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::label_mesher_test

@@ -9,7 +9,7 @@
 
 #include "common/random.h"
 
-namespace tetwright {
+namespace tetwright::label_smoothing_test {
 namespace {
 
 constexpr int cells = LabelSmoother::cells, nodes = LabelSmoother::nodes, reach = LabelSmoother::reach;
@@ -230,4 +230,4 @@ TEST(LabelSmoothing, TurnedAndMirroredVoxelsGiveTheSame) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::label_smoothing_test

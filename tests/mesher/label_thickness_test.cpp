@@ -12,7 +12,7 @@
 #include "label_volumes.h"
 #include "mesher/label_field.h"
 
-namespace tetwright {
+namespace tetwright::label_thickness_test {
 namespace {
 
 using Size = std::array<int, 3>;
@@ -232,4 +232,4 @@ TEST(LabelThickness, TheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::label_thickness_test

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 
+#include "common/random.h"
 #include "lattices.h"
 
-namespace tetwright {
+namespace tetwright::labelled_lattice_test {
 namespace {
 
 std::ptrdiff_t count_of(const LabelledLattice& lattice, RegionIndex region) {
@@ -31,6 +32,55 @@ TEST(LabelledLattice, StarMapListsEveryTetOfAPoint) {
     const auto listed = lattice.stars.tets(p);
     EXPECT_EQ(std::vector<Index>(listed.begin(), listed.end()), expected);
   }
+}
+
+TEST(LabelledLattice, StarMapsOfManyBlocksAndLongSteps) {
+  // Tets that come back to the same points after one, a hundred, ten thousand and more others.
+  constexpr Index points = 4 * 4096 + 3;
+  std::vector<std::vector<Tet>> parts(5);
+  Random random(3);
+  std::vector<std::vector<Index>> expected(points);
+  Index t = 0;
+  for (std::vector<Tet>& part : parts)
+    for (int i = 0; i < 17001; ++i, ++t) {
+      const Index wide = random.below(points - 4), narrow = t / 100 % 5000;
+      part.push_back({wide, wide + 1, wide + 2,
+                      narrow == wide + 1 || narrow == wide + 2 || narrow == wide ? wide + 3 : narrow});
+      for (Index p : part.back()) expected[p].push_back(t);
+    }
+  TetList tets(std::move(parts));
+  std::vector<Index> listed;
+  for (Index p = 0; p < points; ++p)
+    if (p % 7) listed.push_back(p);
+  const StarMap stars(listed, points, tets);
+  for (Index p = 0; p < points; ++p) {
+    ASSERT_EQ(stars.lists(p), p % 7 != 0);
+    if (!stars.lists(p)) continue;
+    const auto row = stars.tets(p);
+    ASSERT_EQ(std::vector<Index>(row.begin(), row.end()), expected[p]) << p;
+  }
+}
+
+TEST(LabelledLattice, ListsOfTetsInPieces) {
+  const auto make = [] {
+    std::vector<std::vector<Tet>> parts(3);
+    Index t = 0;
+    for (std::size_t size : {TetList::piece_size / 3, std::size_t{0}, 2 * TetList::piece_size + 5}) {
+      std::vector<Tet>& part = parts[t ? 2 : 0];
+      for (std::size_t i = 0; i < size; ++i, ++t) part.push_back({t, t + 1, t + 2, t + 3});
+    }
+    return TetList(std::move(parts));
+  };
+  TetList tets = make();
+  ASSERT_EQ(tets.size(), TetList::piece_size / 3 + 2 * TetList::piece_size + 5);
+  ASSERT_EQ(tets.piece_count(), 3u);
+  for (std::size_t i = 0; i < tets.size(); ++i) ASSERT_EQ(tets[i][0], i);
+  tets.keep_if([](const Tet& t) { return t[0] % 3 == 1; });
+  ASSERT_EQ(tets.size(), tets.all().size());
+  for (std::size_t i = 0; i < tets.size(); ++i) ASSERT_EQ(tets[i][0], 3 * i + 1);
+  tets.keep_if([](const Tet&) { return false; });
+  EXPECT_EQ(tets.size(), 0u);
+  EXPECT_EQ(TetList().all().size(), 0u);
 }
 
 TEST(LabelledLattice, StarRegionsAreThoseOfTheClosedStar) {
@@ -88,4 +138,4 @@ TEST(LabelledLattice, SpecksGoAndPairsStay) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::labelled_lattice_test

@@ -8,7 +8,7 @@
 #include "random_octree.h"
 #include "test_surfaces.h"
 
-namespace tetwright {
+namespace tetwright::lattice_test {
 namespace {
 
 TEST(Lattice, FillsTheBoxWithoutTJunctions) {
@@ -74,4 +74,4 @@ TEST(Lattice, EqualCells) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::lattice_test

@@ -8,7 +8,7 @@
 #include "common/random.h"
 #include "test_surfaces.h"
 
-namespace tetwright {
+namespace tetwright::level_set_test {
 namespace {
 
 PreparedSurface prepared(const TriangleMesh& mesh, std::size_t closed) {
@@ -379,4 +379,4 @@ TEST(LevelSet, CanBeCancelled) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::level_set_test

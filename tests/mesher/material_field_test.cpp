@@ -5,7 +5,7 @@
 #include "common/random.h"
 #include "fields.h"
 
-namespace tetwright {
+namespace tetwright::material_field_test {
 namespace {
 
 Vec3 random_direction(Random& random) {
@@ -117,4 +117,4 @@ TEST(MaterialField, TwoNearest) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::material_field_test

@@ -11,7 +11,7 @@
 #include "fields.h"
 #include "mesher/mesher.h"
 
-namespace tetwright {
+namespace tetwright::materials_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -171,4 +171,4 @@ TEST(Materials, RefusesWhatIsCarvedAwayOrTooDeep) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::materials_test

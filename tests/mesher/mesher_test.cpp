@@ -12,7 +12,7 @@
 #include "mesher/material_field.h"
 #include "test_surfaces.h"
 
-namespace tetwright {
+namespace tetwright::mesher_test {
 namespace {
 
 MeshedSurface mesh_of(const TriangleMesh& surface, const MesherOptions& options = {},
@@ -225,4 +225,4 @@ TEST(Mesher, ReportsStagesAndCanBeCancelledInEach) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::mesher_test

@@ -7,7 +7,7 @@
 #include "mesher/thin_parts.h"
 #include "random_octree.h"
 
-namespace tetwright {
+namespace tetwright::octree_test {
 namespace {
 
 /// Leaves one after another along the curve, without gap or overlap, add up to the box.
@@ -122,4 +122,4 @@ TEST(Octree, ThinSheetsAreSplitBelowVoxels) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::octree_test

@@ -8,7 +8,7 @@
 #include "mesher/arrangement.h"
 #include "mesher/cutting.h"
 
-namespace tetwright {
+namespace tetwright::point_mover_test {
 namespace {
 
 LabelledLattice lattice_of(const MaterialField& field) {
@@ -85,4 +85,4 @@ TEST(PointMover, TheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::point_mover_test

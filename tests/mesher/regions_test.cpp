@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tetwright {
+namespace tetwright::regions_test {
 namespace {
 
 TEST(RegionSet, IsSortedAndHoldsFour) {
@@ -18,4 +18,4 @@ TEST(RegionSet, IsSortedAndHoldsFour) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::regions_test

@@ -6,7 +6,7 @@
 #include "prepared.h"
 #include "test_surfaces.h"
 
-namespace tetwright {
+namespace tetwright::surface_components_test {
 namespace {
 
 std::string refusal(const TriangleMesh& mesh) {
@@ -179,4 +179,4 @@ TEST(SurfaceComponents, FinsListedFromBothSidesAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::surface_components_test

@@ -10,7 +10,7 @@
 #include "prepared.h"
 #include "test_surfaces.h"
 
-namespace tetwright {
+namespace tetwright::surface_input_test {
 namespace {
 
 constexpr double sphere_volume = 4 * std::numbers::pi / 3;
@@ -142,4 +142,4 @@ TEST(SurfaceInput, IsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::surface_input_test

@@ -7,7 +7,7 @@
 #include "prepared.h"
 #include "test_surfaces.h"
 
-namespace tetwright {
+namespace tetwright::surface_nesting_test {
 namespace {
 
 constexpr double unit_sphere = 4 * std::numbers::pi / 3;
@@ -182,4 +182,4 @@ TEST(SurfaceNesting, ManyComponents) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::surface_nesting_test

@@ -11,7 +11,7 @@
 #include "common/random.h"
 #include "test_surfaces.h"
 
-namespace tetwright {
+namespace tetwright::surface_tree_test {
 namespace {
 
 Vec3 random_vector(Random& random) {
@@ -140,4 +140,4 @@ TEST(SurfaceTree, IsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::surface_tree_test

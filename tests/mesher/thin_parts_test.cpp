@@ -4,7 +4,7 @@
 
 #include "fields.h"
 
-namespace tetwright {
+namespace tetwright::thin_parts_test {
 namespace {
 
 TEST(ThinParts, ThickOnesAreNotNamed) {
@@ -46,4 +46,4 @@ TEST(ThinParts, SheetsAreRefinedAsFarAsTheyNeed) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::thin_parts_test

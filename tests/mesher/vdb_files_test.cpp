@@ -14,7 +14,7 @@
 #include "test_surfaces.h"
 #include "tests/common/temporary_folder.h"
 
-namespace tetwright {
+namespace tetwright::vdb_files_test {
 namespace {
 
 constexpr double ball_volume = 4.18879;  // of radius 1
@@ -391,4 +391,4 @@ TEST_F(VdbFiles, CannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::vdb_files_test

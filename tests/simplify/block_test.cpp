@@ -9,7 +9,7 @@
 #include "simplify/refill.h"
 #include "tests/simplify/workbench.h"
 
-namespace tetwright {
+namespace tetwright::block_test {
 namespace {
 
 constexpr std::size_t chunk_size = 4;
@@ -78,4 +78,4 @@ TEST(Block, WhatStaysLockedIsSkippedAndCounted) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::block_test

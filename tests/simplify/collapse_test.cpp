@@ -4,7 +4,7 @@
 #include "common/topology.h"
 #include "tests/simplify/workbench.h"
 
-namespace tetwright {
+namespace tetwright::collapse_test {
 namespace {
 
 using Tag = std::optional<MaterialTag>;
@@ -225,4 +225,4 @@ TEST(Collapse, ATakenGridCellIsToldAndNothingChanges) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::collapse_test

@@ -1,7 +1,6 @@
 // What the thread sanitizer watches: eight threads on one mesh, in small chunks. How often their stars meet
 // is the machine's affair; block_test.cpp has what happens then. Built a second time with the locks taken out
 // (test_without_locks), it must fail.
-// out (test_without_locks), it must fail.
 #include <gtest/gtest.h>
 
 #include "common/mesh_check.h"
@@ -10,7 +9,7 @@
 #include "simplify/simplify.h"
 #include "tests/simplify/meshes.h"
 
-namespace tetwright {
+namespace tetwright::concurrency_test {
 namespace {
 
 TetMesh three_materials(std::uint64_t seed) {
@@ -51,4 +50,4 @@ TEST(Concurrency, EightThreadsImprove) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::concurrency_test

@@ -7,7 +7,7 @@
 #include "simplify/simplify.h"
 #include "tests/simplify/meshes.h"
 
-namespace tetwright {
+namespace tetwright::degeneracy_test {
 namespace {
 
 using Tag = std::optional<MaterialTag>;
@@ -140,4 +140,4 @@ TEST(Degeneracy, SingleTetsAndPairs) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::degeneracy_test

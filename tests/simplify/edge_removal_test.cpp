@@ -4,7 +4,7 @@
 #include "tests/simplify/rings.h"
 #include "tests/simplify/workbench.h"
 
-namespace tetwright {
+namespace tetwright::edge_removal_test {
 namespace {
 
 const FlipReach all{7, 5}, basic{3, 1};
@@ -174,4 +174,4 @@ TEST(EdgeRemoval, CountLimitsHold) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::edge_removal_test

@@ -3,7 +3,7 @@
 #include "tests/simplify/rings.h"
 #include "tests/simplify/workbench.h"
 
-namespace tetwright {
+namespace tetwright::edge_ring_test {
 namespace {
 
 /// Place in tet_edges of the axis in tet t.
@@ -99,4 +99,4 @@ TEST(EdgeRing, TellsATakenLockAndTooManyTets) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::edge_ring_test

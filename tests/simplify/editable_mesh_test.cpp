@@ -7,7 +7,7 @@
 #include "common/error.h"
 #include "tests/simplify/meshes.h"
 
-namespace tetwright {
+namespace tetwright::editable_mesh_test {
 namespace {
 
 /// The tets as sets of positions with their materials, in an order that renumbering does not change.
@@ -140,4 +140,4 @@ TEST(EditableMesh, WorksAtTheOriginWhereThatIsExact) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::editable_mesh_test

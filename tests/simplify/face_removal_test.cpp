@@ -3,10 +3,10 @@
 #include "tests/simplify/rings.h"
 #include "tests/simplify/workbench.h"
 
-namespace tetwright {
+namespace tetwright::face_removal_test {
 namespace {
 
-const FlipReach all{7, 5}, basic{3, 1};
+const FlipReach all_flips{7, 5}, basic_flips{3, 1};
 
 /// Two tets above and below a triangle, their far points at the given heights.
 TetMesh bipyramid(double height, MaterialTag below = 1) {
@@ -27,7 +27,7 @@ TEST(FaceRemoval, TwoToThree) {
   Workbench w(bipyramid(0.3));
   make_poor(w);
   hold_tet(w, 0);
-  ASSERT_EQ(remove_face(*w.task, w.rules, 0, inner_face(w, 0), basic), Outcome::done);
+  ASSERT_EQ(remove_face(*w.task, w.rules, 0, inner_face(w, 0), basic_flips), Outcome::done);
   EXPECT_EQ(w.mesh.live_tets(), 3u);
   EXPECT_EQ(w.task->counts.of(Operation::flip23, Outcome::done), 1u);
   w.expect_sound();
@@ -36,7 +36,7 @@ TEST(FaceRemoval, TwoToThree) {
 TEST(FaceRemoval, IsRefusedWhereItDoesNotImprove) {
   Workbench w(bipyramid(0.9));
   hold_tet(w, 0);
-  EXPECT_EQ(remove_face(*w.task, w.rules, 0, inner_face(w, 0), all), Outcome::quality);
+  EXPECT_EQ(remove_face(*w.task, w.rules, 0, inner_face(w, 0), all_flips), Outcome::quality);
   w.expect_sound();
 }
 
@@ -45,8 +45,8 @@ TEST(FaceRemoval, NeverCrossesAnInterfaceNorTheBoundary) {
   make_poor(w);
   hold_tet(w, 0);
   const int inner = inner_face(w, 0);
-  EXPECT_EQ(remove_face(*w.task, w.rules, 0, inner, all), Outcome::material_rule);
-  EXPECT_EQ(remove_face(*w.task, w.rules, 0, (inner + 1) % 4, all), Outcome::no_candidate);
+  EXPECT_EQ(remove_face(*w.task, w.rules, 0, inner, all_flips), Outcome::material_rule);
+  EXPECT_EQ(remove_face(*w.task, w.rules, 0, (inner + 1) % 4, all_flips), Outcome::no_candidate);
   w.expect_sound();
 }
 
@@ -57,7 +57,7 @@ TEST(FaceRemoval, ATakenFarPointIsTold) {
   Index far = 0;
   while (w.task->points.holds(far)) ++far;
   ASSERT_TRUE(w.mesh.locks().try_lock(far));
-  EXPECT_EQ(remove_face(*w.task, w.rules, 0, inner_face(w, 0), all), Outcome::lock_taken);
+  EXPECT_EQ(remove_face(*w.task, w.rules, 0, inner_face(w, 0), all_flips), Outcome::lock_taken);
   w.mesh.locks().unlock(far);
   w.expect_sound();
 }
@@ -75,7 +75,7 @@ TEST(FaceRemoval, UndoesEdgeRemoval) {
     for (int e = 0; e < 6; ++e) {
       const Index a = p[tet_edges[e][0]], b = p[tet_edges[e][1]];
       if ((a == low && b == high) || (a == high && b == low)) {
-        ASSERT_EQ(remove_edge(*w.task, w.rules, 0, e, all), Outcome::done);
+        ASSERT_EQ(remove_edge(*w.task, w.rules, 0, e, all_flips), Outcome::done);
       }
     }
     w.task->release();
@@ -91,7 +91,7 @@ TEST(FaceRemoval, UndoesEdgeRemoval) {
     for (Index t = 0; t < w.mesh.tet_slots() && !done; ++t)
       for (int f = 0; f < 4 && !done && !w.mesh.dead(t); ++f) {
         hold_tet(w, t);
-        done = remove_face(*w.task, w.rules, t, f, all) == Outcome::done;
+        done = remove_face(*w.task, w.rules, t, f, all_flips) == Outcome::done;
         w.task->release();
       }
     EXPECT_TRUE(done) << n;
@@ -102,4 +102,4 @@ TEST(FaceRemoval, UndoesEdgeRemoval) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::face_removal_test

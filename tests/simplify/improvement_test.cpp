@@ -8,7 +8,7 @@
 #include "simplify/simplify.h"
 #include "tests/simplify/meshes.h"
 
-namespace tetwright {
+namespace tetwright::improvement_test {
 namespace {
 
 using Tag = std::optional<MaterialTag>;
@@ -121,4 +121,4 @@ TEST(Improve, RefusesAndCancels) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::improvement_test

@@ -3,7 +3,7 @@
 #include "tests/simplify/rings.h"
 #include "tests/simplify/workbench.h"
 
-namespace tetwright {
+namespace tetwright::insertion_test {
 namespace {
 
 using Tag = std::optional<MaterialTag>;
@@ -142,4 +142,4 @@ TEST(InsertionLimits, CountAndRoom) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::insertion_test

@@ -7,7 +7,7 @@
 #include "simplify/collapse.h"
 #include "tests/simplify/workbench.h"
 
-namespace tetwright {
+namespace tetwright::link_condition_test {
 namespace {
 
 using Tag = std::optional<MaterialTag>;
@@ -120,4 +120,4 @@ TEST(LinkCondition, ASpanOverAHoleIsRefused) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::link_condition_test

@@ -7,7 +7,7 @@
 #include "simplify/simplify.h"
 #include "tests/simplify/meshes.h"
 
-namespace tetwright {
+namespace tetwright::paper_schedule_test {
 namespace {
 
 TEST(PaperSchedule, ReachesTheTargetByFigure3) {
@@ -53,4 +53,4 @@ TEST(PaperSchedule, OneThreadAndOneSeedGiveTheSameBytes) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::paper_schedule_test

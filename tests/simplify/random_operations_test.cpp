@@ -7,7 +7,7 @@
 #include "simplify/smoothing.h"
 #include "tests/simplify/workbench.h"
 
-namespace tetwright {
+namespace tetwright::random_operations_test {
 namespace {
 
 using Tag = std::optional<MaterialTag>;
@@ -122,4 +122,4 @@ TEST(RandomOperations, TenThousandLeaveEveryMeshSoundAndItsTopologyAsItWas) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::random_operations_test

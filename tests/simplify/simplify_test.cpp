@@ -10,7 +10,7 @@
 #include "common/topology.h"
 #include "tests/simplify/meshes.h"
 
-namespace tetwright {
+namespace tetwright::simplify_test {
 namespace {
 
 using Tag = std::optional<MaterialTag>;
@@ -170,4 +170,4 @@ TEST(Simplify, CancelsAndRefuses) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::simplify_test

@@ -3,7 +3,7 @@
 #include "common/point_triangle.h"
 #include "tests/simplify/workbench.h"
 
-namespace tetwright {
+namespace tetwright::slide_test {
 namespace {
 
 TEST(NearestTree, FindsWhatASearchOfAllFinds) {
@@ -72,4 +72,4 @@ TEST(Slide, KnowsWhereJunctionCurvesBranch) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::slide_test

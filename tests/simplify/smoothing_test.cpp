@@ -2,7 +2,7 @@
 
 #include "tests/simplify/workbench.h"
 
-namespace tetwright {
+namespace tetwright::smoothing_test {
 namespace {
 
 using Tag = std::optional<MaterialTag>;
@@ -110,4 +110,4 @@ TEST(Smoothing, AJunctionPointStaysOnAStraightCurve) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::smoothing_test

@@ -2,7 +2,7 @@
 
 #include "tests/simplify/workbench.h"
 
-namespace tetwright {
+namespace tetwright::star_test {
 namespace {
 
 using Tag = std::optional<MaterialTag>;
@@ -92,4 +92,4 @@ TEST(Star, ATakenPointIsToldAndGivenBack) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::star_test

@@ -2,7 +2,7 @@
 
 #include "tests/simplify/workbench.h"
 
-namespace tetwright {
+namespace tetwright::surface_grid_test {
 namespace {
 
 using Tag = std::optional<MaterialTag>;
@@ -85,4 +85,4 @@ TEST(SurfaceGrid, AddedTrianglesAreTestedAgainstEachOther) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::surface_grid_test

@@ -4,7 +4,7 @@
 #include "simplify/smoothing.h"
 #include "tests/simplify/workbench.h"
 
-namespace tetwright {
+namespace tetwright::volume_ledger_test {
 namespace {
 
 using Changes = std::vector<VolumeLedger::Change>;
@@ -63,4 +63,4 @@ TEST(VolumeLedger, HoldsCollapsesBack) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::volume_ledger_test

@@ -4,7 +4,7 @@
 
 #include "tests/common/formats/expect_error.h"
 
-namespace tetwright {
+namespace tetwright::command_line_test {
 namespace {
 
 using Ranges = std::vector<std::pair<MaterialTag, MaterialTag>>;
@@ -67,4 +67,4 @@ TEST(CommandLine, OtherOptionsOfSegmentedVolumes) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::command_line_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tetwright {
+namespace tetwright::held_back_test {
 namespace {
 
 void put(OperationCounts& counts, Operation operation, Outcome outcome, std::uint64_t n) {
@@ -55,4 +55,4 @@ TEST(HeldBack, LooksAtTheLastIterationOfItsKind) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::held_back_test

@@ -6,7 +6,7 @@
 
 #include "tests/tools/program.h"
 
-namespace tetwright {
+namespace tetwright::improve_test {
 namespace {
 
 nlohmann::json json_of(const std::string& path) { return nlohmann::json::parse(contents(path)); }
@@ -141,4 +141,4 @@ TEST(Simplify, BothSchedulesReachTheTarget) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::improve_test

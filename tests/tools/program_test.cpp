@@ -9,7 +9,7 @@
 #include "common/samples.h"
 #include "tests/tools/program.h"
 
-namespace tetwright {
+namespace tetwright::program_test {
 namespace {
 
 /// One line on stderr that begins as all errors do and has all that is expected; the status; no file.
@@ -464,4 +464,4 @@ TEST(Program, CheckFindsWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::program_test

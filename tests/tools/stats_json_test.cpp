@@ -9,7 +9,7 @@
 
 #include "tests/tools/program.h"
 
-namespace tetwright {
+namespace tetwright::stats_json_test {
 namespace {
 
 std::string violations(const nlohmann::json& document) {
@@ -58,4 +58,4 @@ TEST(StatsJson, FollowsItsSchema) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::stats_json_test

@@ -9,7 +9,7 @@
 #include "tests/common/formats/expect_error.h"
 #include "tests/common/formats/file_test.h"
 
-namespace tetwright {
+namespace tetwright::atomic_file_test {
 namespace {
 
 using AtomicFile = FileTest;
@@ -83,6 +83,26 @@ TEST_F(AtomicFile, OverTheFileSizeLimitNothingIsLeft) {
   EXPECT_EQ(now.sa_handler, SIG_DFL);
 }
 
+TEST_F(AtomicFile, AnErrorBetweenPiecesLeavesTheOldFile) {
+  put(path("a"), "old");
+  for (const char* name : {"a", "b"})
+    EXPECT_EQ(error_of<OutputError>([&] {
+                write_file_atomically(path(name), [](const ByteSink& sink) {
+                  sink(std::string(5000, 'x'));
+                  throw OutputError("no more");
+                });
+              }),
+              "no more");
+  EXPECT_EQ(get(path("a")), "old");
+  EXPECT_EQ(files(), 1u);
+  write_file_atomically(path("a"), [](const ByteSink& sink) {
+    sink("new");
+    sink("");
+    sink("er");
+  });
+  EXPECT_EQ(get(path("a")), "newer");
+}
+
 TEST_F(AtomicFile, ADiskThatIsFull) {
   // Every write to /dev/full fails so; as a target it is refused before that.
   EXPECT_NE(error_of<OutputError>([&] { write_file_atomically("/dev/full", "x"); }).find("regular"),
@@ -100,4 +120,4 @@ TEST_F(AtomicFile, UnreadableInput) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::atomic_file_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tetwright {
+namespace tetwright::base64_test {
 namespace {
 
 TEST(Base64, KnownAnswers) {  // RFC 4648, section 10
@@ -41,4 +41,4 @@ TEST(Base64, StopsAtWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::base64_test

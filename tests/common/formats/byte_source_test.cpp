@@ -2,7 +2,7 @@
 
 #include "tests/common/formats/volume_bytes.h"
 
-namespace tetwright {
+namespace tetwright::byte_source_test {
 namespace {
 
 using Packing = ByteSource::Packing;
@@ -56,4 +56,4 @@ TEST(ByteSource, DamagedData) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::byte_source_test

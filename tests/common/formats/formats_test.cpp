@@ -4,7 +4,7 @@
 #include "tests/common/formats/file_test.h"
 #include "tests/common/formats/tricky_meshes.h"
 
-namespace tetwright {
+namespace tetwright::formats_test {
 namespace {
 
 using Formats = FileTest;
@@ -134,4 +134,4 @@ TEST_F(Formats, MessagesNameTheFile) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::formats_test

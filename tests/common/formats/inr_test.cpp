@@ -2,7 +2,7 @@
 
 #include "tests/common/formats/volume_bytes.h"
 
-namespace tetwright {
+namespace tetwright::inr_test {
 namespace {
 
 std::string header(const std::string& lines, std::size_t blocks = 1) {
@@ -83,4 +83,4 @@ TEST(Inr, BadInput) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::inr_test

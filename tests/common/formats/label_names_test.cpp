@@ -5,7 +5,7 @@
 #include "expect_error.h"
 #include "tests/common/temporary_folder.h"
 
-namespace tetwright {
+namespace tetwright::label_names_test {
 namespace {
 
 using Names = std::map<MaterialTag, std::string>;
@@ -51,11 +51,11 @@ TEST(LabelNames, DescriptionsOfItkSnap) {
             (Names{{0, "Clear Label"}, {1, "Label 1"}, {9, "a # b"}}));
 }
 
-TEST(LabelNames, AtMost255BytesLong) {
-  const std::string longest(255, 'n');
+TEST(LabelNames, AtMost120BytesLong) {
+  const std::string longest(120, 'n');
   EXPECT_EQ(parse("1 " + longest), (Names{{1, longest}}));
   const std::string message = error_of<InputError>([&] { parse("1 a\n2 " + longest + "n\n"); });
-  EXPECT_NE(message.find("f: line 2: label 2 has a name of 256 bytes"), std::string::npos) << message;
+  EXPECT_NE(message.find("f: line 2: label 2 has a name of 121 bytes"), std::string::npos) << message;
 }
 
 TEST(LabelNames, FromAFile) {
@@ -85,4 +85,4 @@ TEST(LabelNames, Errors) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::label_names_test

@@ -5,7 +5,7 @@
 #include "tests/common/formats/tricky_meshes.h"
 #include "tests/common/small_meshes.h"
 
-namespace tetwright {
+namespace tetwright::medit_test {
 namespace {
 
 const std::string head = "MeshVersionFormatted 2\nDimension\n3\n";
@@ -68,4 +68,4 @@ TEST(Medit, BadInput) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::medit_test

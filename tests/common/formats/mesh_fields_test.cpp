@@ -5,7 +5,7 @@
 #include "tests/common/formats/expect_error.h"
 #include "tests/common/small_meshes.h"
 
-namespace tetwright {
+namespace tetwright::mesh_fields_test {
 namespace {
 
 TEST(MeshFields, NamesThatAnyFormatCanHold) {
@@ -117,4 +117,4 @@ TEST(MeshFields, MaterialsThatAreNone) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::mesh_fields_test

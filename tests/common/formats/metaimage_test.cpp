@@ -2,7 +2,7 @@
 
 #include "tests/common/formats/volume_bytes.h"
 
-namespace tetwright {
+namespace tetwright::metaimage_test {
 namespace {
 
 const std::string head =
@@ -120,4 +120,4 @@ TEST(MetaImage, BadInput) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::metaimage_test

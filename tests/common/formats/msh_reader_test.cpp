@@ -2,7 +2,7 @@
 #include "common/formats/msh.h"
 #include "tests/common/formats/expect_error.h"
 
-namespace tetwright {
+namespace tetwright::msh_reader_test {
 namespace {
 
 const std::string head = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
@@ -85,4 +85,4 @@ TEST(MshReader, BadInput) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::msh_reader_test

@@ -8,7 +8,7 @@
 #include "tests/common/formats/tricky_meshes.h"
 #include "tests/common/small_meshes.h"
 
-namespace tetwright {
+namespace tetwright::msh_test {
 namespace {
 
 const std::string head = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
@@ -192,4 +192,4 @@ TEST(Msh, BadInput) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::msh_test

@@ -5,7 +5,7 @@
 
 #include "tests/common/formats/volume_bytes.h"
 
-namespace tetwright {
+namespace tetwright::nifti_test {
 namespace {
 
 /// A header of 2 x 3 x 4 voxels that the tests change.
@@ -174,4 +174,4 @@ TEST(Nifti, BadInput) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::nifti_test

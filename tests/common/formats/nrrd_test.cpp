@@ -5,7 +5,7 @@
 #include "tests/common/formats/tricky_meshes.h"
 #include "tests/common/formats/volume_bytes.h"
 
-namespace tetwright {
+namespace tetwright::nrrd_test {
 namespace {
 
 const std::string head = "NRRD0004\n# a comment\ntype: uint8\ndimension: 3\nsizes: 2 3 4\nencoding: raw\n";
@@ -243,4 +243,4 @@ TEST(Nrrd, CutAnywhereItIsRefused) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::nrrd_test

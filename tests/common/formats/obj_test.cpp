@@ -3,7 +3,7 @@
 #include "tests/common/formats/expect_error.h"
 #include "tests/common/formats/tricky_meshes.h"
 
-namespace tetwright {
+namespace tetwright::obj_test {
 namespace {
 
 const std::string points = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -52,4 +52,4 @@ TEST(Obj, BadInput) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::obj_test

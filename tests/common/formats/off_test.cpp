@@ -3,7 +3,7 @@
 #include "tests/common/formats/expect_error.h"
 #include "tests/common/formats/tricky_meshes.h"
 
-namespace tetwright {
+namespace tetwright::off_test {
 namespace {
 
 const char* const plain = "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 2 3\n";
@@ -76,4 +76,4 @@ TEST(Off, EveryCutIsAnErrorOrASurface) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::off_test

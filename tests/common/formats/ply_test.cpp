@@ -5,7 +5,7 @@
 #include "tests/common/formats/expect_error.h"
 #include "tests/common/formats/tricky_meshes.h"
 
-namespace tetwright {
+namespace tetwright::ply_test {
 namespace {
 
 std::string header(const std::string& format, const std::string& points = "3",
@@ -112,4 +112,4 @@ TEST(Ply, BadInput) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::ply_test

@@ -10,7 +10,7 @@
 #include "common/mesh_statistics.h"
 #include "common/topology.h"
 
-namespace tetwright {
+namespace tetwright::regressions_test {
 namespace {
 
 TEST(Regressions, EveryFileIsReadOrRefused) {
@@ -40,4 +40,4 @@ TEST(Regressions, EveryFileIsReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::regressions_test

@@ -6,7 +6,7 @@
 #include "tests/common/formats/expect_error.h"
 #include "tests/common/formats/tricky_meshes.h"
 
-namespace tetwright {
+namespace tetwright::stl_test {
 namespace {
 
 std::string binary(const std::string& title, const std::vector<std::array<float, 9>>& triangles) {
@@ -74,4 +74,4 @@ TEST(Stl, BadInput) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::stl_test

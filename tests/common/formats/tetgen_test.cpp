@@ -4,7 +4,7 @@
 
 #include "tests/common/formats/expect_error.h"
 
-namespace tetwright {
+namespace tetwright::tetgen_test {
 namespace {
 
 const std::string node =
@@ -82,4 +82,4 @@ TEST(TetGen, BadInput) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::tetgen_test

@@ -5,7 +5,7 @@
 
 #include "tests/common/formats/expect_error.h"
 
-namespace tetwright {
+namespace tetwright::text_scanner_test {
 namespace {
 
 TEST(TextScanner, WordsAndLines) {
@@ -55,4 +55,4 @@ TEST(TextScanner, QuotesAreTamed) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::text_scanner_test

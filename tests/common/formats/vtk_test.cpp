@@ -5,7 +5,7 @@
 
 #include "tests/common/formats/expect_error.h"
 
-namespace tetwright {
+namespace tetwright::vtk_test {
 namespace {
 
 /// Builds a file, ASCII or binary.
@@ -199,4 +199,4 @@ TEST(Vtk, CutShort) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::vtk_test

@@ -11,7 +11,7 @@
 #include "tests/common/formats/same_values.h"
 #include "tests/common/formats/tricky_meshes.h"
 
-namespace tetwright {
+namespace tetwright::vtu_test {
 namespace {
 
 // Builds one tet (and a triangle before it) in every encoding that VTK knows.
@@ -306,4 +306,4 @@ TEST(Vtu, MoreThanOnePieceIsRefused) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::vtu_test

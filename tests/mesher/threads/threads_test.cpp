@@ -9,7 +9,7 @@
 #include "mesher/point_mover.h"
 #include "mesher/thin_parts.h"
 
-namespace tetwright {
+namespace tetwright::threads_test {
 namespace {
 
 PreparedSurface ball(const Vec3& centre, double radius) {
@@ -69,4 +69,4 @@ TEST(LabelThreads, TheSameOnOneAndOnEight) {
 }
 
 }  // namespace
-}  // namespace tetwright
+}  // namespace tetwright::threads_test
