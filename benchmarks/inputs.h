@@ -13,7 +13,7 @@
 namespace tetwright {
 
 /// The Stanford bunny of Debian's glmark2-data where it is installed, else the built-in knot.
-inline PreparedInput benchmark_input() {
+inline MesherInput benchmark_input() {
   const std::string bunny = "/usr/share/glmark2/models/bunny.obj";
   MaterialSurface s{"body", 1, {}, "knot"};
   if (std::filesystem::exists(bunny)) {
@@ -22,7 +22,7 @@ inline PreparedInput benchmark_input() {
   } else {
     s.surface = std::get<TriangleMesh>(make_sample("knot"));
   }
-  return prepare_input({s});
+  return make_mesher_input({s});
 }
 
 /// Its dense mesh at a resolution, made once.

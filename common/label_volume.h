@@ -22,7 +22,8 @@ struct LabelVolume {
   std::string space;
   std::vector<MaterialTag> labels;  ///< the first axis fastest
 
-  Vec3 to_input(const Vec3& index) const { return origin + directions * index; }
+  /// The position of a voxel index, which need not be whole, input units.
+  Vec3 to_input(const Vec3& index) const;
 };
 
 }  // namespace tetwright

@@ -6,14 +6,16 @@
 
 namespace tetwright {
 
-/// What a simplified mesh is measured against and slides along: the interfaces of the original.
+/// The material on one side of a face; nothing for outside.
+using MaterialOrOutside = std::optional<MaterialTag>;
+
+/// What a simplified mesh is measured against and its points are projected onto: the interfaces of the
+/// original.
 ///
 /// `mesher/` implements it by its signed distance fields, `simplify/` needs nothing else of them.
-/// A region is a material's tag, or nothing for outside. All functions may be called concurrently.
+/// All functions may be called concurrently.
 class ReferenceSurface {
  public:
-  using Region = std::optional<MaterialTag>;
-
   virtual ~ReferenceSurface() = default;
 
   /// Distance of `point` from the surface of `material`, negative inside it, in input units. Farther away
@@ -23,7 +25,7 @@ class ReferenceSurface {
   /// The point of the interface between two regions near `point`, or nothing where there is none within
   /// `max_distance` (input units). It need not be the nearest one, and no farther than twice the nearest's
   /// distance.
-  virtual std::optional<Vec3> project(const Vec3& point, Region first, Region second,
+  virtual std::optional<Vec3> project(const Vec3& point, MaterialOrOutside first, MaterialOrOutside second,
                                       double max_distance) const = 0;
 };
 

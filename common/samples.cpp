@@ -19,9 +19,10 @@ struct SineCosine {
   double sine, cosine;
 };
 
-/// Of `turns` (0 to 1) times a full turn, from + - * / alone, so that samples have the same bits everywhere.
+/// Sine and cosine of an angle in full turns (0 to 1), computed with + - * / alone, so that samples have the
+/// same bits on every machine.
 SineCosine sine_cosine(double turns) {
-  // Of an eighth of the angle by their series, then doubled three times.
+  // The power series for an eighth of the angle, which is then doubled three times.
   const double x = turns * (2 * std::numbers::pi) / 8;
   double s = 0, c = 0, term = 1;
   for (int k = 1; k < 24; ++k) {
@@ -36,7 +37,7 @@ SineCosine sine_cosine(double turns) {
   return {s, c};
 }
 
-/// A grid of u_count x v_count points closed in both directions: a torus for any closed curve.
+/// A grid of u_count x v_count points that is closed in both directions, as a torus is.
 template <class At>
 TriangleMesh closed_grid(Index u_count, Index v_count, const At& at) {
   TriangleMesh mesh;
@@ -52,7 +53,8 @@ TriangleMesh closed_grid(Index u_count, Index v_count, const At& at) {
   return mesh;
 }
 
-/// An octahedron whose triangles are split in four `levels` times, its points pushed onto the sphere.
+/// An octahedron whose triangles are split into four `levels` times and whose points are projected onto the
+/// sphere.
 TriangleMesh sphere(const Vec3& centre, double radius, int levels) {
   TriangleMesh mesh;
   for (int k = 0; k < 6; ++k) mesh.points.push_back(k < 3 ? Vec3::Unit(k) : Vec3(-Vec3::Unit(k - 3)));
@@ -153,7 +155,7 @@ TriangleMesh open_sphere() {
     return mesh.points[t[0]].z() + mesh.points[t[1]].z() + mesh.points[t[2]].z() > 3 * 0.875;
   };
   std::erase_if(mesh.triangles, in_hole);
-  // Points of the hole alone are left out, so that every point belongs to the surface.
+  // Points that only the hole has are left out, so that every point belongs to the surface.
   std::vector<Index> numbers(mesh.points.size(), no_index);
   std::vector<Vec3> points;
   for (Triangle& t : mesh.triangles)
@@ -189,7 +191,7 @@ TetMesh box_of_tets(const std::array<Index, 3>& cells, double scale,
             ++at[orders[k][i]];
             tet[i + 1] = id(at[0], at[1], at[2]);
           }
-          // Odd orders of the axes turn the tet inside out.
+          // Odd permutations of the axes give negative tets.
           if (k >= 3) std::swap(tet[2], tet[3]);
           mesh.tets.push_back(tet);
           mesh.materials.push_back(material(Vec3(x + 0.5, y + 0.5, z + 0.5)));
@@ -217,7 +219,7 @@ TetMesh layers() {
   return mesh;
 }
 
-/// Twice the distance of a voxel from the middle of a grid of 48 along an axis, so that it is whole.
+/// Twice the distance of a voxel from the middle of an axis of 48 voxels, which is a whole number.
 constexpr int organs_size = 48;
 using Doubled = std::array<std::int64_t, 3>;
 
@@ -258,7 +260,7 @@ LabelVolume organs() {
       for (int i = 0; i < organs_size; ++i)
         volume.labels.push_back(
             organ_at({2 * i - (organs_size - 1), 2 * j - (organs_size - 1), 2 * k - (organs_size - 1)}));
-  // Noise, as a segmentation has it: up to three voxels of any label in a row.
+  // Noise as in real segmentations: runs of up to three voxels of any label.
   Random random(1);
   constexpr int islands = 60;
   for (int n = 0; n < islands; ++n) {
@@ -270,13 +272,13 @@ LabelVolume organs() {
   return volume;
 }
 
-struct Sample {
+struct NamedSample {
   const char* name;
   std::variant<TriangleMesh (*)(), TetMesh (*)(), LabelVolume (*)()> make;
 };
 
-const std::vector<Sample>& samples() {
-  static const std::vector<Sample> all{
+const std::vector<NamedSample>& samples() {
+  static const std::vector<NamedSample> all{
       {"sphere", +[] { return sphere(Vec3::Zero(), 1, 5); }},
       {"torus", torus},
       {"cube", +[] { return cube(8); }},
@@ -291,43 +293,21 @@ const std::vector<Sample>& samples() {
   return all;
 }
 
-const Sample& find_sample(const std::string& name) {
-  std::string known;
-  for (const Sample& sample : samples()) {
-    if (name == sample.name) return sample;
-    if (!known.empty()) known += ' ';
-    known += sample.name;
-  }
-  throw UsageError("there is no sample " + in_quotes(name) + "; known are " + known);
-}
-
 }  // namespace
 
 std::vector<std::string> sample_names() {
   std::vector<std::string> names;
-  for (const Sample& sample : samples()) names.emplace_back(sample.name);
+  for (const NamedSample& sample : samples()) names.emplace_back(sample.name);
   return names;
 }
 
-FileKind sample_kind(const std::string& name) {
-  constexpr std::array<FileKind, 3> kinds{FileKind::surface, FileKind::tet_mesh, FileKind::volume};
-  return kinds[find_sample(name).make.index()];
-}
-
-std::variant<TriangleMesh, TetMesh, LabelVolume> make_sample(const std::string& name) {
-  using Made = std::variant<TriangleMesh, TetMesh, LabelVolume>;
-  return std::visit([](auto make) { return Made(make()); }, find_sample(name).make);
-}
-
-void write_sample(const std::string& name, const std::string& path) {
-  check_output_path(path, sample_kind(name));
-  const auto sample = make_sample(name);
-  if (const auto* surface = std::get_if<TriangleMesh>(&sample))
-    write_surface(*surface, path);
-  else if (const auto* mesh = std::get_if<TetMesh>(&sample))
-    write_tet_mesh(*mesh, path);
-  else
-    write_label_volume(std::get<LabelVolume>(sample), path);
+Sample make_sample(const std::string& name) {
+  std::string known;
+  for (const NamedSample& sample : samples()) {
+    if (name == sample.name) return std::visit([](auto make) { return Sample(make()); }, sample.make);
+    known += (known.empty() ? "" : " ") + std::string(sample.name);
+  }
+  throw UsageError("there is no sample " + in_quotes(name) + "; known are " + known);
 }
 
 }  // namespace tetwright

@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "mesher/material_field.h"
+#include "mesher/distance/material_field.h"
+#include "mesher/domain/finer_cells.h"
+#include "mesher/mesh_estimate.h"
 #include "mesher/mesher.h"
 
 namespace tetwright {
 
-/// Runs the stages of meshing, tells about them and takes their times.
+/// Reports the stages of meshing to a Progress (may be null) and measures their times.
 class Stages {
  public:
   explicit Stages(Progress* progress) : progress_(progress) {}
@@ -32,38 +34,22 @@ class Stages {
   std::chrono::steady_clock::time_point start_;
 };
 
-inline constexpr int largest_resolution = 4096;  ///< finest cells along the longest side
-
-/// What a mesh takes at least: the program and its libraries.
-inline constexpr double bytes_at_least = 64e6;
-
-/// Throws OutputError where a mesh would have more tets than can be numbered or take more memory than the
-/// machine has.
-void check_memory(const MesherEstimate& estimate);
-
-/// The finest cell's edge, input units, of an input whose longest side and largest coordinate are given.
-/// Throws UsageError for option values out of range, InputError (about `file`) where coordinates are too
-/// large for cells so small.
-double finest_cell_size(const MesherOptions& options, double longest_side, double largest_coordinate,
+/// The edge of a finest cell, input units, for an input with this longest side and largest coordinate. Throws
+/// UsageError for option values out of range, InputError (about `file`) if coordinates are too large for
+/// cells this small.
+double finest_cell_size(const MesherOptions& options, double longest_side, double max_coordinate,
                         const std::string& file);
 
-/// "%.6g", for messages.
-std::string number_text(double value);
-
-/// Cells that are to be smaller than they would be.
-struct FinerCells {
-  int refinement = 0;  ///< levels below a voxel
-  /// To be split, by level of a lattice refined so, ascending.
-  std::vector<std::vector<MortonKey>> cells;
-  int coarsest_interface_level = 2;  ///< see OctreeOptions
-};
-
-/// Of a field all that follows, within the stage "octree": octree, lattice, moved points, cut tets. `finer`
-/// says where cells are halved; `check_there` is handed a flag for each region, 0 for one that nothing is
-/// left of, and throws if one is missed. Fills the rest of `report`. Throws what it throws, OutputError,
+/// Meshes a field: builds the octree and the lattice, moves points, cuts tets, and transforms the result to
+/// input units. To be called within the stage "octree".
+///
+/// `interface_voxels` are the field's, `finer` says where cells are halved. `validate_regions` gets a flag
+/// for each region, 0 if nothing is left of it, and throws if such a region is required. The remaining fields
+/// of `report` are filled in. Throws what `validate_regions` throws, OutputError (not enough memory),
 /// Interrupted.
-MeshedSurface mesh_field(std::shared_ptr<const MaterialField> field, std::vector<MortonKey> interface_voxels,
-                         FinerCells finer, const MesherOptions& options, MesherReport report, Stages& stages,
-                         const std::function<void(const std::vector<std::uint8_t>&)>& check_there);
+DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<MortonKey> interface_voxels,
+                     FinerCells finer, const MesherOptions& options, const MemoryModel& memory,
+                     MesherReport report, Stages& stages,
+                     const std::function<void(const std::vector<std::uint8_t>&)>& validate_regions);
 
 }  // namespace tetwright

@@ -4,33 +4,49 @@
 #include <cmath>
 
 #include "common/error.h"
-#include "simplify/engine.h"
+#include "common/memory.h"
+#include "simplify/schedule/engine.h"
+#include "simplify/schedule/improvement.h"
+#include "simplify/schedule/paper_schedule.h"
+#include "simplify/schedule/schedule_constants.h"
+#include "simplify/schedule/tuned_schedule.h"
 
 namespace tetwright {
 
 namespace {
 
 /// Rounds that close simplify().
-constexpr int most_closing_rounds = 40;
+constexpr int max_closing_rounds = 40;
 /// The closing works on tets whose quality is below this many times the bound: dihedral angles up to 25
 /// degrees.
 constexpr double closing_margin = 1.27;
-/// For whose sake improve() may leave the surface: up to 30 degrees. In the closing that would move it a
-/// quarter farther.
+/// For tets worse than this multiple of the bound, improve() may move points off the surface (dihedral angles
+/// up to 30 degrees). In the closing that would move the surface a quarter farther.
 constexpr double improve_margin = 1.5;
 constexpr int closing_fit_sweeps = 1;
-/// Where improve() is to better all it can: dihedral angles up to 42 degrees.
+/// Solid angle, steradians, up to which improve() works by default: dihedral angles up to 42 degrees.
 constexpr double improve_all_below = 0.2;
-/// Factor from one bound to the next on the way there.
+/// The first bound on the way there, for a --min-solid-angle of next to nothing.
+constexpr double min_first_bound = 1e-3;
+/// Factor from one bound to the next.
 constexpr double improve_step = 1.18;
 /// Share of the tets that improve() may add or take away; 5 % are promised.
 constexpr double improve_slack = 0.045;
 /// E of improve(), in edges of a regular mesh of that count: the paper's first E.
 constexpr double improve_error_edges = 1;
 
+/// Peak memory of the process: its libraries, and the editable mesh with what it is made from, for each tet
+/// of the input. README.md, Memory, compares it with what was measured.
+constexpr double program_bytes = 40e6;
+constexpr double bytes_per_tet = 105;
+
+/// Checks what both calls share, before any work.
 void check(const TetMesh& mesh, std::size_t chunk_size, const std::string& name) {
-  if (chunk_size == 0) throw UsageError("a chunk must hold at least one item");
+  if (chunk_size == 0) throw UsageError("a chunk must have at least one item");
   if (mesh.tets.empty()) throw InputError(name, 0, "no tets in it");
+  require_memory(program_bytes + bytes_per_tet * static_cast<double>(mesh.tets.size()),
+                 name + ": work on its " + std::to_string(mesh.tets.size()) + " tets",
+                 "free some, or use a machine or a container limit with more");
 }
 
 }  // namespace
@@ -62,10 +78,10 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
                              .angle = closing_margin * options.min_solid_angle,
                              .leave_surface_angle = closing_margin * options.min_solid_angle,
                              .target_tets = static_cast<std::size_t>(count),
-                             .fewest_tets = static_cast<std::size_t>(std::ceil(count * (1 - closing_slack))),
-                             .most_tets = static_cast<std::size_t>(count * (1 + closing_slack)),
+                             .min_tets = static_cast<std::size_t>(std::ceil(count * (1 - closing_slack))),
+                             .max_tets = static_cast<std::size_t>(count * (1 + closing_slack)),
                              .local = false,
-                             .most_rounds = most_closing_rounds,
+                             .max_rounds = max_closing_rounds,
                              .fit_sweeps = closing_fit_sweeps});
   }
   if (report) {
@@ -88,25 +104,25 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
                 report, progress);
   engine.begin_stage("improve");
   const double build = seconds_since(start);
-  engine.rules.largest_error = improve_error_edges * engine.rules.objective.quality.ideal_edge;
+  engine.rules.max_error = improve_error_edges * engine.rules.objective.quality.ideal_edge;
   const double below = options.only_below > 0
                            ? options.only_below
                            : std::max(improve_all_below, improve_margin * options.min_solid_angle);
   // The worst first, also in the large: a bound that most tets are below would leave no time for them.
   int rounds = options.max_iterations;
-  for (double limit = std::min(below, closing_margin * options.min_solid_angle); rounds > 0;
-       limit *= improve_step) {
+  for (double limit = std::min(below, std::max(min_first_bound, closing_margin * options.min_solid_angle));
+       rounds > 0; limit *= improve_step) {
     limit = std::min(limit, below);
-    rounds -= run_improvement(
-        engine, {.kind = "improve",
-                 .angle = limit,
-                 .leave_surface_angle = improve_margin * options.min_solid_angle,
-                 .target_tets = static_cast<std::size_t>(count),
-                 .fewest_tets = static_cast<std::size_t>(std::ceil(count * (1 - improve_slack))),
-                 .most_tets = static_cast<std::size_t>(count * (1 + improve_slack)),
-                 .local = options.only_below > 0,
-                 .most_rounds = rounds,
-                 .fit_sweeps = 0});
+    rounds -=
+        run_improvement(engine, {.kind = "improve",
+                                 .angle = limit,
+                                 .leave_surface_angle = improve_margin * options.min_solid_angle,
+                                 .target_tets = static_cast<std::size_t>(count),
+                                 .min_tets = static_cast<std::size_t>(std::ceil(count * (1 - improve_slack))),
+                                 .max_tets = static_cast<std::size_t>(count * (1 + improve_slack)),
+                                 .local = options.only_below > 0,
+                                 .max_rounds = rounds,
+                                 .fit_sweeps = 0});
     if (limit >= below) break;
   }
   if (report) {

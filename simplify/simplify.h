@@ -1,75 +1,10 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "common/progress.h"
-#include "common/quality.h"
-#include "common/reference_surface.h"
 #include "common/tet_mesh.h"
-#include "simplify/outcome.h"
+#include "simplify/schedule/options.h"
 
 namespace tetwright {
-
-/// The order and the schedule of the block loop.
-enum class Schedule : std::uint8_t {
-  tuned,  ///< README.md, Schedule: what was found best by trying; closes with improvement
-  paper   ///< Figure 3 of the paper, its operations in its order, nothing after it
-};
-
-struct SimplifyOptions {
-  std::size_t target_tets = 10000;  ///< at least 1
-  double min_solid_angle = 0.1;     ///< steradians; tets below it are what the closing rounds work on
-  double beta = 5;           ///< the paper's: largest edge, in ideal edges, that Quality does not penalise
-  double gamma = 10;         ///< the paper's: weight of the volume error against the length of an edge
-  int max_iterations = 100;  ///< of the block loop
-  Schedule schedule = Schedule::tuned;
-  ShapeObjective objective = ShapeObjective::both;  ///< of the closing improvement
-  /// What boundary and interface points slide along; nothing: the planes of constant volume at each point.
-  /// Must outlive the call.
-  const ReferenceSurface* reference = nullptr;
-  std::uint64_t seed = 1;
-  /// Points or tets that one task takes at a time: large enough to be random within, small enough to stay in
-  /// a core's cache (a star takes about 1.5 KB). Results depend on it, not on the number of threads; small
-  /// ones provoke conflicts.
-  std::size_t chunk_size = 2000;
-  std::string name = "mesh";  ///< what messages call the mesh
-};
-
-/// Shape only; the count stays within 5 %.
-struct ImproveOptions {
-  /// Only tets whose shape is poorer, by the objective, than this solid angle (steradians) stands for
-  /// (shape_quality_bound()) are worked on, with what stands around them. 0: all below 0.2, or more if
-  /// min_solid_angle asks for it.
-  double only_below = 0;
-  double min_solid_angle = 0.1;  ///< steradians; the work ends early once all are well above it
-  ShapeObjective objective = ShapeObjective::both;
-  int max_iterations = 100;  ///< rounds
-  std::uint64_t seed = 1;
-  std::size_t chunk_size = 2000;  ///< as in SimplifyOptions
-  const ReferenceSurface* reference = nullptr;
-  std::string name = "mesh";
-};
-
-/// What one round of the block loop, or of the improvement, did.
-struct IterationReport {
-  std::string kind;  ///< "simplify", "close" (what ends simplify()) or "improve"
-  std::size_t tets_before = 0, tets_after = 0;
-  double cutoff =
-      0;  ///< Quality(t) below which tets were taken up; in the closing, the solid angle in steradians
-  double percent = 0;        ///< of the tets that were taken up
-  double largest_error = 0;  ///< E, input units
-  OperationCounts counts;
-  std::uint64_t lock_conflicts = 0, skipped = 0;
-  double seconds = 0;
-};
-
-struct SimplifyReport {
-  std::vector<IterationReport> iterations;
-  std::size_t pinned_points = 0;  ///< where parts touch without a common face: they stay as they are
-  double seconds_build = 0, seconds_simplify = 0, seconds_close = 0;
-};
 
 /// Simplifies a valid mesh to about `target_tets` (within 1 % where topology and shapes allow) and improves
 /// its shapes: block iteration of Cutler, Dorsey & McMillan 2004 with a tuned schedule (README.md), then
@@ -78,8 +13,9 @@ struct SimplifyReport {
 /// has its interface triangles.
 ///
 /// Uses thread_count() threads; with one thread the same input and seed give the same bytes. A mesh that has
-/// fewer tets than the target is only improved. Throws InputError if the mesh has flat, inverted or
-/// over-shared tets, UsageError for impossible options, Interrupted when cancelled.
+/// fewer tets than the target is only improved. Throws InputError if a coordinate is not finite, a tet
+/// repeats a point or a face has more than two tets, OutputError if there is too little memory, UsageError
+/// for impossible options, Interrupted when cancelled.
 TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report = nullptr,
                  Progress* progress = nullptr);
 

@@ -1,111 +1,110 @@
 #include "tools/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
+#include <limits>
 #include <map>
 
 #include "common/error.h"
 #include "common/samples.h"
+#include "tools/label_ranges.h"
+#include "tools/nearest_word.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Digits only: the parser's own conversion lets a minus wrap round and clamps what is too large.
-const CLI::Validator whole_number(
-    [](std::string& text) {
-      const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-      return digits && text.size() <= 18 ? std::string()
-                                         : "'" + text + "' is not a whole number from 0 to 10^18";
-    },
-    "");
+/// The simplifier numbers the four corners of its tets in 32 bits.
+constexpr std::uint64_t max_target_tets = std::uint64_t{1} << 30;
+constexpr std::uint64_t max_rounds = 10'000;
+constexpr std::uint64_t max_threads_option = 1024;
+/// More voxels than any volume has.
+constexpr std::uint64_t max_min_voxels = 1'000'000'000'000'000'000;
+/// The solid angle of a vertex of the regular tet, steradians: no tet has a larger smallest one.
+constexpr double max_solid_angle = 0.5513;
 
-/// A finite number above `low`, or at least `low` where `or_equal`.
-CLI::Validator number_from(double low, bool or_equal) {
-  return {[low, or_equal](std::string& text) {
-            char* end = nullptr;
-            const double value = std::strtod(text.c_str(), &end);
-            const bool good =
-                !text.empty() && *end == 0 && std::isfinite(value) && (or_equal ? value >= low : value > low);
-            return good ? std::string()
-                        : "'" + text + "' is not a number " + (or_equal ? "of at least " : "above ") +
-                              (low == 0 ? "0" : std::to_string(low));
-          },
-          ""};
+template <class Value>
+CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& to, const char* type,
+                        std::function<Value(const std::string&)> parse, const std::string& description) {
+  return app
+      .add_option_function<std::string>(
+          name, [&to, parse](const std::string& text) { to = parse(text); }, description)
+      ->type_name(type);
 }
 
-/// The smallest solid angle of a tet, which is never more than that of the regular one. (The parser's own
-/// range lets what is no number pass.)
-const CLI::Validator solid_angle(
-    [](std::string& text) {
-      char* end = nullptr;
-      const double value = std::strtod(text.c_str(), &end);
-      return !text.empty() && *end == 0 && value >= 0 && value <= 0.5513
-                 ? std::string()
-                 : "'" + text + "' is not a solid angle from 0 to 0.5513, the regular tet's";
-    },
-    "");
-
-/// Takes a label off the beginning of the text; false if there is none.
-bool take_label(std::string_view& text, MaterialTag& label) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), label);
-  if (error != std::errc()) return false;
-  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  return true;
+/// An option whose value is a whole number from `low` to `high`. Not the parser's own conversion, which takes
+/// numbers with a leading 0 for octal and lets negative ones wrap around.
+template <class Whole>
+CLI::Option* add_whole_number(CLI::App& app, const std::string& name, Whole& to, std::uint64_t low,
+                              std::uint64_t high, const std::string& description) {
+  const auto parse = [name, low, high](const std::string& text) {
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || value < low || value > high)
+      throw CLI::ValidationError(name, "'" + text + "' is not a whole number from " + std::to_string(low) +
+                                           " to " + std::to_string(high));
+    return static_cast<Whole>(value);
+  };
+  return add_parsed<Whole>(app, name, to, "N", parse, description);
 }
 
-MaterialTag parse_label(const std::string& text, const char* option) {
-  std::string_view left = text;
-  MaterialTag label = 0;
-  if (!take_label(left, label) || !left.empty())
-    throw CLI::ValidationError(option, "'" + text + "' is not a whole number from -2147483648 to 2147483647");
-  return label;
+/// The numbers that an option accepts.
+struct Range {
+  double low, high;
+  bool low_included;
+  const char* text;  ///< for messages
+
+  bool contains(double x) const { return (low_included ? x >= low : x > low) && x <= high; }
+};
+constexpr double max_number = std::numeric_limits<double>::max();
+constexpr Range positive{0, max_number, false, "a number above 0"};
+constexpr Range not_negative{0, max_number, true, "a number of at least 0"};
+constexpr Range solid_angle{0, max_solid_angle, true, "a solid angle from 0 to 0.5513, the regular tet's"};
+
+/// Throws unless all of the text is a number within the range; no range contains nan or inf.
+double parse_number(const std::string& option, const std::string& text, const Range& range) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != 0 || !range.contains(value))
+    throw CLI::ValidationError(option, "'" + text + "' is not " + range.text);
+  return value;
 }
 
-/// "1,5-9,-3--1": a minus behind a number makes a range, before one it is a sign.
-void parse_labels(const std::string& text, std::vector<std::pair<MaterialTag, MaterialTag>>& to) {
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    const std::string part = text.substr(begin, end - begin);
-    begin = end + 1;
-    std::string_view left = part;
-    MaterialTag first = 0;
-    bool good = take_label(left, first);
-    MaterialTag last = first;
-    if (good && left.starts_with('-')) {
-      left.remove_prefix(1);
-      good = take_label(left, last);
-    }
-    if (!good || !left.empty())
-      throw CLI::ValidationError("--labels", "'" + part + "' is neither a label nor a range such as 5-9");
-    if (first > last)
-      throw CLI::ValidationError("--labels", "'" + part + "' begins with the larger label; did you mean " +
-                                                 std::to_string(last) + "-" + std::to_string(first) + "?");
-    to.emplace_back(first, last);
-  }
+/// An option whose value is a number within `range`.
+CLI::Option* add_number(CLI::App& app, const std::string& name, double& to, const Range& range,
+                        const std::string& description) {
+  return add_parsed<double>(
+      app, name, to, "NUMBER",
+      [name, range](const std::string& text) { return parse_number(name, text, range); }, description);
+}
+
+/// For defaults in the help, "0.05".
+std::string short_text(double value) {
+  std::array<char, 32> buffer{};
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
 }
 
 void add_common(CLI::App& app, CommandLine& c) {
-  app.add_option("--threads", c.threads, "Threads to use (default: all of the machine)")
-      ->check(whole_number)
-      ->check(CLI::Range(1u, 1024u));
-  app.add_option("--stats", c.stats, "Write what was done and reached to this .json file");
-  app.add_flag("--quiet", c.quiet, "Print nothing but errors");
-  app.add_flag("--no-progress", c.no_progress, "No progress bar");
+  add_whole_number(app, "--threads", c.threads, 1, max_threads_option,
+                   "Max number of threads, 1 to 1024 (default: all of the machine); more than four for each "
+                   "processor, or 16, are never used");
+  app.add_option("--stats", c.stats, "Write statistics of the run to this .json file")->type_name("FILE");
+  app.add_flag("--quiet", c.quiet, "Print only errors and what falls short");
+  app.add_flag("--no-progress", c.no_progress, "Show no progress bar");
 }
 
 void add_seed(CLI::App& app, CommandLine& c) {
-  app.add_option("--seed", c.seed,
-                 "Start of the random numbers; with one thread the same seed gives the same bytes")
-      ->check(whole_number)
-      ->capture_default_str();
+  add_whole_number(app, "--seed", c.seed, 0, std::numeric_limits<std::uint64_t>::max(),
+                   "Seed of the random numbers; with one thread the same seed gives the same bytes")
+      ->default_str(std::to_string(c.seed));
 }
 
 void add_output(CLI::App& app, CommandLine& c, const char* formats) {
-  app.add_option("-o,--output", c.output, formats)->required();
+  app.add_option("-o,--output", c.output, formats)->required()->type_name("FILE");
 }
 
 NamedValue split_named(const std::string& text, const char* option, const char* value) {
@@ -115,87 +114,95 @@ NamedValue split_named(const std::string& text, const char* option, const char* 
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-/// What of segmented volumes is meshed.
+/// Options of segmented volumes.
 void add_labels(CLI::App& app, CommandLine& c) {
   app.add_option_function<std::vector<std::string>>(
          "--labels",
          [&c](const std::vector<std::string>& all) {
-           for (const std::string& text : all) parse_labels(text, c.labels);
+           for (const std::string& text : all)
+             for (const LabelRange& range : parse_label_ranges("--labels", text)) c.labels.push_back(range);
          },
-         "Labels of a segmented volume to mesh, such as 1,5-9; the others are outside (default: all)")
+         "Labels of a segmented volume to mesh, such as 1,5-9; all others become outside (default: all)")
+      ->type_name("LIST")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--label-names", c.label_names,
-                 "Text file that names the labels: lines TAG NAME, or a table of 3D Slicer, FreeSurfer or "
-                 "ITK-SNAP");
+                 "Text file with the names of labels: lines TAG NAME, or a colour table of 3D Slicer, "
+                 "FreeSurfer or ITK-SNAP")
+      ->type_name("FILE");
   app.add_option_function<std::string>(
          "--outside-label",
-         [&c](const std::string& text) { c.outside_label = parse_label(text, "--outside-label"); },
-         "Label of a segmented volume that is outside")
+         [&c](const std::string& text) { c.outside_label = parse_label("--outside-label", text); },
+         "Label of a segmented volume that means outside")
+      ->type_name("LABEL")
       ->default_str(std::to_string(c.outside_label));
-  app.add_option("--min-voxels", c.min_voxels,
-                 "Islands of a label with fewer voxels are merged into what they touch most; 0: none")
-      ->check(whole_number)
-      ->capture_default_str();
+  add_whole_number(app, "--min-voxels", c.min_voxels, 0, max_min_voxels,
+                   "Min size of an island of a label: smaller ones are merged into the neighbour they touch "
+                   "most; 0: keep all")
+      ->default_str(std::to_string(c.min_voxels));
 }
 
-void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) {
-  app.add_option("--resolution", c.resolution,
-                 std::string("Finest cells along the longest side (default: ") + default_resolution + ")")
-      ->check(whole_number)
-      ->check(CLI::Range(4, 4096));
-  app.add_option("--voxel-size", c.voxel_size,
-                 "Edge of the finest cells in input units, instead of --resolution")
-      ->check(number_from(0, false));
-  app.add_flag("--uniform", c.uniform, "Finest cells everywhere: a plain grid, no octree");
-  app.add_option("--adaptivity", c.adaptivity,
-                 "Largest misplacement of the surface by a coarser cell, in finest cells; 0: finest cells "
-                 "all along it")
-      ->check(number_from(0, true))
-      ->capture_default_str();
+void add_material_options(CLI::App& app, CommandLine& c) {
   app.add_option_function<std::vector<std::string>>(
          "--material",
          [&c](const std::vector<std::string>& all) {
            for (const std::string& text : all) c.materials.push_back(split_named(text, "--material", "FILE"));
          },
-         "One more surface under a name of its own, NAME=FILE; repeatable. Later materials carve earlier "
-         "ones")
+         "Another surface, as the material NAME; repeatable. Later materials carve earlier ones")
       ->expected(1)
+      ->type_name("NAME=FILE")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option_function<std::vector<std::string>>(
          "--layer",
          [&c](const std::vector<std::string>& all) {
            for (const std::string& text : all) {
              c.layers.push_back(split_named(text, "--layer", "THICKNESS"));
-             std::string value = c.layers.back().value;
-             if (const std::string wrong = number_from(0, false)(value); !wrong.empty())
-               throw CLI::ValidationError("--layer", wrong);
+             (void)parse_number("--layer", c.layers.back().value, positive);
            }
          },
-         "A shell of the first surface, NAME=THICKNESS in input units; repeatable, outermost first")
+         "A layer under the first surface, a material of this thickness in input units; repeatable, the "
+         "outermost one first")
       ->expected(1)
+      ->type_name("NAME=THICKNESS")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   static const std::map<std::string, NestedRule> nested_rules{{"auto", NestedRule::automatic},
                                                               {"cavity", NestedRule::cavity},
                                                               {"solid", NestedRule::solid},
                                                               {"material", NestedRule::material}};
   app.add_option_function<std::string>(
-      "--nested",
-      [&c](const std::string& text) {
-        const auto rule = nested_rules.find(text);
-        if (rule == nested_rules.end())
-          throw CLI::ValidationError("--nested", "'" + text + "' is none of auto, cavity, solid, material");
-        c.nested = rule->second;
-      },
-      "What closed parts inside others are: auto (wound against them: cavities; alike: solid), cavity, "
-      "solid, "
-      "or material (of their own)");
-  app.add_flag("--keep-outside", c.keep_outside,
-               "Mesh the outside too, in a box, as the material 'outside' with tag 0");
-  app.add_option("--write-sdf", c.write_sdf, "Write the signed distances that were meshed to this .vdb file");
+         "--nested",
+         [&c](const std::string& text) {
+           const auto rule = nested_rules.find(text);
+           if (rule == nested_rules.end())
+             throw CLI::ValidationError("--nested",
+                                        "'" + text + "' is none of auto, cavity, solid, material");
+           c.nested = rule->second;
+         },
+         "What closed parts inside others are: cavity, solid, material (a separate one), or auto (cavities "
+         "if wound the other way round, else solid)")
+      ->type_name("RULE")
+      ->default_str("auto");
 }
 
-/// An option whose value is one of a few words, each naming one of `values`.
+void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) {
+  add_whole_number(app, "--resolution", c.resolution, 4, 4096,
+                   std::string("Number of finest cells along the longest side, 4 to 4096 (default: ") +
+                       default_resolution + ")");
+  add_number(app, "--voxel-size", c.voxel_size, positive,
+             "Edge length of the finest cells in input units, instead of --resolution");
+  app.add_flag("--uniform", c.uniform, "Use the finest cells everywhere: a plain grid instead of an octree");
+  add_number(app, "--adaptivity", c.adaptivity, not_negative,
+             "Max displacement of a surface by coarser cells, in finest cells; 0: finest cells along all "
+             "surfaces")
+      ->default_str(short_text(c.adaptivity));
+  add_material_options(app, c);
+  app.add_flag("--keep-outside", c.keep_outside,
+               "Mesh the outside too, up to a box, as the material 'outside' with tag 0");
+  app.add_option("--write-sdf", c.write_sdf, "Write the meshed signed distances to this .vdb file")
+      ->type_name("FILE");
+}
+
+/// An option whose value is the name of one of `values`.
 template <class Value>
 void add_choice(CLI::App& app, const char* option, Value& to, std::initializer_list<Value> values,
                 const char* description) {
@@ -213,42 +220,41 @@ void add_choice(CLI::App& app, const char* option, Value& to, std::initializer_l
            to = found->second;
          },
          description)
+      ->type_name("NAME")
       ->default_str(name_of(to));
 }
 
-/// What simplification and improvement have in common.
+/// Options of both simplification and improvement.
 void add_shaping(CLI::App& app, CommandLine& c, const char* iterations) {
-  app.add_option(
-         "--min-solid-angle", c.min_solid_angle,
-         "Tets with a smaller solid angle (steradians) are improved; if given and some are left, status 1")
-      ->check(solid_angle)
-      ->capture_default_str();
+  add_number(app, "--min-solid-angle", c.min_solid_angle, solid_angle,
+             "Improve tets with a smaller solid angle (steradians); if given and some are left, status 1")
+      ->default_str(short_text(c.min_solid_angle));
   add_choice(app, "--objective", c.objective,
              {ShapeObjective::both, ShapeObjective::solid_angle, ShapeObjective::dihedral},
-             "What a good shape is: large solid-angle, no small or large dihedral, or both");
-  app.add_option("--max-iterations", c.max_iterations, iterations)
-      ->check(whole_number)
-      ->check(CLI::Range(1, 10000))
-      ->capture_default_str();
+             "Measure of a tet's shape: its min solid-angle, its min and max dihedral angle, or both");
+  add_whole_number(app, "--max-iterations", c.max_iterations, 1, max_rounds, iterations)
+      ->default_str(std::to_string(c.max_iterations));
 }
 
 void add_simplifying(CLI::App& app, CommandLine& c) {
-  app.add_option("--target-tets", c.target_tets, "Number of tets wanted")->required()->check(whole_number);
-  add_shaping(app, c, "Block iterations at most");
+  add_whole_number(app, "--target-tets", c.target_tets, 1, max_target_tets, "Number of tets to reach")
+      ->required();
+  add_shaping(app, c, "Max number of block iterations, 1 to 10000");
   add_choice(app, "--schedule", c.schedule, {Schedule::tuned, Schedule::paper},
-             "tuned: fast, and closes with improvement; paper: operations and order of Cutler et al. 2004");
-  app.add_option("--beta", c.beta, "Longest edge, in ideal edges, that quality does not penalise")
-      ->check(number_from(0, false))
-      ->capture_default_str();
-  app.add_option("--gamma", c.gamma, "Weight of the surface's error; larger keeps more of it")
-      ->check(number_from(0, true))
-      ->capture_default_str();
+             "tuned: fast, ends with improvement; paper: operations in the order of Cutler et al. 2004");
+  add_number(app, "--beta", c.beta, positive,
+             "Max edge length, in ideal edges, that quality does not penalise")
+      ->default_str(short_text(c.beta));
+  add_number(app, "--gamma", c.gamma, not_negative,
+             "Weight of the surface error; larger values keep more detail")
+      ->default_str(short_text(c.gamma));
 }
 
 void add_material_field(CLI::App& app, CommandLine& c) {
   app.add_option("--material-field", c.material_field,
-                 "Integer cell field that holds the materials, instead of the first of material, medit:ref, "
-                 "physical groups, MaterialID, attribute");
+                 "Integer cell field with the materials, instead of the first of material, medit:ref, "
+                 "physical groups, MaterialID, attribute")
+      ->type_name("NAME");
 }
 
 std::string one_line(std::string text) {
@@ -264,7 +270,181 @@ std::string joined(const std::vector<std::string>& names) {
   return out;
 }
 
+constexpr const char* scans =
+    "Surfaces (.ply .obj .stl .off) and level sets (.vdb), each a material, of which later ones carve "
+    "earlier ones; or one segmented volume (.nrrd .nhdr .mhd .mha .nii .nii.gz .inr .inr.gz, .vdb of whole "
+    "numbers)";
+constexpr const char* meshes = "Tet mesh: .vtu .msh .mesh .vtk .node .ele";
+constexpr const char* mesh_out = "The mesh to write: .vtu .msh .mesh";
+
+void add_prepare(CLI::App& app, CommandLine& c) {
+  app.add_option("INPUT", c.inputs, scans);
+  add_output(app, c, mesh_out);
+  add_simplifying(app, c);
+  add_meshing(app, c, "what the target needs");
+  add_labels(app, c);
+  add_common(app, c);
+  add_seed(app, c);
+}
+
+void add_mesh(CLI::App& app, CommandLine& c) {
+  app.add_option("INPUT", c.inputs, scans);
+  add_output(app, c, mesh_out);
+  add_meshing(app, c, "128; for segmented volumes one cell to a voxel");
+  add_labels(app, c);
+  add_common(app, c);
+  add_seed(app, c);
+}
+
+void add_simplify(CLI::App& app, CommandLine& c) {
+  app.add_option("MESH", c.inputs, meshes)->required()->expected(1);
+  add_output(app, c, mesh_out);
+  add_simplifying(app, c);
+  add_material_field(app, c);
+  add_common(app, c);
+  add_seed(app, c);
+}
+
+void add_improve(CLI::App& app, CommandLine& c) {
+  app.add_option("MESH", c.inputs, meshes)->required()->expected(1);
+  add_output(app, c, mesh_out);
+  add_number(
+      app, "--only-below", c.only_below, solid_angle,
+      "Work only on tets with a smaller solid angle (steradians) and their neighbours; 0: on all. Tets "
+      "that stay below it are reported")
+      ->default_str(short_text(c.only_below));
+  add_shaping(app, c, "Max number of rounds, 1 to 10000");
+  add_material_field(app, c);
+  add_common(app, c);
+  add_seed(app, c);
+}
+
+void add_check(CLI::App& app, CommandLine& c) {
+  app.add_option("MESH", c.inputs, meshes)->required()->expected(1);
+  app.add_option("--before", c.before, "Another mesh, whose topology MESH must have")->type_name("FILE");
+  app.add_flag("--json", c.json, "Print JSON");
+  add_material_field(app, c);
+  add_common(app, c);
+}
+
+void add_sample(CLI::App& app, CommandLine& c) {
+  app.add_option("NAME", c.inputs, "One of: " + joined(sample_names()))->required()->expected(1);
+  add_output(app, c, "Surfaces: .ply .obj .stl .off; tet meshes: .vtu .msh .mesh; segmented volumes: .nrrd");
+  add_common(app, c);
+}
+
+/// The commands, in the order of the help.
+struct CommandEntry {
+  Command command;
+  const char* description;
+  void (*add_options)(CLI::App& app, CommandLine& c);
+};
+constexpr std::array<CommandEntry, 6> commands{{
+    {Command::prepare, "Turns scans or a segmented volume into a simulation mesh, in one go", add_prepare},
+    {Command::mesh, "Turns scans or a segmented volume into a dense mesh", add_mesh},
+    {Command::simplify, "Turns a tet mesh into one of fewer tets", add_simplify},
+    {Command::improve, "Improves the shapes of a tet mesh and keeps about its count", add_improve},
+    {Command::check,
+     "Reports validity, topology and quality of a tet mesh; status 1 if it is not valid (a warning, such as "
+     "an unused point, leaves it valid)",
+     add_check},
+    {Command::sample, "Writes a built-in sample", add_sample},
+}};
+
+/// Refuses a call without a command, and a first argument that is none.
+void check_command(int argc, char** argv) {
+  if (argc > 1 && argv[1][0] == '-') return;
+  std::vector<std::string> names;
+  for (const CommandEntry& entry : commands) names.emplace_back(name_of(entry.command));
+  if (argc < 2)
+    throw UsageError("there is no command; give one of " + joined(names) +
+                     " (tetwright --help explains them)");
+  const std::string typed = argv[1];
+  if (std::find(names.begin(), names.end(), typed) != names.end()) return;
+  throw UsageError("there is no command '" + typed + "'; the nearest is '" + nearest_word(typed, names) +
+                   "' (commands: " + joined(names) + ")");
+}
+
+/// Says of the first argument that looks like an option and is none which option is the nearest; empty if
+/// there is no such argument.
+std::string unknown_option(const CLI::App& app) {
+  const CLI::App* chosen = app.get_subcommands().empty() ? &app : app.get_subcommands().front();
+  for (const std::string& argument : app.remaining(true)) {
+    if (!argument.starts_with('-') || argument.size() < 2) continue;
+    const std::string typed = argument.substr(0, argument.find('='));
+    std::vector<std::string> names;
+    for (const CLI::Option* option : chosen->get_options())
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return "there is no option " + typed + (chosen == &app ? "" : " of " + chosen->get_name()) +
+           "; the nearest is " + nearest_word(typed, names);
+  }
+  return "";
+}
+
+/// Refuses more than one MESH or NAME. The parser's own message counts them and does not name them.
+void check_one_positional(const CLI::App& app) {
+  for (const CLI::App* chosen : app.get_subcommands())
+    for (const CLI::Option* positional : chosen->get_options())
+      if (positional->get_positional() && positional->get_items_expected_max() == 1 &&
+          positional->count() > 1)
+        throw UsageError(chosen->get_name() + " takes one " + positional->get_name() + "; '" +
+                         positional->results()[1] + "' is too many");
+}
+
+/// Runs the parser, which sets the options; returns false if help or the version was printed.
+bool parse_arguments(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    std::cout << app.help();  // of the command, if one was named
+    return false;
+  } catch (const CLI::CallForVersion&) {
+    std::cout << "tetwright " << TETWRIGHT_VERSION << "\n";
+    return false;
+  } catch (const CLI::ParseError& e) {
+    // An option that is misspelt may be reported as one that is missing.
+    const std::string unknown = unknown_option(app);
+    if (unknown.empty()) check_one_positional(app);
+    throw UsageError((unknown.empty() ? one_line(e.what()) : unknown) +
+                     " (tetwright --help, or --help after a command, lists all options)");
+  }
+  return true;
+}
+
+/// Finds out which options were given, and refuses those that do not go together.
+void complete(const CLI::App& chosen, CommandLine& out) {
+  const bool meshes_scans = out.command == Command::prepare || out.command == Command::mesh;
+  if (out.command == Command::prepare || out.command == Command::simplify || out.command == Command::improve)
+    out.min_solid_angle_given = chosen.count("--min-solid-angle") > 0;
+  if (meshes_scans) {
+    if (out.inputs.empty() && out.materials.empty())
+      throw UsageError(
+          "there is no input; name a surface or a segmented volume, or give --material NAME=FILE");
+    out.outside_label_given = chosen.count("--outside-label") > 0;
+    out.min_voxels_given = chosen.count("--min-voxels") > 0;
+  }
+  if (out.resolution && out.voxel_size > 0) throw UsageError("give --resolution or --voxel-size, not both");
+}
+
 }  // namespace
+
+const char* name_of(Command command) {
+  switch (command) {
+    case Command::prepare:
+      return "prepare";
+    case Command::mesh:
+      return "mesh";
+    case Command::simplify:
+      return "simplify";
+    case Command::improve:
+      return "improve";
+    case Command::check:
+      return "check";
+    case Command::sample:
+      return "sample";
+  }
+  return "";
+}
 
 const char* name_of(Schedule schedule) { return schedule == Schedule::tuned ? "tuned" : "paper"; }
 
@@ -275,102 +455,23 @@ const char* name_of(ShapeObjective objective) {
 }
 
 bool parse_command_line(int argc, char** argv, CommandLine& out) {
-  CLI::App app("Turns surface scans into tetrahedral meshes that a simulation can run on.", "tetwright");
+  check_command(argc, argv);
+  CLI::App app("Turns surface scans and segmented volumes into tetrahedral meshes for simulation.",
+               "tetwright");
   app.set_version_flag("--version", TETWRIGHT_VERSION);
   app.require_subcommand(1);
   app.footer(
       "Exit status: 0 done, 1 written but short of what was asked (check: not valid), 2 wrong call, 3 bad "
       "input,\n"
-      "4 nothing to mesh, 5 could not be written or out of memory, 130 interrupted.");
-  constexpr const char* surfaces =
-      "Surfaces: .ply .obj .stl .off, level sets: .vdb; each a material, later ones carve earlier ones. Or "
-      "segmented volumes: .nrrd .nhdr .mhd .mha .nii .nii.gz .inr .inr.gz, and .vdb of whole numbers";
-  constexpr const char* meshes = "Tet mesh: .vtu .msh .mesh .vtk .node .ele";
-  constexpr const char* mesh_out = "Where the mesh goes: .vtu .msh .mesh";
-
-  CLI::App* prepare = app.add_subcommand("prepare", "Scan to simulation mesh, in one go");
-  prepare->add_option("INPUT", out.inputs, surfaces);
-  add_output(*prepare, out, mesh_out);
-  add_simplifying(*prepare, out);
-  add_meshing(*prepare, out, "what the target needs");
-  add_labels(*prepare, out);
-  add_common(*prepare, out);
-  add_seed(*prepare, out);
-
-  CLI::App* mesh = app.add_subcommand("mesh", "Scan to dense mesh");
-  mesh->add_option("INPUT", out.inputs, surfaces);
-  add_output(*mesh, out, mesh_out);
-  add_meshing(*mesh, out, "128");
-  add_labels(*mesh, out);
-  add_common(*mesh, out);
-  add_seed(*mesh, out);
-
-  CLI::App* simplify = app.add_subcommand("simplify", "Tet mesh to simulation mesh");
-  simplify->add_option("MESH", out.inputs, meshes)->required()->expected(1);
-  add_output(*simplify, out, mesh_out);
-  add_simplifying(*simplify, out);
-  add_material_field(*simplify, out);
-  add_common(*simplify, out);
-  add_seed(*simplify, out);
-
-  CLI::App* improve = app.add_subcommand("improve", "Better shapes for a tet mesh, about as many tets");
-  improve->add_option("MESH", out.inputs, meshes)->required()->expected(1);
-  add_output(*improve, out, mesh_out);
-  improve
-      ->add_option("--only-below", out.only_below,
-                   "Work only on tets with a smaller solid angle (steradians) and what stands around them; "
-                   "0: on all")
-      ->check(solid_angle)
-      ->capture_default_str();
-  add_shaping(*improve, out, "Rounds at most");
-  add_material_field(*improve, out);
-  add_common(*improve, out);
-  add_seed(*improve, out);
-
-  CLI::App* check =
-      app.add_subcommand("check", "Validity, topology and quality of a tet mesh; status 1 if not valid");
-  check->add_option("MESH", out.inputs, meshes)->required()->expected(1);
-  check->add_option("--before", out.before, "Mesh whose topology this one must have");
-  check->add_flag("--json", out.json, "Print JSON");
-  add_material_field(*check, out);
-  add_common(*check, out);
-
-  CLI::App* sample = app.add_subcommand("sample", "Writes a built-in sample");
-  sample->add_option("NAME", out.inputs, "One of: " + joined(sample_names()))->required()->expected(1);
-  add_output(*sample, out,
-             "Surfaces: .ply .obj .stl .off; tet meshes: .vtu .msh .mesh; volumes of labels: .nrrd");
-  add_common(*sample, out);
-
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    std::cout << app.help();  // of the command, where one was named
-    return false;
-  } catch (const CLI::CallForVersion&) {
-    std::cout << "tetwright " << TETWRIGHT_VERSION << "\n";
-    return false;
-  } catch (const CLI::ParseError& e) {
-    throw UsageError(one_line(e.what()) +
-                     " (tetwright --help, or --help after a command, lists what there is)");
-  }
-  const CLI::App* chosen = app.get_subcommands().front();
-  out.command = chosen == prepare    ? Command::prepare
-                : chosen == mesh     ? Command::mesh
-                : chosen == simplify ? Command::simplify
-                : chosen == improve  ? Command::improve
-                : chosen == check    ? Command::check
-                                     : Command::sample;
-  const bool simplifies = out.command == Command::prepare || out.command == Command::simplify;
-  if (simplifies && out.target_tets == 0) throw UsageError("--target-tets 0 leaves no mesh; give 1 or more");
-  if (simplifies || out.command == Command::improve)
-    out.min_solid_angle_given = chosen->count("--min-solid-angle") > 0;
-  if (out.command == Command::prepare || out.command == Command::mesh) {
-    if (out.inputs.empty() && out.materials.empty())
-      throw UsageError("there is no input; name a surface, or give --material NAME=FILE");
-    out.outside_label_given = chosen->count("--outside-label") > 0;
-    out.min_voxels_given = chosen->count("--min-voxels") > 0;
-  }
-  if (out.resolution && out.voxel_size > 0) throw UsageError("give --resolution or --voxel-size, not both");
+      "4 nothing to mesh, 5 output could not be written or out of memory, 70 a bug in tetwright, 130 "
+      "interrupted.");
+  for (const CommandEntry& entry : commands)
+    entry.add_options(*app.add_subcommand(name_of(entry.command), entry.description), out);
+  if (!parse_arguments(app, argc, argv)) return false;
+  const CLI::App& chosen = *app.get_subcommands().front();
+  for (const CommandEntry& entry : commands)
+    if (chosen.get_name() == name_of(entry.command)) out.command = entry.command;
+  complete(chosen, out);
   return true;
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/types.h"
-#include "mesher/surface_input.h"
+#include "mesher/mesher.h"
 #include "simplify/simplify.h"
 
 namespace tetwright {
@@ -19,14 +19,14 @@ struct NamedValue {
 
 enum class Command { prepare, mesh, simplify, improve, check, sample };
 
-/// What the command line said; defaults are those of --help.
+/// The parsed command line, with the defaults that --help shows.
 struct CommandLine {
   Command command = Command::prepare;
-  std::vector<std::string> inputs;  ///< for sample: its name
+  std::vector<std::string> inputs;  ///< of `sample`: the name
   std::string output;
-  std::string before;          ///< check: mesh whose topology must be the same
-  bool json = false;           ///< check
-  std::string material_field;  ///< of a tet mesh that is read; empty: by the rule
+  std::string before;          ///< `check`: the mesh whose topology must be the same
+  bool json = false;           ///< `check`
+  std::string material_field;  ///< cell field of the tet mesh that is read; empty: chosen by its name
 
   std::size_t target_tets = 0;
   double min_solid_angle = 0.1;  ///< steradians
@@ -35,7 +35,7 @@ struct CommandLine {
   int max_iterations = 100;
   Schedule schedule = Schedule::tuned;
   ShapeObjective objective = ShapeObjective::both;
-  double only_below = 0;  ///< improve, steradians; 0: all tets
+  double only_below = 0;  ///< `improve`, steradians; 0: all tets
 
   int resolution = 0;     ///< 0: not given
   double voxel_size = 0;  ///< input units; 0: not given
@@ -45,14 +45,14 @@ struct CommandLine {
   std::vector<NamedValue> layers;     ///< name and thickness (a number above 0, input units)
   NestedRule nested = NestedRule::automatic;
   bool keep_outside = false;
-  std::string write_sdf;  ///< .vdb file; empty: not wanted
+  std::string write_sdf;  ///< .vdb file; empty: none
 
-  /// Of a segmented volume: the labels to mesh, as ranges with both ends; empty: all but the outside label.
+  /// The labels of a segmented volume to mesh, as inclusive ranges; empty: all but the outside label.
   std::vector<std::pair<MaterialTag, MaterialTag>> labels;
-  std::string label_names;  ///< file with names of labels; empty: none
+  std::string label_names;  ///< file with the names of labels; empty: none
   MaterialTag outside_label = 0;
   bool outside_label_given = false;
-  std::size_t min_voxels = 8;  ///< smaller islands are merged
+  std::size_t min_voxels = 8;  ///< min size of an island that is kept
   bool min_voxels_given = false;
 
   unsigned threads = 0;  ///< 0: all
@@ -62,11 +62,13 @@ struct CommandLine {
   bool no_progress = false;
 };
 
-/// Parses the arguments. Throws UsageError (one line that says what to do) when the call is wrong. Returns
-/// false when help or the version was asked for and printed.
+/// Parses the arguments. Returns false if it printed the help or the version instead. Throws UsageError, with
+/// one line that says what to do, if the call is wrong: unknown commands and options (the nearest is named),
+/// values out of range (option, value and range are named), options that do not go together.
 bool parse_command_line(int argc, char** argv, CommandLine& out);
 
-/// As options spell them: "tuned", "paper"; "both", "solid-angle", "dihedral".
+/// The names on the command line, such as "prepare", "tuned" and "solid-angle".
+const char* name_of(Command command);
 const char* name_of(Schedule schedule);
 const char* name_of(ShapeObjective objective);
 

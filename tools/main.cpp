@@ -1,4 +1,4 @@
-// The tetwright program: one command, its result, one exit status. What each command does is in commands.cpp.
+// The tetwright program: runs one command and returns its exit status.
 #include <unistd.h>
 
 #include <csignal>
@@ -12,32 +12,36 @@
 #endif
 
 #include "common/error.h"
+#include "common/formats/atomic_file.h"
 #include "tools/command_line.h"
-#include "tools/commands.h"
+#include "tools/commands/commands.h"
+#include "tools/exit_status.h"
+#include "tools/interruption.h"
+#include "tools/report.h"
 
 int main(int argc, char** argv) {
+  tetwright::handle_interruptions();
   using tetwright::ExitStatus;
 #ifdef __GLIBC__
-  // Large blocks go back to the system when they are freed. By itself glibc puts what is as large as blocks
-  // that were freed before into its heaps, where it stays: gigabytes between the stages. This is the
-  // threshold that glibc begins with; setting it keeps it there. Beyond 65,536 blocks at a time glibc takes
-  // its heaps.
+  // Large blocks are returned to the system when they are freed. By default glibc raises the threshold to the
+  // size of the blocks that were freed, and then keeps later ones in its heaps: gigabytes between the stages.
+  // Setting the threshold, here to its initial value, keeps it constant. glibc still uses its heaps while
+  // more than 65,536 large blocks are allocated.
   mallopt(M_MMAP_THRESHOLD, 128 << 10);
 #endif
-  // A full disk must end in an error message, not in a signal.
+  // A full disk or a closed pipe must end in an error message, not in a signal.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
-  // Threads that cannot be started end in std::terminate, below every handler of ours.
+  // If the system cannot start a thread, the exception ends in std::terminate before any handler here sees
+  // it.
   std::set_terminate([] {
+    (void)tetwright::abandon_output_files();
     constexpr char message[] = "tetwright: out of memory or threads; give fewer --threads\n";
     [[maybe_unused]] const auto written = write(STDERR_FILENO, message, sizeof message - 1);
     _exit(static_cast<int>(ExitStatus::output_failed));
   });
-  const auto fail = [](ExitStatus status, std::string message) {
-    // One line, whatever a file name holds.
-    for (char& c : message)
-      if (static_cast<unsigned char>(c) < ' ' || c == 127) c = '?';
-    std::fprintf(stderr, "tetwright: %s\n", message.c_str());
+  const auto fail = [](ExitStatus status, const std::string& message) {
+    tetwright::print_line(message);
     return static_cast<int>(status);
   };
   try {
@@ -47,12 +51,15 @@ int main(int argc, char** argv) {
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
       return fail(ExitStatus::output_failed, "cannot write to standard output");
     return static_cast<int>(status);
-  } catch (const tetwright::Error& e) {
-    return fail(e.status(), e.what());
   } catch (const std::bad_alloc&) {
     return fail(ExitStatus::output_failed,
                 "not enough memory; free some, or ask for less (of surfaces: a smaller --resolution)");
+  } catch (const tetwright::InternalError& e) {
+    return fail(ExitStatus::internal_error,
+                std::string(e.what()) +
+                    "; this is a bug in tetwright: please report it with this line, the "
+                    "version, the command and its input");
   } catch (const std::exception& e) {
-    return fail(ExitStatus::bad_input, e.what());
+    return fail(tetwright::exit_status(e), e.what());
   }
 }

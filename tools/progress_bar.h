@@ -7,8 +7,8 @@
 
 namespace tetwright {
 
-/// Draws the current stage and its share done on one line of stderr, at most ten times a second; draws
-/// nothing unless `visible`. The line is cleared when the bar dies.
+/// Draws the current stage and its progress on one line of stderr, at most ten times a second. Draws nothing
+/// unless `visible`. The destructor clears the line.
 class ProgressBar : public Progress {
  public:
   explicit ProgressBar(bool visible) : visible_(visible) {}

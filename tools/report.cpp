@@ -5,10 +5,13 @@
 #include <cstdio>
 #include <functional>
 
+#include "tools/stats_json.h"
+
 namespace tetwright {
 
 namespace {
 
+/// printf into a string of at most 63 bytes.
 std::string text(const char* format, ...) {
   char buffer[64];
   va_list arguments;
@@ -18,24 +21,24 @@ std::string text(const char* format, ...) {
   return buffer;
 }
 
-/// Names may hold anything; a note is one line.
+/// The text with question marks for control characters.
 std::string printable(std::string text) {
   for (char& c : text)
-    if (static_cast<unsigned char>(c) < ' ') c = '?';
+    if (static_cast<unsigned char>(c) < ' ' || c == 127) c = '?';
   return text;
 }
 
-/// As in "volume 40 x 30 x 20 voxels of 1 x 1 x 2.5, space unknown; labels 1 'bone', 2 'skin'".
+/// "volume 40 x 30 x 20 voxels of 1 x 1 x 2.5, space unknown; 2 labels: 1 'bone', 2 'skin'".
 std::string volume_line(const VolumeReport& v) {
-  constexpr std::size_t most_labels = 8;
+  constexpr std::size_t max_labels = 8;
   const Vec3 spacing = v.spacing();
   std::string line = text("volume %d x %d x %d voxels of ", v.size[0], v.size[1], v.size[2]) +
                      text("%.6g x %.6g x %.6g", spacing[0], spacing[1], spacing[2]) + ", space " +
                      (v.space.empty() ? "unknown" : v.space) + "; " + text("%zu label", v.labels.size()) +
                      (v.labels.size() == 1 ? ": " : "s: ");
-  for (std::size_t i = 0; i < std::min(most_labels, v.labels.size()); ++i)
+  for (std::size_t i = 0; i < std::min(max_labels, v.labels.size()); ++i)
     line += (i ? ", " : "") + std::to_string(v.labels[i].tag) + " '" + v.labels[i].name + "'";
-  if (v.labels.size() > most_labels) line += ", ...";
+  if (v.labels.size() > max_labels) line += ", ...";
   return printable(line);
 }
 
@@ -90,14 +93,18 @@ void print_notes(const RunReport& run) {
     file = f.file;
     line += std::to_string(f.finding.count) + " " + f.finding.what + " (" + f.finding.done + ")";
   }
-  if (!line.empty()) std::fprintf(stderr, "tetwright: note: %s\n", printable(line).c_str());
+  if (!line.empty()) print_line("note: " + line);
   if (!run.mesher) return;
+  if (run.mesher->isolated_vertices > 0)
+    print_line("note: " + std::to_string(run.mesher->isolated_vertices) +
+               " parts or cavities of a single lattice point (left out; a higher resolution keeps them)");
   for (const ThinPartReport& t : run.mesher->thin_parts)
-    std::fprintf(stderr,
-                 "tetwright: note: %s is thinner than %s at %zu places, the first at (%g, %g, %g): %s\n",
-                 t.name.empty() ? "a gap" : printable("'" + t.name + "'").c_str(),
-                 t.refined ? "the smallest cells can hold" : "two cells", t.places, t.first.x(), t.first.y(),
-                 t.first.z(), "parts may tear or join there; a higher resolution keeps them");
+    print_line("note: " + (t.name.empty() ? "a gap" : "'" + t.name + "'") + " is thinner than " +
+               (t.refined ? "the smallest cells can hold" : "two cells") + " at " + std::to_string(t.places) +
+               " places, the first at " + text("(%g, %g, %g)", t.first.x(), t.first.y(), t.first.z()) +
+               ": parts may tear or join there; a higher resolution keeps them");
 }
+
+void print_line(const std::string& text) { std::fprintf(stderr, "tetwright: %s\n", printable(text).c_str()); }
 
 }  // namespace tetwright

@@ -3,30 +3,13 @@
 #include <sys/resource.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
-#include "common/parallel.h"
+#include "common/parallel/parallel.h"
 
 namespace tetwright {
 
 namespace {
-
-const char* name_of(Command command) {
-  switch (command) {
-    case Command::prepare:
-      return "prepare";
-    case Command::mesh:
-      return "mesh";
-    case Command::simplify:
-      return "simplify";
-    case Command::improve:
-      return "improve";
-    case Command::check:
-      return "check";
-    case Command::sample:
-      return "sample";
-  }
-  return "";
-}
 
 nlohmann::json iteration_json(const IterationReport& it) {
   nlohmann::json operations = nlohmann::json::object(), rejections = nlohmann::json::object();
@@ -42,7 +25,7 @@ nlohmann::json iteration_json(const IterationReport& it) {
     rejections[name] = reasons;
   }
   return {{"kind", it.kind},          {"tets_before", it.tets_before}, {"tets_after", it.tets_after},
-          {"cutoff", it.cutoff},      {"percent", it.percent},         {"largest_error", it.largest_error},
+          {"cutoff", it.cutoff},      {"percent", it.percent},         {"largest_error", it.max_error},
           {"operations", operations}, {"rejections", rejections},      {"lock_conflicts", it.lock_conflicts},
           {"skipped", it.skipped},    {"seconds", it.seconds}};
 }
@@ -72,18 +55,13 @@ nlohmann::json volume_json(const VolumeReport& v) {
           {"merged_voxels", v.merged_voxels}};
 }
 
-}  // namespace
-
-std::size_t peak_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
-}
-
+/// The text of a document; bytes that are not UTF-8 become replacement characters.
 std::string json_text(const nlohmann::json& json) {
   return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+/// `names` are those of the materials that have one; `threshold` is the solid angle that the statistics were
+/// made with, steradians.
 nlohmann::json mesh_json(const MeshStatistics& m, const std::map<MaterialTag, std::string>& names,
                          double threshold) {
   nlohmann::json materials = nlohmann::json::array();
@@ -117,7 +95,65 @@ nlohmann::json mesh_json(const MeshStatistics& m, const std::map<MaterialTag, st
           {"histogram", m.histogram.counts}};
 }
 
-nlohmann::json stats_json(const CommandLine& line, const RunReport& run) {
+nlohmann::json input_json(const RunReport& run) {
+  nlohmann::json j = {
+      {"files", run.inputs}, {"triangles", run.input_triangles}, {"points", run.input_points}};
+  if (!run.material_field.empty()) j["material_field"] = run.material_field;
+  if (run.volume) j["volume"] = volume_json(*run.volume);
+  j["findings"] = nlohmann::json::array();
+  for (const InputFinding& f : run.findings) {
+    nlohmann::json finding = {
+        {"file", f.file}, {"what", f.finding.what}, {"count", f.finding.count}, {"done", f.finding.done}};
+    if (f.finding.place) finding["place"] = place_json(*f.finding.place);
+    j["findings"].push_back(finding);
+  }
+  return j;
+}
+
+/// Adds to the statistics of the dense mesh how it was made.
+void add_mesher_json(const MesherReport& m, nlohmann::json& dense) {
+  dense["cell_size"] = m.cell_size;
+  dense["resolution"] = m.resolution;
+  dense["cells"] = m.cells;
+  dense["lattice_tets"] = m.lattice_tets;
+  dense["refinement"] = m.refinement;
+  dense["specks"] = m.isolated_vertices;
+  dense["thin_parts"] = nlohmann::json::array();
+  for (const ThinPartReport& t : m.thin_parts)
+    dense["thin_parts"].push_back({{"name", t.name.empty() ? "outside" : t.name},
+                                   {"places", t.places},
+                                   {"first", place_json(t.first)},
+                                   {"refined", t.refined}});
+}
+
+nlohmann::json seconds_json(const RunReport& run) {
+  nlohmann::json seconds = {
+      {"read", run.seconds_read}, {"write", run.seconds_write}, {"total", run.seconds_total}};
+  if (run.mesher) {
+    seconds["mesh"] = run.seconds_mesh;
+    seconds["sdf"] = run.mesher->seconds_sdf;
+    seconds["octree"] = run.mesher->seconds_octree;
+    seconds["lattice"] = run.mesher->seconds_lattice;
+    seconds["move"] = run.mesher->seconds_move;
+    seconds["cut"] = run.mesher->seconds_cut;
+  }
+  if (run.simplify) {
+    seconds["build"] = run.simplify->seconds_build;
+    seconds["simplify"] = run.simplify->seconds_simplify;
+    seconds["close"] = run.simplify->seconds_close;
+  }
+  return seconds;
+}
+
+}  // namespace
+
+std::size_t peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
+}
+
+std::string stats_json(const CommandLine& line, const RunReport& run) {
   nlohmann::json j;
   j["version"] = TETWRIGHT_VERSION;
   j["command"] = name_of(line.command);
@@ -130,56 +166,38 @@ nlohmann::json stats_json(const CommandLine& line, const RunReport& run) {
     else
       j["schedule"] = name_of(line.schedule);
   }
-  j["input"] = {{"files", run.inputs}, {"triangles", run.input_triangles}, {"points", run.input_points}};
-  if (!run.material_field.empty()) j["input"]["material_field"] = run.material_field;
-  if (run.volume) j["input"]["volume"] = volume_json(*run.volume);
-  nlohmann::json seconds = {
-      {"read", run.seconds_read}, {"write", run.seconds_write}, {"total", run.seconds_total}};
+  j["input"] = input_json(run);
   if (run.dense) j["dense"] = mesh_json(*run.dense, run.material_names, line.min_solid_angle);
-  j["input"]["findings"] = nlohmann::json::array();
-  for (const InputFinding& f : run.findings) {
-    nlohmann::json finding = {
-        {"file", f.file}, {"what", f.finding.what}, {"count", f.finding.count}, {"done", f.finding.done}};
-    if (f.finding.place) finding["place"] = place_json(*f.finding.place);
-    j["input"]["findings"].push_back(finding);
-  }
-  if (run.mesher) {
-    const MesherReport& m = *run.mesher;
-    j["dense"]["cell_size"] = m.cell_size;
-    j["dense"]["resolution"] = m.resolution;
-    j["dense"]["cells"] = m.cells;
-    j["dense"]["lattice_tets"] = m.lattice_tets;
-    j["dense"]["refinement"] = m.refinement;
-    j["dense"]["specks"] = m.specks;
-    j["dense"]["thin_parts"] = nlohmann::json::array();
-    for (const ThinPartReport& t : m.thin_parts)
-      j["dense"]["thin_parts"].push_back({{"name", t.name.empty() ? "outside" : t.name},
-                                          {"places", t.places},
-                                          {"first", place_json(t.first)},
-                                          {"refined", t.refined}});
-    seconds["mesh"] = run.seconds_mesh;
-    seconds["sdf"] = m.seconds_sdf;
-    seconds["octree"] = m.seconds_octree;
-    seconds["lattice"] = m.seconds_lattice;
-    seconds["move"] = m.seconds_move;
-    seconds["cut"] = m.seconds_cut;
-  }
+  if (run.mesher) add_mesher_json(*run.mesher, j["dense"]);
   j["result"] =
       run.result ? mesh_json(*run.result, run.material_names, line.min_solid_angle) : nlohmann::json();
   j["iterations"] = nlohmann::json::array();
-  if (run.simplify) {
-    seconds["build"] = run.simplify->seconds_build;
-    seconds["simplify"] = run.simplify->seconds_simplify;
-    seconds["close"] = run.simplify->seconds_close;
+  if (run.simplify)
     for (const IterationReport& it : run.simplify->iterations) j["iterations"].push_back(iteration_json(it));
-  }
-  j["seconds"] = seconds;
+  j["seconds"] = seconds_json(run);
   j["peak_bytes"] = peak_bytes();
   j["shortfall"] = nlohmann::json::array();
   for (const Shortfall& s : run.shortfall)
     j["shortfall"].push_back(
-        {{"what", s.what}, {"asked", s.asked}, {"reached", s.reached}, {"held_back_by", s.held_back_by}});
-  return j;
+        {{"what", s.what}, {"asked", s.asked}, {"reached", s.reached}, {"held_back_by", s.limited_by}});
+  return json_text(j);
+}
+
+std::string check_json(const CommandLine& line, const RunReport& run, const CheckReport& check) {
+  nlohmann::json j = {{"valid", check.valid()}, {"findings", nlohmann::json::array()}};
+  for (const MeshFinding& f : check.findings)
+    j["findings"].push_back({{"number", static_cast<int>(f.fault)},
+                             {"name", mesh_fault_name(f.fault)},
+                             {"severity", is_warning(f.fault) ? "warning" : "error"},
+                             {"what", mesh_fault_text(f.fault)},
+                             {"count", f.count},
+                             {"places", f.places}});
+  if (check.measurable) {
+    j["mesh"] = mesh_json(*run.result, run.material_names, line.min_solid_angle);
+    j["topology"] = check.topology;
+  }
+  if (check.topology_differences) j["topology_differences"] = *check.topology_differences;
+  return json_text(j);
 }
 
 }  // namespace tetwright

@@ -10,16 +10,16 @@
 
 #include "benchmarks/processes.h"
 #include "common/formats/formats.h"
-#include "common/interfaces.h"
-#include "common/mesh_check.h"
-#include "common/mesh_statistics.h"
-#include "common/parallel.h"
+#include "common/geometry/surface_tree.h"
+#include "common/mesh/interfaces.h"
+#include "common/mesh/mesh_check.h"
+#include "common/mesh/mesh_statistics.h"
+#include "common/mesh/topology.h"
+#include "common/parallel/parallel.h"
 #include "common/random.h"
 #include "common/samples.h"
-#include "common/topology.h"
 #include "mesher/mesher.h"
-#include "mesher/surface_tree.h"
-#include "simplify/editable_mesh.h"
+#include "simplify/mesh/editable_mesh.h"
 #include "simplify/simplify.h"
 
 namespace tetwright {
@@ -27,17 +27,17 @@ namespace {
 
 TriangleMesh surface_of(const char* sample) { return std::get<TriangleMesh>(make_sample(sample)); }
 
-PreparedInput input_of(const char* sample) {
-  return prepare_input({{sample, 1, surface_of(sample), sample}});
+MesherInput input_of(const char* sample) {
+  return make_mesher_input({{sample, 1, surface_of(sample), sample}});
 }
 
-PreparedInput layered_input() {
-  PreparedInput input = input_of("torus");
+MesherInput layered_input() {
+  MesherInput input = input_of("torus");
   input.layers = {{"skin", 2, 0.12}, {"fat", 3, 0.14}};
   return input;
 }
 
-TetMesh dense_mesh(const PreparedInput& input, int resolution, bool uniform) {
+TetMesh dense_mesh(const MesherInput& input, int resolution, bool uniform) {
   MesherOptions options;
   options.resolution = resolution;
   options.uniform = uniform;
@@ -90,10 +90,10 @@ void repeatedly(benchmark::State& state, const Work& work) {
 #define TETWRIGHT_CI(function, name) \
   BENCHMARK(function)->Name(name)->Unit(benchmark::kMillisecond)->UseRealTime()
 
-/// Times `mesh()`, which makes a MeshedSurface.
+/// Times `mesh()`, which makes a DenseMesh.
 template <class Mesh>
 void run_mesher(benchmark::State& state, const Mesh& mesh) {
-  MeshedSurface meshed;
+  DenseMesh meshed;
   double sdf = 0, octree = 0, lattice = 0, move = 0, cut = 0;
   repeatedly(state, [&] {
     meshed = mesh();
@@ -112,7 +112,7 @@ void run_mesher(benchmark::State& state, const Mesh& mesh) {
   count_mesh(state, meshed.mesh);
 }
 
-void run_mesher(benchmark::State& state, const PreparedInput& input, int resolution, bool uniform) {
+void run_mesher(benchmark::State& state, const MesherInput& input, int resolution, bool uniform) {
   MesherOptions options;
   options.resolution = resolution;
   options.uniform = uniform;
@@ -134,12 +134,12 @@ const LabelVolume& organs() {
 }
 
 void choose_labels(benchmark::State& state) {
-  repeatedly(state, [&] { benchmark::DoNotOptimize(prepare_labels(organs(), "organs", {}, nullptr)); });
+  repeatedly(state, [&] { benchmark::DoNotOptimize(make_label_input(organs(), "organs", {}, nullptr)); });
 }
 TETWRIGHT_CI(choose_labels, "prepare_labels");
 
 void mesh_organs(benchmark::State& state) {
-  const PreparedLabels labels = prepare_labels(organs(), "organs", {}, nullptr);
+  const LabelInput labels = make_label_input(organs(), "organs", {}, nullptr);
   MesherOptions options;
   options.voxel_size = default_cell_size(labels);
   run_mesher(state, [&] { return mesh_labels(labels, options, nullptr); });
@@ -148,7 +148,7 @@ TETWRIGHT_CI(mesh_organs, "mesh/labels");
 
 void prepare_surfaces(benchmark::State& state) {
   const TriangleMesh surface = surface_of("open_sphere");
-  repeatedly(state, [&] { benchmark::DoNotOptimize(prepare_input({{"s", 1, surface, "s"}})); });
+  repeatedly(state, [&] { benchmark::DoNotOptimize(make_mesher_input({{"s", 1, surface, "s"}})); });
 }
 TETWRIGHT_CI(prepare_surfaces, "prepare_input");
 

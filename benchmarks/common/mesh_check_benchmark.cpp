@@ -1,10 +1,10 @@
-#include "common/mesh_check.h"
+#include "common/mesh/mesh_check.h"
 
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/inputs.h"
-#include "common/mesh_statistics.h"
-#include "common/topology.h"
+#include "common/mesh/mesh_statistics.h"
+#include "common/mesh/topology.h"
 
 namespace tetwright {
 namespace {

@@ -4,18 +4,18 @@
 #include <sys/resource.h>
 
 #include "benchmarks/inputs.h"
-#include "common/parallel.h"
+#include "common/parallel/parallel.h"
 
 namespace tetwright {
 namespace {
 
 /// Meshes again and again; seconds of each stage as counters.
-void run(benchmark::State& state, const PreparedInput& input, bool uniform) {
+void run(benchmark::State& state, const MesherInput& input, bool uniform) {
   MesherOptions options;
   options.resolution = static_cast<int>(state.range(0));
   options.uniform = uniform;
   const ThreadLimit limit(static_cast<unsigned>(state.range(1)));
-  MeshedSurface meshed;
+  DenseMesh meshed;
   for (auto _ : state) meshed = mesh_surfaces(input, options, nullptr);
   const MesherReport& r = meshed.report;
   const double tets = static_cast<double>(meshed.mesh.tets.size());
@@ -52,7 +52,7 @@ BENCHMARK(uniform)
 
 /// The same body with two layers: three materials.
 void layered(benchmark::State& state) {
-  PreparedInput input = benchmark_input();
+  MesherInput input = benchmark_input();
   const double size = (input.high - input.low).maxCoeff();
   input.layers = {{"skin", 2, 0.02 * size}, {"fat", 3, 0.04 * size}};
   run(state, input, false);

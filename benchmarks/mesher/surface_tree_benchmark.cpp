@@ -1,4 +1,4 @@
-#include "mesher/surface_tree.h"
+#include "common/geometry/surface_tree.h"
 
 #include <benchmark/benchmark.h>
 

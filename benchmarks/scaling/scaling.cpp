@@ -57,7 +57,7 @@ class Scaling {
       throw UsageError("there is no " + o_.program + "; build the program, or name it with --program");
     if (!std::filesystem::exists(o_.surface)) {
       o_.surface = scratch_ / "knot.ply";
-      write_sample("knot", o_.surface);
+      write_surface(std::get<TriangleMesh>(make_sample("knot")), o_.surface);
     }
   }
 

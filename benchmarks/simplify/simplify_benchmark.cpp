@@ -3,8 +3,8 @@
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/inputs.h"
-#include "common/mesh_statistics.h"
-#include "common/parallel.h"
+#include "common/mesh/mesh_statistics.h"
+#include "common/parallel/parallel.h"
 
 namespace tetwright {
 namespace {

@@ -2,15 +2,15 @@
 #include <cmath>
 
 #include "benchmarks/strategy/orderings.h"
-#include "simplify/block.h"
+#include "simplify/schedule/block_runner.h"
 
 namespace tetwright {
 
 namespace {
 
 constexpr double percent_step = 10;
-constexpr int most_iterations = 200;
-constexpr int most_idle = 5;  ///< iterations in a row that remove next to nothing
+constexpr int iteration_limit = 200;
+constexpr int max_idle = 5;  ///< iterations in a row that remove next to nothing
 
 /// Quality^3 below which `percent` of the tets lie.
 float cutoff(const EditableMesh& mesh, double percent) {
@@ -45,7 +45,7 @@ template <class Block, class Grow>
 void iterate(Workpiece& piece, const Block& block, const Grow& grow) {
   double percent = percent_step;
   int idle = 0;
-  for (int i = 0; i < most_iterations && !piece.reached() && idle < most_idle; ++i) {
+  for (int i = 0; i < iteration_limit && !piece.reached() && idle < max_idle; ++i) {
     const auto before = static_cast<double>(piece.mesh.live_tets());
     block(cutoff(piece.mesh, percent));
     const double removed = 1 - static_cast<double>(piece.mesh.live_tets()) / before;
@@ -60,42 +60,42 @@ void iterate(Workpiece& piece, const Block& block, const Grow& grow) {
 void block_of_tets(Workpiece& piece, std::uint64_t seed) {
   VolumeLedger ledger;
   BlockRunner runner(piece.mesh, piece.grid, ledger, seed, 2000, nullptr);
-  runner.reset_tasks();
-  piece.rules.largest_error = piece.rules.objective.quality.ideal_edge;
+  runner.reset_workspaces();
+  piece.rules.max_error = piece.rules.objective.quality.ideal_edge;
   std::vector<WeighedCollapse> candidates;
   const auto block = [&](float limit) {
     runner.tets(
         poor_tets(piece.mesh, limit),
-        [&](Task& task, const ListedTet& item) {
-          if (const Outcome o = hold(task, item); o != Outcome::done) return o;
+        [&](Workspace& ws, const ListedTet& item) {
+          if (const Outcome o = validate(ws, item); o != Outcome::done) return o;
           if (piece.mesh.tet(item.tet).quality > limit) return Outcome::stale;
           candidates.clear();
           const auto of_the_tet = [&](Index p) {
             return std::find(item.points.begin(), item.points.end(), p) != item.points.end();
           };
           for (const Index p : item.points)
-            if (piece.gather(task, p)) piece.weigh(task, candidates, of_the_tet);
+            if (piece.gather(ws, p)) piece.weigh(ws, candidates, of_the_tet);
           sort_by_weight(candidates);
           for (const WeighedCollapse& c : candidates) {
-            if (c.weight > piece.rules.largest_error) break;
-            if (piece.gather(task, c.origin) && piece.collapse(task, c.target)) return Outcome::done;
+            if (c.weight > piece.rules.max_error) break;
+            if (piece.gather(ws, c.origin) && piece.collapse(ws, c.target)) return Outcome::done;
           }
           return Outcome::no_candidate;
         },
         [&] { return piece.reached(); });
   };
   iterate(piece, block, [&](double) {
-    piece.rules.largest_error *=
+    piece.rules.max_error *=
         std::cbrt(static_cast<double>(piece.mesh.live_tets()) / static_cast<double>(piece.target));
   });
 }
 
 void block_of_points(Workpiece& piece, std::uint64_t seed) {
-  constexpr std::size_t most_targets = 4;
+  constexpr std::size_t max_targets = 4;
   VolumeLedger ledger;
   BlockRunner runner(piece.mesh, piece.grid, ledger, seed, 2000, nullptr);
-  runner.reset_tasks();
-  piece.rules.largest_error = 4 * piece.rules.objective.quality.ideal_edge;
+  runner.reset_workspaces();
+  piece.rules.max_error = 4 * piece.rules.objective.quality.ideal_edge;
   std::vector<WeighedCollapse> candidates;
   const auto block = [&](float limit) {
     std::vector<Index> points;
@@ -105,21 +105,21 @@ void block_of_points(Workpiece& piece, std::uint64_t seed) {
     points.erase(std::unique(points.begin(), points.end()), points.end());
     runner.points(
         points,
-        [&](Task& task, Index p) {
-          if (!piece.gather(task, p)) return Outcome::stale;
+        [&](Workspace& ws, Index p) {
+          if (!piece.gather(ws, p)) return Outcome::stale;
           candidates.clear();
-          piece.weigh(task, candidates);
+          piece.weigh(ws, candidates);
           sort_by_weight(candidates);
-          for (std::size_t i = 0; i < std::min(most_targets, candidates.size()); ++i) {
-            if (candidates[i].weight > piece.rules.largest_error) break;
-            if (piece.collapse(task, candidates[i].target)) return Outcome::done;
+          for (std::size_t i = 0; i < std::min(max_targets, candidates.size()); ++i) {
+            if (candidates[i].weight > piece.rules.max_error) break;
+            if (piece.collapse(ws, candidates[i].target)) return Outcome::done;
           }
           return Outcome::no_candidate;
         },
         [&] { return piece.reached(); });
   };
   iterate(piece, block, [&](double removed) {
-    if (removed < 0.15) piece.rules.largest_error *= 1.3;
+    if (removed < 0.15) piece.rules.max_error *= 1.3;
   });
 }
 

@@ -86,7 +86,7 @@ class ProgressiveMesh {
   Workpiece& piece_;
   bool eager_;
   VolumeLedger ledger_;  // no bounds: the paper has none
-  Task task_;
+  Workspace task_;
   std::vector<std::uint32_t> versions_;  ///< by point; grows when what it begins is weighed anew
   std::vector<Queued> heap_, fresh_;
   std::size_t drop_outdated_at_ = 0;

@@ -6,8 +6,8 @@
 #include "benchmarks/inputs.h"
 #include "benchmarks/processes.h"
 #include "benchmarks/strategy/orderings.h"
-#include "common/mesh_statistics.h"
-#include "common/parallel.h"
+#include "common/mesh/mesh_statistics.h"
+#include "common/parallel/parallel.h"
 
 namespace tetwright {
 namespace {

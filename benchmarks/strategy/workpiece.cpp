@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <limits>
 
-#include "simplify/collapse.h"
+#include "simplify/operations/collapse.h"
 
 namespace tetwright {
 
 Workpiece::Workpiece(TetMesh input, std::size_t target_tets)
     : mesh(std::move(input), "mesh"), target(target_tets) {
   rules.objective.quality = TetQuality::for_target(mesh.total_volume(), static_cast<double>(target));
-  rules.largest_error = std::numeric_limits<double>::infinity();
-  rules.fewest_tets = 0;
+  rules.max_error = std::numeric_limits<double>::infinity();
+  rules.min_tets = 0;
   // Shape refuses only what falls far behind what stands there, in both orderings alike: none could reach the
-  // target if nothing might become poorer.
+  // target if nothing might become worse.
   rules.accept_worse = 1;
   rules.annealing_floor = 0.1f;
   grid.build(mesh, rules.objective.quality.ideal_edge / 2);
@@ -29,15 +29,15 @@ void Workpiece::rate_all() {
   }
 }
 
-bool Workpiece::gather(Task& task, Index point) {
+bool Workpiece::gather(Workspace& ws, Index point) {
   ++counts.stars;
-  return (task.points.holds(point) || task.points.try_lock(point)) && alive(point) &&
-         task.star.gather(mesh, point, task.points) == Outcome::done;
+  return (ws.points.holds(point) || ws.points.try_lock(point)) && alive(point) &&
+         ws.star.gather(mesh, point, ws.points) == Outcome::done;
 }
 
-void Workpiece::weigh(Task& task, std::vector<WeighedCollapse>& out,
+void Workpiece::weigh(Workspace& ws, std::vector<WeighedCollapse>& out,
                       const std::function<bool(Index)>& wanted) {
-  Star& star = task.star;
+  Star& star = ws.star;
   const int dimension = star.dimension();
   if (dimension == 0) return;
   star.compute_gradients();
@@ -48,12 +48,12 @@ void Workpiece::weigh(Task& task, std::vector<WeighedCollapse>& out,
   }
 }
 
-bool Workpiece::collapse(Task& task, Index onto, bool trial) {
+bool Workpiece::collapse(Workspace& ws, Index onto, bool trial) {
   ++counts.tests;
-  const std::vector<Index>& link = task.star.points;
+  const std::vector<Index>& link = ws.star.points;
   const auto b = static_cast<std::size_t>(std::find(link.begin(), link.end(), onto) - link.begin());
-  const bool done = b < link.size() && collapse_onto(task, rules, b, trial) == Outcome::done;
-  task.cells.release();
+  const bool done = b < link.size() && collapse_onto(ws, rules, b, trial) == Outcome::done;
+  ws.cells.release();
   if (done && !trial) ++counts.collapses;
   return done;
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/tet_mesh.h"
-#include "simplify/task.h"
+#include "simplify/operations/workspace.h"
 
 namespace tetwright {
 
@@ -29,20 +29,20 @@ class Workpiece {
   Workpiece(TetMesh mesh, std::size_t target_tets);
 
   bool reached() const { return mesh.live_tets() <= target; }
-  bool alive(Index point) const { return mesh.hint(point) != no_index; }
+  bool alive(Index point) const { return mesh.incident_tet(point) != no_index; }
   /// Quality(t)^3 of every tet.
   void rate_all();
 
   /// The task holds and has gathered the star of a living point; false where it is too large for an
   /// operation.
-  bool gather(Task& task, Index point);
+  bool gather(Workspace& ws, Index point);
   /// Appends the weights of all half-edges that begin at the gathered star's centre and that dimensions and
   /// materials allow; only those to a point for which `wanted` is true.
   void weigh(
-      Task& task, std::vector<WeighedCollapse>& out,
+      Workspace& ws, std::vector<WeighedCollapse>& out,
       const std::function<bool(Index)>& wanted = [](Index) { return true; });
   /// Carries a collapse of the gathered star's centre out if it is legal; on trial only says whether.
-  bool collapse(Task& task, Index onto, bool trial = false);
+  bool collapse(Workspace& ws, Index onto, bool trial = false);
 
   TetMesh result() && { return std::move(mesh).to_mesh(); }
 

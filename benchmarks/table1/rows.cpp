@@ -5,11 +5,11 @@
 #include "benchmarks/processes.h"
 #include "benchmarks/table1/surface_distance.h"
 #include "common/formats/formats.h"
-#include "common/interfaces.h"
-#include "common/mesh_check.h"
-#include "common/mesh_statistics.h"
-#include "common/parallel.h"
-#include "common/topology.h"
+#include "common/mesh/interfaces.h"
+#include "common/mesh/mesh_check.h"
+#include "common/mesh/mesh_statistics.h"
+#include "common/mesh/topology.h"
+#include "common/parallel/parallel.h"
 #include "mesher/mesher.h"
 
 namespace tetwright {
@@ -17,7 +17,7 @@ namespace tetwright {
 namespace {
 
 constexpr double count_tolerance = 0.03;
-constexpr int most_steps = 8;
+constexpr int max_steps = 8;
 
 TriangleMesh boundary(const TetMesh& mesh) {
   TriangleMesh surface;
@@ -52,7 +52,7 @@ nlohmann::json operations_json(const SimplifyReport& report) {
 }  // namespace
 
 nlohmann::json make_dense(const std::string& scan, std::size_t tets, const std::string& path) {
-  const PreparedInput input = prepare_input({{"body", 1, read_surface(scan), scan}});
+  const MesherInput input = make_mesher_input({{"body", 1, read_surface(scan), scan}});
   const double wanted = static_cast<double>(tets);
   MesherOptions options;
   options.uniform = true;
@@ -60,9 +60,9 @@ nlohmann::json make_dense(const std::string& scan, std::size_t tets, const std::
   // Tets grow with the cube of the resolution.
   options.voxel_size *= std::cbrt(static_cast<double>(estimate_mesh(input, options).tets) / wanted);
   double last_size = 0, last_count = 0;
-  for (int step = 1; step <= most_steps; ++step) {
+  for (int step = 1; step <= max_steps; ++step) {
     const Stopwatch watch;
-    MeshedSurface dense = mesh_surfaces(input, options, nullptr);
+    DenseMesh dense = mesh_surfaces(input, options, nullptr);
     const double seconds = watch.seconds(), count = static_cast<double>(dense.mesh.tets.size());
     if (std::abs(count - wanted) <= count_tolerance * wanted) {
       write_tet_mesh(dense.mesh, path);

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "common/parallel.h"
+#include "common/geometry/surface_tree.h"
+#include "common/parallel/parallel.h"
 #include "common/random.h"
-#include "mesher/surface_tree.h"
 
 namespace tetwright {
 

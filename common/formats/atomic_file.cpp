@@ -4,14 +4,18 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <mutex>
 
 #include "common/error.h"
+#include "common/progress.h"
 
 namespace tetwright {
 
@@ -43,7 +47,7 @@ std::string folder_of(const std::string& path) {
   return folder.empty() ? "." : folder.string();
 }
 
-/// While any lives, going over the file size limit is an error of write() instead of the end of the process.
+/// While one exists, exceeding the file size limit makes write() fail instead of ending the process.
 class FileSizeSignalIgnored {
  public:
   FileSizeSignalIgnored() {
@@ -67,45 +71,129 @@ class FileSizeSignalIgnored {
   static inline struct sigaction before_ = {};
 };
 
-/// A file that is removed again unless it was renamed.
+/// The names of the temporary files, where a signal handler can read them.
+struct TemporaryName {
+  std::atomic<bool> taken{false};
+  /// Set after `path` is filled in.
+  std::atomic<bool> valid{false};
+  std::array<char, 4001> path;
+};
+std::array<TemporaryName, 16> temporary_names;
+
+// The protocol between threads that create or rename files and abandon_output_files(). All of it is
+// sequentially consistent: either a thread sees `abandoned` and goes no further, or abandon_output_files()
+// sees it in `changing` and waits for it.
+std::atomic<bool> abandoned{false};
+std::atomic<int> changing{0};
+std::atomic<bool> any_committed{false};
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+
+void sleep_a_moment() noexcept {
+  const timespec moment{0, 1'000'000};
+  nanosleep(&moment, nullptr);
+}
+
+/// While one exists its thread changes folders, and abandon_output_files() waits. The signals whose handlers
+/// might call that are blocked in this thread, which would wait for itself.
+class FolderChange {
+ public:
+  FolderChange() {
+    sigset_t ending;
+    sigemptyset(&ending);
+    for (const int signal : {SIGHUP, SIGINT, SIGTERM}) sigaddset(&ending, signal);
+    pthread_sigmask(SIG_BLOCK, &ending, &before_);
+    ++changing;
+    if (!abandoned) return;
+    // The process is about to end.
+    --changing;
+    for (;;) sleep_a_moment();
+  }
+  ~FolderChange() {
+    --changing;
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  FolderChange(const FolderChange&) = delete;
+  FolderChange& operator=(const FolderChange&) = delete;
+
+ private:
+  sigset_t before_;
+};
+
+/// A file that is removed again unless it is renamed.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& folder) {
     static std::atomic<unsigned> number{0};
-    // Other processes may be at work in the same folder; a crashed one may have had our number.
+    // Other processes may write into the same folder; one that crashed may have had our number.
     for (int attempt = 0; attempt < 100 && file_ < 0; ++attempt) {
       path_ = folder + "/.tetwright-" + std::to_string(getpid()) + "-" + std::to_string(number++) + ".tmp";
+      const FolderChange change;
       file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (file_ < 0 && errno != EEXIST) break;
+      if (file_ >= 0) {
+        exists_ = true;
+        register_name();
+      } else if (errno != EEXIST) {
+        break;
+      }
     }
   }
   ~TemporaryFile() {
-    const bool opened = file_ >= 0 || closed_;
     if (file_ >= 0) ::close(file_);
-    if (opened && !kept_) unlink(path_.c_str());
+    if (!exists_) return;
+    unlink(path_.c_str());
+    forget_name();
   }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
   int file() const { return file_; }
-  const std::string& path() const { return path_; }
   int close() {
     const int result = ::close(file_);
     file_ = -1;
-    closed_ = true;
     return result;
   }
-  void keep() { kept_ = true; }
+  /// False, with errno, if it failed.
+  bool rename_to(const std::string& target) {
+    if (std::rename(path_.c_str(), target.c_str()) != 0) return false;
+    exists_ = false;
+    forget_name();
+    return true;
+  }
 
  private:
+  void register_name() {
+    for (TemporaryName& name : temporary_names) {
+      if (path_.size() >= name.path.size() || name.taken.exchange(true)) continue;
+      std::copy_n(path_.c_str(), path_.size() + 1, name.path.begin());
+      name.valid = true;
+      name_ = &name;
+      return;
+    }
+  }
+  void forget_name() {
+    if (!name_) return;
+    name_->valid = false;
+    name_->taken = false;
+    name_ = nullptr;
+  }
+
   std::string path_;
   int file_ = -1;
-  bool closed_ = false;
-  bool kept_ = false;
+  bool exists_ = false;
+  TemporaryName* name_ = nullptr;
 };
 
-/// Some systems refuse more than 2 GiB at once.
-constexpr std::size_t piece_size = std::size_t{1} << 30;
+/// Bytes that are written between two looks at whether the work was cancelled. Some systems refuse more than
+/// 2 GiB at once anyway.
+constexpr std::size_t piece_size = std::size_t{1} << 26;
+
+/// The new names reach the disk with the folder; where that can't be synced the file is there all the same.
+void sync_folder(const std::string& path) {
+  const int folder = open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return;
+  (void)fsync(folder);
+  close(folder);
+}
 
 }  // namespace
 
@@ -125,22 +213,36 @@ void check_output_file(const std::string& path) {
   if (access(folder.c_str(), W_OK | X_OK) != 0) fail(path, "folder " + folder + " is not writable", errno);
 }
 
-void write_file_atomically(const std::string& path, std::string_view bytes) {
-  write_file_atomically(path, [&](const ByteSink& sink) { sink(bytes); });
+struct OutputFiles::Pending {
+  explicit Pending(const std::string& named)
+      : path(named), target(link_target(named)), temporary(folder_of(target)) {}
+
+  std::string path;    ///< as the caller names it
+  std::string target;  ///< with links followed
+  TemporaryFile temporary;
+};
+
+OutputFiles::OutputFiles(const Progress* progress) : progress_(progress) {}
+OutputFiles::~OutputFiles() = default;
+
+void OutputFiles::write(const std::string& path, std::string_view bytes) {
+  write(path, [&](const ByteSink& sink) { sink(bytes); });
 }
 
-void write_file_atomically(const std::string& path, const std::function<void(const ByteSink&)>& content) {
+void OutputFiles::write(const std::string& path, const std::function<void(const ByteSink&)>& content) {
   check_output_file(path);
-  const std::string target = link_target(path);
+  if (progress_) progress_->throw_if_cancelled();
   const FileSizeSignalIgnored ignored;
-  TemporaryFile temporary(folder_of(target));
+  auto pending = std::make_unique<Pending>(path);
+  TemporaryFile& temporary = pending->temporary;
   if (temporary.file() < 0) fail(path, "no file can be made in its folder", errno);
   struct stat status;
-  if (stat(target.c_str(), &status) == 0 && fchmod(temporary.file(), status.st_mode & 07777) != 0)
+  if (stat(pending->target.c_str(), &status) == 0 && fchmod(temporary.file(), status.st_mode & 07777) != 0)
     fail(path, "permissions", errno);
   content([&](std::string_view bytes) {
     while (!bytes.empty()) {
-      const ssize_t written = write(temporary.file(), bytes.data(), std::min(bytes.size(), piece_size));
+      if (progress_) progress_->throw_if_cancelled();
+      const ssize_t written = ::write(temporary.file(), bytes.data(), std::min(bytes.size(), piece_size));
       if (written < 0) {
         if (errno == EINTR) continue;
         fail(path, "writing failed", errno);
@@ -150,19 +252,47 @@ void write_file_atomically(const std::string& path, const std::function<void(con
   });
   if (fsync(temporary.file()) != 0) fail(path, "syncing to the disk failed", errno);
   if (temporary.close() != 0) fail(path, "closing failed", errno);
-  if (std::rename(temporary.path().c_str(), target.c_str()) != 0) fail(path, "renaming failed", errno);
-  temporary.keep();
-  // The new name reaches the disk with the folder; where that can't be synced the file is there all the same.
-  const int folder = open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder >= 0) {
-    (void)fsync(folder);
-    close(folder);
+  pending_.push_back(std::move(pending));
+}
+
+void OutputFiles::commit() {
+  if (progress_) progress_->throw_if_cancelled();
+  {
+    const FolderChange change;
+    for (const std::unique_ptr<Pending>& pending : pending_) {
+      if (!pending->temporary.rename_to(pending->target)) fail(pending->path, "renaming failed", errno);
+      any_committed = true;
+    }
   }
+  for (const std::unique_ptr<Pending>& pending : pending_) sync_folder(folder_of(pending->target));
+  pending_.clear();
+}
+
+void write_file_atomically(const std::string& path, std::string_view bytes) {
+  OutputFiles files;
+  files.write(path, bytes);
+  files.commit();
+}
+
+void write_file_atomically(const std::string& path, const std::function<void(const ByteSink&)>& content) {
+  OutputFiles files;
+  files.write(path, content);
+  files.commit();
+}
+
+bool abandon_output_files() noexcept {
+  abandoned = true;
+  while (changing > 0) sleep_a_moment();
+  for (const TemporaryName& name : temporary_names)
+    if (name.valid) unlink(name.path.data());
+  return any_committed;
 }
 
 std::string read_whole_file(const std::string& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0 && errno == EINTR) throw Interrupted();
+  int file = -1;
+  // Opening a pipe waits for who writes into it; signals that the host handles do not end this.
+  do file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  while (file < 0 && errno == EINTR);
   if (file < 0) throw InputError("cannot read " + path + ": " + std::strerror(errno));
   struct Closer {
     int file;
@@ -181,8 +311,7 @@ std::string read_whole_file(const std::string& path) {
   for (;;) {
     if (used == bytes.size()) bytes.resize(bytes.size() * 2 + 4096);
     const ssize_t n = read(file, bytes.data() + used, std::min(bytes.size() - used, piece_size));
-    if (n < 0 && errno == EINTR)
-      throw Interrupted();  // the only signals with a handler are those that cancel
+    if (n < 0 && errno == EINTR) continue;
     if (n < 0) throw InputError("cannot read " + path + ": " + std::strerror(errno));
     if (n == 0) break;
     used += static_cast<std::size_t>(n);

@@ -1,24 +1,35 @@
 #include "common/formats/byte_source.h"
 
+#include <libdeflate.h>
 #include <zlib.h>
 
 #include <algorithm>
+#include <memory>
 #include <new>
 
 #include "common/error.h"
+#include "common/formats/byte_order.h"
 
 namespace tetwright {
 
 namespace {
 
-/// zlib makes at least one byte of 1032.
-constexpr std::uint64_t largest_gzip_ratio = 1032;
+/// The best that deflate can do: 1032 bytes become one (zlib, "Technical Details").
+constexpr std::uint64_t max_gzip_ratio = 1032;
 
-/// zlib counts in 32 bits.
-constexpr std::size_t most_at_once = std::size_t{1} << 30;
+/// zlib counts bytes in 32 bits.
+constexpr std::size_t max_at_once = std::size_t{1} << 30;
 
-/// What is inflated to be dropped goes through a buffer of this size.
+/// Skipped bytes are inflated into a buffer of this size.
 constexpr std::uint64_t skip_size = std::uint64_t{1} << 16;
+
+/// What inflates to at most this many bytes is inflated at once: less than the labels of such a volume take.
+constexpr std::size_t max_inflated_at_once = std::size_t{1} << 26;
+
+/// What a gzip file of one member ends with: the checksum and the size of what was packed, modulo 2^32.
+constexpr std::size_t gzip_trailer_size = 8;
+
+using Decompressor = std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)>;
 
 }  // namespace
 
@@ -27,6 +38,9 @@ struct ByteSource::State {
   std::size_t packed_size = 0;
   bool member_ended = false;
   std::string buffer;
+  /// All of it, `inflated_size` bytes, if it was inflated at once; null: it is inflated as it is asked for.
+  std::unique_ptr<char[]> inflated;
+  std::size_t inflated_size = 0, inflated_taken = 0;
 
   State() {
     // 15: the largest window; 32: gzip or zlib, by the header.
@@ -35,13 +49,35 @@ struct ByteSource::State {
   ~State() { inflateEnd(&stream); }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
+
+  /// Inflates a gzip file of one member if the size that it ends with is small enough, which takes libdeflate
+  /// a quarter of zlib's time or less. Leaves everything else, damaged data among it, to zlib.
+  void inflate_at_once(std::string_view bytes);
 };
+
+void ByteSource::State::inflate_at_once(std::string_view bytes) {
+  if (!bytes.starts_with("\x1f\x8b") || bytes.size() < gzip_trailer_size) return;
+  const std::size_t size = load<std::uint32_t>(bytes.data() + bytes.size() - 4, !little_endian_machine);
+  // A few bytes at the end of a damaged file may say anything.
+  if (size > max_inflated_at_once || size / max_gzip_ratio > bytes.size()) return;
+  const Decompressor decompressor(libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
+  if (!decompressor) throw std::bad_alloc();
+  auto whole = std::make_unique_for_overwrite<char[]>(size);
+  std::size_t used = 0;
+  if (libdeflate_gzip_decompress_ex(decompressor.get(), bytes.data(), bytes.size(), whole.get(), size, &used,
+                                    nullptr) != LIBDEFLATE_SUCCESS ||
+      used != bytes.size())
+    return;
+  inflated = std::move(whole);
+  inflated_size = size;
+}
 
 ByteSource::ByteSource(std::string_view bytes, Packing packing, std::string name)
     : bytes_(bytes), name_(std::move(name)) {
   if (packing == Packing::none) return;
   state_ = std::make_unique<State>();
   state_->packed_size = bytes.size();
+  state_->inflate_at_once(bytes);
 }
 
 ByteSource::~ByteSource() = default;
@@ -61,7 +97,12 @@ std::string_view ByteSource::take(std::size_t n) {
 
 std::string_view ByteSource::inflate_next(std::size_t n) {
   State& s = *state_;
-  n = std::min(n, most_at_once);
+  if (s.inflated) {
+    n = std::min(n, s.inflated_size - s.inflated_taken);
+    s.inflated_taken += n;
+    return {s.inflated.get() + s.inflated_taken - n, n};
+  }
+  n = std::min(n, max_at_once);
   if (s.buffer.size() < n) s.buffer.resize(n);
   s.stream.next_out = reinterpret_cast<Bytef*>(s.buffer.data());
   s.stream.avail_out = static_cast<uInt>(n);
@@ -71,7 +112,7 @@ std::string_view ByteSource::inflate_next(std::size_t n) {
       if (!bytes_.starts_with("\x1f\x8b") || inflateReset(&s.stream) != Z_OK) break;
       s.member_ended = false;
     }
-    const std::size_t given = std::min(bytes_.size(), most_at_once);
+    const std::size_t given = std::min(bytes_.size(), max_at_once);
     const uInt room = s.stream.avail_out;
     s.stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes_.data()));  // zlib only reads them
     s.stream.avail_in = static_cast<uInt>(given);
@@ -101,11 +142,11 @@ std::uint64_t ByteSource::skip(std::uint64_t n) {
   return taken_ - before;
 }
 
-std::uint64_t ByteSource::most_left() const {
+std::uint64_t ByteSource::max_left() const {
   if (!packed()) return bytes_.size();
   // One more: what was read but not yet handed out.
-  const std::uint64_t most = (state_->packed_size + 1) * largest_gzip_ratio;
-  return most > taken_ ? most - taken_ : 0;
+  const std::uint64_t max_size = (state_->packed_size + 1) * max_gzip_ratio;
+  return max_size > taken_ ? max_size - taken_ : 0;
 }
 
 }  // namespace tetwright

@@ -8,17 +8,17 @@
 
 namespace tetwright {
 
-/// All bytes of a file: read_whole_file(), unless there are to be no files.
+/// Returns all bytes of a file. It is read_whole_file() except in tests and fuzzers, which have no files.
 using FileReader = std::function<std::string(const std::string& path)>;
 
-/// Where a header's voxels are, if not behind it.
+/// A file that holds the voxels of a separate header.
 struct DataFile {
   std::string path;
   std::string bytes;
 };
 
-/// Reads the file that `field` of the header names, relative to the header. Throws InputError with the
-/// header's line if it can't be read.
+/// Reads the file that `field` of the header names; its path is relative to the folder of the header. Throws
+/// InputError with the line of the header if the file can't be read.
 DataFile read_data_file(const HeaderFields& header, const std::string& field, const FileReader& read);
 
 }  // namespace tetwright

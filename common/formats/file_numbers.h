@@ -10,15 +10,16 @@
 
 namespace tetwright {
 
-/// A file's numbers of its nodes or elements, which need be neither dense nor sorted, and ours: 0, 1, ... in
-/// the order of add().
+/// Maps the numbers that a file gives its nodes or elements, which need be neither dense nor sorted, to ours:
+/// 0, 1, ... in the order of add().
 class FileNumbers {
  public:
   void add(std::int64_t number) {
     dense_ = dense_ && number == std::ssize(numbers_) + 1;
     numbers_.emplace_back(number, static_cast<Index>(numbers_.size()));
   }
-  /// A number that appears twice, if there is one; find() may be used afterwards.
+  /// To be called after the last add() and before find(). Returns a number that was added twice, if there is
+  /// one.
   std::optional<std::int64_t> sort() {
     if (dense_) return std::nullopt;
     std::sort(numbers_.begin(), numbers_.end());
@@ -26,7 +27,7 @@ class FileNumbers {
                                           [](const auto& a, const auto& b) { return a.first == b.first; });
     return twice == numbers_.end() ? std::nullopt : std::optional(twice->first);
   }
-  /// no_index if there is no such number.
+  /// Our number; no_index if `number` was not added.
   Index find(std::int64_t number) const {
     if (dense_)
       return number >= 1 && number <= std::ssize(numbers_) ? static_cast<Index>(number - 1) : no_index;

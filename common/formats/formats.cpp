@@ -27,7 +27,7 @@ namespace {
 
 struct SurfaceFormat {
   const char* extension;
-  TriangleMesh (*read)(std::string_view bytes, const std::string& name);
+  TriangleMesh (*read)(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped);
   std::string (*write)(const TriangleMesh& mesh);
 };
 constexpr std::array<SurfaceFormat, 4> surface_formats{{{".ply", read_ply, write_ply},
@@ -105,7 +105,7 @@ std::string in_lower_case(std::string text) {
   return text;
 }
 
-/// In lower case; with what stands before .gz where that is one with it.
+/// The extension in lower case; .nii.gz and .inr.gz count as one extension.
 std::string extension_of(const std::string& path) {
   const std::string name = in_lower_case(std::filesystem::path(path).filename().string());
   for (const char* compound : {".nii.gz", ".inr.gz"})
@@ -145,6 +145,15 @@ const typename Formats::value_type& need_format(const Formats& formats, const st
                    " for a " + kind_name(kind) + "; known are " + known_extensions(kind, use));
 }
 
+/// Among `files`, or alone if that is null.
+void write_into(OutputFiles* files, const std::string& path,
+                const std::function<void(const ByteSink&)>& content) {
+  if (files)
+    files->write(path, content);
+  else
+    write_file_atomically(path, content);
+}
+
 }  // namespace
 
 FileKind file_kind(const std::string& path, FileUse use) {
@@ -174,9 +183,9 @@ std::string file_stem(const std::string& path) {
   return name.substr(0, name.size() - extension_of(path).size());
 }
 
-TriangleMesh read_surface(const std::string& path) {
+TriangleMesh read_surface(const std::string& path, std::vector<Dropped>* dropped) {
   const SurfaceFormat& format = need_format(surface_formats, path, FileKind::surface, FileUse::read);
-  return format.read(read_whole_file(path), path);
+  return format.read(read_whole_file(path), path, dropped);
 }
 
 ReadTetMesh read_tet_mesh(const std::string& path, const ReadTetMeshOptions& options) {
@@ -187,19 +196,19 @@ LabelVolume read_label_volume(const std::string& path) {
   return need_format(volume_formats, path, FileKind::volume, FileUse::read).read(path);
 }
 
-void write_surface(const TriangleMesh& mesh, const std::string& path) {
+void write_surface(const TriangleMesh& mesh, const std::string& path, OutputFiles* files) {
   const SurfaceFormat& format = need_format(surface_formats, path, FileKind::surface, FileUse::write);
-  write_file_atomically(path, format.write(mesh));
+  write_into(files, path, [&](const ByteSink& sink) { sink(format.write(mesh)); });
 }
 
-void write_tet_mesh(const TetMesh& mesh, const std::string& path) {
+void write_tet_mesh(const TetMesh& mesh, const std::string& path, OutputFiles* files) {
   const TetFormat& format = need_format(tet_formats, path, FileKind::tet_mesh, FileUse::write);
-  write_file_atomically(path, [&](const ByteSink& sink) { format.write(mesh, sink); });
+  write_into(files, path, [&](const ByteSink& sink) { format.write(mesh, sink); });
 }
 
-void write_label_volume(const LabelVolume& volume, const std::string& path) {
+void write_label_volume(const LabelVolume& volume, const std::string& path, OutputFiles* files) {
   const VolumeFormat& format = need_format(volume_formats, path, FileKind::volume, FileUse::write);
-  write_file_atomically(path, format.write(volume));
+  write_into(files, path, [&](const ByteSink& sink) { sink(format.write(volume)); });
 }
 
 void check_output_path(const std::string& path, FileKind kind) {

@@ -1,14 +1,18 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "common/formats/dropped.h"
 #include "common/formats/read_tet_mesh_result.h"
 #include "common/label_volume.h"
 #include "common/triangle_mesh.h"
 
 namespace tetwright {
 
-/// Files by their extension, upper or lower case.
+class OutputFiles;
+
+/// Kinds of files, which their extension tells, in upper or lower case.
 enum class FileKind {
   surface,   ///< .ply .obj .stl .off
   tet_mesh,  ///< .vtu .msh .mesh; to be read .vtk .node .ele too
@@ -16,7 +20,7 @@ enum class FileKind {
   unknown
 };
 
-/// Some formats are read but not written.
+/// What a file is to be used for: some formats are read but not written.
 enum class FileUse { read, write };
 
 FileKind file_kind(const std::string& path, FileUse use = FileUse::read);
@@ -24,21 +28,24 @@ FileKind file_kind(const std::string& path, FileUse use = FileUse::read);
 /// ".ply .obj .stl .off", for messages and help.
 std::string known_extensions(FileKind kind, FileUse use = FileUse::read);
 
-/// A file's name without folders and extension; .nii.gz and .inr.gz go whole.
+/// The name of a file without folders and extension; .nii.gz and .inr.gz are removed whole.
 std::string file_stem(const std::string& path);
 
 /// Reads a file. Throws UsageError if the extension is not one of the kind asked for, InputError if the file
-/// is missing, unreadable or makes no sense. A .node and an .ele file are a pair, named by either: the other
-/// one stands beside it under the same name. A header of a volume may name another file with the voxels.
-TriangleMesh read_surface(const std::string& path);
+/// is missing, unreadable or malformed. A .node and an .ele file of one name in one folder are a pair, which
+/// either of them names. A header of a volume may name another file with the voxels.
+/// What a surface file holds beside points and faces is appended to `dropped`, unless that is null; a tet
+/// mesh comes with its own list.
+TriangleMesh read_surface(const std::string& path, std::vector<Dropped>* dropped = nullptr);
 ReadTetMesh read_tet_mesh(const std::string& path, const ReadTetMeshOptions& options = {});
 LabelVolume read_label_volume(const std::string& path);
 
-/// Writes a file whole or not at all (see atomic_file.h); coordinates come back bit by bit. Throws UsageError
-/// if the extension is not one of the kind, OutputError if it can't be written.
-void write_surface(const TriangleMesh& mesh, const std::string& path);
-void write_tet_mesh(const TetMesh& mesh, const std::string& path);
-void write_label_volume(const LabelVolume& volume, const std::string& path);
+/// Writes a file whole or not at all; coordinates come back bit by bit. With `files` it appears when these
+/// are committed (see atomic_file.h), and writing can be cancelled. Throws UsageError if the extension is not
+/// one of the kind, OutputError if the file can't be written, Interrupted if cancelled.
+void write_surface(const TriangleMesh& mesh, const std::string& path, OutputFiles* files = nullptr);
+void write_tet_mesh(const TetMesh& mesh, const std::string& path, OutputFiles* files = nullptr);
+void write_label_volume(const LabelVolume& volume, const std::string& path, OutputFiles* files = nullptr);
 
 /// To be called before any work: throws UsageError if the extension is not one of `kind`, OutputError if the
 /// folder is missing or not writable or what is there is not a regular file.

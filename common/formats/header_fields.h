@@ -9,20 +9,20 @@
 
 namespace tetwright {
 
-/// What is left without white space at both ends.
+/// The text without white space at both ends.
 std::string_view trimmed(std::string_view text);
 
-/// The fields of a volume's text header, by name in lower case, with their lines. Bad values are InputErrors
-/// that name file, line, field and value.
+/// The fields of a volume's text header. They are found by their names in lower case. The functions that read
+/// a value throw an InputError that names file, line, field and value if it is missing or malformed.
 class HeaderFields {
  public:
   explicit HeaderFields(std::string file) : file_(std::move(file)) {}
 
-  /// `value` must live as long as this does. Throws InputError for a field that is there already.
+  /// `value` must outlive this object. Throws InputError if the field was added before.
   void add(std::string_view field, std::string_view value, std::size_t line);
 
   bool has(const std::string& field) const { return fields_.contains(field); }
-  /// The first of some names for the same thing that is there; the first of all if none is.
+  /// Of several names of one field the first that the header has; if it has none, the first name.
   std::string any_of(std::initializer_list<const char*> names) const;
 
   std::string_view text(const std::string& field) const;
@@ -31,12 +31,12 @@ class HeaderFields {
   double number(const std::string& field) const;
   std::vector<std::string_view> words(const std::string& field) const;
   std::vector<std::int64_t> integers(const std::string& field) const;
-  /// Throws InputError unless there are `count`.
+  /// Throws InputError unless the field has exactly `count` numbers.
   std::vector<double> numbers(const std::string& field, std::size_t count) const;
 
   std::size_t line(const std::string& field) const;
   const std::string& file() const { return file_; }
-  /// Throws InputError at the field's line, or about its absence.
+  /// Throws InputError with the line of the field, or one that says that the field is missing.
   [[noreturn]] void fail(const std::string& field, const std::string& message) const;
 
  private:

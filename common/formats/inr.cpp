@@ -14,9 +14,9 @@ namespace {
 
 constexpr std::string_view inr_magic = "#INRIMAGE-4#{";
 constexpr std::string_view header_end = "##}";
-/// Headers are a multiple of it.
+/// The size of a header is a multiple of this.
 constexpr std::size_t block_size = 256;
-constexpr std::size_t longest_header = 256 * block_size;
+constexpr std::size_t max_header_size = 256 * block_size;
 
 std::string read_header_bytes(ByteSource& source) {
   std::string header(source.take(block_size));
@@ -32,7 +32,7 @@ std::string read_header_bytes(ByteSource& source) {
       return header;
     }
     const std::string_view next = source.take(block_size);
-    if (next.empty() || header.size() >= longest_header)
+    if (next.empty() || header.size() >= max_header_size)
       throw InputError(source.name() + ": the header has no end \"##}\"; the file is cut short or damaged");
     header += next;
   }

@@ -7,7 +7,11 @@
 
 namespace tetwright {
 
-/// INRIMAGE-4, gzip-compressed (whatever its name) or not. Throws InputError.
+/// Reads an INRIMAGE-4 volume, compressed with gzip or not; the content decides, not the extension. Voxels
+/// may be integers or floats of either byte order. `name` is used in messages. Throws InputError with the
+/// line of the header for anything that is malformed; rotated volumes are refused.
+///
+/// Our own, since the format is small and every message names the line and the value.
 LabelVolume read_inr(std::string_view bytes, const std::string& name);
 
 }  // namespace tetwright

@@ -11,8 +11,8 @@ namespace tetwright {
 
 namespace {
 
-/// Bytes. Two of them make the name of an interface, and Gmsh reads 255 bytes of one.
-constexpr std::size_t longest_label_name = 120;
+/// Bytes. The name of an interface consists of two such names, and Gmsh reads names of up to 255 bytes.
+constexpr std::size_t max_label_name_size = 120;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 
@@ -22,7 +22,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Cuts off a comment: where # or // begins the line or stands behind white space, outside of double quotes.
+/// Removes a comment: from a # or // outside of double quotes that begins the line or follows white space.
 std::string_view without_comment(std::string_view line) {
   bool quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -104,9 +104,9 @@ std::string name_of(const Line& line, const std::string& file) {
   else if (name.starts_with('"'))
     fail("the name " + in_quotes(name.substr(1)) + " lacks its closing quote");
   if (name.empty()) fail("label " + std::string(line.tag) + " has no name");
-  if (name.size() > longest_label_name)
+  if (name.size() > max_label_name_size)
     fail("label " + std::string(line.tag) + " has a name of " + std::to_string(name.size()) +
-         " bytes; at most " + std::to_string(longest_label_name) + " are possible");
+         " bytes; at most " + std::to_string(max_label_name_size) + " are possible");
   if (std::any_of(name.begin(), name.end(), [](char c) { return (c >= 0 && c < ' ') || c == 127; }))
     fail("the name " + in_quotes(name) + " has a control character; is this a text file?");
   return std::string(name);
@@ -114,7 +114,8 @@ std::string name_of(const Line& line, const std::string& file) {
 
 }  // namespace
 
-std::map<MaterialTag, std::string> parse_label_names(std::string_view bytes, const std::string& file) {
+std::map<MaterialTag, std::string> parse_label_names(std::string_view bytes, const std::string& file,
+                                                     std::map<MaterialTag, std::size_t>* line_numbers) {
   std::vector<Line> lines = split_lines(bytes, file);
   if (lines.empty()) throw InputError(file, 0, "names no label; expected lines such as: 1 liver");
   // One line alone may look like another form by chance ("3 rib 1 2 3 4"), all of them don't.
@@ -136,12 +137,14 @@ std::map<MaterialTag, std::string> parse_label_names(std::string_view bytes, con
       throw InputError(file, line.number,
                        "label " + std::to_string(tag) + " is called " + in_quotes(name) + ", and " +
                            in_quotes(known->second) + " on a line before");
+    if (line_numbers && added) line_numbers->emplace(tag, line.number);
   }
   return names;
 }
 
-std::map<MaterialTag, std::string> read_label_names(const std::string& path) {
-  return parse_label_names(read_whole_file(path), path);
+std::map<MaterialTag, std::string> read_label_names(const std::string& path,
+                                                    std::map<MaterialTag, std::size_t>* line_numbers) {
+  return parse_label_names(read_whole_file(path), path, line_numbers);
 }
 
 }  // namespace tetwright

@@ -1,18 +1,21 @@
 #include "common/formats/medit.h"
 
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "common/error.h"
+#include "common/formats/file_triangles.h"
 #include "common/formats/mesh_fields.h"
-#include "common/formats/number_text.h"
 #include "common/formats/text_scanner.h"
-#include "common/interfaces.h"
+#include "common/mesh/interfaces.h"
+#include "common/number_text.h"
 
 namespace tetwright {
 
 namespace {
 
-/// A reference, which some programs write as a floating-point number.
+/// Reads a reference. Some programs write it as a floating-point number.
 std::int64_t reference(TextScanner& in) {
   const std::string_view word = in.word();
   if (word.empty()) in.fail_cut_short("reference");
@@ -22,6 +25,42 @@ std::int64_t reference(TextScanner& in) {
   if (!parse_number(word, number) || number != std::floor(number) || std::fabs(number) > 0x1p53)
     in.fail("expected a whole number (reference), found " + in_quotes(word));
   return static_cast<std::int64_t>(number);
+}
+
+/// The sections that hold volume cells other than linear tets, and what these are. The second spelling of
+/// hexahedra is that of old files.
+constexpr std::array<std::pair<std::string_view, const char*>, 12> volume_sections{
+    {{"Hexahedra", "hexahedra"},
+     {"Hexaedra", "hexahedra"},
+     {"Prisms", "prisms"},
+     {"Pentahedra", "prisms"},
+     {"Pyramids", "pyramids"},
+     {"TetrahedraP2", "quadratic tets"},
+     {"TetrahedraP3", "tets of higher order"},
+     {"TetrahedraP4", "tets of higher order"},
+     {"HexahedraQ2", "quadratic hexahedra"},
+     {"PrismsP2", "quadratic prisms"},
+     {"PyramidsP2", "quadratic pyramids"},
+     {"Polyhedra", "polyhedra"}}};
+
+/// Sections that are not read, and what they hold; those that are not listed are named as they are.
+constexpr std::array<std::pair<std::string_view, const char*>, 10> other_sections{
+    {{"Quadrilaterals", "quads"},
+     {"Edges", "edges"},
+     {"Corners", "corners"},
+     {"Ridges", "ridges"},
+     {"RequiredVertices", "required vertices"},
+     {"RequiredEdges", "required edges"},
+     {"RequiredTriangles", "required triangles"},
+     {"RequiredTetrahedra", "required tets"},
+     {"Normals", "normals"},
+     {"Tangents", "tangents"}}};
+
+template <class Sections>
+const char* find_section(const Sections& sections, std::string_view keyword) {
+  for (const auto& [name, kind] : sections)
+    if (name == keyword) return kind;
+  return nullptr;
 }
 
 class Reader {
@@ -43,13 +82,28 @@ class Reader {
         read_vertices();
       } else if (word == "Tetrahedra") {
         read_tets();
+      } else if (word == "Triangles") {
+        read_triangles();
       } else if (word == "End") {
         ended = true;
+      } else {
+        // A section that is not read, or one of its numbers.
+        note_section(word);
       }
-      // Anything else is a section of no concern, or its numbers.
     }
+    if (!volume_cells_.empty())
+      throw InputError(in_.name(), volume_cells_line_,
+                       unsupported_cells(volume_cells_, "in the section that begins here"));
     check_indices();
     return std::move(result_);
+  }
+
+  /// To be called when the materials are known.
+  void note_dropped(ReadTetMesh& read) const {
+    note_dropped_triangles(triangles_, "references", read);
+    others_.append_to(read.dropped);
+    if (point_references_ > 0)
+      read.dropped.push_back({"points with a reference other than 0", point_references_});
   }
 
  private:
@@ -62,7 +116,39 @@ class Reader {
     mesh.points.resize(n);
     for (Vec3& p : mesh.points) {
       for (int k = 0; k < 3; ++k) p[k] = in_.coordinate();
-      (void)reference(in_);
+      point_references_ += reference(in_) != 0;
+    }
+  }
+
+  void read_triangles() {
+    const std::size_t n = in_.count("number of triangles", 8);
+    for (std::size_t i = 0; i < n; ++i) {
+      Triangle ids;
+      for (Index& vertex : ids) {
+        const std::int64_t index = in_.integer("index of a point");
+        vertex = index >= 1 && index < no_index ? static_cast<Index>(index - 1) : no_index;
+      }
+      triangles_.triangles.push_back(ids);
+      triangles_.groups.push_back(reference(in_));
+    }
+  }
+
+  /// Counts what a section holds if `word` is the keyword of one: keywords begin with a capital letter, and
+  /// the number of items follows.
+  void note_section(std::string_view word) {
+    if (word[0] < 'A' || word[0] > 'Z') return;
+    const std::size_t line = in_.line();
+    TextScanner ahead = in_;
+    std::int64_t n = 0;
+    if (!parse_number(ahead.word(), n) || n <= 0) return;
+    const auto count = static_cast<std::size_t>(n);
+    if (const char* kind = find_section(volume_sections, word)) {
+      if (volume_cells_.empty()) volume_cells_line_ = line;
+      volume_cells_.add(kind, count);
+    } else if (const char* other = find_section(other_sections, word)) {
+      others_.add(other, count);
+    } else {
+      others_.add("items of section " + in_quotes(word), count);
     }
   }
 
@@ -85,7 +171,7 @@ class Reader {
     result_.material_field = "medit:ref";
   }
 
-  /// Tets may come before the points.
+  /// Checked at the end, since tets may precede the points.
   void check_indices() const {
     const TetMesh& mesh = result_.mesh;
     if (!has_vertices_) in_.fail("there is no section \"Vertices\" in it; the file is cut short");
@@ -100,13 +186,17 @@ class Reader {
 
   TextScanner in_;
   ReadTetMesh result_;
+  FileTriangles triangles_;
+  KindCounts volume_cells_, others_;
+  std::size_t volume_cells_line_ = 0;  ///< of the keyword of the first section that has some
+  std::size_t point_references_ = 0;
   bool has_vertices_ = false;
 };
 
 void append_triangles(std::string& out, const std::vector<InterfaceTriangle>& triangles) {
   const std::vector<MaterialPair> groups = interface_groups(triangles);
   out += '\n';
-  // Tags, not names: there are readers that know no comments, and a name could be a word they look for.
+  // Tags instead of names: some readers do not know comments, and a name could be one of their keywords.
   for (std::size_t g = 0; g < groups.size(); ++g) {
     out += "# reference ";
     append_number(out, g + 1);
@@ -128,8 +218,10 @@ void append_triangles(std::string& out, const std::vector<InterfaceTriangle>& tr
 }  // namespace
 
 ReadTetMesh read_medit(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options) {
-  ReadTetMesh read = Reader(bytes, name).read();
+  Reader reader(bytes, name);
+  ReadTetMesh read = reader.read();
   take_material(read, options, name);
+  reader.note_dropped(read);
   return read;
 }
 

@@ -5,16 +5,16 @@
 #include <set>
 
 #include "common/error.h"
-#include "common/formats/number_text.h"
 #include "common/formats/text_scanner.h"
+#include "common/number_text.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr std::size_t longest_name = 200;  // bytes
+constexpr std::size_t max_name_size = 200;  // bytes
 
-/// Bytes of the UTF-8 sequence that begins `text`; 0 if there is none.
+/// The number of bytes of the UTF-8 sequence at the beginning of `text`; 0 if there is none.
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);
@@ -26,14 +26,14 @@ std::size_t utf8_length(std::string_view text) {
   if (n == 0 || n > text.size()) return 0;
   for (std::size_t i = 1; i < n; ++i)
     if ((byte(i) & 0xc0) != 0x80) return 0;
-  // Overlong forms, surrogates and what is beyond the last code point.
+  // Overlong forms, surrogates and values beyond the last code point.
   if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) >= 0xa0) ||
       (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) >= 0x90))
     return 0;
   return n;
 }
 
-bool is_whole(double value) { return value == std::floor(value) && std::fabs(value) <= largest_whole; }
+bool is_whole(double value) { return value == std::floor(value) && std::fabs(value) <= max_exact_whole; }
 
 /// The field's values as materials of `file`.
 std::vector<MaterialTag> materials_of(const MeshField& field, const std::string& file) {
@@ -75,11 +75,11 @@ std::size_t field_by_rule(const std::vector<MeshField>& fields) {
   if (!read.material_field.empty()) names.insert(names.begin(), read.material_field);
   for (const MeshField& field : read.mesh.cell_fields)
     if (field.components == 1 && all_whole(field)) names.push_back(field.name);
-  constexpr std::size_t most = 20;
+  constexpr std::size_t max_names = 20;
   std::string list;
-  for (std::size_t i = 0; i < std::min(most, names.size()); ++i)
+  for (std::size_t i = 0; i < std::min(max_names, names.size()); ++i)
     list += (i ? ", " : "; there is ") + in_quotes(names[i]);
-  if (names.size() > most) list += " and " + std::to_string(names.size() - most) + " more";
+  if (names.size() > max_names) list += " and " + std::to_string(names.size() - max_names) + " more";
   throw InputError(file, 0,
                    "no cell field " + in_quotes(wanted) + " with one number for each tet" +
                        (list.empty() ? "; there is no integer cell field in it" : list));
@@ -88,7 +88,7 @@ std::size_t field_by_rule(const std::vector<MeshField>& fields) {
 }  // namespace
 
 std::string field_name(std::string_view name) {
-  name = name.substr(0, longest_name);
+  name = name.substr(0, max_name_size);
   std::string out;
   while (!name.empty()) {
     const std::size_t n = utf8_length(name);
@@ -104,7 +104,8 @@ std::string field_name(std::string_view name) {
 std::vector<std::string> field_names_to_write(const std::vector<MeshField>& fields,
                                               std::vector<std::string> taken) {
   std::set<std::string> used(taken.begin(), taken.end());
-  std::map<std::string, std::size_t> next;  // the number to try, so that many alike cost no square
+  std::map<std::string, std::size_t>
+      next;  // the next suffix to try, so that many equal names take linear time
   std::vector<std::string> names;
   for (const MeshField& field : fields) {
     const std::string name = field_name(field.name);
@@ -149,11 +150,11 @@ void take_material(ReadTetMesh& read, const ReadTetMeshOptions& options, const s
   if (read.material_field.empty()) {
     fields.erase(fields.begin() + static_cast<std::ptrdiff_t>(taken));
   } else {
-    // The format's own materials are a field like others then.
+    // The format's own materials become a field like any other.
     fields[taken] = {read.material_field, 1, true,
                      std::vector<double>(mesh.materials.begin(), mesh.materials.end())};
   }
-  // Names belong to the field that the file means to be the material.
+  // The names in the file belong to the field that the file itself takes for the material.
   if (!options.material_field.empty() && name != "material") mesh.material_names.clear();
   mesh.materials = std::move(materials);
   read.material_field = name;

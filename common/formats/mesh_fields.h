@@ -8,25 +8,27 @@
 
 namespace tetwright {
 
-/// Numbers beyond it are not all whole as doubles.
-inline constexpr double largest_whole = 0x1p53;
+/// Doubles represent every whole number up to this one.
+inline constexpr double max_exact_whole = 0x1p53;
 
-/// A field's name as any format can hold it: valid UTF-8 of at most 200 bytes, control characters and bytes
-/// that are no UTF-8 replaced by underscores, "field" where it is empty.
+/// The name in a form that every format can hold: valid UTF-8 of at most 200 bytes, with underscores for
+/// control characters and bytes that are not UTF-8; "field" if it is empty.
 std::string field_name(std::string_view name);
 
-/// field_name() of each field, made unique: what is in `taken` or came before gets "_2", "_3" and so on.
+/// field_name() of each field, made unique: a name that is in `taken` or that an earlier field has gets
+/// the suffix "_2", "_3" and so on.
 std::vector<std::string> field_names_to_write(const std::vector<MeshField>& fields,
                                               std::vector<std::string> taken);
 
-/// Every value is whole and exact as a double (at most 2^53 in size).
+/// Whether every value is whole and exactly represented (at most 2^53 in absolute value).
 bool all_whole(const MeshField& field);
 
-/// Fills mesh.materials from one of mesh.cell_fields, which is then removed, and sets material_field: see
-/// ReadTetMesh. The reader has put in the tets and, where the format has a place for materials, these with
-/// the name of that place as material_field; `also` names more that could be asked for. Throws InputError if
-/// the field asked for is not there or its values are no material tags. What is called "material" must be
-/// whole numbers; other known names that are not are no materials.
+/// Chooses the material of the tets as ReadTetMesh::material_field describes: fills mesh.materials from a
+/// cell field, removes that field, and sets material_field. The reader has filled in the tets and, if the
+/// format has a place of its own for materials, mesh.materials and the name of that place as material_field;
+/// `also` are names that the options may ask for as well, for the message. Throws InputError if the field
+/// that is asked for is missing or its values are not material tags. A field named "material" must have whole
+/// numbers; a field with another of the known names that has others is not taken.
 void take_material(ReadTetMesh& read, const ReadTetMeshOptions& options, const std::string& file,
                    const std::vector<std::string>& also = {});
 

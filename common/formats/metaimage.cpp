@@ -1,4 +1,3 @@
-// Own reader: MetaIO comes only with all of ITK, which takes 150 MB and more.
 #include "common/formats/metaimage.h"
 
 #include <array>

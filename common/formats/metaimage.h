@@ -9,8 +9,11 @@
 
 namespace tetwright {
 
-/// MetaImage of ITK, its data behind the header (.mha) or in another file (.mhd), binary, compressed or text.
-/// `read`: how to read that file. Throws InputError.
+/// Reads a MetaImage volume of ITK. The voxels are binary, compressed or text, and follow the header (.mha)
+/// or are in another file (.mhd), which `read` reads. `name` is used in messages. Throws InputError with the
+/// line of the header for anything that is malformed.
+///
+/// Our own: MetaIO is only packaged as part of ITK, which takes 150 MB and more.
 LabelVolume read_metaimage(std::string_view bytes, const std::string& name,
                            const FileReader& read = read_whole_file);
 

@@ -1,19 +1,18 @@
 #include "common/formats/msh.h"
 
 #include <algorithm>
+#include <map>
 #include <span>
 #include <vector>
 
 #include "common/formats/msh_data.h"
-#include "common/formats/number_text.h"
-#include "common/interfaces.h"
+#include "common/formats/msh_elements.h"
+#include "common/mesh/interfaces.h"
+#include "common/number_text.h"
 
 namespace tetwright {
 
 namespace {
-
-constexpr std::int64_t triangle_type = 2;
-constexpr std::int64_t written_tet_type = 4;
 
 void append_name(std::string& out, int dimension, std::int64_t group, const std::string& name) {
   append_number(out, dimension);
@@ -38,18 +37,35 @@ void append_element(std::string& out, std::size_t number, std::int64_t type, std
   out += '\n';
 }
 
+/// msh_name() of each name. Names that differ stay different, by the suffixes "_2", "_3" and so on.
+std::map<MaterialTag, std::string> names_to_write(const std::map<MaterialTag, std::string>& names) {
+  std::map<MaterialTag, std::string> written;
+  std::map<std::string, std::string> original_of;
+  for (const bool unchanged : {true, false})  // these keep their names
+    for (const auto& [tag, name] : names) {
+      const std::string plain = msh_name(name);
+      if ((plain == name) != unchanged) continue;
+      std::string unique = plain;
+      for (int n = 2; original_of.try_emplace(unique, name).first->second != name; ++n)
+        unique = plain + "_" + std::to_string(n);
+      written[tag] = unique;
+    }
+  return written;
+}
+
 }  // namespace
 
 std::string write_msh(const TetMesh& mesh) {
   std::string out = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
   const std::vector<MaterialPair> groups = interface_groups(mesh.interfaces);
+  const std::map<MaterialTag, std::string> names = names_to_write(mesh.material_names);
   if (!mesh.material_names.empty() || !groups.empty()) {
     out += "$PhysicalNames\n";
     append_number(out, groups.size() + mesh.material_names.size());
     out += '\n';
     for (std::size_t g = 0; g < groups.size(); ++g)
-      append_name(out, 2, static_cast<std::int64_t>(g) + 1, pair_name(groups[g], mesh.material_names));
-    for (const auto& [tag, name] : mesh.material_names) append_name(out, 3, tag, name);
+      append_name(out, 2, static_cast<std::int64_t>(g) + 1, pair_name(groups[g], names));
+    for (const auto& [tag, name] : names) append_name(out, 3, tag, name);
     out += "$EndPhysicalNames\n";
   }
   out += "$Nodes\n";
@@ -61,22 +77,22 @@ std::string write_msh(const TetMesh& mesh) {
     append_point(out, mesh.points[i]);
     out += '\n';
   }
-  // Tets first: their numbers are the same with and without triangles, and simple readers look at the first
-  // block of elements.
+  // Tets first: their numbers are the same with and without triangles, and simple readers take the first
+  // block of elements only.
   out += "$EndNodes\n$Elements\n";
   append_number(out, mesh.tets.size() + mesh.interfaces.size());
   out += '\n';
-  // The second tag is the geometrical entity: positive, one for each material, one for each pair.
+  // The second tag is the number of the geometrical entity, which must be positive: one for each material.
   std::vector<MaterialTag> tags = mesh.materials;
   std::sort(tags.begin(), tags.end());
   tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    append_element(out, t + 1, written_tet_type, mesh.materials[t],
+    append_element(out, t + 1, msh_tet_type, mesh.materials[t],
                    std::lower_bound(tags.begin(), tags.end(), mesh.materials[t]) - tags.begin() + 1,
                    mesh.tets[t]);
   for (std::size_t i = 0; i < mesh.interfaces.size(); ++i) {
     const auto group = static_cast<std::int64_t>(group_number(groups, mesh.interfaces[i]));
-    append_element(out, mesh.tets.size() + i + 1, triangle_type, group, group, mesh.interfaces[i].ids);
+    append_element(out, mesh.tets.size() + i + 1, msh_triangle_type, group, group, mesh.interfaces[i].ids);
   }
   out += "$EndElements\n";
   append_msh_data(out, "NodeData", mesh.point_fields, mesh.points.size());

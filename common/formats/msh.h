@@ -7,19 +7,22 @@
 
 namespace tetwright {
 
-/// Reads the tets (type 4) of a Gmsh MSH file of version 2 or 4.1, ASCII. The material is the (first)
-/// physical group, with its name from $PhysicalNames; in version 4.1, where no volume has one, the volume's
-/// own number
-/// ("gmsh:geometrical", which can also be asked for). Points, lines and faces are skipped, other volume
-/// elements refused. $NodeData and $ElementData become fields, nan where a section names no value;
-/// unknown sections are skipped. `name` stands in messages. Throws InputError with the line for anything that
-/// makes no sense; other versions, binary files and partitioned meshes are refused with what to do.
+/// Reads the tets (type 4) of a Gmsh MSH file of version 2 or 4.1, ASCII. The material is the first physical
+/// group of a tet, with its name from $PhysicalNames. In version 4.1, if no volume has a physical group, it
+/// is the number of the volume ("gmsh:geometrical", which the options can also ask for). $NodeData and
+/// $ElementData become fields, with nan for items that a section does not list. Volume elements other than
+/// linear tets are refused; points, lines, faces, their groups and other sections are counted in
+/// ReadTetMesh::dropped. `name` is used in messages. Throws InputError with the line for anything that is
+/// malformed; other versions, binary files and partitioned meshes are refused with advice.
+///
+/// Our own: the library of Gmsh is under the GPL.
 ReadTetMesh read_msh(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options = {});
 
-/// The file's content, version 2.2 ASCII; coordinates come back bit by bit. Interface triangles, where the
-/// mesh has them, follow the tets; each pair of materials is a physical group of dimension 2, numbered as
-/// interface_groups() does and named as pair_name() does. Fields follow as $NodeData and $ElementData, see
-/// append_msh_data(). A quote or control character in a name becomes an underscore.
+/// The content of a file of version 2.2, ASCII; coordinates are read back bit by bit. The interface triangles
+/// of the mesh, if it has any, follow the tets; each pair of materials is a physical group of dimension 2
+/// with the number of interface_groups() and the name of pair_name(). Fields follow as $NodeData and
+/// $ElementData, see append_msh_data(). Names are written as msh_name() gives them, and get a
+/// suffix where two of them would become equal.
 std::string write_msh(const TetMesh& mesh);
 
 }  // namespace tetwright

@@ -5,17 +5,17 @@
 
 #include "common/error.h"
 #include "common/formats/mesh_fields.h"
-#include "common/formats/number_text.h"
+#include "common/number_text.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr std::int64_t most_components = 9;
+constexpr std::int64_t max_components = 9;
 
 void append_value(std::string& out, double value) {
   if (std::isnan(value))
-    out += "nan";  // of either sign, which other readers do not know
+    out += "nan";  // without the sign that nan may have, which other readers do not accept
   else
     append_number(out, value);
 }
@@ -50,7 +50,7 @@ MeshField read_msh_data(TextScanner& in, const std::string& what, const FileNumb
             " integer tags; its components and its number of values are missing");
   (void)in.integer("time step");
   const std::int64_t components = in.integer("number of components");
-  if (components < 1 || components > most_components)
+  if (components < 1 || components > max_components)
     in.fail("field " + in_quotes(field.name) + " has " + std::to_string(components) +
             " components; 1, 3 and 9 are known");
   const auto per_item = static_cast<std::size_t>(components);
@@ -82,7 +82,8 @@ MeshField read_msh_data(TextScanner& in, const std::string& what, const FileNumb
 void append_msh_data(std::string& out, const std::string& section, const std::vector<MeshField>& fields,
                      std::size_t items) {
   const std::vector<std::string> names = field_names_to_write(fields, {});
-  // One view: `used` components from `first` on of each item, filled up to `written`.
+  // Appends a section of `used` components of each item, beginning with `first`, padded to `written`
+  // components.
   const auto append_view = [&](const MeshField& field, const std::string& name, int first, int used,
                                int written) {
     out += "$" + section + "\n1\n\"" + msh_name(name) + "\"\n1\n0\n3\n0\n" + std::to_string(written) + "\n" +
@@ -101,7 +102,7 @@ void append_msh_data(std::string& out, const std::string& section, const std::ve
   };
   for (std::size_t f = 0; f < fields.size(); ++f) {
     const int n = fields[f].components;
-    if (n <= most_components)
+    if (n <= max_components)
       append_view(fields[f], names[f], 0, n, n == 1 ? 1 : n <= 3 ? 3 : 9);
     else
       for (int k = 0; k < n; ++k) append_view(fields[f], names[f] + "_" + std::to_string(k), k, 1, 1);

@@ -9,18 +9,19 @@
 
 namespace tetwright {
 
-/// Reads what follows "$NodeData" or "$ElementData", up to the end of the section, in either version of the
-/// format. `what` is "node" or "element". Items are those of `numbers`, of which there are `items`; those
-/// that the section does not name get nan. `missing_allowed`: rows of other items are skipped (elements that
-/// are no tets). A section with no row of ours gives a field without values. `room` is how many values the
-/// fields of a file may still have: less than what the file can hold, so that short sections do not ask for
-/// memory without end; it is lowered. Throws InputError with the line.
+/// Reads the rest of a section whose keyword "$NodeData" or "$ElementData" was just read, in either version
+/// of the format. `what` is "node" or "element"; the field gets a value for each of the `items` items of
+/// `numbers`, nan for those that the section does not list. A row of another item is an error, or is skipped
+/// if `missing_allowed` (elements that are not tets); if no row is left, the field has no values. `room` is
+/// the number of values that further fields of the file may have, and is lowered: it bounds the memory that
+/// many short sections for many items would take. Throws InputError with the line.
 MeshField read_msh_data(TextScanner& in, const std::string& what, const FileNumbers& numbers,
                         std::size_t items, bool missing_allowed, std::size_t& room);
 
-/// Appends the fields as sections "$NodeData" or "$ElementData" (`section` without the dollar), numbered from
-/// 1. The format knows 1, 3 and 9 components: others are filled up with zeros, and those of more than nine
-/// are written one by one, as "name_0" and so on. It knows no integers.
+/// Appends the fields as sections "$NodeData" or "$ElementData" (`section` is the keyword without the
+/// dollar); items are numbered from 1. The format has fields of 1, 3 and 9 components: others are padded with
+/// zeros, and one of more than nine is written as one field for each component, "name_0" and so on. It has no
+/// integers.
 void append_msh_data(std::string& out, const std::string& section, const std::vector<MeshField>& fields,
                      std::size_t items);
 

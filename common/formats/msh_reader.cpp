@@ -1,6 +1,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 #include <unordered_map>
 #include <vector>
 
@@ -8,52 +9,12 @@
 #include "common/formats/mesh_fields.h"
 #include "common/formats/msh.h"
 #include "common/formats/msh_data.h"
+#include "common/formats/msh_elements.h"
 #include "common/formats/text_scanner.h"
 
 namespace tetwright {
 
 namespace {
-
-constexpr std::int64_t msh_tet_type = 4;
-
-/// What Gmsh calls an element of a volume; null for points, lines, faces and unknown ones.
-const char* volume_element(std::int64_t type) {
-  switch (type) {
-    case 4:
-      return "tet of 4 points";
-    case 5:
-    case 12:
-    case 17:
-    case 92:
-    case 93:
-      return "hexahedron";
-    case 6:
-    case 13:
-    case 18:
-    case 90:
-    case 91:
-      return "prism";
-    case 7:
-    case 14:
-    case 19:
-    case 118:
-    case 119:
-      return "pyramid";
-    case 11:
-      return "quadratic tet of 10 points";
-    case 29:
-    case 30:
-    case 31:
-    case 71:
-    case 72:
-    case 73:
-    case 74:
-    case 75:
-      return "tet of higher order";
-    default:
-      return nullptr;
-  }
-}
 
 class MshReader {
  public:
@@ -81,10 +42,12 @@ class MshReader {
         keep_or_skip(section);
     }
     if (!has_elements_) in_.fail("there is no section $Elements in it; the file is cut short");
+    others_.refuse_volumes(in_.name());
     if (result_.mesh.tets.empty())
       in_.fail("there are no tets of four points (type 4) in it; a volume mesh is needed, not a surface");
     read_data();
     set_materials();
+    note_dropped();
     return std::move(result_);
   }
 
@@ -108,10 +71,13 @@ class MshReader {
     if (word != end) in_.fail("expected " + std::string(end) + ", found " + in_quotes(word));
   }
 
-  /// Data is read when all nodes and elements are known; a scanner stays where it begins.
+  /// Sections of data are read when all nodes and elements are known: a copy of the scanner keeps their
+  /// place.
   void keep_or_skip(std::string_view section) {
     if (section == "$NodeData") node_data_.push_back(in_);
     if (section == "$ElementData") element_data_.push_back(in_);
+    if (section != "$NodeData" && section != "$ElementData" && section != "$Comments")
+      other_sections_.emplace_back(section);
     const std::string end = "$End" + std::string(section.substr(1));
     in_.skip_line();
     for (;;) {
@@ -133,6 +99,7 @@ class MshReader {
         throw InputError(in_.name(), line,
                          "expected the name of a physical group in quotes, found " + in_quotes(name));
       name = name.substr(open + 1, close - open - 1);
+      others_.add_name(dimension, tag, std::string(name));
       if (dimension == 3)
         result_.mesh.material_names[checked_material(tag, in_.name(), line)] = std::string(name);
     }
@@ -211,7 +178,8 @@ class MshReader {
         const std::size_t physical = in_.count("number of physical groups", 2);
         for (std::size_t k = 0; k < physical; ++k) {
           const std::int64_t group = in_.integer("physical group");
-          if (dimension == 3 && k == 0) volume_to_group_[tag] = group;
+          if (k == 0) entity_to_group_[dimension][tag] = group;
+          if (k > 0) ++further_groups_;
         }
         if (dimension == 0) continue;
         const std::size_t bounding = in_.count("number of bounding entities", 2);
@@ -227,10 +195,10 @@ class MshReader {
     keep_numbers_ = bytes_.find("$ElementData") != std::string_view::npos;
   }
 
-  void refuse_volume(std::int64_t type, std::int64_t element) {
-    const char* kind = volume_element(type);
-    in_.fail("element " + std::to_string(element) + " is a " + (kind ? kind : "volume element") + " (type " +
-             std::to_string(type) + "); only tets of 4 points are supported, convert or split it");
+  void read_triangle(std::int64_t group) {
+    Triangle ids;
+    for (Index& vertex : ids) vertex = nodes_.find(in_.integer("node of a triangle"));
+    others_.add_triangle(ids, group);
   }
 
   void read_tet(std::int64_t element) {
@@ -254,19 +222,27 @@ class MshReader {
       const std::int64_t element = in_.integer("number of an element");
       const std::int64_t type = in_.integer("type of an element");
       const std::int64_t tags = in_.integer("number of tags");
+      if (type != msh_tet_type && OtherMshElements::is_volume(type)) {
+        others_.add_volume(type, element, in_.line());
+        in_.skip_line();
+        continue;
+      }
+      std::int64_t physical = 0, geometrical = 0;
+      for (std::int64_t k = 0; k < tags; ++k) {
+        const std::int64_t tag = in_.integer("tag");
+        if (k == 0) physical = tag;
+        if (k == 1) geometrical = tag;
+      }
       if (type == msh_tet_type) {
-        std::int64_t physical = 0, geometrical = 0;
-        for (std::int64_t k = 0; k < tags; ++k) {
-          const std::int64_t tag = in_.integer("tag");
-          if (k == 0) physical = tag;
-          if (k == 1) geometrical = tag;
-        }
         any_physical_ = any_physical_ || tags > 0;
         any_geometrical_ = any_geometrical_ || tags > 1;
+        partitioned_ += tags > 2;
         add_groups(physical, geometrical);
         read_tet(element);
-      } else if (volume_element(type)) {
-        refuse_volume(type, element);
+      } else if (type == msh_triangle_type) {
+        read_triangle(physical);
+      } else {
+        others_.add_flat(type, physical);
       }
       in_.skip_line();
     }
@@ -282,25 +258,31 @@ class MshReader {
     std::size_t done = 0;
     for (std::size_t b = 0; b < blocks; ++b) {
       const std::int64_t dimension = read_dimension();
-      const std::int64_t volume = in_.integer("number of an entity");
+      const std::int64_t entity = in_.integer("number of an entity");
       const std::int64_t type = in_.integer("type of an element");
       const std::size_t in_block = in_.count("number of elements", 4);
       if (in_block > n - done)
         in_.fail("the blocks have more elements than the " + std::to_string(n) + " that $Elements promises");
       done += in_block;
-      const auto group = volume_to_group_.find(volume);
+      const auto& groups = entity_to_group_[static_cast<std::size_t>(dimension)];
+      const auto found = groups.find(entity);
+      const std::int64_t group = found == groups.end() ? 0 : found->second;
       if (type == msh_tet_type && in_block > 0) {
-        any_physical_ = any_physical_ || group != volume_to_group_.end();
+        any_physical_ = any_physical_ || found != groups.end();
         any_geometrical_ = true;
       }
       for (std::size_t i = 0; i < in_block; ++i) {
         const std::int64_t element = in_.integer("number of an element");
         if (type == msh_tet_type) {
-          add_groups(group == volume_to_group_.end() ? 0 : group->second, volume);
+          add_groups(group, entity);
           read_tet(element);
-        } else if (dimension == 3 || volume_element(type)) {
-          refuse_volume(type, element);
+        } else if (dimension == 3 || OtherMshElements::is_volume(type)) {
+          others_.add_volume(type, element, in_.line());
+          in_.skip_line();
+        } else if (type == msh_triangle_type) {
+          read_triangle(group);
         } else {
+          others_.add_flat(type, group);
           in_.skip_line();
         }
       }
@@ -312,6 +294,10 @@ class MshReader {
   }
 
   void add_groups(std::int64_t physical, std::int64_t geometrical) {
+    if (volumes_.empty() || last_volume_ != std::pair(physical, geometrical)) {
+      last_volume_ = {physical, geometrical};
+      volumes_.insert(last_volume_);
+    }
     result_.mesh.materials.push_back(checked_material(physical, in_.name(), in_.line()));
     // Version 2 has physical groups wherever it has others.
     if (version_4_ || options_.material_field == geometrical_name)
@@ -323,14 +309,20 @@ class MshReader {
     std::size_t room = bytes_.size();
     for (TextScanner& in : node_data_) {
       MeshField field = read_msh_data(in, "node", nodes_, mesh.points.size(), false, room);
-      if (!field.values.empty()) result_.mesh.point_fields.push_back(std::move(field));
+      if (field.values.empty())
+        empty_fields_.push_back(field.name);
+      else
+        result_.mesh.point_fields.push_back(std::move(field));
     }
     if (element_data_.empty()) return;
     if (const std::optional<std::int64_t> twice = elements_.sort())
       in_.fail("element " + std::to_string(*twice) + " appears twice");
     for (TextScanner& in : element_data_) {
       MeshField field = read_msh_data(in, "element", elements_, mesh.tets.size(), true, room);
-      if (!field.values.empty()) result_.mesh.cell_fields.push_back(std::move(field));
+      if (field.values.empty())
+        fields_of_others_.push_back(field.name);
+      else
+        result_.mesh.cell_fields.push_back(std::move(field));
     }
   }
 
@@ -341,13 +333,31 @@ class MshReader {
     if (any_geometrical_ && (asked || (version_4_ && !any_physical_))) {
       mesh.materials = std::move(geometrical_);
       result_.material_field = geometrical_name;
-      // These are names of physical groups.
+      // The names are those of physical groups.
       mesh.material_names.clear();
     } else if (any_physical_) {
       result_.material_field = "gmsh:physical";
       if (any_geometrical_) also.emplace_back(geometrical_name);
     }
     take_material(result_, options_, in_.name(), also);
+  }
+
+  void note_dropped() {
+    others_.note_dropped(result_);
+    std::vector<Dropped>& dropped = result_.dropped;
+    if (further_groups_ > 0) dropped.push_back({"further physical groups of entities", further_groups_});
+    // Nothing is lost if each physical group has one volume only.
+    std::set<std::int64_t> physical;
+    for (const auto& volume : volumes_) physical.insert(volume.first);
+    if (result_.material_field == "gmsh:physical" && volumes_.size() > physical.size())
+      dropped.push_back(
+          {"numbers of volumes within the physical groups; --material-field gmsh:geometrical takes them as "
+           "materials",
+           volumes_.size()});
+    if (partitioned_ > 0) dropped.push_back({"tets with numbers of partitions", partitioned_});
+    append_dropped_names(dropped, "fields without a value", empty_fields_);
+    append_dropped_names(dropped, "fields of elements other than tets", fields_of_others_);
+    append_dropped_names(dropped, "sections", other_sections_);
   }
 
   static constexpr const char* geometrical_name = "gmsh:geometrical";
@@ -357,13 +367,19 @@ class MshReader {
   std::string_view bytes_;
   ReadTetMesh result_;
   FileNumbers nodes_, elements_;
-  std::unordered_map<std::int64_t, std::int64_t> volume_to_group_;
+  /// The first physical group of the entities of each dimension.
+  std::array<std::unordered_map<std::int64_t, std::int64_t>, 4> entity_to_group_;
   std::vector<MaterialTag> geometrical_;
   std::vector<TextScanner> node_data_, element_data_;
+  OtherMshElements others_;
+  std::set<std::pair<std::int64_t, std::int64_t>> volumes_;  ///< physical and geometrical number of the tets
+  std::pair<std::int64_t, std::int64_t> last_volume_;
+  std::size_t further_groups_ = 0, partitioned_ = 0;
+  std::vector<std::string> empty_fields_, fields_of_others_, other_sections_;  ///< names of what is not taken
   bool version_4_ = false;
   bool has_elements_ = false;
   bool any_physical_ = false, any_geometrical_ = false;
-  bool keep_numbers_ = false;  ///< those of the elements
+  bool keep_numbers_ = false;  ///< of the elements: there are fields that refer to them
 };
 
 }  // namespace

@@ -1,14 +1,12 @@
-// Own reader of the 348 bytes that matter: libnifti2's conversion of headers (3.0.1) prints to stderr and
-// silently makes 1 of spacings that are zero or not finite and of sizes below 1, which must be refused here.
-// Numbers below are offsets in the header (nifti1.h, 2004).
+// Numbers in read functions are byte offsets in the header (nifti1.h, 2004).
 #include "common/formats/nifti.h"
 
 #include <cmath>
 
 #include "common/error.h"
 #include "common/formats/byte_order.h"
-#include "common/formats/number_text.h"
 #include "common/formats/voxel_data.h"
+#include "common/number_text.h"
 
 namespace tetwright {
 

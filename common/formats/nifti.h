@@ -7,8 +7,13 @@
 
 namespace tetwright {
 
-/// NIfTI-1 in one file, gzip-compressed (whatever its name) or not, of either byte order. Coordinates by the
-/// sform, else the qform, else the spacing alone. Throws InputError.
+/// Reads a NIfTI-1 volume in one file, compressed with gzip or not (the content decides, not the extension),
+/// in either byte order. Coordinates follow the sform, without one the qform, without both the spacing alone.
+/// `name` is used in messages. Throws InputError for anything that is malformed.
+///
+/// Our own reader of the 348 bytes that matter: the conversion of headers in libnifti2 3.0.1 prints to
+/// stderr, and silently turns spacings that are zero or not finite and sizes below 1 into 1, which must be
+/// refused here.
 LabelVolume read_nifti(std::string_view bytes, const std::string& name);
 
 }  // namespace tetwright

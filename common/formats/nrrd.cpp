@@ -1,5 +1,3 @@
-// Own reader: libteem, NRRD's home, has had no release since 2012, reads through a FILE and allocates what
-// the header says.
 #include "common/formats/nrrd.h"
 
 #include <algorithm>
@@ -18,7 +16,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::int64_t most_axes = 16;  // the format's own limit
+constexpr std::int64_t max_axes = 16;  // the format's own limit
 
 VoxelType nrrd_voxel_type(const HeaderFields& header) {
   constexpr std::array<std::pair<std::string_view, VoxelType>, 32> names{
@@ -193,7 +191,7 @@ class NrrdHeader {
  public:
   explicit NrrdHeader(const HeaderFields& fields) : fields_(fields) {
     const std::int64_t dimension = fields_.integer("dimension");
-    if (dimension < 3 || dimension > most_axes)
+    if (dimension < 3 || dimension > max_axes)
       fields_.fail("dimension",
                    "dimension " + std::to_string(dimension) + "; a volume of labels has 3 axes of space");
     axes_ = static_cast<std::size_t>(dimension);

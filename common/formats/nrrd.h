@@ -9,12 +9,17 @@
 
 namespace tetwright {
 
-/// NRRD, attached or detached, raw, gzip or text. Of more than three axes those of size 1 are dropped.
-/// `read`: how to read a detached body. Throws InputError.
+/// Reads an NRRD volume: raw, gzip or text, attached to its header or in another file, which `read` reads. Of
+/// more than three axes those of size 1 are dropped. `name` is used in messages. Throws InputError with the
+/// line of the header for anything that is malformed.
+///
+/// Our own: libteem, where the format comes from, has had no release since 2012, reads through a FILE and
+/// allocates what the header promises.
 LabelVolume read_nrrd(std::string_view bytes, const std::string& name,
                       const FileReader& read = read_whole_file);
 
-/// Attached, gzip, in the smallest integers that hold the labels; numbers come back bit by bit.
+/// The content of an NRRD file: attached, gzip, in the smallest integer type that holds all labels. Origin
+/// and directions are read back bit by bit.
 std::string write_nrrd(const LabelVolume& volume);
 
 }  // namespace tetwright

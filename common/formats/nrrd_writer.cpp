@@ -8,7 +8,7 @@
 #include "common/error.h"
 #include "common/formats/byte_order.h"
 #include "common/formats/nrrd.h"
-#include "common/formats/number_text.h"
+#include "common/number_text.h"
 
 namespace tetwright {
 
@@ -89,9 +89,9 @@ bool is_nrrd_space(const std::string& space) {
 
 std::string write_nrrd(const LabelVolume& volume) {
   TETWRIGHT_CHECK(!volume.labels.empty());
-  const auto [least, most] = std::minmax_element(volume.labels.begin(), volume.labels.end());
-  const auto fit = [least = *least, most = *most](std::int64_t low, std::int64_t high) {
-    return least >= low && most <= high;
+  const auto [min, max] = std::minmax_element(volume.labels.begin(), volume.labels.end());
+  const auto fit = [min = *min, max = *max](std::int64_t low, std::int64_t high) {
+    return min >= low && max <= high;
   };
   const char* type = fit(0, 255)          ? "uint8"
                      : fit(-32768, 32767) ? "int16"

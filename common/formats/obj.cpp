@@ -1,11 +1,12 @@
 #include "common/formats/obj.h"
 
-#include <vector>
+#include <array>
+#include <utility>
 
 #include "common/error.h"
-#include "common/formats/number_text.h"
 #include "common/formats/surface_builder.h"
 #include "common/formats/text_scanner.h"
+#include "common/number_text.h"
 
 namespace tetwright {
 
@@ -33,9 +34,33 @@ std::int64_t point_of(const TextScanner& in, std::string_view word, std::size_t 
           " points have been read (OBJ counts from 1); export the file again");
 }
 
+/// The statements that are not read, and what each of them adds; without those that only say how to draw.
+constexpr std::array<std::pair<std::string_view, const char*>, 11> other_statements{
+    {{"l", "lines"},
+     {"p", "points drawn as such"},
+     {"vt", "texture coordinates"},
+     {"vn", "normals"},
+     {"vp", "points of parameter spaces"},
+     {"curv", "free-form curves"},
+     {"curv2", "free-form curves"},
+     {"surf", "free-form surfaces"},
+     {"g", "names of groups"},
+     {"o", "names of objects"},
+     {"usemtl", "uses of a display material"}}};
+
+void note_statement(std::string_view keyword, SurfaceBuilder& surface) {
+  if (keyword == "s" || keyword == "mtllib") return;
+  for (const auto& [statement, kind] : other_statements)
+    if (statement == keyword) {
+      surface.drop(kind);
+      return;
+    }
+  surface.drop("statements " + in_quotes(keyword));
+}
+
 }  // namespace
 
-TriangleMesh read_obj(std::string_view bytes, const std::string& name) {
+TriangleMesh read_obj(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped) {
   TextScanner in(bytes, name, '#');
   if (in.at_end()) in.fail("the file is empty");
   SurfaceBuilder surface(name);
@@ -53,6 +78,7 @@ TriangleMesh read_obj(std::string_view bytes, const std::string& name) {
         if (!parse_number(word, p[k])) in.fail("expected a coordinate, found " + in_quotes(word));
       }
       surface.add_point(p, place);
+      if (!next_word(in).empty()) surface.drop("points with a weight or a colour");
     } else if (keyword == "f") {
       polygon.clear();
       for (std::string_view word; !(word = next_word(in)).empty();) {
@@ -66,6 +92,8 @@ TriangleMesh read_obj(std::string_view bytes, const std::string& name) {
         in.fail("a face with " + std::to_string(polygon.size()) +
                 " vertices; three are needed, the file may be cut short");
       surface.add_fan(polygon);
+    } else {
+      note_statement(keyword, surface);
     }
     // A keyword's last word may be the backslash that continues the line.
     for (std::string_view word; !(word = next_word(in)).empty();) {
@@ -77,7 +105,7 @@ TriangleMesh read_obj(std::string_view bytes, const std::string& name) {
                      "a face names point " + std::to_string(largest + 1) + ", but there are " +
                          std::to_string(surface.point_count()) +
                          " points; the file is cut short or was exported wrongly");
-  return surface.finish();
+  return surface.finish(dropped);
 }
 
 std::string write_obj(const TriangleMesh& mesh) {

@@ -2,17 +2,22 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "common/formats/dropped.h"
 #include "common/triangle_mesh.h"
 
 namespace tetwright {
 
 /// Reads the surface of a Wavefront OBJ file: `v` and `f` (with /vt/vn, negative indices, continued lines);
-/// everything else is skipped. Polygons become fans of triangles. `name` stands in messages.
-/// Throws InputError with the line for anything that makes no sense.
-TriangleMesh read_obj(std::string_view bytes, const std::string& name);
+/// what other statements hold is appended to `dropped`, unless that is null. Polygons become fans of
+/// triangles. `name` is used in messages. Throws InputError with the line for anything that is malformed.
+///
+/// Our own, since the format is small and every message names the line and the value.
+TriangleMesh read_obj(std::string_view bytes, const std::string& name,
+                      std::vector<Dropped>* dropped = nullptr);
 
-/// The file's content; coordinates come back bit by bit.
+/// The content of a file; coordinates are read back bit by bit.
 std::string write_obj(const TriangleMesh& mesh);
 
 }  // namespace tetwright

@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "common/error.h"
-#include "common/formats/number_text.h"
 #include "common/formats/surface_builder.h"
 #include "common/formats/text_scanner.h"
+#include "common/number_text.h"
 
 namespace tetwright {
 
@@ -21,7 +21,7 @@ std::string_view read_keyword(TextScanner& in) {
   if (!prefix.ends_with("OFF"))
     in.fail("expected OFF at the beginning, found " + in_quotes(first) + "; is this an OFF file?");
   prefix.remove_suffix(3);
-  // The letters come in this order; what they announce stands behind the coordinates and is skipped.
+  // The letters have this order; what they announce follows the coordinates of a point and is skipped.
   for (std::string_view letter : {"ST", "C", "N"})
     if (prefix.starts_with(letter)) prefix.remove_prefix(letter.size());
   if (!prefix.empty())
@@ -33,7 +33,7 @@ std::string_view read_keyword(TextScanner& in) {
 
 }  // namespace
 
-TriangleMesh read_off(std::string_view bytes, const std::string& name) {
+TriangleMesh read_off(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped) {
   TextScanner in(bytes, name, '#');
   const std::string_view first = read_keyword(in);
   if (first.empty()) in.fail_cut_short("number of points");
@@ -53,6 +53,7 @@ TriangleMesh read_off(std::string_view bytes, const std::string& name) {
   for (std::int64_t i = 0; i < points; ++i) {
     const double x = in.coordinate(), y = in.coordinate(), z = in.coordinate();
     surface.add_point({x, y, z}, place);
+    if (!in.word_on_line().empty()) surface.drop("points with colours, normals or texture coordinates");
     in.skip_line();
   }
   std::vector<std::int64_t> polygon;
@@ -60,9 +61,10 @@ TriangleMesh read_off(std::string_view bytes, const std::string& name) {
     polygon.resize(in.count("number of vertices of a face", 2));
     for (std::int64_t& index : polygon) index = in.integer("index of a point");
     surface.add_polygon(polygon, place);
+    if (!in.word_on_line().empty()) surface.drop("faces with colours");
     in.skip_line();
   }
-  return surface.finish();
+  return surface.finish(dropped);
 }
 
 std::string write_off(const TriangleMesh& mesh) {

@@ -2,18 +2,23 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "common/formats/dropped.h"
 #include "common/triangle_mesh.h"
 
 namespace tetwright {
 
 /// Reads a surface in the Object File Format, ASCII: OFF with or without colours, normals and texture
-/// coordinates (COFF, NOFF, STOFF, ...; they are left out), with or without its keyword. Polygons become fans
-/// of triangles. 4- and n-dimensional and binary variants are refused. `name` stands in messages.
-/// Throws InputError with the line for anything that makes no sense.
-TriangleMesh read_off(std::string_view bytes, const std::string& name);
+/// coordinates (COFF, NOFF, STOFF, ...), with or without its keyword. Polygons become fans of triangles; what
+/// is left out is appended to `dropped`, unless that is null. 4- and n-dimensional and binary variants are
+/// refused. `name` is used in messages. Throws InputError with the line for anything that is malformed.
+///
+/// Our own, since the format is small and every message names the line and the value.
+TriangleMesh read_off(std::string_view bytes, const std::string& name,
+                      std::vector<Dropped>* dropped = nullptr);
 
-/// The file's content; coordinates come back bit by bit.
+/// The content of a file; coordinates are read back bit by bit.
 std::string write_off(const TriangleMesh& mesh);
 
 }  // namespace tetwright

@@ -6,9 +6,9 @@
 
 #include "common/error.h"
 #include "common/formats/byte_order.h"
-#include "common/formats/number_text.h"
 #include "common/formats/surface_builder.h"
 #include "common/formats/text_scanner.h"
+#include "common/number_text.h"
 
 namespace tetwright {
 
@@ -48,6 +48,7 @@ bool is_integer(Type type) { return type != Type::float32 && type != Type::float
 enum class Role { skipped, x, y, z, vertices };
 
 struct Property {
+  std::string name;
   std::optional<Type> count_type;  ///< of a list
   Type type = Type::float32;
   Role role = Role::skipped;
@@ -94,7 +95,7 @@ void read_property(TextScanner& in, Element& element) {
     return *t;
   };
   Property property;
-  // "list" stands where the type of other properties does.
+  // A list has the word "list" where other properties have their type.
   const std::string_view first = in.word_on_line();
   const bool list = first == "list";
   if (list) {
@@ -107,6 +108,7 @@ void read_property(TextScanner& in, Element& element) {
     property.type = *t;
   }
   const std::string_view name = in.word_on_line();
+  property.name = std::string(name.substr(0, 64));
   property.role = role_of(element, name, list);
   if (property.role != Role::skipped && element.has(property.role))
     in.fail("property " + in_quotes(name) + " appears twice");
@@ -168,7 +170,7 @@ class AsciiBody {
   AsciiBody(TextScanner& in) : in_(in) {}
   std::string place() const { return "line " + std::to_string(in_.line()); }
   std::size_t left() const { return in_.left() + 1; }  // the last number may lack its white space
-  /// The least that a number takes.
+  /// The smallest number of bytes that a number takes.
   static std::size_t size(Type) { return 2; }
   double coordinate(Type) { return in_.coordinate(); }
   std::int64_t integer(Type, std::string_view what) { return in_.integer(what); }
@@ -240,9 +242,9 @@ class BinaryBody {
 /// Compares what the header promises with the bytes that are there.
 template <class Body>
 void check_count(const Body& body, const Element& element) {
-  std::size_t least = 0;
-  for (const Property& p : element.properties) least += body.size(p.count_type ? *p.count_type : p.type);
-  if (least > 0 && element.count > body.left() / least)
+  std::size_t min_size = 0;
+  for (const Property& p : element.properties) min_size += body.size(p.count_type ? *p.count_type : p.type);
+  if (min_size > 0 && element.count > body.left() / min_size)
     body.fail("the header promises " + std::to_string(element.count) + " of element " +
               in_quotes(element.name) + ", but only " + std::to_string(body.left()) +
               " bytes follow; the file is cut short");
@@ -283,9 +285,25 @@ void read_element(Body& body, const Element& element, SurfaceBuilder& surface) {
   }
 }
 
+/// What the file holds beside the coordinates and the polygons.
+void note_dropped(const PlyHeader& header, SurfaceBuilder& surface) {
+  for (const Element& element : header.elements) {
+    if (!element.is_vertex() && !element.is_face()) {
+      surface.drop("items of element " + in_quotes(element.name), static_cast<std::size_t>(element.count));
+      continue;
+    }
+    std::vector<std::string> names;
+    for (const Property& property : element.properties)
+      if (property.role == Role::skipped) names.push_back(property.name);
+    if (!names.empty())
+      surface.drop("properties of element " + in_quotes(element.name) + " (" + quoted_list(names) + ")",
+                   names.size());
+  }
+}
+
 }  // namespace
 
-TriangleMesh read_ply(std::string_view bytes, const std::string& name) {
+TriangleMesh read_ply(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped) {
   TextScanner in(bytes, name);
   const PlyHeader header = read_ply_header(in);
   const Element* vertex = nullptr;
@@ -319,7 +337,8 @@ TriangleMesh read_ply(std::string_view bytes, const std::string& name) {
   else
     read_all(
         BinaryBody(bytes, in.offset(), name, (header.encoding == Encoding::little) != little_endian_machine));
-  return surface.finish();
+  note_dropped(header, surface);
+  return surface.finish(dropped);
 }
 
 std::string write_ply(const TriangleMesh& mesh) {

@@ -2,18 +2,24 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "common/formats/dropped.h"
 #include "common/triangle_mesh.h"
 
 namespace tetwright {
 
 /// Reads the surface of a PLY file, ASCII or binary of either byte order: x, y, z of element `vertex` and
-/// `vertex_indices` (or `vertex_index`) of element `face`; other elements and properties are skipped.
-/// Polygons become fans of triangles. `name` stands in messages. Throws InputError with the line (ASCII,
-/// header) or the byte offset (binary) for anything that makes no sense.
-TriangleMesh read_ply(std::string_view bytes, const std::string& name);
+/// `vertex_indices` (or `vertex_index`) of element `face`. Polygons become fans of triangles; other elements
+/// and properties are appended to `dropped`, unless that is null. `name` is used in messages. Throws
+/// InputError with the line (ASCII, header) or the byte offset (binary) for anything that is malformed.
+///
+/// Our own, since the format is small, and counts are compared with the bytes that are there before memory is
+/// allocated.
+TriangleMesh read_ply(std::string_view bytes, const std::string& name,
+                      std::vector<Dropped>* dropped = nullptr);
 
-/// The file's content, binary little endian with 64-bit coordinates, which come back bit by bit.
+/// The content of a file, binary little endian with 64-bit coordinates, which are read back bit by bit.
 std::string write_ply(const TriangleMesh& mesh);
 
 }  // namespace tetwright

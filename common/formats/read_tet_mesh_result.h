@@ -1,28 +1,37 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "common/formats/dropped.h"
 #include "common/tet_mesh.h"
 
 namespace tetwright {
 
-/// What a reader of tet meshes is asked for.
+/// Options of the readers of tet meshes.
 struct ReadTetMeshOptions {
-  /// The cell field that is the material, whatever the rule of ReadTetMesh says. Empty: by that rule. A name
-  /// that the file does not have is an InputError that lists those it could be.
+  /// The name of the cell field to take as the material instead of the one that ReadTetMesh::material_field
+  /// describes. Empty: none is asked for. If the file has no such field, an InputError lists those it has.
   std::string material_field;
-  /// False: a file without that field is read by the rule instead.
+  /// False: a file without that field is read as if none had been asked for.
   bool material_field_required = true;
 };
 
-/// What a reader of tet meshes found.
+/// The result of a reader of tet meshes.
 struct ReadTetMesh {
   TetMesh mesh;
-  /// The cell field that was taken for the material, and that mesh.cell_fields so has no more: the one asked
-  /// for, else the format's own ("medit:ref", "gmsh:physical" or, in a file without physical groups,
-  /// "gmsh:geometrical"), else the first of "material", "medit:ref", "gmsh:physical", "MaterialID" and
-  /// "attribute", else the file's only integer cell field. Empty if there is none: every tet has material 1.
+  /// The cell field that became mesh.materials; it is removed from mesh.cell_fields. It is the first of these
+  /// that the file has:
+  /// 1. the field that the options ask for;
+  /// 2. the format's own: "medit:ref", "gmsh:physical" or, in a .msh file without physical groups,
+  ///    "gmsh:geometrical";
+  /// 3. "material", "medit:ref", "gmsh:physical", "MaterialID", "attribute", in this order;
+  /// 4. the only integer cell field.
+  /// Empty: the file has none of them, and every tet has material 1.
   std::string material_field;
+  /// What the file holds beside this, by kind. Volume cells that are not linear tets are never among it: a
+  /// file that has some is refused.
+  std::vector<Dropped> dropped = {};
 };
 
 }  // namespace tetwright

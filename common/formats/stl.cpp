@@ -7,9 +7,9 @@
 
 #include "common/error.h"
 #include "common/formats/byte_order.h"
-#include "common/formats/number_text.h"
 #include "common/formats/surface_builder.h"
 #include "common/formats/text_scanner.h"
+#include "common/number_text.h"
 
 namespace tetwright {
 
@@ -63,7 +63,8 @@ class PointMerger {
   std::vector<Index> table_;
 };
 
-TriangleMesh read_binary(std::string_view bytes, const std::string& name, std::size_t triangles) {
+TriangleMesh read_binary(std::string_view bytes, const std::string& name, std::size_t triangles,
+                         std::vector<Dropped>* dropped) {
   SurfaceBuilder surface(name);
   surface.reserve(triangles / 2, triangles);
   PointMerger merger(surface, triangles / 2);
@@ -78,8 +79,11 @@ TriangleMesh read_binary(std::string_view bytes, const std::string& name, std::s
       corners[k] = merger.add(p, [&] { return "byte " + std::to_string(at); });
     }
     surface.add_fan(corners);
+    if (bytes[begin + 36] != 0 || bytes[begin + 37] != 0) surface.drop("triangles with attribute bytes");
   }
-  return surface.finish();
+  const std::size_t end = stl_header_size + triangles * record_size;
+  surface.drop("bytes behind the last triangle", bytes.size() - end);
+  return surface.finish(dropped);
 }
 
 /// `expected` in lower case.
@@ -94,12 +98,14 @@ void expect(TextScanner& in, std::string_view expected) {
   if (!is_word(word, expected)) in.fail("expected " + in_quotes(expected) + ", found " + in_quotes(word));
 }
 
-TriangleMesh read_ascii(std::string_view bytes, const std::string& name) {
+TriangleMesh read_ascii(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped) {
   TextScanner in(bytes, name);
   SurfaceBuilder surface(name);
   PointMerger merger(surface, 0);
+  std::size_t solids = 0;
   while (!in.at_end()) {
     expect(in, "solid");
+    ++solids;
     in.skip_line();  // the solid's name, which may be anything
     for (;;) {
       const std::string_view word = in.word();
@@ -125,16 +131,17 @@ TriangleMesh read_ascii(std::string_view bytes, const std::string& name) {
       surface.add_fan(corners);
     }
   }
-  return surface.finish();
+  if (solids > 1) surface.drop("solids told apart in the file", solids);
+  return surface.finish(dropped);
 }
 
 }  // namespace
 
-TriangleMesh read_stl(std::string_view bytes, const std::string& name) {
+TriangleMesh read_stl(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped) {
   if (bytes.empty()) throw InputError(name + ": the file is empty");
   const bool says_solid = bytes.size() >= 5 && is_word(bytes.substr(0, 5), "solid");
   if (bytes.size() < stl_header_size) {
-    if (says_solid) return read_ascii(bytes, name);
+    if (says_solid) return read_ascii(bytes, name, dropped);
     throw InputError(name + ": only " + std::to_string(bytes.size()) +
                      " bytes, too short for an STL file; it is cut short or not STL");
   }
@@ -145,12 +152,12 @@ TriangleMesh read_stl(std::string_view bytes, const std::string& name) {
   const bool has_zeros = bytes.find('\0') != std::string_view::npos;
   const bool is_text =
       bytes.size() != expected && (says_solid || bytes.substr(0, 64).find("solid") < 64) && !has_zeros;
-  if (is_text) return read_ascii(bytes, name);
+  if (is_text) return read_ascii(bytes, name, dropped);
   if (expected > bytes.size())
     throw InputError(name + ": byte 80: " + std::to_string(triangles) + " triangles need " +
                      std::to_string(expected) + " bytes, but the file has " + std::to_string(bytes.size()) +
                      "; it is cut short or not STL");
-  return read_binary(bytes, name, triangles);
+  return read_binary(bytes, name, triangles, dropped);
 }
 
 std::string write_stl(const TriangleMesh& mesh) {

@@ -2,18 +2,24 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "common/formats/dropped.h"
 #include "common/triangle_mesh.h"
 
 namespace tetwright {
 
 /// Reads an STL file, ASCII or binary (a binary file may begin with "solid": its size tells). Points with
-/// equal coordinates become one, nothing else is merged. `name` stands in messages. Throws InputError with
-/// the line or byte offset for anything that makes no sense.
-TriangleMesh read_stl(std::string_view bytes, const std::string& name);
+/// equal coordinates become one, nothing else is merged. What is left out is appended to `dropped`, unless
+/// that is null. `name` is used in messages. Throws InputError with the line or byte offset for anything that
+/// is malformed.
+///
+/// Our own, since the format is small and every message names the line or byte and the value.
+TriangleMesh read_stl(std::string_view bytes, const std::string& name,
+                      std::vector<Dropped>* dropped = nullptr);
 
-/// The file's content: ASCII, since binary STL has only 32 bits for a coordinate; coordinates come back bit
-/// by bit (a -0 as 0).
+/// The content of a file: ASCII, since binary STL has only 32 bits for a coordinate. Coordinates are read
+/// back bit by bit, except that -0 becomes 0.
 std::string write_stl(const TriangleMesh& mesh);
 
 }  // namespace tetwright

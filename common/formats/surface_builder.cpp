@@ -15,10 +15,11 @@ void SurfaceBuilder::add_fan(std::span<const std::int64_t> polygon) {
         {static_cast<Index>(polygon[0]), static_cast<Index>(polygon[k - 1]), static_cast<Index>(polygon[k])});
 }
 
-TriangleMesh SurfaceBuilder::finish() {
+TriangleMesh SurfaceBuilder::finish(std::vector<Dropped>* dropped) {
   if (mesh_.triangles.empty())
     throw InputError(file_ + ": there are no triangles in it (" + std::to_string(mesh_.points.size()) +
                      " points); a surface is needed, not a point cloud");
+  if (dropped) dropped_.append_to(*dropped);
   return std::move(mesh_);
 }
 

@@ -2,12 +2,15 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
+#include "common/formats/dropped.h"
 #include "common/triangle_mesh.h"
 
 namespace tetwright {
 
-/// Collects what a surface file says and checks it. Messages name `file` and the place handed in.
+/// Collects the points and polygons of a surface file and checks them. Messages name `file` and the place
+/// that the caller gives.
 class SurfaceBuilder {
  public:
   explicit SurfaceBuilder(std::string file) : file_(std::move(file)) {}
@@ -15,30 +18,37 @@ class SurfaceBuilder {
   /// `points` and `triangles` must already have been compared with the size of the file.
   void reserve(std::size_t points, std::size_t triangles);
 
-  /// Throws InputError for a coordinate that is not finite or too many points. `place()` is called
-  /// then and gives text such as "line 7" or "byte 120".
+  /// Throws InputError for a coordinate that is not finite or too many points. `place()` is called only then
+  /// and returns text such as "line 7" or "byte 120".
   template <class Place>
   void add_point(const Vec3& point, const Place& place) {
     if (!point.allFinite() || mesh_.points.size() >= no_index - 1) fail_point(point, place());
     mesh_.points.push_back(point);
   }
 
-  /// Cuts a polygon into the fan of triangles around its first vertex. Fewer than three vertices are left out
-  /// (some programs write loose edges as faces). Indices count from 0 and must be those of points added.
+  /// Cuts a polygon into the fan of triangles around its first vertex. A polygon of fewer than three vertices
+  /// is dropped and counted (some programs write loose edges as faces). Indices count from 0 and must be
+  /// those of points added before.
   template <class Place>
   void add_polygon(std::span<const std::int64_t> polygon, const Place& place) {
     for (std::int64_t i : polygon)
       if (i < 0 || static_cast<std::uint64_t>(i) >= mesh_.points.size()) fail_index(i, place());
+    if (polygon.size() < 3) dropped_.add("faces of fewer than three vertices");
     add_fan(polygon);
   }
 
-  /// The same for indices the caller has checked or will check, since points may still be to come.
+  /// The same for at least three indices that the caller has checked or will check, since a file may name
+  /// points before it lists them.
   void add_fan(std::span<const std::int64_t> polygon);
+
+  /// Counts something that the file holds and the surface has no place for; `kind` is a plural.
+  void drop(const std::string& kind, std::size_t n = 1) { dropped_.add(kind, n); }
 
   std::size_t point_count() const { return mesh_.points.size(); }
 
-  /// Throws InputError if there is no triangle.
-  TriangleMesh finish();
+  /// Returns the surface and, unless `dropped` is null, appends to it what was dropped. Throws InputError if
+  /// there is no triangle.
+  TriangleMesh finish(std::vector<Dropped>* dropped);
 
  private:
   [[noreturn]] void fail_point(const Vec3& point, const std::string& place) const;
@@ -46,6 +56,7 @@ class SurfaceBuilder {
 
   std::string file_;
   TriangleMesh mesh_;
+  KindCounts dropped_;
 };
 
 }  // namespace tetwright

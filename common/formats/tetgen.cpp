@@ -10,7 +10,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::int64_t most_attributes = 1000;
+constexpr std::int64_t max_attributes = 1000;
 
 /// One of the two files: a line of counts, then a line for each item; # begins a comment.
 class Lines {
@@ -29,13 +29,13 @@ class Lines {
     return value;
   }
   /// A count at the end of the first line, which may be left out: then 0.
-  std::int64_t optional_count(const std::string& what, std::int64_t most) {
+  std::int64_t optional_count(const std::string& what, std::int64_t max) {
     const std::string_view word = in_.word_on_line();
     std::int64_t value = 0;
     if (word.empty()) return 0;
     if (!parse_number(word, value)) in_.fail("expected a number (" + what + "), found " + in_quotes(word));
-    if (value < 0 || value > most)
-      in_.fail("the " + what + " is " + std::to_string(value) + ", not 0 to " + std::to_string(most));
+    if (value < 0 || value > max)
+      in_.fail("the " + what + " is " + std::to_string(value) + ", not 0 to " + std::to_string(max));
     return value;
   }
   /// To the next line that has something.
@@ -73,7 +73,7 @@ std::int64_t read_nodes(Lines& in, TetMesh& mesh) {
   const auto promised = in.next<std::int64_t>("number of points");
   if (const auto dimension = in.next<std::int64_t>("dimension"); dimension != 3)
     in.fail("dimension " + std::to_string(dimension) + "; a mesh of tets has 3");
-  const std::int64_t attributes = in.optional_count("number of attributes", most_attributes);
+  const std::int64_t attributes = in.optional_count("number of attributes", max_attributes);
   const std::int64_t markers = in.optional_count("number of boundary markers", 1);
   in.end_line();
   const std::size_t n = in.checked(promised, 4 + static_cast<std::size_t>(attributes + markers), "points");
@@ -111,9 +111,12 @@ std::int64_t read_nodes(Lines& in, TetMesh& mesh) {
 void read_tets(Lines& in, std::int64_t first, TetMesh& mesh) {
   const auto promised = in.next<std::int64_t>("number of tets");
   const auto corners = in.next<std::int64_t>("number of points of a tet");
-  if (corners == 10) in.fail("tets of 10 points; linear tets are needed, run TetGen without -o2");
+  if (corners == 10)
+    in.fail(std::to_string(promised) +
+            " quadratic tets of 10 points; linear tets are needed, run TetGen "
+            "without -o2");
   if (corners != 4) in.fail("tets of " + std::to_string(corners) + " points; there are 4 in a linear tet");
-  const std::int64_t attributes = in.optional_count("number of attributes", most_attributes);
+  const std::int64_t attributes = in.optional_count("number of attributes", max_attributes);
   in.end_line();
   const std::size_t n = in.checked(promised, 5 + static_cast<std::size_t>(attributes), "tets");
   if (n == 0) in.fail("there are no tets in it; a tet mesh is needed, not a surface");

@@ -10,23 +10,24 @@
 
 #include "common/error.h"
 #include "common/formats/byte_order.h"
-#include "common/formats/number_text.h"
-#include "common/parallel.h"
+#include "common/number_text.h"
+#include "common/parallel/parallel.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr std::int64_t most_voxels = std::int64_t{1} << 31;
+constexpr std::int64_t max_voxels = std::int64_t{1} << 31;
 
-/// Bytes that are inflated before they become labels.
+/// Compressed voxels are inflated and converted in blocks of this many bytes.
 constexpr std::size_t block_bytes = std::size_t{1} << 22;
 
 constexpr std::size_t voxel_grain = std::size_t{1} << 17;
 
-/// Directions are taken to be in one plane when the box of their unit vectors has less than this volume:
-/// far flatter than any scanner's gantry tilt, far above the rounding of float directions.
-constexpr double flattest_volume = 1e-5;
+/// Directions count as coplanar if the parallelepiped of their unit vectors has less than this volume: far
+/// flatter than the gantry tilt of any scanner makes it, far above the rounding of directions stored as
+/// floats.
+constexpr double min_box_volume = 1e-5;
 
 std::size_t voxel_count(const std::array<int, 3>& size) {
   return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *
@@ -59,7 +60,7 @@ bool to_label(const char* from, const VoxelFormat& format, bool scaled, Material
   }
 }
 
-/// Converts `n` numbers; which one is the first that is no label, `n` if all are.
+/// Converts `n` numbers. Returns the index of the first that is not a label, or `n`.
 template <class Stored>
 std::size_t convert(const char* from, std::size_t n, const VoxelFormat& format, MaterialTag* labels) {
   const bool scaled = format.slope != 1 || format.intercept != 0;
@@ -76,7 +77,7 @@ std::size_t convert(const char* from, std::size_t n, const VoxelFormat& format, 
   return first_bad;
 }
 
-/// Calls `call` with a number of the type.
+/// Calls `call` with a zero of the C++ type.
 template <class Call>
 auto with_type(VoxelType type, const Call& call) {
   switch (type) {
@@ -103,7 +104,7 @@ auto with_type(VoxelType type, const Call& call) {
   }
 }
 
-/// "voxel (1, 2, 3) has the value 0.5, ...": why it is no label.
+/// "voxel (1, 2, 3) has the value 0.5, ...", with the reason why it is not a label.
 std::string bad_voxel(std::size_t voxel, const std::array<int, 3>& size, const std::string& value,
                       bool whole) {
   const auto nx = static_cast<std::size_t>(size[0]), ny = static_cast<std::size_t>(size[1]);
@@ -129,10 +130,10 @@ std::array<int, 3> checked_size(std::span<const std::int64_t> sizes, const std::
       throw InputError(
           file, line,
           "the size along axis " + std::to_string(k) + " is " + std::to_string(sizes[k]) + ", not 1 or more");
-    if (sizes[k] > std::min<std::int64_t>(most_voxels / voxels, std::numeric_limits<int>::max()))
+    if (sizes[k] > std::min<std::int64_t>(max_voxels / voxels, std::numeric_limits<int>::max()))
       throw InputError(file, line,
                        "the size " + std::to_string(sizes[k]) + " along axis " + std::to_string(k) +
-                           " makes more than " + std::to_string(most_voxels) +
+                           " makes more than " + std::to_string(max_voxels) +
                            " voxels; crop the volume or make it coarser");
     voxels *= sizes[k];
     out[k] = static_cast<int>(sizes[k]);
@@ -148,16 +149,16 @@ std::vector<MaterialTag> read_voxels(ByteSource& body, const VoxelFormat& format
     return "its " + text(size) + " voxels of " + std::to_string(each) +
            (each == 1 ? " byte need " : " bytes need ") + std::to_string(needed) + " bytes, but ";
   };
-  if (needed > body.most_left())
+  if (needed > body.max_left())
     throw InputError(body.name() + ": " + needs() +
                      (body.packed()
-                          ? "the compressed data hold " + std::to_string(body.most_left()) +
+                          ? "the compressed data hold " + std::to_string(body.max_left()) +
                                 " at most; the file is cut short or its header is wrong"
-                          : "only " + std::to_string(body.most_left()) +
+                          : "only " + std::to_string(body.max_left()) +
                                 " follow the header; the file is cut short or its header is wrong"));
   const std::uint64_t before = body.taken();
   std::vector<MaterialTag> labels;
-  // The pages of reserved memory are not touched before there are voxels for them.
+  // Pages of reserved memory take no room before voxels are written to them.
   labels.reserve(n);
   while (labels.size() < n) {
     const std::size_t done = labels.size();
@@ -225,7 +226,7 @@ void check_geometry(const LabelVolume& volume, const std::string& file) {
                        std::to_string(k) + " is zero or not finite; repair the spacing in the header");
     units.col(k) = step / length;
   }
-  if (!(std::fabs(units.determinant()) > flattest_volume))
+  if (!(std::fabs(units.determinant()) > min_box_volume))
     throw InputError(file + ": the directions " + written(volume.directions.col(0)) + ", " +
                      written(volume.directions.col(1)) + " and " + written(volume.directions.col(2)) +
                      " of the axes lie in one plane; repair the header");

@@ -8,55 +8,16 @@
 #include "common/error.h"
 #include "common/formats/mesh_fields.h"
 #include "common/formats/text_scanner.h"
+#include "common/formats/vtk_cells.h"
 #include "common/formats/vtk_numbers.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr std::int64_t vtk_tet_type = 10;
-constexpr std::int64_t most_vtk_components = 1 << 16;
+constexpr std::int64_t max_vtk_components = 1 << 16;
 
-/// Cells of less than three dimensions, by VTK's numbers.
-bool is_flat_cell(std::int64_t type) {
-  return (type >= 0 && type <= 9) || (type >= 21 && type <= 23) || type == 28 || type == 30 ||
-         (type >= 34 && type <= 36) || (type >= 51 && type <= 54) || (type >= 60 && type <= 63) ||
-         (type >= 68 && type <= 70) || (type >= 75 && type <= 77);
-}
-
-const char* cell_name(std::int64_t type) {
-  switch (type) {
-    case 11:
-      return "voxel";
-    case 12:
-      return "hexahedron";
-    case 13:
-      return "wedge";
-    case 14:
-      return "pyramid";
-    case 15:
-      return "pentagonal prism";
-    case 16:
-      return "hexagonal prism";
-    case 24:
-      return "quadratic tet";
-    case 25:
-      return "quadratic hexahedron";
-    case 26:
-      return "quadratic wedge";
-    case 27:
-      return "quadratic pyramid";
-    case 42:
-      return "polyhedron";
-    case 71:
-    case 78:
-      return "tet of higher order";
-    default:
-      return "cell of another kind";
-  }
-}
-
-/// VTK writes spaces and other characters of names as %20 and so on.
+/// Decodes a name, in which VTK writes spaces and some other characters as %20 and so on.
 std::string decoded(std::string_view name) {
   const auto digit = [](char c) {
     return c >= '0' && c <= '9'   ? c - '0'
@@ -90,6 +51,9 @@ class VtkReader {
       in_.fail("there are no linear tets (type 10) among its " + std::to_string(types_.size()) +
                " cells; a tet mesh is needed");
     take_material(result_, options_, in_.name());
+    append_dropped_names(result_.dropped, "arrays of the whole dataset", dataset_arrays_);
+    append_dropped_names(result_.dropped, "arrays of text", text_arrays_);
+    append_dropped_names(result_.dropped, "arrays of colours", colours_);
     return std::move(result_);
   }
 
@@ -197,7 +161,8 @@ class VtkReader {
         in_.fail("the first offset is " + std::to_string(offsets_[0]) + ", not 0; the file is damaged");
       return;
     }
-    // Each cell is its number of points and these: only the number of cells tells where they begin.
+    // Each cell is its number of points followed by these points, so that the cells must be walked one by
+    // one.
     cells_begin_ = in_;
     connectivity_ = read_vtk_numbers<std::int64_t>(in_, binary_, "int", size, "points of cells");
     offsets_.reserve(std::min(n, size) + 1);
@@ -225,7 +190,8 @@ class VtkReader {
 
   std::size_t cell_count() const { return offsets_.empty() ? 0 : offsets_.size() - 1; }
 
-  /// Where a cell's points end: old files have the next one's number of points in between.
+  /// The number of points of a cell. In old files the number of points of the next cell lies between two
+  /// cells.
   std::size_t cell_size(std::size_t cell) const {
     return static_cast<std::size_t>(offsets_[cell + 1] - offsets_[cell]) - (new_cells_ ? 0 : 1);
   }
@@ -238,14 +204,14 @@ class VtkReader {
     types_ = read_vtk_numbers<std::int64_t>(in_, binary_, "int", n, "types of cells");
   }
 
-  /// Fails at the line of number `k` of a list that begins at `begin`.
+  /// Throws InputError with the line of the k-th number of a list that begins at `begin`.
   [[noreturn]] void fail_at(TextScanner begin, std::size_t k, const std::string& message) const {
     if (binary_) in_.fail(message);
     for (std::size_t i = 0; i <= k; ++i) (void)begin.word();
     begin.fail(message);
   }
 
-  /// Once, when the first data of cells or the end comes.
+  /// Called at the first data of cells or at the end of the file; does its work once.
   void choose_tets() {
     if (chosen_) return;
     chosen_ = true;
@@ -254,13 +220,11 @@ class VtkReader {
       in_.fail("CELL_TYPES has " + std::to_string(types_.size()) + " types for " +
                std::to_string(cell_count()) + " cells; the file is damaged");
     const std::size_t points = result_.mesh.points.size();
+    OtherVtkCells other_cells;
     for (std::size_t c = 0; c < types_.size(); ++c) {
       const auto cell = [c] { return "cell " + std::to_string(c) + " (counted from 0)"; };
       if (types_[c] != vtk_tet_type) {
-        if (!is_flat_cell(types_[c]))
-          fail_at(types_begin_, c,
-                  cell() + " is a " + cell_name(types_[c]) + " (type " + std::to_string(types_[c]) +
-                      "); only tets of 4 points are supported, convert or split it");
+        other_cells.add(types_[c], c);
         continue;
       }
       const auto begin = static_cast<std::size_t>(offsets_[c]);
@@ -279,6 +243,8 @@ class VtkReader {
       result_.mesh.tets.push_back(tet);
       tet_to_cell_.push_back(c);
     }
+    if (other_cells.has_volumes()) fail_at(types_begin_, other_cells.first_volume(), other_cells.refusal());
+    other_cells.append_flat_to(result_.dropped);
     connectivity_ = {};
   }
 
@@ -314,22 +280,22 @@ class VtkReader {
   }
 
   std::size_t checked_components(std::int64_t n) const {
-    if (n < 1 || n > most_vtk_components)
-      in_.fail(std::to_string(n) + " components; 1 to " + std::to_string(most_vtk_components) +
+    if (n < 1 || n > max_vtk_components)
+      in_.fail(std::to_string(n) + " components; 1 to " + std::to_string(max_vtk_components) +
                " are possible");
     return static_cast<std::size_t>(n);
   }
 
-  /// One of the attributes that have a keyword of their own; false if `part` is none.
+  /// Reads an attribute that has a keyword of its own; false if `part` is not such a keyword.
   bool read_attribute(const std::string& part) {
     if (part == "lookup_table") {
-      (void)name_word();
+      colours_.push_back(name_word());
       const std::size_t n = in_.count("size of the lookup table", 1);
       skip_colours(n, 4);
       return true;
     }
     if (part == "color_scalars") {
-      (void)name_word();
+      colours_.push_back(name_word());
       skip_colours(items_, checked_components(in_.integer("number of components")));
       return true;
     }
@@ -348,7 +314,7 @@ class VtkReader {
     return true;
   }
 
-  /// The number of components may follow on the line, and a line LOOKUP_TABLE.
+  /// Reads the optional number of components on the line and the optional line LOOKUP_TABLE.
   void read_scalars_head(std::size_t& components) {
     if (const std::string_view word = in_.word_on_line(); !word.empty()) {
       std::int64_t n = 0;
@@ -366,7 +332,7 @@ class VtkReader {
     (void)read_vtk_numbers<double>(in_, binary_, "unsigned_char", n * components, "colours");
   }
 
-  /// FIELD: arrays of points or cells, or before these of the whole dataset, which are dropped.
+  /// Reads the arrays of FIELD: of points or cells, or, before both, of the whole dataset, which are dropped.
   void read_field() {
     (void)name_word();
     const std::size_t arrays = in_.count("number of arrays", 1);
@@ -386,12 +352,14 @@ class VtkReader {
       if (type == "string") {
         if (tuples > 0 && components > in_.left() / tuples) in_.fail_cut_short("text");
         skip_vtk_strings(in_, binary_, components * tuples);
+        text_arrays_.push_back(name);
         continue;
       }
       if (data_ == Data::none) {
         if (tuples > 0 && components > SIZE_MAX / tuples) in_.fail_cut_short("value");
         (void)read_vtk_numbers<double>(in_, binary_, type, components * tuples,
                                        "values of " + in_quotes(name));
+        dataset_arrays_.push_back(name);
         continue;
       }
       if (tuples != items_)
@@ -401,7 +369,7 @@ class VtkReader {
     }
   }
 
-  /// Up to the next empty line.
+  /// Skips everything up to the next empty line.
   void skip_metadata() {
     in_.skip_line();
     while (in_.left() > 0)
@@ -417,6 +385,7 @@ class VtkReader {
   std::vector<std::int64_t> offsets_, connectivity_, types_;
   TextScanner cells_begin_, types_begin_;
   std::vector<std::size_t> tet_to_cell_;
+  std::vector<std::string> dataset_arrays_, text_arrays_, colours_;  ///< names of what is not taken
   Data data_ = Data::none;
   std::size_t items_ = 0;  ///< points or cells that data is for
 };

@@ -8,20 +8,21 @@
 
 namespace tetwright {
 
-/// `word` in lower case: keywords of legacy VTK files are written either way.
+/// `word` in lower case. Programs write the keywords of legacy VTK files in either case.
 std::string lower_case(std::string_view word);
 
-/// Is `type` (lower case) a whole number, of those read_vtk_numbers() knows?
+/// Whether `type`, in lower case and one that read_vtk_numbers() knows, is an integer type.
 bool is_integer_type(const std::string& type);
 
-/// Reads `n` numbers of a legacy VTK file: words, or big-endian bytes from the next line on. `type` is the
-/// word of the file in lower case ("float", "vtktypeint64"). Throws InputError if it is unknown or the file
-/// is too short for `n`, before memory is reserved. Value: double or std::int64_t, which takes no fractions.
+/// Reads `n` numbers of a legacy VTK file: words, or big-endian bytes that begin on the next line. `type` is
+/// the file's name of their type in lower case ("float", "vtktypeint64"). Value is double or std::int64_t.
+/// Throws InputError if the type is unknown, a number is not whole where std::int64_t is asked for, or the
+/// file is too short for `n` numbers; the last before memory is allocated.
 template <class Value>
 std::vector<Value> read_vtk_numbers(TextScanner& in, bool binary, const std::string& type, std::size_t n,
                                     const std::string& what);
 
-/// Drops `n` strings: lines, or bytes with their length before them.
+/// Skips `n` strings: lines, or in a binary file bytes preceded by their number.
 void skip_vtk_strings(TextScanner& in, bool binary, std::size_t n);
 
 }  // namespace tetwright

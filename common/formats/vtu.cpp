@@ -9,17 +9,24 @@
 #include "common/error.h"
 #include "common/formats/byte_order.h"
 #include "common/formats/mesh_fields.h"
-#include "common/formats/number_text.h"
 #include "common/formats/text_scanner.h"
+#include "common/formats/vtk_cells.h"
 #include "common/formats/vtu_data.h"
+#include "common/number_text.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr std::int64_t vtu_tet_type = 10;
 constexpr const char* names_field = "material_names";
-constexpr std::int64_t most_vtu_components = 1 << 16;
+constexpr std::int64_t max_vtu_components = 1 << 16;
+
+/// Other arrays hold text.
+bool holds_numbers(pugi::xml_node array) {
+  const std::string_view type = array.attribute("type").as_string();
+  return std::string_view(array.name()) == "DataArray" &&
+         (type.starts_with("Int") || type.starts_with("UInt") || type.starts_with("Float"));
+}
 
 class VtuReader {
  public:
@@ -44,6 +51,7 @@ class VtuReader {
     result_.mesh.cell_fields = read_fields(piece.child("CellData"), cells_, &tet_to_cell_);
     read_names(grid);
     take_material(result_, options_, name_);
+    note_dropped_arrays(grid, piece);
     return std::move(result_);
   }
 
@@ -95,12 +103,13 @@ class VtuReader {
         connectivity_node,
         offsets.empty() ? 0 : static_cast<std::size_t>(std::max<std::int64_t>(0, offsets.back())));
     std::int64_t begin = 0;
+    OtherVtkCells other_cells;
     for (std::size_t c = 0; c < cells_; ++c) {
       const std::int64_t end = offsets[c];
       if (end < begin || end > std::ssize(connectivity))
         data_.fail(offsets_node, "cell " + std::to_string(c) + " ends at " + std::to_string(end) + " of " +
                                      std::to_string(connectivity.size()) + "; the file is damaged");
-      if (types[c] == vtu_tet_type) {
+      if (types[c] == vtk_tet_type) {
         if (end - begin != 4)
           data_.fail(offsets_node, "cell " + std::to_string(c) + " is a tet of " +
                                        std::to_string(end - begin) + " points; the file is damaged");
@@ -115,30 +124,33 @@ class VtuReader {
         }
         result_.mesh.tets.push_back(tet);
         tet_to_cell_.push_back(c);
+      } else {
+        other_cells.add(types[c], c);
       }
       begin = end;
     }
+    if (other_cells.has_volumes()) data_.fail(types_node, other_cells.refusal());
+    other_cells.append_flat_to(result_.dropped);
     if (tet_to_cell_.empty())
       data_.fail(cells, "there are no linear tets (type 10) among its " + std::to_string(cells_) +
                             " cells; a tet mesh is needed");
   }
 
-  /// The arrays of numbers of PointData or CellData: `n` tuples in the file, of which those of `chosen` are
-  /// kept, or all.
+  /// Reads the arrays of numbers of PointData or CellData. They have `n` tuples in the file; those of
+  /// `chosen` are kept, or all if it is null.
   std::vector<MeshField> read_fields(pugi::xml_node data, std::size_t n,
                                      const std::vector<std::size_t>* chosen) const {
     std::vector<MeshField> fields;
     for (const pugi::xml_node node : data.children("DataArray")) {
-      const std::string_view type = node.attribute("type").as_string();
-      const bool integer = type.starts_with("Int") || type.starts_with("UInt");
-      if (!integer && !type.starts_with("Float")) continue;  // text
+      if (!holds_numbers(node)) continue;
+      const bool integer = !std::string_view(node.attribute("type").as_string()).starts_with("Float");
       MeshField field;
       field.name = field_name(node.attribute("Name").as_string());
       const std::string_view text = node.attribute("NumberOfComponents").as_string("1");
       std::int64_t components = 0;
-      if (!parse_number(text, components) || components < 1 || components > most_vtu_components)
+      if (!parse_number(text, components) || components < 1 || components > max_vtu_components)
         data_.fail(node, "NumberOfComponents is " + in_quotes(text) + ", not a number from 1 to " +
-                             std::to_string(most_vtu_components));
+                             std::to_string(max_vtu_components));
       field.components = static_cast<int>(components);
       const auto per_item = static_cast<std::size_t>(components);
       field.values = data_.numbers(node, per_item * n);
@@ -160,7 +172,7 @@ class VtuReader {
         grid.child("FieldData").find_child_by_attribute("DataArray", "Name", names_field);
     if (!node) return;
     std::string text;
-    // Compressed text may be longer than the file, but hardly names.
+    // Compressed data may be longer than the file, but names hardly are.
     for (std::int64_t c : data_.integers(node, file_size_)) text += static_cast<char>(c);
     TextScanner lines(text, name_);
     while (lines.left() > 0) {
@@ -173,6 +185,25 @@ class VtuReader {
     }
   }
 
+  /// Arrays of the whole dataset, and arrays of text.
+  void note_dropped_arrays(pugi::xml_node grid, pugi::xml_node piece) {
+    const auto is_array = [](pugi::xml_node node) {
+      return std::string_view(node.name()) == "DataArray" || std::string_view(node.name()) == "Array";
+    };
+    const auto name_of = [](pugi::xml_node node) { return field_name(node.attribute("Name").as_string()); };
+    std::vector<std::string> of_dataset, text;
+    // Some programs put FieldData beside the grid or into the piece.
+    for (const pugi::xml_node parent : {data_.root(), grid, piece})
+      for (const pugi::xml_node node : parent.child("FieldData").children())
+        if (is_array(node) && !(parent == grid && name_of(node) == names_field))
+          of_dataset.push_back(name_of(node));
+    for (const char* part : {"PointData", "CellData"})
+      for (const pugi::xml_node node : piece.child(part).children())
+        if (is_array(node) && !holds_numbers(node)) text.push_back(name_of(node));
+    append_dropped_names(result_.dropped, "arrays of the whole dataset", of_dataset);
+    append_dropped_names(result_.dropped, "arrays of text", text);
+  }
+
   VtuData data_;
   std::string name_;
   const ReadTetMeshOptions& options_;
@@ -182,7 +213,7 @@ class VtuReader {
   ReadTetMesh result_;
 };
 
-/// Hands over a data array of `size` numbers, the i-th of which is `number(i)`.
+/// Writes a data array of `size` numbers, the i-th of which is `number(i)`.
 template <class NumberAt>
 void write_array(const ByteSink& sink, const char* type, const std::string& name, const std::string& more,
                  std::size_t size, NumberAt&& number) {
@@ -202,7 +233,7 @@ void write_array(const ByteSink& sink, const char* type, const std::string& name
   sink("\n</DataArray>\n");
 }
 
-/// In an attribute; control characters are not in it any more.
+/// A name without control characters in the form that an XML attribute needs.
 std::string escaped(const std::string& name) {
   std::string out;
   for (char c : name) {
@@ -252,7 +283,7 @@ void write_vtu(const TetMesh& mesh, const ByteSink& sink) {
       "byte_order=\"LittleEndian\" "
       "header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n");
   if (!mesh.material_names.empty()) {
-    // As numbers, since VTK's own string arrays are unknown to other readers.
+    // As numbers, since other readers do not know VTK's arrays of strings.
     std::string text;
     for (const auto& [tag, name] : mesh.material_names) {
       append_number(text, tag);
@@ -275,7 +306,7 @@ void write_vtu(const TetMesh& mesh, const ByteSink& sink) {
   write_array(sink, "Int64", "offsets", "", mesh.tets.size(),
               [](std::size_t i) { return static_cast<std::int64_t>(4 * (i + 1)); });
   write_array(sink, "UInt8", "types", "", mesh.tets.size(),
-              [](std::size_t) { return static_cast<std::uint8_t>(vtu_tet_type); });
+              [](std::size_t) { return static_cast<std::uint8_t>(vtk_tet_type); });
   sink("</Cells>\n");
   if (!mesh.point_fields.empty()) {
     sink("<PointData>\n");

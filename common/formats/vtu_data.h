@@ -12,48 +12,49 @@
 
 namespace tetwright {
 
-/// The data arrays of a VTK XML file: knows how the file encodes them. For vtu.cpp.
+/// The data arrays of a VTK XML file, in whatever encoding the file has. For vtu.cpp.
 class VtuData {
  public:
-  /// Parses the file; the bytes must outlive this. Throws InputError if it is not VTK XML, or compressed by
-  /// something other than zlib.
+  /// Parses the file; the bytes must outlive this object. Throws InputError if it is not VTK XML, or is
+  /// compressed by something other than zlib.
   VtuData(std::string_view bytes, std::string name);
 
-  /// The element VTKFile.
+  /// The XML element VTKFile.
   pugi::xml_node root() const { return root_; }
 
-  /// A DataArray's numbers. `most` is the largest number of values that makes sense (from the file's size or
-  /// other arrays); more, or a value of the wrong kind, is an InputError.
-  std::vector<double> numbers(pugi::xml_node array, std::size_t most) const;
-  std::vector<std::int64_t> integers(pugi::xml_node array, std::size_t most) const;
+  /// Reads the numbers of a DataArray. Throws InputError if there are more than `max_count` (which the caller
+  /// knows from the size of the file or from other arrays; no more memory is allocated), or if a number is
+  /// not of the kind asked for.
+  std::vector<double> numbers(pugi::xml_node array, std::size_t max_count) const;
+  std::vector<std::int64_t> integers(pugi::xml_node array, std::size_t max_count) const;
 
-  /// Throws InputError with the byte at which `node` stands.
+  /// Throws InputError with the byte offset of `node`.
   [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const;
   [[noreturn]] void fail(const std::string& message) const;
 
  private:
   template <class Value>
-  std::vector<Value> values(pugi::xml_node array, std::size_t most) const;
-  std::string decode(pugi::xml_node array, std::size_t most_bytes) const;
+  std::vector<Value> values(pugi::xml_node array, std::size_t max_count) const;
+  std::string decode(pugi::xml_node array, std::size_t max_bytes) const;
   template <class Source>
-  std::string decode_from(Source source, pugi::xml_node array, std::size_t most_bytes) const;
+  std::string decode_from(Source source, pugi::xml_node array, std::size_t max_bytes) const;
 
   std::string name_;
   std::size_t file_size_;
   pugi::xml_document document_;
   pugi::xml_node root_;
-  std::string_view appended_;  ///< what follows the underscore
+  std::string_view appended_;  ///< the data after the underscore
   bool appended_raw_ = false;
   bool swap_ = false;
   bool wide_header_ = false;  ///< sizes are UInt64
   bool compressed_ = false;
 };
 
-/// Compresses with zlib in blocks (in parallel) and encodes as VTK does inline: for format="binary",
-/// header_type="UInt32", compressor="vtkZLibDataCompressor".
-/// `fill(begin, bytes)` is called concurrently and writes the array's bytes from `begin` on, as many as there
-/// is room for; blocks begin at multiples of 2^18. Of the array, `size` bytes long, only what is compressed
-/// is in memory as a whole.
+/// Writes an array of `size` bytes as VTK encodes it inline for format="binary", header_type="UInt32" and
+/// compressor="vtkZLibDataCompressor". Blocks are compressed by zlib in parallel; the bytes written do not
+/// depend on the number of threads. `fill(begin, bytes)` is called concurrently and fills `bytes` with the
+/// bytes of the array that begin at `begin`, a multiple of 2^18. Needs memory for the compressed array and
+/// one block for each thread.
 void write_vtu_array(std::size_t size, const std::function<void(std::size_t begin, std::span<char>)>& fill,
                      const ByteSink& sink);
 

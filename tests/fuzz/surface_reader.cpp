@@ -1,5 +1,5 @@
-// Any bytes must give a surface whose indices are in range, or an InputError; a surface must come back from
-// what the writer makes of it.
+// Fuzzes a reader of surfaces: it must return a surface whose indices are in range, or throw an InputError.
+// The surface must survive a round trip through the writer.
 #include <cstdint>
 
 #include FORMAT_HEADER
@@ -9,14 +9,16 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tetwright;
   try {
-    const TriangleMesh mesh = READ_FORMAT({reinterpret_cast<const char*>(data), size}, "fuzz");
+    std::vector<Dropped> dropped;
+    const TriangleMesh mesh = READ_FORMAT({reinterpret_cast<const char*>(data), size}, "fuzz", &dropped);
+    for (const Dropped& d : dropped) TETWRIGHT_CHECK(!d.what.empty() && d.count > 0);
     TETWRIGHT_CHECK(!mesh.triangles.empty());
     for (const Vec3& p : mesh.points) TETWRIGHT_CHECK(p.allFinite());
     for (const Triangle& t : mesh.triangles)
       for (Index v : t) TETWRIGHT_CHECK(v < mesh.points.size());
     const TriangleMesh back = READ_FORMAT(WRITE_FORMAT(mesh), "fuzz");
     TETWRIGHT_CHECK(back.triangles.size() == mesh.triangles.size());
-    // By position: STL keeps no numbers and no unused points.
+    // Compared by position, since STL keeps neither the numbers of points nor unused points.
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
       for (std::size_t k = 0; k < 3; ++k)
         TETWRIGHT_CHECK(back.points[back.triangles[t][k]] == mesh.points[mesh.triangles[t][k]]);

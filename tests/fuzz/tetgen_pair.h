@@ -4,7 +4,7 @@
 
 namespace tetwright {
 
-/// Both files of a pair in one, with a line of equal signs between them.
+/// Reads both files of a pair from one text, in which a line of equal signs separates them.
 inline ReadTetMesh read_tetgen(std::string_view bytes, const std::string& name) {
   constexpr std::string_view between = "=====\n";
   const std::size_t at = bytes.find(between);

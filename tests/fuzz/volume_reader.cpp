@@ -1,5 +1,6 @@
-// Any bytes must give a volume that is what label_volume.h says, or an InputError; it must come back from
-// what the NRRD writer makes of it. Behind a line of equal signs is the file that a header names.
+// Fuzzes a reader of volumes: it must return a volume as label_volume.h describes it, or throw an InputError.
+// The volume must survive a round trip through the NRRD writer. The file that a header names follows a line
+// of equal signs.
 #include <cmath>
 #include <cstdint>
 #include <type_traits>

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "mesher/field_builder.h"
-#include "test_surfaces.h"
+#include "mesher/distance/body_field.h"
+#include "tests/mesher/test_surfaces.h"
 
 namespace tetwright {
 
 /// Surfaces as materials 1, 2, ... called m1, m2, ..., layers as those after them called l1, l2, ...
-inline PreparedInput make_input(const std::vector<TriangleMesh>& surfaces,
-                                const std::vector<double>& layers = {}) {
+inline MesherInput make_input(const std::vector<TriangleMesh>& surfaces,
+                              const std::vector<double>& layers = {}) {
   std::vector<MaterialSurface> bodies;
   MaterialTag tag = 0;
   for (const TriangleMesh& s : surfaces) {
@@ -17,13 +17,13 @@ inline PreparedInput make_input(const std::vector<TriangleMesh>& surfaces,
   std::vector<MaterialLayer> shells;
   for (std::size_t i = 0; i < layers.size(); ++i)
     shells.push_back({"l" + std::to_string(i + 1), ++tag, layers[i]});
-  return prepare_input(std::move(bodies), std::move(shells));
+  return make_mesher_input(std::move(bodies), std::move(shells));
 }
 
 inline std::shared_ptr<const MaterialField> make_field(const std::vector<TriangleMesh>& surfaces, double cell,
                                                        const std::vector<double>& layers = {},
                                                        bool uniform = false) {
-  const PreparedInput input = make_input(surfaces, layers);
+  const MesherInput input = make_input(surfaces, layers);
   return build_field(input, make_grid_frame(input.low, input.high, cell, uniform), false, nullptr);
 }
 

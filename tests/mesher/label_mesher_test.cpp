@@ -5,13 +5,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/interfaces.h"
-#include "common/mesh_check.h"
-#include "common/parallel.h"
-#include "common/quality.h"
+#include "common/geometry/quality.h"
+#include "common/mesh/interfaces.h"
+#include "common/mesh/mesh_check.h"
+#include "common/mesh/topology.h"
+#include "common/parallel/parallel.h"
 #include "common/random.h"
-#include "common/topology.h"
-#include "label_volumes.h"
+#include "tests/mesher/label_volumes.h"
 
 namespace tetwright::label_mesher_test {
 namespace {
@@ -24,8 +24,8 @@ MesherOptions cells_of(double cell, double adaptivity = MesherOptions().adaptivi
 }
 
 /// Meshes and looks at what must hold of any volume.
-MeshedSurface checked_mesh(const PreparedLabels& labels, const MesherOptions& options) {
-  MeshedSurface meshed = mesh_labels(labels, options, nullptr);
+DenseMesh checked_mesh(const LabelInput& labels, const MesherOptions& options) {
+  DenseMesh meshed = mesh_labels(labels, options, nullptr);
   for (const MeshFinding& f : check_mesh(meshed.mesh)) ADD_FAILURE() << mesh_finding_line(f);
   EXPECT_EQ(meshed.mesh.interfaces, find_interfaces(meshed.mesh));
   for (const LabelMaterial& m : labels.materials) {
@@ -34,12 +34,10 @@ MeshedSurface checked_mesh(const PreparedLabels& labels, const MesherOptions& op
   }
   return meshed;
 }
-MeshedSurface checked_mesh(const PreparedLabels& labels, double cell) {
-  return checked_mesh(labels, cells_of(cell));
-}
+DenseMesh checked_mesh(const LabelInput& labels, double cell) { return checked_mesh(labels, cells_of(cell)); }
 
 /// Promises of cells no larger than half a voxel.
-void expect_faithful(const PreparedLabels& labels, const TetMesh& mesh) {
+void expect_faithful(const LabelInput& labels, const TetMesh& mesh) {
   const LabelFidelity f = fidelity(labels, mesh);
   EXPECT_EQ(f.lost, 0u) << fidelity_line(f);
   EXPECT_LE(f.moved, 0.75) << fidelity_line(f);
@@ -65,9 +63,9 @@ Angles angles_of(const TetMesh& mesh) {
 
 /// Cells of voxels that are nearest to scattered seeds: blobs without thin parts in most places, of labels
 /// from `lowest` on.
-PreparedLabels blobs(const std::array<int, 3>& size, int seeds, int labels, std::uint64_t seed,
-                     MaterialTag lowest = 1, const Eigen::Matrix3d& directions = Eigen::Matrix3d::Identity(),
-                     const Vec3& origin = Vec3::Zero()) {
+LabelInput blobs(const std::array<int, 3>& size, int seeds, int labels, std::uint64_t seed,
+                 MaterialTag lowest = 1, const Eigen::Matrix3d& directions = Eigen::Matrix3d::Identity(),
+                 const Vec3& origin = Vec3::Zero()) {
   Random random(seed);
   struct Seed {
     Vec3 at;
@@ -102,7 +100,7 @@ void expect_line(const TetMesh& mesh, const std::string& line) {
 }
 
 TEST(LabelMesher, CentresInterfacesAndVolumesOfBlobs) {
-  const PreparedLabels labels = blobs({14, 13, 12}, 6, 3, 11);
+  const LabelInput labels = blobs({14, 13, 12}, 6, 3, 11);
   MesherOptions uniform = cells_of(0.5), with_outside = cells_of(0.5);
   uniform.uniform = true;
   with_outside.keep_outside = true;
@@ -111,12 +109,12 @@ TEST(LabelMesher, CentresInterfacesAndVolumesOfBlobs) {
 }
 
 TEST(LabelMesher, CentresOfBlobsAndGapsBetweenThem) {
-  const PreparedLabels labels = blobs({14, 13, 12}, 6, 3, 11, 0);
+  const LabelInput labels = blobs({14, 13, 12}, 6, 3, 11, 0);
   for (const double cell : {0.5, 0.37}) expect_faithful(labels, checked_mesh(labels, cell).mesh);
 }
 
 TEST(LabelMesher, CentresInterfacesAndVolumesOfBallsTouchingOneAnother) {
-  const PreparedLabels labels = make_labels({26, 16, 16}, [](int x, int y, int z) {
+  const LabelInput labels = make_labels({26, 16, 16}, [](int x, int y, int z) {
     if (length(x - 7.3, y - 7.6, z - 7.4) < 6.5) return 3;
     return length(x - 17.7, y - 7.2, z - 7.9) < 6.5 ? 9 : 0;
   });
@@ -124,7 +122,7 @@ TEST(LabelMesher, CentresInterfacesAndVolumesOfBallsTouchingOneAnother) {
   for (const double cell : {0.5, 0.3}) expect_faithful(labels, checked_mesh(labels, cell).mesh);
 }
 
-PreparedLabels noise(int side, std::uint32_t labels, std::uint64_t seed) {
+LabelInput noise(int side, std::uint32_t labels, std::uint64_t seed) {
   Random random(seed);
   return make_labels({side, side, side},
                      [&](int, int, int) { return static_cast<MaterialTag>(random.below(labels)); });
@@ -132,7 +130,7 @@ PreparedLabels noise(int side, std::uint32_t labels, std::uint64_t seed) {
 
 TEST(LabelMesher, InterfacesOfNoiseStayNear) {
   for (const std::uint32_t labels : {2u, 6u}) {
-    const PreparedLabels volume = noise(4, labels, labels);
+    const LabelInput volume = noise(4, labels, labels);
     const LabelFidelity f = fidelity(volume, checked_mesh(volume, 0.5).mesh);
     EXPECT_LE(f.moved, 0.75) << fidelity_line(f);
   }
@@ -141,7 +139,7 @@ TEST(LabelMesher, InterfacesOfNoiseStayNear) {
 TEST(LabelMesher, CentresOfNoise) {
   std::size_t lost = 0, centres = 0;
   for (std::uint64_t seed = 1; seed < 5; ++seed) {
-    const PreparedLabels volume = noise(4, 2 + seed % 2, seed);
+    const LabelInput volume = noise(4, 2 + seed % 2, seed);
     const LabelFidelity f = fidelity(volume, checked_mesh(volume, 0.5).mesh);
     lost += f.lost;
     centres += f.centres;
@@ -158,7 +156,7 @@ const std::string disc = "components 1, euler 1, boundary components 1, boundary
 const std::string shell = "components 1, euler 2, boundary components 2, boundary euler 4";
 
 /// The sheet is label 2; `topology` is what it must have.
-void expect_whole(const PreparedLabels& labels, double adaptivity, const std::string& topology) {
+void expect_whole(const LabelInput& labels, double adaptivity, const std::string& topology) {
   const TetMesh mesh = checked_mesh(labels, cells_of(0.5, adaptivity)).mesh;
   expect_line(mesh, (labels.materials.size() > 1 ? "material 2: " : "domain: ") + topology);
 }
@@ -221,7 +219,7 @@ TEST(LabelMesher, ShellsOfAVoxelStayWhole) { expect_shells_whole(MesherOptions()
 TEST(LabelMesher, VolumesOfSheetsOfAVoxel) {
   for (const Sides& sides : {Sides{1, 1}, {0, 1}}) {
     SCOPED_TRACE(::testing::Message() << sides.below << " within, " << sides.above);
-    const PreparedLabels labels = make_labels({26, 26, 26}, [&](int x, int y, int z) {
+    const LabelInput labels = make_labels({26, 26, 26}, [&](int x, int y, int z) {
       const double r = length(x - 12.5, y - 12.5, z - 12.5);
       return r > 11 ? 0 : r > 10 ? sides.above : r > 9 ? 2 : sides.below;
     });
@@ -245,7 +243,7 @@ double normals_rms_degrees(const TetMesh& mesh, const Vec3& centre) {
 
 TEST(LabelMesher, NormalsOfABallAreSmooth) {
   for (const Vec3& centre : {Vec3(11, 11, 11), Vec3(11.3, 11.1, 11.45)}) {
-    const PreparedLabels labels = make_labels(
+    const LabelInput labels = make_labels(
         {24, 24, 24}, [&](int x, int y, int z) { return (Vec3(x, y, z) - centre).norm() <= 10 ? 1 : 0; });
     for (const double cell : {1.0, 0.5}) {
       const double rms = normals_rms_degrees(checked_mesh(labels, cell).mesh, centre);
@@ -255,7 +253,7 @@ TEST(LabelMesher, NormalsOfABallAreSmooth) {
 }
 
 /// True if each voxel is in a cube of 2 x 2 x 2 of its label; outside goes on beyond the volume.
-bool two_thick(const PreparedLabels& labels) {
+bool two_thick(const LabelInput& labels) {
   const auto at = [&](int x, int y, int z) {
     const std::array<int, 3> v{x, y, z};
     for (int a = 0; a < 3; ++a)
@@ -278,7 +276,7 @@ bool two_thick(const PreparedLabels& labels) {
 }
 
 /// Coarse voxels of random labels, each of two by two by two.
-PreparedLabels doubled_noise(int side, std::uint32_t labels, std::uint64_t seed) {
+LabelInput doubled_noise(int side, std::uint32_t labels, std::uint64_t seed) {
   Random random(seed);
   std::vector<MaterialTag> coarse;
   for (int i = 0; i < side * side * side; ++i)
@@ -287,28 +285,28 @@ PreparedLabels doubled_noise(int side, std::uint32_t labels, std::uint64_t seed)
                      [&](int x, int y, int z) { return coarse[((z / 2) * side + y / 2) * side + x / 2]; });
 }
 
-void expect_good_shapes(const PreparedLabels& labels, double cell = 1, double most_poor = 2) {
+void expect_good_shapes(const LabelInput& labels, double cell = 1, double max_poor = 2) {
   const Angles a = angles_of(checked_mesh(labels, cell).mesh);
-  EXPECT_LE(a.percent_poor, most_poor);
+  EXPECT_LE(a.percent_poor, max_poor);
   EXPECT_GE(a.smallest, 0.001);
 }
 
 TEST(LabelMesher, ShapesOfTetsInCellsOfAVoxel) {
-  const PreparedLabels ball = make_labels(
+  const LabelInput ball = make_labels(
       {24, 24, 24}, [](int x, int y, int z) { return length(x - 11.3, y - 11.1, z - 11.4) < 10 ? 1 : 0; });
-  const PreparedLabels cube = make_labels({12, 12, 12}, [](int x, int y, int z) {
+  const LabelInput cube = make_labels({12, 12, 12}, [](int x, int y, int z) {
     return x < 2 || y < 2 || z < 2 || x > 9 || y > 9 || z > 9 ? 0 : x < 6 ? 1 : z < 6 ? 2 : 3;
   });
-  const PreparedLabels slabs = make_labels({12, 12, 12}, [](int x, int, int) { return 1 + x / 2 % 2; });
-  for (const PreparedLabels* labels : {&cube, &slabs}) EXPECT_TRUE(two_thick(*labels));
-  for (const PreparedLabels* labels : {&ball, &cube, &slabs}) expect_good_shapes(*labels);
+  const LabelInput slabs = make_labels({12, 12, 12}, [](int x, int, int) { return 1 + x / 2 % 2; });
+  for (const LabelInput* labels : {&cube, &slabs}) EXPECT_TRUE(two_thick(*labels));
+  for (const LabelInput* labels : {&ball, &cube, &slabs}) expect_good_shapes(*labels);
 }
 
 // Parts are two voxels thick here too, but four labels meet in every line between them: more tets are poor.
 TEST(LabelMesher, ShapesOfTetsWhereManyLabelsMeet) {
-  const PreparedLabels bars =
+  const LabelInput bars =
       make_labels({12, 12, 12}, [](int x, int, int z) { return x / 2 % 2 + 2 * (z / 4 % 2); });
-  for (const PreparedLabels& labels : {bars, doubled_noise(6, 2, 2), doubled_noise(6, 5, 5)}) {
+  for (const LabelInput& labels : {bars, doubled_noise(6, 2, 2), doubled_noise(6, 5, 5)}) {
     EXPECT_TRUE(two_thick(labels));
     expect_good_shapes(labels, 1, 40);
   }
@@ -316,7 +314,7 @@ TEST(LabelMesher, ShapesOfTetsWhereManyLabelsMeet) {
 
 // In cells of half a voxel lattice points lie on the plane between the labels.
 TEST(LabelMesher, ShapesOfTetsWhereAPlaneBetweenLabelsEnds) {
-  const PreparedLabels three = make_labels({12, 12, 12}, [](int x, int, int z) {
+  const LabelInput three = make_labels({12, 12, 12}, [](int x, int, int z) {
     return x < 6 ? 1 : z < 6 ? 2 : 3;
   });
   for (const double cell : {1.0, 0.5}) expect_good_shapes(three, cell, 10);
@@ -355,8 +353,8 @@ TEST(LabelMesher, RightPlacesInAnyDirections) {
   for (const Directions& d : all_directions()) {
     SCOPED_TRACE(d.what);
     const double voxel = d.matrix.colwise().norm().minCoeff();
-    const PreparedLabels labels = blobs({8, 7, 9}, 5, 3, 5, 1, d.matrix, voxel * Vec3(100, -50, 7));
-    const MeshedSurface meshed = checked_mesh(labels, 0.5 * voxel);
+    const LabelInput labels = blobs({8, 7, 9}, 5, 3, 5, 1, d.matrix, voxel * Vec3(100, -50, 7));
+    const DenseMesh meshed = checked_mesh(labels, 0.5 * voxel);
     for (const auto& [a, b, c, e] : meshed.mesh.tets)
       EXPECT_GT(tet_volume(meshed.mesh.points[a], meshed.mesh.points[b], meshed.mesh.points[c],
                            meshed.mesh.points[e]),
@@ -368,7 +366,7 @@ TEST(LabelMesher, RightPlacesInAnyDirections) {
 
 // A label that fills the volume ends where the voxels end, half a step beyond their centres.
 TEST(LabelMesher, LabelsTouchingTheBorder) {
-  const PreparedLabels full = make_labels({9, 8, 7}, [](int, int, int) { return 4; });
+  const LabelInput full = make_labels({9, 8, 7}, [](int, int, int) { return 4; });
   const TetMesh mesh = checked_mesh(full, 0.5).mesh;
   expect_faithful(full, mesh);
   expect_line(mesh, "domain: " + disc);
@@ -380,7 +378,7 @@ TEST(LabelMesher, LabelsTouchingTheBorder) {
   with_outside.keep_outside = true;
   expect_faithful(full, checked_mesh(full, with_outside).mesh);
 
-  const PreparedLabels layers =
+  const LabelInput layers =
       make_labels({12, 12, 12}, [](int x, int, int z) { return 1 + x / 6 + 2 * (z / 6); });
   expect_faithful(layers, checked_mesh(layers, 0.5).mesh);
 }
@@ -389,7 +387,7 @@ using Size = std::array<int, 3>;
 
 void expect_volume_of_one_label(const Size& size, double cell) {
   SCOPED_TRACE(::testing::Message() << size[0] << " x " << size[1] << " x " << size[2] << ", cell " << cell);
-  const PreparedLabels labels = make_labels(size, [](int, int, int) { return 1; });
+  const LabelInput labels = make_labels(size, [](int, int, int) { return 1; });
   MesherOptions with_outside = cells_of(cell);
   with_outside.keep_outside = true;
   try {
@@ -423,7 +421,7 @@ TEST(LabelMesher, NoiseOfManyLabelsStaysValid) {
 }
 
 TEST(LabelMesher, TheSameBytesForAnyNumberOfThreads) {
-  const PreparedLabels labels = blobs({20, 18, 19}, 12, 5, 3);
+  const LabelInput labels = blobs({20, 18, 19}, 12, 5, 3);
   const auto mesh_with = [&](unsigned threads) {
     const ThreadLimit limit(threads);
     return mesh_labels(labels, cells_of(1), nullptr).mesh;
@@ -440,12 +438,12 @@ TEST(LabelMesher, TheSameBytesForAnyNumberOfThreads) {
 
 TEST(LabelMesher, CoarseCellsWithoutThinParts) {
   const Vec3 centre(19.6, 20.3, 19.9);
-  const PreparedLabels labels = make_labels({40, 40, 40}, [&](int x, int y, int z) {
+  const LabelInput labels = make_labels({40, 40, 40}, [&](int x, int y, int z) {
     return (Vec3(x, y, z) - centre).norm() > 18 ? 0 : x < 20 ? 1 : 2;
   });
   for (const double cell : {2.0, 3.0, 5.0}) {
     SCOPED_TRACE(cell);
-    const MeshedSurface m = checked_mesh(labels, cell);
+    const DenseMesh m = checked_mesh(labels, cell);
     const LabelFidelity f = fidelity(labels, m.mesh);
     EXPECT_LE(f.moved, 0.5 * cell) << fidelity_line(f);
     EXPECT_LE(f.worst_volume, 0.02 * cell) << fidelity_line(f);
@@ -458,10 +456,10 @@ TEST(LabelMesher, CoarseCellsKeepThinSheets) {
   for (const int thickness : {1, 2})
     for (const double cell : {2.0, 5.0}) {
       SCOPED_TRACE(::testing::Message() << "sheet of " << thickness << ", cell " << cell);
-      const PreparedLabels labels = make_labels({18, 17, 20}, [&](int, int, int z) {
+      const LabelInput labels = make_labels({18, 17, 20}, [&](int, int, int z) {
         return z < 9 ? 1 : z < 9 + thickness ? 2 : 3;
       });
-      const MeshedSurface m = checked_mesh(labels, cell);
+      const DenseMesh m = checked_mesh(labels, cell);
       const LabelFidelity f = fidelity(labels, m.mesh);
       expect_line(m.mesh, "material 2: " + disc);
       EXPECT_LE(f.moved, 0.5 * cell) << fidelity_line(f);
@@ -471,11 +469,11 @@ TEST(LabelMesher, CoarseCellsKeepThinSheets) {
 TEST(LabelMesher, CoarseCellsKeepShells) {
   for (const double cell : {1.0, 2.0, 3.0}) {
     SCOPED_TRACE(cell);
-    const PreparedLabels labels = make_labels({22, 22, 22}, [&](int x, int y, int z) {
+    const LabelInput labels = make_labels({22, 22, 22}, [&](int x, int y, int z) {
       const double d = length(x - 10.6, y - 10.3, z - 10.5) - 8;
       return d > 0 ? 0 : d > -1.6 ? 2 : 1;
     });
-    const MeshedSurface m = checked_mesh(labels, cell);
+    const DenseMesh m = checked_mesh(labels, cell);
     const LabelFidelity f = fidelity(labels, m.mesh);
     expect_line(m.mesh, "material 2: " + shell);
     EXPECT_LE(f.moved, 0.5 * cell + 0.25) << fidelity_line(f);

@@ -1,17 +1,17 @@
-#include "label_volumes.h"
+#include "tests/mesher/label_volumes.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
-#include "common/parallel.h"
-#include "common/quality.h"
+#include "common/geometry/quality.h"
+#include "common/parallel/parallel.h"
 
 namespace tetwright {
 
-PreparedLabels make_labels(const std::array<int, 3>& size, const VoxelLabels& label,
-                           const Eigen::Matrix3d& directions, const Vec3& origin) {
+LabelInput make_labels(const std::array<int, 3>& size, const VoxelLabels& label,
+                       const Eigen::Matrix3d& directions, const Vec3& origin) {
   LabelVolume volume;
   volume.size = size;
   volume.origin = origin;
@@ -21,10 +21,10 @@ PreparedLabels make_labels(const std::array<int, 3>& size, const VoxelLabels& la
       for (int x = 0; x < size[0]; ++x) volume.labels.push_back(label(x, y, z));
   LabelChoice choice;
   choice.min_voxels = 0;
-  return prepare_labels(std::move(volume), "made.nrrd", choice, nullptr);
+  return make_label_input(std::move(volume), "made.nrrd", choice, nullptr);
 }
 
-RegionIndex region_of(const PreparedLabels& labels, MaterialTag tag) {
+RegionIndex region_of(const LabelInput& labels, MaterialTag tag) {
   for (std::size_t i = 0; i < labels.materials.size(); ++i)
     if (labels.materials[i].tag == tag) return static_cast<RegionIndex>(i + 1);
   return outside_region;
@@ -35,7 +35,7 @@ namespace {
 /// Regions by index, outside beyond the volume.
 class Voxels {
  public:
-  explicit Voxels(const PreparedLabels& labels) : labels_(labels) {}
+  explicit Voxels(const LabelInput& labels) : labels_(labels) {}
 
   bool has(const std::array<int, 3>& v) const {
     for (int a = 0; a < 3; ++a)
@@ -96,14 +96,13 @@ class Voxels {
   }
 
  private:
-  const PreparedLabels& labels_;
+  const LabelInput& labels_;
 };
 
 enum Hit : std::uint8_t { own = 1, other = 2 };
 
 /// What holds the centre of each voxel: tets of its own region, tets of others (well inside).
-std::vector<std::uint8_t> hits(const PreparedLabels& labels, const std::vector<Vec3>& at,
-                               const TetMesh& mesh) {
+std::vector<std::uint8_t> hits(const LabelInput& labels, const std::vector<Vec3>& at, const TetMesh& mesh) {
   constexpr double slack = 1e-9;
   const Voxels voxels(labels);
   std::map<MaterialTag, RegionIndex> regions;
@@ -142,7 +141,7 @@ std::vector<std::uint8_t> hits(const PreparedLabels& labels, const std::vector<V
 
 }  // namespace
 
-LabelFidelity fidelity(const PreparedLabels& labels, const TetMesh& mesh) {
+LabelFidelity fidelity(const LabelInput& labels, const TetMesh& mesh) {
   LabelFidelity f;
   const Voxels voxels(labels);
   const Eigen::Matrix3d to_index = labels.directions.inverse();

@@ -12,9 +12,9 @@ namespace tetwright {
 using VoxelLabels = std::function<MaterialTag(int x, int y, int z)>;
 
 /// A volume of voxels of size 1 whose first centre is the origin, no islands merged. 0 is outside.
-PreparedLabels make_labels(const std::array<int, 3>& size, const VoxelLabels& label,
-                           const Eigen::Matrix3d& directions = Eigen::Matrix3d::Identity(),
-                           const Vec3& origin = Vec3::Zero());
+LabelInput make_labels(const std::array<int, 3>& size, const VoxelLabels& label,
+                       const Eigen::Matrix3d& directions = Eigen::Matrix3d::Identity(),
+                       const Vec3& origin = Vec3::Zero());
 
 /// What a mesh of a segmented volume promises, measured.
 struct LabelFidelity {
@@ -40,12 +40,12 @@ struct LabelFidelity {
 
 /// Centres of outside count too. Distances are taken at the corners, middles of edges and centres of the
 /// triangles. Time grows with voxels and triangles; index space is that of the first voxel's centre.
-LabelFidelity fidelity(const PreparedLabels& labels, const TetMesh& mesh);
+LabelFidelity fidelity(const LabelInput& labels, const TetMesh& mesh);
 
 /// "lost 0 of 100 centres, ...".
 std::string fidelity_line(const LabelFidelity& f);
 
 /// Number of the region of a material.
-RegionIndex region_of(const PreparedLabels& labels, MaterialTag tag);
+RegionIndex region_of(const LabelInput& labels, MaterialTag tag);
 
 }  // namespace tetwright

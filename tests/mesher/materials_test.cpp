@@ -3,13 +3,13 @@
 #include <numbers>
 
 #include "common/error.h"
-#include "common/interfaces.h"
-#include "common/mesh_check.h"
-#include "common/parallel.h"
-#include "common/quality.h"
-#include "common/topology.h"
-#include "fields.h"
+#include "common/geometry/quality.h"
+#include "common/mesh/interfaces.h"
+#include "common/mesh/mesh_check.h"
+#include "common/mesh/topology.h"
+#include "common/parallel/parallel.h"
 #include "mesher/mesher.h"
+#include "tests/mesher/fields.h"
 
 namespace tetwright::materials_test {
 namespace {
@@ -17,11 +17,11 @@ namespace {
 constexpr double pi = std::numbers::pi;
 double ball_volume(double r) { return 4 * pi / 3 * r * r * r; }
 
-MeshedSurface mesh_of(const PreparedInput& input, int resolution, bool keep_outside = false) {
+DenseMesh mesh_of(const MesherInput& input, int resolution, bool keep_outside = false) {
   MesherOptions options;
   options.resolution = resolution;
   options.keep_outside = keep_outside;
-  MeshedSurface meshed = mesh_surfaces(input, options, nullptr);
+  DenseMesh meshed = mesh_surfaces(input, options, nullptr);
   for (const MeshFinding& f : check_mesh(meshed.mesh)) ADD_FAILURE() << mesh_finding_line(f);
   // The mesher looks at points on interfaces and on the box alone; nothing else may be an interface.
   EXPECT_EQ(meshed.mesh.interfaces, find_interfaces(meshed.mesh));
@@ -141,7 +141,7 @@ TEST(Materials, KeepOutsideFillsABox) {
 }
 
 TEST(Materials, TheSameBytesForAnyNumberOfThreads) {
-  const PreparedInput input = make_input({make_sphere(1), make_sphere(0.7, {0.6, 0.1, 0})}, {0.15});
+  const MesherInput input = make_input({make_sphere(1), make_sphere(0.7, {0.6, 0.1, 0})}, {0.15});
   const auto mesh_with = [&](unsigned threads) {
     const ThreadLimit limit(threads);
     return mesh_of(input, 20).mesh;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/random.h"
-#include "mesher/octree.h"
+#include "mesher/lattice/octree.h"
 
 namespace tetwright {
 

@@ -1,4 +1,4 @@
-#include "test_surfaces.h"
+#include "tests/mesher/test_surfaces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include <set>
 #include <string>
 
-#include "common/predicates.h"
-#include "common/quality.h"
+#include "common/geometry/predicates.h"
+#include "common/geometry/quality.h"
 
 namespace tetwright {
 

@@ -5,7 +5,7 @@
 #include "common/tet_mesh.h"
 #include "common/triangle_mesh.h"
 #include "common/types.h"
-#include "mesher/cutting.h"
+#include "mesher/cut/cutting.h"
 
 namespace tetwright {
 

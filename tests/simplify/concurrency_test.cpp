@@ -3,9 +3,9 @@
 // (test_without_locks), it must fail.
 #include <gtest/gtest.h>
 
-#include "common/mesh_check.h"
-#include "common/parallel.h"
-#include "common/topology.h"
+#include "common/mesh/mesh_check.h"
+#include "common/mesh/topology.h"
+#include "common/parallel/parallel.h"
 #include "simplify/simplify.h"
 #include "tests/simplify/meshes.h"
 

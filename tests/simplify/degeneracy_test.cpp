@@ -2,8 +2,8 @@
 // and improved with a strong hand: nothing of it may be lost or torn.
 #include <gtest/gtest.h>
 
-#include "common/mesh_check.h"
-#include "common/topology.h"
+#include "common/mesh/mesh_check.h"
+#include "common/mesh/topology.h"
 #include "simplify/simplify.h"
 #include "tests/simplify/meshes.h"
 

@@ -1,10 +1,11 @@
 // Ten thousand random operations on small meshes of several materials, looked at after each.
-#include "common/mesh_check.h"
-#include "common/topology.h"
-#include "simplify/collapse.h"
-#include "simplify/face_removal.h"
-#include "simplify/insertion.h"
-#include "simplify/smoothing.h"
+#include "common/mesh/mesh_check.h"
+#include "common/mesh/topology.h"
+#include "simplify/operations/collapse.h"
+#include "simplify/operations/edge_removal.h"
+#include "simplify/operations/face_removal.h"
+#include "simplify/operations/insertion.h"
+#include "simplify/operations/smoothing.h"
 #include "tests/simplify/workbench.h"
 
 namespace tetwright::random_operations_test {
@@ -23,7 +24,7 @@ TetMesh snapshot(const EditableMesh& mesh) {
     for (int k = 0; k < 4; ++k) {
       if (number[r.points[k]] == no_index) {
         number[r.points[k]] = static_cast<Index>(out.points.size());
-        out.points.push_back(mesh.to_input(mesh.position(r.points[k])));
+        out.points.push_back(mesh.space().to_input(mesh.position(r.points[k])));
       }
       ids[k] = number[r.points[k]];
     }
@@ -42,40 +43,40 @@ const std::array<Tag (*)(int, int, int), 5> materials{
     [](int x, int y, int z) { return x == 1 && y == 1 ? Tag() : Tag(z == 1 ? 2 : 1); }};
 
 /// One operation, chosen at random, on the tet.
-Outcome random_operation(Workbench& w, Index t, const Slide& slide) {
-  Task& task = *w.task;
-  Random& random = task.random;
+Outcome random_operation(Workbench& w, Index t, const SurfaceProjection& projection) {
+  Workspace& ws = *w.ws;
+  Random& random = ws.random;
   BlockRules rules = w.rules;
   rules.accept_worse = random.uniform() < 0.5 ? 1 : 0;
   rules.good_enough = random.uniform() < 0.3 ? 0.05f : 1;
   if (random.below(2)) {
-    rules.slide = &slide;
-    rules.largest_distance = 0.2;
+    rules.projection = &projection;
+    rules.max_distance = 0.2;
     rules.leave_surface = random.below(2);
   }
   const auto place = random.below(2) ? InsertionPlace::best : InsertionPlace::centre;
   const FlipReach reach = random.below(2) ? FlipReach{7, 5} : FlipReach{3, 1};
   const Tet points = w.mesh.tet(t).points;
-  for (Index p : points) EXPECT_TRUE(task.points.try_lock(p));
-  const auto star = [&] { return task.star.gather(w.mesh, points[random.below(4)], task.points); };
+  for (Index p : points) EXPECT_TRUE(ws.points.try_lock(p));
+  const auto star = [&] { return ws.star.gather(w.mesh, points[random.below(4)], ws.points); };
   switch (random.below(9)) {
     case 0:
-      return remove_edge(task, rules, t, static_cast<int>(random.below(6)), reach);
+      return remove_edge(ws, rules, t, static_cast<int>(random.below(6)), reach);
     case 1:
-      return remove_face(task, rules, t, static_cast<int>(random.below(4)), reach);
+      return remove_face(ws, rules, t, static_cast<int>(random.below(4)), reach);
     case 2:
     case 3:
-      return star() == Outcome::done ? collapse(task, rules) : Outcome::no_candidate;
+      return star() == Outcome::done ? collapse(ws, rules) : Outcome::no_candidate;
     case 4:
-      return star() == Outcome::done ? smooth(task, rules) : Outcome::no_candidate;
+      return star() == Outcome::done ? smooth(ws, rules) : Outcome::no_candidate;
     case 5:
-      return star() == Outcome::done ? optimise(task, rules) : Outcome::no_candidate;
+      return star() == Outcome::done ? optimise(ws, rules) : Outcome::no_candidate;
     case 6:
-      return insert_in_tet(task, rules, t, place);
+      return insert_in_tet(ws, rules, t, place);
     case 7:
-      return insert_in_face(task, rules, t, static_cast<int>(random.below(4)), place);
+      return insert_in_face(ws, rules, t, static_cast<int>(random.below(4)), place);
     default:
-      return insert_in_edge(task, rules, t, static_cast<int>(random.below(6)), place, true);
+      return insert_in_edge(ws, rules, t, static_cast<int>(random.below(6)), place, true);
   }
 }
 
@@ -92,19 +93,19 @@ TEST(RandomOperations, TenThousandLeaveEveryMeshSoundAndItsTopologyAsItWas) {
       Workbench w(mesh);
       w.mesh.compact(4096, 1024);
       w.grid.build(w.mesh, 0, 1024);
-      w.task = std::make_unique<Task>(w.mesh, w.grid, w.ledger);
-      w.task->random = Random(seed);
+      w.ws = std::make_unique<Workspace>(w.mesh, w.grid, w.ledger);
+      w.ws->random = Random(seed);
       w.rules.objective.kind = seed % 2 ? Objective::Kind::shape : Objective::Kind::paper;
-      w.rules.most_tets = 2 * mesh.tets.size();
-      const Slide slide(w.mesh, nullptr);
+      w.rules.max_tets = 2 * mesh.tets.size();
+      const SurfaceProjection projection(w.mesh, nullptr);
       for (int i = 0; i < operations_per_mesh; ++i) {
         Index t;
         do {
-          t = w.task->random.below(static_cast<std::uint32_t>(w.mesh.tet_slots()));
+          t = w.ws->random.below(static_cast<std::uint32_t>(w.mesh.tet_slots()));
         } while (w.mesh.dead(t));
-        const Outcome o = random_operation(w, t, slide);
-        ASSERT_EQ(w.task->cells.count(), 0u);
-        w.task->release();
+        const Outcome o = random_operation(w, t, projection);
+        ASSERT_EQ(w.ws->cells.count(), 0u);
+        w.ws->release();
         ++tried;
         if (o != Outcome::done) continue;
         ++done;

@@ -4,10 +4,10 @@
 
 #include <cstring>
 
-#include "common/interfaces.h"
-#include "common/mesh_check.h"
-#include "common/parallel.h"
-#include "common/topology.h"
+#include "common/mesh/interfaces.h"
+#include "common/mesh/mesh_check.h"
+#include "common/mesh/topology.h"
+#include "common/parallel/parallel.h"
 #include "tests/simplify/meshes.h"
 
 namespace tetwright::simplify_test {

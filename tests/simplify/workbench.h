@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "common/predicates.h"
-#include "simplify/task.h"
+#include "common/geometry/predicates.h"
+#include "simplify/operations/workspace.h"
 #include "tests/simplify/meshes.h"
 
 namespace tetwright {
@@ -17,7 +17,7 @@ struct Workbench {
   explicit Workbench(const TetMesh& input) : mesh(TetMesh(input), "mesh") {
     mesh.compact(64, 32);
     rules.objective.quality = TetQuality::for_target(mesh.total_volume(), 1);
-    rules.largest_error = 1e9;
+    rules.max_error = 1e9;
     for (Index t = 0; t < mesh.tet_slots(); ++t) {
       const Tet& p = mesh.tet(t).points;
       if (p[0] != no_index)
@@ -25,13 +25,13 @@ struct Workbench {
                                             mesh.position(p[3])));
     }
     grid.build(mesh, 0, 64);
-    task = std::make_unique<Task>(mesh, grid, ledger);
+    ws = std::make_unique<Workspace>(mesh, grid, ledger);
   }
 
   /// The point at a place given in input units.
   Index at(double x, double y, double z) const {
     for (Index p : live_points())
-      if ((mesh.to_input(mesh.position(p)) - Vec3(x, y, z)).norm() < 1e-12) return p;
+      if ((mesh.space().to_input(mesh.position(p)) - Vec3(x, y, z)).norm() < 1e-12) return p;
     ADD_FAILURE() << "no point at " << x << ' ' << y << ' ' << z;
     return 0;
   }
@@ -40,23 +40,23 @@ struct Workbench {
   std::vector<Index> live_points() const {
     std::vector<Index> out;
     for (Index p = 0; p < mesh.point_slots(); ++p)
-      if (mesh.hint(p) != no_index) out.push_back(p);
+      if (mesh.incident_tet(p) != no_index) out.push_back(p);
     return out;
   }
 
   /// The star of a point, held.
   Star& star(Index p) {
-    task->release();
-    EXPECT_TRUE(task->points.try_lock(p));
-    EXPECT_EQ(task->star.gather(mesh, p, task->points), Outcome::done);
-    return task->star;
+    ws->release();
+    EXPECT_TRUE(ws->points.try_lock(p));
+    EXPECT_EQ(ws->star.gather(mesh, p, ws->points), Outcome::done);
+    return ws->star;
   }
 
   /// Everything given back, links sound, all tets positive, as many triangles in the grid as faces between
   /// regions.
   void expect_sound() {
-    EXPECT_EQ(task->cells.count(), 0u);  // no operation leaves a cell of the grid held
-    task->release();
+    EXPECT_EQ(ws->cells.count(), 0u);  // no operation leaves a cell of the grid held
+    ws->release();
     EXPECT_TRUE(mesh.locks().all_free());
     EXPECT_TRUE(grid.locks().all_free());
     EXPECT_TRUE(mesh.links_consistent());
@@ -90,7 +90,7 @@ struct Workbench {
   SurfaceGrid grid;
   VolumeLedger ledger;  ///< no bounds unless opened
   BlockRules rules;
-  std::unique_ptr<Task> task;
+  std::unique_ptr<Workspace> ws;
 };
 
 /// As if every tet were as poor as can be: any positive ones are better.
@@ -100,8 +100,8 @@ inline void make_poor(Workbench& w) {
 }
 
 /// Locks the four points of a tet.
-inline void hold_tet(Workbench& w, Index t) {
-  for (Index p : w.mesh.tet(t).points) ASSERT_TRUE(w.task->points.try_lock(p));
+inline void lock_tet(Workbench& w, Index t) {
+  for (Index p : w.mesh.tet(t).points) ASSERT_TRUE(w.ws->points.try_lock(p));
 }
 
 }  // namespace tetwright

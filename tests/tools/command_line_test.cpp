@@ -66,5 +66,57 @@ TEST(CommandLine, OtherOptionsOfSegmentedVolumes) {
     expect_refused({std::string("--min-voxels=") + wrong}, "is not a whole number");
 }
 
+TEST(CommandLine, NumbersOutOfRangeNameOptionValueAndRange) {
+  const auto refused = [](const std::vector<std::string>& arguments, const std::string& value,
+                          const std::string& range) {
+    std::vector<std::string> all{"tetwright"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (std::string& a : all) argv.push_back(a.data());
+    CommandLine line;
+    const std::string message =
+        error_of<UsageError>([&] { parse_command_line(static_cast<int>(argv.size()), argv.data(), line); });
+    const std::string& option = arguments.back();
+    EXPECT_NE(message.find(option.substr(0, option.find('='))), std::string::npos) << message;
+    EXPECT_NE(message.find("'" + value + "' is not a " + range), std::string::npos) << message;
+  };
+  const auto check = [&](const std::vector<std::string>& call, const std::string& option,
+                         const std::vector<std::string>& values, const std::string& range) {
+    for (const std::string& value : values) {
+      std::vector<std::string> arguments = call;
+      arguments.push_back(option + "=" + value);
+      refused(arguments, value, range);
+    }
+  };
+  const std::vector<std::string> simplify{"simplify", "a.vtu", "-o", "b.vtu"};
+  const std::vector<std::string> mesh{"mesh", "a.off", "-o", "b.vtu"};
+  const std::vector<std::string> improve{"improve", "a.vtu", "-o", "b.vtu"};
+  for (const std::vector<std::string>& call : {simplify, {"prepare", "a.off", "-o", "b.vtu"}})
+    check(call, "--target-tets",
+          {"0", "-5", "1.5", "many", "1e6", "0x10", "1073741825", "99999999999", "99999999999999999999999",
+           "+5"},
+          "whole number from 1 to 1073741824");
+  check(mesh, "--threads", {"0", "1025", "-1", "two"}, "whole number from 1 to 1024");
+  check(mesh, "--seed", {"-1", "1.5", "18446744073709551616"}, "whole number from 0 to 18446744073709551615");
+  check(mesh, "--resolution", {"3", "4097", "64.0"}, "whole number from 4 to 4096");
+  check(mesh, "--voxel-size", {"0", "-1", "nan", "inf", "1e400", "small", "1mm"}, "number above 0");
+  check(mesh, "--adaptivity", {"-0.1", "nan"}, "number of at least 0");
+  check(improve, "--max-iterations", {"0", "10001"}, "whole number from 1 to 10000");
+  check(improve, "--min-solid-angle", {"-0.1", "0.56", "nan"}, "solid angle from 0 to 0.5513");
+  check(improve, "--only-below", {"-0.1", "2", "nan"}, "solid angle from 0 to 0.5513");
+  std::vector<std::string> with_target = simplify;
+  with_target.push_back("--target-tets=5");
+  check(with_target, "--beta", {"0", "nan", "-1"}, "number above 0");
+  check(with_target, "--gamma", {"-1", "inf"}, "number of at least 0");
+}
+
+TEST(CommandLine, NumbersAreDecimal) {
+  EXPECT_EQ(parse({"--resolution", "0100"}).resolution, 100);
+  EXPECT_EQ(parse({"--seed", "18446744073709551615"}).seed, 18446744073709551615u);
+  EXPECT_EQ(parse({"--voxel-size", "1.5e-3"}).voxel_size, 0.0015);
+  EXPECT_EQ(parse({"--adaptivity", "0"}).adaptivity, 0);
+  EXPECT_EQ(parse({"--threads", "1024"}).threads, 1024u);
+}
+
 }  // namespace
 }  // namespace tetwright::command_line_test

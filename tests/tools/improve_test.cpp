@@ -1,4 +1,4 @@
-// `improve`, and what steers it and `simplify`, as users meet them.
+// `improve`, and the options that it shares with `simplify`, through the program.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,6 +57,21 @@ TEST(Improve, AnAngleThatCannotBeHadIsStatusOneAndWritten) {
   EXPECT_EQ(std::count(a.err.begin(), a.err.end(), '\n'), 1) << a.err;
   EXPECT_EQ(json_of(f / "s.json")["shortfall"][0]["what"], "min_solid_angle");
   EXPECT_EQ(run("check " + (f / "o.vtu") + " --before " + (f / "m.vtu")).status, 0);
+}
+
+TEST(Improve, TetsThatStayBelowOnlyBelowAreReported) {
+  const TemporaryFolder f;
+  // A single flat tet, whose shape no operation can change.
+  put(f / "flat.mesh",
+      "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 0.001 0\n"
+      "Tetrahedra\n1\n1 2 3 4 1\nEnd\n");
+  const Answer a = run("improve " + (f / "flat.mesh") + " -o " + (f / "o.vtu") +
+                       " --only-below 0.05 --max-iterations 2 --stats " + (f / "s.json"));
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_NE(a.err.find("1 tets still below --only-below 0.05 sr, the smallest at 0.00"), std::string::npos)
+      << a.err;
+  EXPECT_EQ(std::count(a.err.begin(), a.err.end(), '\n'), 1) << a.err;
+  EXPECT_EQ(json_of(f / "s.json")["input"]["findings"].size(), 1u);
 }
 
 TEST(Improve, WrongCallsAreStatusTwoAndSayWhatIsRight) {
@@ -119,7 +134,7 @@ TEST(Simplify, ATargetThatTopologyForbidsSaysWhichRules) {
   const std::string rules = json_of(f / "s.json")["shortfall"][0]["held_back_by"];
   EXPECT_NE(a.err.find(rules), std::string::npos) << rules;
   EXPECT_EQ(run("check " + (f / "o.vtu") + " --before " + (f / "m.vtu")).status, 0);
-  // And where it is the number of iterations.
+  // The number of iterations is a limit too.
   const Answer b =
       run("simplify " + (f / "m.vtu") + " -o " + (f / "o.vtu") + " --target-tets 4 --max-iterations 1");
   EXPECT_EQ(b.status, 1);

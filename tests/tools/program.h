@@ -1,22 +1,25 @@
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <string>
+#include <vector>
 
 #include "tests/common/temporary_folder.h"
 
 namespace tetwright {
 
-/// What a run of the program answered.
+/// The result of a run of the program.
 struct Answer {
   int status;
   std::string out, err;
 };
 
-/// Runs `tetwright ARGUMENTS` in a shell, after `before` (for example a limit), by way of `with` (for example
-/// timeout).
+/// Runs `tetwright ARGUMENTS` in a shell, after the command `before` (for example a limit) and through the
+/// command `with` (for example timeout).
 inline Answer run(const std::string& arguments, const std::string& before = "",
                   const std::string& with = "") {
   const TemporaryFolder folder;
@@ -26,5 +29,18 @@ inline Answer run(const std::string& arguments, const std::string& before = "",
   return {WIFEXITED(code) ? WEXITSTATUS(code) : 1000 + WTERMSIG(code), contents(folder / "out"),
           contents(folder / "err")};
 }
+
+/// Expects the status, and one line on stderr that begins as all errors do and contains each of `said`.
+inline void expect_refused(const std::string& arguments, int status, const std::vector<std::string>& said,
+                           const std::string& before = "") {
+  const Answer a = run(arguments, before);
+  EXPECT_EQ(a.status, status) << arguments << "\n" << a.err;
+  EXPECT_EQ(a.err.rfind("tetwright: ", 0), 0u) << a.err;
+  EXPECT_EQ(std::count(a.err.begin(), a.err.end(), '\n'), 1) << a.err;
+  for (const std::string& s : said) EXPECT_NE(a.err.find(s), std::string::npos) << a.err << "lacks: " << s;
+}
+
+inline const std::string tetrahedron_off =
+    "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
 
 }  // namespace tetwright

@@ -41,7 +41,7 @@ TEST(StatsJson, FollowsItsSchema) {
   stats("improve " + (f / "s.vtu") + " -o " + (f / "i.vtu"));
   stats("check " + (f / "d.vtu"));
   stats("sample organs -o " + (f / "o.nrrd"));
-  const auto organs = stats("mesh " + (f / "o.nrrd") + " -o " + (f / "o.vtu"));
+  const auto organs = stats("mesh " + (f / "o.nrrd") + " -o " + (f / "o.vtu") + " --voxel-size 2 --uniform");
   EXPECT_EQ(organs["input"]["volume"]["labels"].size(), organs["result"]["materials"].size());
   EXPECT_FALSE(organs["result"]["interfaces"].empty());
   auto j = stats("prepare " + (f / "t.ply") + " -o " + (f / "p.vtu") + " --target-tets 1000 --threads 2");
@@ -49,7 +49,7 @@ TEST(StatsJson, FollowsItsSchema) {
   EXPECT_EQ(j["result"]["materials"][0]["name"], "t");
   EXPECT_GT(j["peak_bytes"], 0);
   EXPECT_FALSE(j["iterations"].empty());
-  // The schema is no rubber stamp.
+  // The schema refuses unknown keys and wrong types.
   j["surprise"] = 1;
   EXPECT_NE(violations(j), "");
   j.erase("surprise");

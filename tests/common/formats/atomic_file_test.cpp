@@ -6,6 +6,7 @@
 
 #include <csignal>
 
+#include "common/progress.h"
 #include "tests/common/formats/expect_error.h"
 #include "tests/common/formats/file_test.h"
 
@@ -103,8 +104,68 @@ TEST_F(AtomicFile, AnErrorBetweenPiecesLeavesTheOldFile) {
   EXPECT_EQ(get(path("a")), "newer");
 }
 
+TEST_F(AtomicFile, FilesOfOneCallAppearTogether) {
+  put(path("a"), "old");
+  {
+    OutputFiles files;
+    files.write(path("a"), "new");
+    files.write(path("b"), "other");
+    EXPECT_EQ(get(path("a")), "old");
+    EXPECT_FALSE(std::filesystem::exists(path("b")));
+  }
+  EXPECT_EQ(files(), 1u);  // files that were not committed are removed
+  OutputFiles files;
+  files.write(path("a"), "new");
+  files.write(path("b"), "other");
+  // A file that can't be written does not affect the others.
+  EXPECT_NE(error_of<OutputError>([&] { files.write(path("none/c"), "x"); }).find("No such file"),
+            std::string::npos);
+  files.commit();
+  EXPECT_EQ(get(path("a")), "new");
+  EXPECT_EQ(get(path("b")), "other");
+  EXPECT_EQ(this->files(), 2u);
+}
+
+TEST_F(AtomicFile, CancellingLeavesTheOldFile) {
+  put(path("a"), "old");
+  Progress progress;
+  OutputFiles files(&progress);
+  files.write(path("b"), "before");
+  (void)error_of<Interrupted>([&] {
+    files.write(path("a"), [&](const ByteSink& sink) {
+      sink("one");
+      progress.cancel();
+      sink("two");
+    });
+  });
+  (void)error_of<Interrupted>([&] { files.write(path("a"), "x"); });
+  (void)error_of<Interrupted>([&] { files.commit(); });
+  EXPECT_EQ(get(path("a")), "old");
+  EXPECT_FALSE(std::filesystem::exists(path("b")));
+}
+
+TEST_F(AtomicFile, WhatIsAbandonedIsGone) {
+  put(path("a"), "old");
+  // In a process of its own, since nothing can be written afterwards.
+  EXPECT_EXIT(
+      {
+        OutputFiles files;
+        files.write(path("a"), "new");
+        files.write(path("b"), "other");
+        (void)abandon_output_files();
+        _exit(this->files() != 1 || get(path("a")) != "old" ? 1 : 7);
+      },
+      testing::ExitedWithCode(7), "");
+  EXPECT_EXIT(
+      {
+        write_file_atomically(path("c"), "done");
+        _exit(abandon_output_files() ? 7 : 1);
+      },
+      testing::ExitedWithCode(7), "");
+}
+
 TEST_F(AtomicFile, ADiskThatIsFull) {
-  // Every write to /dev/full fails so; as a target it is refused before that.
+  // /dev/full fails every write as a full disk does, but it is refused as a target before that.
   EXPECT_NE(error_of<OutputError>([&] { write_file_atomically("/dev/full", "x"); }).find("regular"),
             std::string::npos);
 }

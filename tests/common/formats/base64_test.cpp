@@ -27,7 +27,7 @@ TEST(Base64, BlocksOneAfterAnotherInPieces) {
   Base64Reader reader(" Zg==\n Zm8=Zm9v ");
   char out[10];
   EXPECT_EQ(reader.read(out, 2), 2u);
-  EXPECT_GE(reader.most_left(), 4u);
+  EXPECT_GE(reader.max_left(), 4u);
   EXPECT_EQ(reader.read(out + 2, 8), 4u);
   EXPECT_EQ(std::string(out, 6), "ffofoo");
 }

@@ -10,7 +10,7 @@ using Packing = ByteSource::Packing;
 TEST(ByteSource, PlainBytes) {
   const std::string bytes = "0123456789";
   ByteSource source(bytes, Packing::none, "f");
-  EXPECT_EQ(source.most_left(), 10u);
+  EXPECT_EQ(source.max_left(), 10u);
   EXPECT_EQ(source.take(3), "012");
   EXPECT_EQ(source.skip(2), 2u);
   EXPECT_EQ(source.take(99), "56789");
@@ -26,7 +26,7 @@ TEST(ByteSource, InflatedBytesInPiecesOfAnySize) {
     for (const std::size_t piece : {1u, 7u, 1000u, 1000000u}) {
       const std::string packed = deflated(bytes, wrapper);
       ByteSource source(packed, Packing::deflate, "f");
-      EXPECT_GE(source.most_left(), bytes.size());
+      EXPECT_GE(source.max_left(), bytes.size());
       EXPECT_EQ(source.skip(70000), 70000u);
       std::string out;
       for (std::string_view part; !(part = source.take(piece)).empty();) out += part;
@@ -35,24 +35,39 @@ TEST(ByteSource, InflatedBytesInPiecesOfAnySize) {
     }
 }
 
-TEST(ByteSource, MostLeftHoldsForTheBestCompression) {
+TEST(ByteSource, MembersOneAfterTheOther) {
+  const std::string first(3000, 'a'), second(70000, 'b');
+  const std::string packed = deflated(first) + deflated(second);
+  for (const std::string& behind : {std::string(), std::string("not gzip")}) {
+    const std::string file = packed + behind;
+    ByteSource source(file, Packing::deflate, "f");
+    EXPECT_EQ(source.skip(2000), 2000u);
+    EXPECT_TRUE(source.take(100000) == first.substr(2000) + second);
+    EXPECT_EQ(source.take(1), "");
+    EXPECT_EQ(source.taken(), first.size() + second.size());
+  }
+}
+
+TEST(ByteSource, MaxLeftHoldsForTheBestCompression) {
   const std::string bytes(10000000, 'x');
   const std::string packed = deflated(bytes);
   ByteSource source(packed, Packing::deflate, "f");
-  EXPECT_GE(source.most_left(), bytes.size());
-  EXPECT_LT(source.most_left(), 2 * bytes.size());
+  EXPECT_GE(source.max_left(), bytes.size());
+  EXPECT_LT(source.max_left(), 2 * bytes.size());
   EXPECT_EQ(source.skip(bytes.size()), bytes.size());
 }
 
 TEST(ByteSource, DamagedData) {
-  std::string packed = deflated("some bytes or other");
-  packed[12] ^= 0x7f;
-  ByteSource source(packed, Packing::deflate, "f");
-  const std::string message = error_of<InputError>([&] {
-    (void)source.take(100);
-    source.check_end();
-  });
-  EXPECT_EQ(message.find("f: the compressed data are damaged"), 0u) << message;
+  for (const std::size_t at : {12u, 22u, 27u}) {  // in the data, the checksum and the size
+    std::string packed = deflated("some bytes or other, many of them");
+    packed[at < 20 ? at : packed.size() - (30 - at)] ^= 0x7f;
+    ByteSource source(packed, Packing::deflate, "f");
+    const std::string message = error_of<InputError>([&] {
+      (void)source.take(100);
+      source.check_end();
+    });
+    EXPECT_EQ(message.find("f: the compressed data are damaged"), 0u) << message;
+  }
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 namespace tetwright {
 
-/// The message of the error of type E that `call` must throw; empty, and a failure, if it doesn't.
+/// Expects that `call` throws an error of type E and returns its message, which must be one line of ASCII.
 template <class E, class Call>
 std::string error_of(const Call& call) {
   try {
@@ -24,8 +24,7 @@ std::string error_of(const Call& call) {
   return {};
 }
 
-/// Expects that reading `text` as file "f" is an InputError with both texts in its message. Readers of tet
-/// meshes are handed their default options.
+/// Expects that reading `text` as file "f" throws an InputError whose message has both texts.
 template <class Read>
 void expect_input_error(const Read& read, std::string_view text, const std::string& first,
                         const std::string& second = "") {

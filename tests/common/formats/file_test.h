@@ -6,7 +6,7 @@
 
 namespace tetwright {
 
-/// A test with a folder of its own.
+/// A test that has a folder of its own.
 class FileTest : public ::testing::Test {
  protected:
   std::string path(const std::string& name) const { return folder_ / name; }

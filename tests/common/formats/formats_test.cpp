@@ -87,7 +87,7 @@ TEST_F(Formats, UnknownExtensions) {
   EXPECT_NE(only_read.find("\".vtk\" can be read, not written, for a tet mesh; known are .vtu .msh .mesh"),
             std::string::npos)
       << only_read;
-  // A surface is no place for a tet mesh.
+  // Formats of surfaces can't hold a tet mesh.
   (void)error_of<UsageError>([&] { check_output_path(path("x.ply")); });
   (void)error_of<UsageError>([&] { check_output_path(path("x.vtu"), FileKind::surface); });
   (void)error_of<UsageError>([&] { write_tet_mesh(tricky_tets(), path("x.ply")); });

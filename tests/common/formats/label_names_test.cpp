@@ -84,5 +84,11 @@ TEST(LabelNames, Errors) {
   expect_input_error(parse_label_names, "1 a 0 0 0 255\n2 0 0 0 255\n", "line 2: label 2 has no name");
 }
 
+TEST(LabelNames, LinesOfTheLabels) {
+  std::map<MaterialTag, std::size_t> lines;
+  (void)parse_label_names("# names\n7 liver\n\n-3 spleen\n7 liver\n", "f", &lines);
+  EXPECT_EQ(lines, (std::map<MaterialTag, std::size_t>{{7, 2}, {-3, 4}}));
+}
+
 }  // namespace
 }  // namespace tetwright::label_names_test

@@ -1,6 +1,6 @@
 #include "common/formats/medit.h"
 
-#include "common/interfaces.h"
+#include "common/mesh/interfaces.h"
 #include "tests/common/formats/expect_error.h"
 #include "tests/common/formats/tricky_meshes.h"
 #include "tests/common/small_meshes.h"
@@ -46,6 +46,36 @@ TEST(Medit, OtherSectionsAndCommentsAreSkippedInAnyOrder) {
                  "f");
   EXPECT_EQ(r.mesh.tets, (std::vector<Tet>{{0, 1, 2, 3}}));
   EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{-5}));
+  EXPECT_EQ(r.dropped, (std::vector<Dropped>{{"triangles of references (\"4\")", 1},
+                                             {"ridges", 1},
+                                             {"required vertices", 1},
+                                             {"points with a reference other than 0", 1}}));
+}
+
+TEST(Medit, OtherVolumeCellsAreRefusedByKindAndNumber) {
+  const std::string tets = "Tetrahedra\n1\n1 2 3 4 1\n";
+  expect_input_error(read_medit,
+                     head + vertices + tets + "Hexahedra\n2\n1 2 3 4 1 2 3 4 0\n1 2 3 4 1 2 3 4 0\n" +
+                         "Pyramids\n1\n1 2 3 4 1 0\nEnd\n",
+                     "line 13: 2 hexahedra and 1 pyramids", "convert them to tets");
+  expect_input_error(read_medit, head + vertices + tets + "Prisms\n3\nEnd\n", "line 13: 3 prisms");
+  expect_input_error(read_medit, head + vertices + "TetrahedraP2\n3\nEnd\n", "3 quadratic tets", "-order 1");
+  // An empty section is no reason to refuse the file.
+  EXPECT_EQ(read_medit(head + vertices + tets + "Hexahedra\n0\nEnd\n", "f").dropped,
+            (std::vector<Dropped>{{"points with a reference other than 0", 1}}));
+}
+
+TEST(Medit, InterfaceTrianglesAreFoundAgain) {
+  TetMesh mesh = two_tets(-7);
+  mesh.interfaces = find_interfaces(mesh);
+  const std::string text = write_medit(mesh);
+  const auto dropped = [](const std::string& from) { return read_medit(from, "f").dropped; };
+  EXPECT_EQ(dropped(text), (std::vector<Dropped>{{"boundary and interface triangles of 3 groups", 7, true}}));
+  // A group with another number may be a boundary condition.
+  std::string other = text;
+  other.replace(other.find("1 2 3 2\n"), 8, "1 2 3 9\n");
+  EXPECT_EQ(dropped(other), (std::vector<Dropped>{{"boundary and interface triangles of 2 groups", 6, true},
+                                                  {"triangles of references (\"9\")", 1}}));
 }
 
 TEST(Medit, BadInput) {

@@ -60,7 +60,7 @@ TEST(MeshFields, TheMaterialByRule) {
     all.push_back({order[i], 1, false, {5, 6}});
     EXPECT_EQ(taken(all), order[i]);
   }
-  // Known names of other numbers are not meant.
+  // A field with a known name but numbers that are not whole is not taken.
   EXPECT_EQ(taken({{"attribute", 1, false, {0.5, 1}}, region}), "region");
   EXPECT_EQ(taken({{"material", 3, true, {1, 2, 3, 4, 5, 6}}, region}), "region");
 }
@@ -73,7 +73,7 @@ TEST(MeshFields, TheMaterialAskedFor) {
   EXPECT_EQ(read.material_field, "region");
   EXPECT_EQ(read.mesh.cell_fields, (std::vector<MeshField>{{"material", 1, true, {5, 6}}}));
   EXPECT_TRUE(read.mesh.material_names.empty());
-  // Instead of the format's own, which is a field then.
+  // It replaces the format's own materials, which become a field.
   read = with_fields({{"region", 1, false, {3, 4}}}, "medit:ref");
   take_material(read, {.material_field = "region"}, "f");
   EXPECT_EQ(read.mesh.materials, (std::vector<MaterialTag>{3, 4}));

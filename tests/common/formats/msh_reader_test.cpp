@@ -7,11 +7,11 @@ namespace {
 
 const std::string head = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
 const std::string names = "$PhysicalNames\n2\n2 7 \"skin\"\n3 7 \"my bone\"\n$EndPhysicalNames\n";
-// A point, a curve, a surface and two volumes, the first with two groups.
+// A point, a curve, a surface and two volumes, the first of which has two groups.
 const std::string entities =
     "$Entities\n1 1 1 2\n1 0 0 0 0\n1 0 0 0 1 1 1 0 2 1 -1\n1 0 0 0 1 1 1 1 7 1 1\n"
     "3 0 0 0 1 1 1 2 7 8 1 1\n4 0 0 0 1 1 1 0 1 1\n$EndEntities\n";
-// Numbers neither dense nor sorted, some nodes with parameters.
+// The numbers are neither dense nor sorted, and some nodes have parameters.
 const std::string nodes =
     "$Nodes\n3 5 3 40\n0 1 0 1\n10\n0 0 0\n2 1 1 2\n20\n7\n1 0 0 0.5 0.25\n0 1 0 0.5 nan\n3 3 0 2\n40\n3\n"
     "0 0 1\n1 1 1\n$EndNodes\n";
@@ -34,6 +34,9 @@ TEST(MshReader, Version41) {
   EXPECT_EQ(r.mesh.material_names, (std::map<MaterialTag, std::string>{{7, "my bone"}}));
   EXPECT_EQ(r.material_field, "gmsh:physical");
   EXPECT_TRUE(r.mesh.cell_fields.empty());
+  EXPECT_EQ(r.dropped, (std::vector<Dropped>{{"triangles of physical groups (\"skin\")", 2},
+                                             {"points", 1},
+                                             {"further physical groups of entities", 1}}));
 }
 
 TEST(MshReader, WithoutPhysicalGroupsTheVolumeIsTheMaterial) {
@@ -76,7 +79,7 @@ TEST(MshReader, BadInput) {
   expect_input_error(read_msh, replaced(whole, "4 5 1 9", "4 6 1 9"), "5 elements, but 6");
   expect_input_error(read_msh, replaced(whole, "6 20 7 40 3", "6 20 7 40 4"), "line 38", "node 4");
   expect_input_error(read_msh, replaced(whole, "3 4 4 1\n6 20 7 40 3", "3 4 7 1\n6 20 7 40 3 10"), "line 38",
-                     "pyramid");
+                     "1 pyramids, the first of them element 6");
   expect_input_error(read_msh, replaced(whole, "3 3 4 1", "3 3 99 1"), "type 99");
   expect_input_error(read_msh, replaced(replaced(whole, "2 7 8 1 1", "0 1 1"), "3 4 4 1", "3 3000000000 4 1"),
                      "line 38", "32 bits");

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "common/interfaces.h"
+#include "common/mesh/interfaces.h"
 #include "tests/common/formats/expect_error.h"
 #include "tests/common/formats/same_values.h"
 #include "tests/common/formats/tricky_meshes.h"
@@ -49,6 +49,13 @@ TEST(Msh, InterfaceTrianglesFollowTheTets) {
   EXPECT_EQ(back.material_field, "gmsh:physical");
   EXPECT_TRUE(back.mesh.interfaces.empty());
   EXPECT_EQ(write_msh(back.mesh), without);
+  EXPECT_EQ(back.dropped, (std::vector<Dropped>{{"boundary and interface triangles of 3 groups", 7, true}}));
+  // A group that the user named is lost.
+  std::string named = text;
+  named.replace(named.find("bone|outside"), 12, "inlet");
+  EXPECT_EQ(read_msh(named, "f").dropped,
+            (std::vector<Dropped>{{"boundary and interface triangles of 2 groups", 4, true},
+                                  {"triangles of physical groups (\"inlet\")", 3}}));
 }
 
 TEST(Msh, WhatGmshWrites) {
@@ -62,6 +69,37 @@ TEST(Msh, WhatGmshWrites) {
   EXPECT_EQ(r.mesh.tets, (std::vector<Tet>{{0, 1, 2, 3}, {1, 2, 3, 4}}));
   EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{7, 8}));
   EXPECT_EQ(r.mesh.material_names, (std::map<MaterialTag, std::string>{{7, "my bone"}}));
+  EXPECT_EQ(r.dropped, (std::vector<Dropped>{{"triangles of physical groups (\"skin\")", 1},
+                                             {"points", 1},
+                                             {"tets with numbers of partitions", 1},
+                                             {"sections (\"$ElementNodeData\")", 1}}));
+}
+
+TEST(Msh, OtherVolumeElementsAreRefusedByKindAndNumber) {
+  expect_input_error(
+      read_msh,
+      head + nodes +
+          elements("1 4 2 1 1 1 2 3 4\n2 5 2 1 1 1 2 3 4 1 2 3 4\n3 6 0 1 2 3 4 1 2\n4 5 0 1 2 3 4 1 2 3 4\n",
+                   "4"),
+      "line 14: 2 hexahedra and 1 prisms, the first of them element 2", "convert them to tets");
+}
+
+TEST(Msh, WhatIsDroppedIsNamed) {
+  const ReadTetMesh r = read_msh(
+      head + "$PhysicalNames\n3\n1 3 \"edge\"\n2 4 \"hole\"\n0 5 \"corner\"\n$EndPhysicalNames\n" + nodes +
+          elements(
+              "1 4 2 5 6 1 2 3 4\n2 4 2 5 7 1 2 3 4\n3 1 2 3 1 1 2\n4 3 2 4 1 1 2 3 4\n5 3 2 8 1 1 2 3 4\n",
+              "5"),
+      "f");
+  EXPECT_EQ(
+      r.dropped,
+      (std::vector<Dropped>{
+          {"lines of physical groups (\"edge\")", 1},
+          {"quads of physical groups (\"hole\", \"8\")", 2},
+          {"physical groups of points, lines or faces, without elements (\"corner\")", 1},
+          {"numbers of volumes within the physical groups; --material-field gmsh:geometrical takes them "
+           "as materials",
+           2}}));
 }
 
 TEST(Msh, WithoutTagsThereIsOneMaterial) {
@@ -74,6 +112,10 @@ TEST(Msh, QuotesInNamesDoNotBreakTheFile) {
   TetMesh mesh = tricky_tets();
   mesh.material_names = {{0, "a\"b\nc"}};
   EXPECT_EQ(read_msh(write_msh(mesh), "f").mesh.material_names.at(0), "a_b_c");
+  // Names that differ stay different; equal ones stay equal.
+  mesh.material_names = {{0, "a\"b"}, {1, "a_b"}, {2, "a\\b"}, {3, "a_b"}};
+  EXPECT_EQ(read_msh(write_msh(mesh), "f").mesh.material_names,
+            (std::map<MaterialTag, std::string>{{0, "a_b_2"}, {1, "a_b"}, {2, "a_b_3"}, {3, "a_b"}}));
 }
 
 TEST(Msh, FieldsComeBack) {
@@ -89,14 +131,14 @@ TEST(Msh, FieldsComeBack) {
   EXPECT_EQ(back.point_fields[0].name, "speed");
   EXPECT_EQ(back.point_fields[0].components, 3);
   expect_same_values(back.point_fields[0].values, mesh.point_fields[0].values);
-  // Filled up to what the format knows.
+  // Padded to three components.
   EXPECT_EQ(back.point_fields[1].components, 3);
   EXPECT_EQ(back.point_fields[1].values, (std::vector<double>{1, 2, 0, 3, 4, 0, 5, 6, 0, 7, 8, 0, 9, 10, 0}));
   ASSERT_EQ(back.cell_fields.size(), 11u);
   EXPECT_EQ(back.cell_fields[0], (MeshField{"a _b_", 1, false, {7, -8}}));
   EXPECT_EQ(back.cell_fields[10], (MeshField{"ten_9", 1, false, {0.5, 0.5}}));
   EXPECT_EQ(back.materials, mesh.materials);
-  // What is read is written again as it was.
+  // What was read once is written unchanged.
   EXPECT_EQ(write_msh(read_msh(write_msh(back), "f").mesh), write_msh(back));
 }
 
@@ -115,12 +157,19 @@ TEST(Msh, DataOfSomeNodesAndOfOtherElements) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   expect_same_values(r.point_fields[0].values, {nan, nan, 2.5, nan});
   EXPECT_EQ(r.cell_fields, (std::vector<MeshField>{{"e", 1, false, {4}}}));
+  const std::vector<Dropped> dropped = read_msh(mesh +
+                                                    "$ElementData\n1\n\"faces\"\n1\n0\n3\n0\n1\n1\n3 1\n"
+                                                    "$EndElementData\n",
+                                                "f")
+                                           .dropped;
+  EXPECT_EQ(dropped, (std::vector<Dropped>{{"triangles of physical groups (\"7\")", 1},
+                                           {"fields of elements other than tets (\"faces\")", 1}}));
 }
 
 TEST(Msh, WhatIsTakenForTheMaterial) {
   const std::string text = head + nodes + elements("1 4 2 5 6 1 2 3 4\n") +
                            "$ElementData\n1\n\"material\"\n1\n0\n3\n0\n1\n1\n1 9\n$EndElementData\n";
-  // The format's own place goes before the name.
+  // The physical group takes precedence over a field named "material".
   ReadTetMesh r = read_msh(text, "f");
   EXPECT_EQ(r.material_field, "gmsh:physical");
   EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{5}));
@@ -155,7 +204,7 @@ TEST(Msh, BadData) {
                      head + nodes + elements("1 4 2 5 6 1 2 3 4\n1 4 2 5 6 1 2 3 4\n", "2") +
                          "$ElementData\n1\n\"e\"\n1\n0\n3\n0\n1\n1\n1 4\n$EndElementData\n",
                      "element 1", "twice");
-  // Short sections must not ask for memory without end.
+  // Many short sections must not take unlimited memory.
   std::string many = head + "$Nodes\n100\n";
   for (int i = 1; i <= 100; ++i) many += std::to_string(i) + " 0 0 0\n";
   many += "$EndNodes\n" + elements("1 4 0 1 2 3 4\n");
@@ -181,11 +230,11 @@ TEST(Msh, BadInput) {
   expect_input_error(read_msh, head + "$Nodes\n2\n1 0 0 0\n1 1 0 0\n$EndNodes\n", "node 1", "twice");
   expect_input_error(read_msh, head + "$Nodes\n1\n1 0 inf 0\n$EndNodes\n", "line 6", "not finite");
   expect_input_error(read_msh, head + elements(tet), "before the nodes");
-  // Part of the volume must not go missing unnoticed.
+  // Files with other volume elements are refused.
   expect_input_error(read_msh, head + nodes + elements("7 5 2 1 1 1 2 3 4 1 2 3 4\n" + tet, "2"), "line 13",
-                     "element 7 is a hexahedron");
+                     "1 hexahedra, the first of them element 7 (type 5)");
   expect_input_error(read_msh, head + nodes + elements("1 11 2 1 1 1 2 3 4 1 2 3 4 1 2\n"), "line 13",
-                     "quadratic tet");
+                     "1 quadratic tets");
   const std::string whole = head + nodes + "$Elements\n1\n" + tet + "$EndElements";
   for (std::size_t n = 0; n < whole.size(); ++n)
     (void)error_of<InputError>([&] { (void)read_msh(whole.substr(0, n), "f"); });

@@ -8,7 +8,7 @@
 namespace tetwright::nifti_test {
 namespace {
 
-/// A header of 2 x 3 x 4 voxels that the tests change.
+/// The header of a volume of 2 x 3 x 4 voxels, for the tests to change.
 class Header {
  public:
   explicit Header(int type, int bits, bool big = false) : bytes_(352, '\0'), big_(big) {
@@ -92,7 +92,7 @@ TEST(Nifti, QuaternionOfTheQform) {
   EXPECT_TRUE(v.directions.col(2).isApprox(Vec3(0, 0, 4), 1e-6));
   EXPECT_EQ(v.origin, Vec3(10, 20, 30));
   EXPECT_EQ(v.space, "right-anterior-superior");
-  v = read(h.set<float>(76, -1));  // the third axis the other way
+  v = read(h.set<float>(76, -1));  // the third axis is reversed
   EXPECT_TRUE(v.directions.col(2).isApprox(Vec3(0, 0, -4), 1e-6));
   v = read(h.set<float>(76, 1).set<float>(256, 1).set<float>(264, 0));  // half a turn about x
   EXPECT_EQ(v.directions, Eigen::Matrix3d(Vec3(2, -3, -4).asDiagonal()));

@@ -50,7 +50,7 @@ TEST(Nrrd, EveryTypeInBothByteOrders) {
 
 TEST(Nrrd, Encodings) {
   expect_counted(replaced(head, "raw", "gz") + "\n" + deflated(body));
-  // Of several members, and with something behind.
+  // Several members, followed by other bytes.
   expect_counted(replaced(head, "raw", "gzip") + "\n" + deflated(body.substr(0, 7)) +
                  deflated(body.substr(7)) + "x");
   std::string text;
@@ -112,7 +112,7 @@ TEST(Nrrd, DetachedBodies) {
   EXPECT_EQ(read(replaced(detached, "raw", "txt") + "line skip: 1\nbyte skip: 2\n",
                  "x\n999 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23")[2],
             1);
-  // A body may begin with what marks UTF-8.
+  // A body may begin with the bytes of a byte order mark.
   std::string marked = body;
   marked.replace(0, 3, "\xef\xbb\xbf");
   EXPECT_EQ(read(detached, marked)[0], 0xef);
@@ -181,7 +181,7 @@ TEST(Nrrd, BadBodies) {
   std::string checksum = packed;
   checksum[checksum.size() - 6] ^= 1;
   expect_refused(gzip + checksum, "damaged");
-  // Nothing is allocated for what cannot be there.
+  // No memory is allocated for voxels that the file can't hold.
   expect_refused(replaced(gzip, "2 3 4", "1024 1024 1024") + packed, "need 1073741824 bytes", "at most");
   const std::string floats = replaced(head, "uint8", "float") + "endian: little\n\n";
   std::vector<float> numbers(24, 1);
@@ -237,7 +237,7 @@ TEST(Nrrd, WrittenInTheSmallestType) {
 
 TEST(Nrrd, CutAnywhereItIsRefused) {
   const std::string packed = replaced(head, "raw", "gzip") + "\n" + deflated(body);
-  // The checksum's bytes may be missing.
+  // The checksum may be cut off.
   for (std::size_t n = 0; n + 10 < packed.size(); ++n)
     (void)error_of<InputError>([&] { (void)read_nrrd(packed.substr(0, n), "f"); });
 }

@@ -32,6 +32,18 @@ TEST(Obj, ColoursContinuedLinesAndOtherLineEnds) {
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}}));
 }
 
+TEST(Obj, WhatIsDroppedIsNamed) {
+  std::vector<Dropped> dropped;
+  (void)read_obj(
+      "mtllib a.mtl\ns 1\nv 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 1\ng a\nf 1 2 3\nl 1 \\\n2\nzap 3\n",
+      "f", &dropped);
+  EXPECT_EQ(dropped, (std::vector<Dropped>{{"points with a weight or a colour", 1},
+                                           {"texture coordinates", 2},
+                                           {"names of groups", 1},
+                                           {"lines", 1},
+                                           {"statements \"zap\"", 1}}));
+}
+
 TEST(Obj, FacesMayComeBeforeTheirPoints) {
   EXPECT_EQ(read_obj("f 1 2 3\n" + points, "f").triangles.size(), 1u);
 }

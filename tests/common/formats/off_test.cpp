@@ -42,8 +42,14 @@ TEST(Off, CountsBesideOrWithoutTheKeyword) {
   EXPECT_EQ(read_off("3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2", "f").triangles.size(), 1u);
 }
 
-TEST(Off, LooseEdgesAreSkipped) {
-  EXPECT_EQ(read_off("OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n3 0 1 2\n", "f").triangles.size(), 1u);
+TEST(Off, WhatIsDroppedIsNamed) {
+  std::vector<Dropped> dropped;
+  EXPECT_EQ(read_off("COFF\n3 2 0\n0 0 0 9\n1 0 0 9\n0 1 0 9\n2 0 1\n3 0 1 2 255 0 0\n", "f", &dropped)
+                .triangles.size(),
+            1u);
+  EXPECT_EQ(dropped, (std::vector<Dropped>{{"points with colours, normals or texture coordinates", 3},
+                                           {"faces of fewer than three vertices", 1},
+                                           {"faces with colours", 1}}));
 }
 
 TEST(Off, BadInput) {

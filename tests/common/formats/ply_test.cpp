@@ -23,7 +23,7 @@ void put(std::string& out, Number value, bool big) {
   out += bytes;
 }
 
-/// With extra properties, an element and lists to skip in between.
+/// A file with further elements, properties and lists, which the reader must skip.
 std::string rich_binary(bool big) {
   std::string out =
       std::string("ply\nformat binary_") + (big ? "big" : "little") +
@@ -70,6 +70,18 @@ TEST(Ply, BinaryOfBothByteOrdersWithMoreInIt) {
     EXPECT_EQ(mesh.points[3], Vec3(0.1 * 3, 3, -3));
     EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 1, 2}, {0, 2, 3}}));
   }
+}
+
+TEST(Ply, WhatIsDroppedIsNamed) {
+  std::vector<Dropped> dropped;
+  (void)read_ply(rich_binary(false), "f", &dropped);
+  EXPECT_EQ(dropped, (std::vector<Dropped>{{"items of element \"camera\"", 1},
+                                           {"properties of element \"vertex\" (\"red\")", 1},
+                                           {"properties of element \"face\" (\"colours\", \"flags\")", 2},
+                                           {"items of element \"rest\"", 7}}));
+  dropped.clear();
+  (void)read_ply(header("ascii", "3", "2") + body + "2 0 1\n", "f", &dropped);
+  EXPECT_EQ(dropped, (std::vector<Dropped>{{"faces of fewer than three vertices", 1}}));
 }
 
 TEST(Ply, EveryCutIsAnError) {

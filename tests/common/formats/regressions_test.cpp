@@ -1,14 +1,14 @@
-// Reads every file of data/regressions/, findings of the fuzzers among them: each is read and checked, or
-// refused with an InputError, never a crash.
+// Reads every file of data/regressions/, among them findings of the fuzzers. Each is read and checked, or
+// refused with an InputError; none may crash.
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "common/error.h"
 #include "common/formats/formats.h"
-#include "common/mesh_check.h"
-#include "common/mesh_statistics.h"
-#include "common/topology.h"
+#include "common/mesh/mesh_check.h"
+#include "common/mesh/mesh_statistics.h"
+#include "common/mesh/topology.h"
 
 namespace tetwright::regressions_test {
 namespace {

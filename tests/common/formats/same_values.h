@@ -7,7 +7,7 @@
 
 namespace tetwright {
 
-/// Equal, with nan equal to nan.
+/// Expects equal values, where nan equals nan.
 inline void expect_same_values(const std::vector<double>& a, const std::vector<double>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i)

@@ -49,6 +49,18 @@ TEST(Stl, BinaryThatBeginsWithSolid) {
   expect_input_error(read_stl, bytes.substr(0, bytes.size() - 1), "byte 80", "cut short");
 }
 
+TEST(Stl, WhatIsDroppedIsNamed) {
+  std::vector<Dropped> dropped;
+  std::string bytes = binary("", {{0, 0, 0, 1, 0, 0, 0, 1, 0}});
+  bytes.back() = 1;
+  (void)read_stl(bytes + "more", "f", &dropped);
+  EXPECT_EQ(dropped, (std::vector<Dropped>{{"triangles with attribute bytes", 1},
+                                           {"bytes behind the last triangle", 4}}));
+  dropped.clear();
+  (void)read_stl("solid a\n" + facet + "endsolid a\nsolid b\n" + facet + "endsolid b\n", "f", &dropped);
+  EXPECT_EQ(dropped, (std::vector<Dropped>{{"solids told apart in the file", 2}}));
+}
+
 TEST(Stl, SeveralSolidsInAnyCase) {
   EXPECT_EQ(
       read_stl("solid a facet of it\n" + facet + "endsolid a facet of it\nSOLID\n" + facet + "ENDSOLID", "f")

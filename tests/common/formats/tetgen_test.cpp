@@ -69,7 +69,7 @@ TEST(TetGen, BadInput) {
   expect(replaced(node, "1 0 0 1.5", "1 0 zero 1.5"), ele, "n: line 5:", "\"zero\"");
   expect(replaced(node, "1.5 8 0", "1.5"), ele, "n: line 5:", "the line ends where a attribute");
   expect(replaced(node, "5 1 1 1 4.5 11 0\n", ""), ele, "n: line", "cut short");
-  expect(node, replaced(ele, "2 4 2", "2 10 2"), "e: line 1:", "linear tets are needed");
+  expect(node, replaced(ele, "2 4 2", "2 10 2"), "e: line 1:", "2 quadratic tets of 10 points");
   expect(node, replaced(ele, "2 4 2", "2 3 2"), "e: line 1:", "tets of 3 points");
   expect(node, replaced(ele, "2 4 2", "4000000000 4 2"), "e: line", "4000000000");
   expect(node, replaced(ele, "2 4 2", "0 4 2"), "e: line", "no tets");

@@ -7,7 +7,7 @@
 
 namespace tetwright {
 
-/// Coordinates that are hard to write: needing 17 digits, huge, tiny, subnormal, minus zero.
+/// Coordinates that are hard to write: with 17 digits, huge, tiny, subnormal, minus zero.
 inline std::vector<Vec3> tricky_points() {
   return {{0.1, 1.0 / 3, 0.1 + 0.2},
           {-1e308, 1.7976931348623157e308, 123456789012345678.0},

@@ -15,7 +15,7 @@
 
 namespace tetwright {
 
-/// Numbers as a file has them.
+/// The bytes of numbers in a file.
 template <class Number>
 std::string bytes_of(const std::vector<Number>& numbers, bool big = false) {
   std::string out;
@@ -27,7 +27,7 @@ std::string bytes_of(const std::vector<Number>& numbers, bool big = false) {
   return out;
 }
 
-/// `wrapper`: 31 for gzip, 15 for zlib.
+/// Compressed bytes. `wrapper` is zlib's parameter windowBits: 31 for gzip, 15 for zlib.
 inline std::string deflated(const std::string& bytes, int wrapper = 31) {
   z_stream stream{};
   EXPECT_EQ(deflateInit2(&stream, 6, Z_DEFLATED, wrapper, 8, Z_DEFAULT_STRATEGY), Z_OK);
@@ -42,7 +42,7 @@ inline std::string deflated(const std::string& bytes, int wrapper = 31) {
   return out;
 }
 
-/// 2 x 3 x 4 voxels of the labels 0 to 23.
+/// A volume of 2 x 3 x 4 voxels with the labels 0 to 23.
 inline std::vector<MaterialTag> counted_labels() {
   std::vector<MaterialTag> labels(24);
   for (std::size_t i = 0; i < labels.size(); ++i) labels[i] = static_cast<MaterialTag>(i);
@@ -62,7 +62,7 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return text.replace(at, from.size(), to);
 }
 
-/// A reader of the one file `path`, which has `bytes`.
+/// A FileReader that knows one file, `path`, with the content `bytes`.
 inline FileReader one_file(const std::string& path, const std::string& bytes) {
   return [=](const std::string& asked) {
     if (asked != path) throw InputError("cannot read " + asked + ": No such file or directory");

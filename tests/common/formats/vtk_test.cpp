@@ -40,7 +40,7 @@ class File {
   std::string text_;
 };
 
-/// A triangle and a tet, with its points.
+/// A triangle and a tet.
 File small(bool binary, const char* version = "3.0") {
   File f(binary, version);
   f.line("POINTS 4 float").numbers<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
@@ -68,6 +68,7 @@ TEST(Vtk, TetsOfEveryVersionAndEncoding) {
       EXPECT_EQ(r.mesh.points.size(), 4u);
       EXPECT_EQ(r.mesh.points[3], Vec3(0, 0, 1));
       EXPECT_EQ(r.mesh.tets, (std::vector<Tet>{{0, 1, 2, 3}}));
+      EXPECT_EQ(r.dropped, (std::vector<Dropped>{{"triangles", 1}}));
       EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{1}));
       EXPECT_EQ(r.material_field, "");
     }
@@ -88,7 +89,7 @@ TEST(Vtk, EveryKindOfData) {
     f.line("METADATA").line("COMPONENT_NAMES").line("X").line("");
     f.line("wide 1 2 vtktypeint64").numbers<std::int64_t>({1, 1LL << 40});
     f.line("text 1 2 string");
-    // In binary files with their length before them, of one byte or four.
+    // In binary files the length precedes the text, in one byte or four.
     f.line(binary ? "\xc3"
                     "abc" +
                         std::string("\x40\0\0\1z", 5)
@@ -112,6 +113,9 @@ TEST(Vtk, EveryKindOfData) {
     EXPECT_EQ(r.mesh.point_fields[1], (MeshField{"t", 9, false, std::vector<double>(36, 2.5)}));
     EXPECT_EQ(r.mesh.point_fields[2], (MeshField{"uv", 2, false, {1, 2, 3, 4, 5, 6, 7, 8}}));
     EXPECT_EQ(r.mesh.point_fields[3], (MeshField{"plain", 1, true, {1, 2, 3, 255}}));
+    EXPECT_EQ(r.dropped,
+              (std::vector<Dropped>{
+                  {"triangles", 1}, {"arrays of text (\"text\")", 1}, {"arrays of colours (\"mine\")", 1}}));
   }
 }
 
@@ -121,8 +125,20 @@ TEST(Vtk, DataOfTheFileAndKeywordsInSmallLetters) {
   text = replaced(text, "CELL_TYPES", "cell_types") + "cell_data 2\nfield f 1\nZones 1 2 int\n3 4\n";
   const ReadTetMesh r = read_vtk(text, "f");
   EXPECT_EQ(r.material_field, "Zones");
+  EXPECT_EQ(r.dropped,
+            (std::vector<Dropped>{{"triangles", 1}, {"arrays of the whole dataset (\"TIME\")", 1}}));
   EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{4}));
   EXPECT_TRUE(r.mesh.cell_fields.empty());
+}
+
+TEST(Vtk, OtherVolumeCellsAreRefusedByKindAndNumber) {
+  const std::string head =
+      "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n"
+      "0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 4 20\n4 0 1 2 3\n4 0 1 2 3\n4 0 1 2 3\n4 0 1 2 3\nCELL_TYPES 4\n";
+  expect_input_error(read_vtk, head + "10\n12\n12\n14\n",
+                     "line 14: 2 hexahedra and 1 pyramids, the first of them cell 1", "convert them to tets");
+  expect_input_error(read_vtk, head + "10\n24\n10\n10\n", "line 14: 1 quadratic tets", "-order 1");
+  expect_input_error(read_vtk, head + "10\n999\n10\n10\n", "1 cells of the unknown type 999");
 }
 
 TEST(Vtk, NanInFieldsAndBits) {
@@ -161,7 +177,7 @@ TEST(Vtk, BadInput) {
   expect_input_error(read_vtk, replaced(good, "4 0 1 2 3", "4 0 1 2 4"), "line 8", "point 4 of 4");
   expect_input_error(read_vtk, replaced(good, "4 0 1 2 3", "4 0 1 2 -3"), "line 8", "point -3");
   expect_input_error(read_vtk, replaced(good, "5 10", "5 12"), "line 10",
-                     "cell 1 (counted from 0) is a hexahedron");
+                     "1 hexahedra, the first of them cell 1 (counted from 0, type 12)");
   expect_input_error(read_vtk, replaced(good, "5 10", "5 24"), "line 10", "quadratic tet");
   expect_input_error(read_vtk, replaced(good, "5 10", "5 5"), "no linear tets");
   expect_input_error(read_vtk, replaced(good, "CELL_TYPES 2\n5 ", "CELL_TYPES 1\n"), "1 types for 2 cells");
@@ -183,7 +199,7 @@ TEST(Vtk, BadInput) {
   expect_input_error(read_vtk, replaced(offsets, "0 3 7", "0 8 7"), "offset", "8");
   expect_input_error(read_vtk, replaced(offsets, "0 3 7", "1 3 7"), "first offset is 1");
   expect_input_error(read_vtk, replaced(offsets, "CONNECTIVITY", "CONNECTION"), "\"CONNECTION\"");
-  // 32 bits for points of a tet and for materials.
+  // Indices of points and materials have 32 bits.
   expect_input_error(read_vtk, data("CELL_DATA 2\nSCALARS m long\nLOOKUP_TABLE default\n1 3000000000\n"),
                      "3000000000", "32 bits");
 }

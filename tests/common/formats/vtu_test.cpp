@@ -14,7 +14,7 @@
 namespace tetwright::vtu_test {
 namespace {
 
-// Builds one tet (and a triangle before it) in every encoding that VTK knows.
+// Builds a file of a triangle and a tet in every encoding of VTK.
 struct Encoding {
   std::string format = "binary";  ///< ascii, binary, base64 or raw (the last two appended)
   bool compressed = false;
@@ -174,7 +174,37 @@ TEST(Vtu, EveryEncoding) {
           EXPECT_EQ(r.mesh.tets, (std::vector<Tet>{{0, 1, 2, 3}})) << format;
           EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{-7}));
           EXPECT_EQ(r.material_field, "MaterialID");
+          EXPECT_EQ(r.dropped, (std::vector<Dropped>{{"triangles", 1}}));
         }
+}
+
+TEST(Vtu, OtherVolumeCellsAreRefusedByKindAndNumber) {
+  for (const char* format : {"ascii", "binary", "raw"}) {
+    const auto with_first = [&](std::uint8_t type) {
+      std::vector<Array> cells = some_cells(false);
+      cells[2] = array<std::uint8_t>("UInt8", "types", {type, 10}, false);
+      return file({.format = format}, some_points(false), cells, {});
+    };
+    expect_input_error(read_vtu, with_first(12), "1 hexahedra, the first of them cell 0",
+                       "convert them to tets");
+    expect_input_error(read_vtu, with_first(13), "byte", "1 wedges");
+    expect_input_error(read_vtu, with_first(24), "1 quadratic tets", "-order 1");
+    expect_input_error(read_vtu, with_first(200), "1 cells of the unknown type 200");
+  }
+}
+
+TEST(Vtu, WhatIsDroppedIsNamed) {
+  const std::string text =
+      replaced(replaced(ascii_file({field("material", 3)}), "<Piece",
+                        "<FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" "
+                        "format=\"ascii\">1</DataArray></FieldData>\n<Piece"),
+               "<CellData>", "<CellData><Array type=\"String\" Name=\"notes\" format=\"ascii\">1 2</Array>");
+  EXPECT_EQ(read_vtu(text, "f").dropped,
+            (std::vector<Dropped>{{"triangles", 1},
+                                  {"arrays of the whole dataset (\"TimeValue\")", 1},
+                                  {"arrays of text (\"notes\")", 1}}));
+  // The array of the names of materials is read.
+  EXPECT_TRUE(read_vtu(write_vtu(tricky_tets()), "f").dropped.empty());
 }
 
 TEST(Vtu, WhichFieldIsTheMaterial) {
@@ -187,7 +217,7 @@ TEST(Vtu, WhichFieldIsTheMaterial) {
   EXPECT_EQ(read({field("one", 5), field("two", 6)}).material_field, "");
   EXPECT_EQ(read({field("one", 5), field("two", 6)}).mesh.materials[0], 1);
   EXPECT_EQ(read({}).mesh.materials[0], 1);
-  // ParaView turns integers into floats in places; whole numbers are taken.
+  // Some filters of ParaView turn integers into floats; whole numbers are accepted.
   EXPECT_EQ(read_vtu(file({}, some_points(false), some_cells(false),
                           {array<double>("Float64", "material", {1, 6}, false)}),
                      "f")
@@ -203,7 +233,7 @@ TEST(Vtu, FieldsComeBack) {
       {"id", 1, true, {1, -2, 3, 4, 5}}};
   mesh.cell_fields = {{"material", 1, false, {0.5, 1, 2}},
                       {"big", 1, true, {0x1p53, -0x1p53, 0}},
-                      {"big", 1, true, {0.5, 1, 2}}};  // it says integer, but is not
+                      {"big", 1, true, {0.5, 1, 2}}};  // marked as integer, but not whole
   const TetMesh back = read_vtu(write_vtu(mesh), "f").mesh;
   ASSERT_EQ(back.point_fields.size(), 2u);
   EXPECT_EQ(back.point_fields[0].name, "a <b> & \"c\"_");
@@ -214,7 +244,7 @@ TEST(Vtu, FieldsComeBack) {
                                                       {"big", 1, true, {0x1p53, -0x1p53, 0}},
                                                       {"big_2", 1, false, {0.5, 1, 2}}}));
   EXPECT_EQ(back.materials, mesh.materials);
-  // Small whole numbers are Int32, which every reader knows.
+  // Small whole numbers are written as Int32, which every reader knows.
   EXPECT_NE(write_vtu(mesh).find("<DataArray type=\"Int32\" Name=\"id\""), std::string::npos);
   EXPECT_EQ(write_vtu(read_vtu(write_vtu(back), "f").mesh), write_vtu(back));
 }
@@ -287,7 +317,7 @@ TEST(Vtu, BinaryCutShortOrDamaged) {
       const std::size_t whole = good.find(end) - (format == std::string("binary") ? 30 : 1);
       for (std::size_t n = 0; n < whole; n += 3)
         (void)error_of<InputError>([&] { (void)read_vtu(good.substr(0, n), "f"); });
-      // Sizes that promise everything.
+      // The largest sizes that a header can promise.
       std::string promise = good;
       const std::size_t data =
           format == std::string("binary") ? promise.find("\">\n  ") + 5 : promise.find(" _") + 2;

@@ -1,5 +1,5 @@
 // Level sets of balls: the surface's bounding box says which.
-#include "mesher/level_set.h"
+#include "mesher/distance/level_set.h"
 
 #include <algorithm>
 
@@ -19,7 +19,7 @@ struct LevelSet::Impl {
 LevelSet::LevelSet(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 LevelSet::~LevelSet() = default;
 
-std::shared_ptr<const LevelSet> LevelSet::of_surface(const PreparedSurface& surface, const GridFrame& frame,
+std::shared_ptr<const LevelSet> LevelSet::of_surface(const RepairedSurface& surface, const GridFrame& frame,
                                                      Progress*) {
   const Vec3 low = frame.to_grid(surface.low), high = frame.to_grid(surface.high);
   auto impl = std::make_unique<Impl>(Impl{0.5 * (low + high), 0.5 * (high.x() - low.x()), frame.cells});

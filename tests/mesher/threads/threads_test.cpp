@@ -1,19 +1,19 @@
 // The parallel stages from field to cut mesh on many threads, for the thread sanitizer.
 #include <gtest/gtest.h>
 
-#include "common/parallel.h"
-#include "mesher/cutting.h"
-#include "mesher/label_field.h"
-#include "mesher/label_thickness.h"
-#include "mesher/level_set_field.h"
-#include "mesher/point_mover.h"
-#include "mesher/thin_parts.h"
+#include "common/parallel/parallel.h"
+#include "mesher/cut/cutting.h"
+#include "mesher/cut/point_mover.h"
+#include "mesher/distance/field_thickness.h"
+#include "mesher/distance/level_set_field.h"
+#include "mesher/labels/label_field.h"
+#include "mesher/labels/label_thickness.h"
 
 namespace tetwright::threads_test {
 namespace {
 
-PreparedSurface ball(const Vec3& centre, double radius) {
-  PreparedSurface s;
+RepairedSurface ball(const Vec3& centre, double radius) {
+  RepairedSurface s;
   s.low = centre - Vec3::Constant(radius);
   s.high = centre + Vec3::Constant(radius);
   return s;
@@ -30,8 +30,8 @@ CutMesh mesh_with(unsigned threads) {
                              {"b", 2, {{1, false, 1}}}});
   const std::vector<MortonKey> interfaces = field.interface_voxels();
   find_thin_parts(field, interfaces);
-  const Octree octree =
-      build_octree(field, {false, 0.05}, interfaces, find_thin_sheets(field, interfaces).cells, nullptr);
+  const Octree octree = build_octree(field, {false, 0.05}, interfaces,
+                                     find_thin_sheets(field, interfaces).finer.cells, nullptr);
   LatticePoints points = lattice_points(octree);
   std::vector<NearestRegion> regions = lattice_regions(points, field);
   TetList tets = lattice_tets(octree, points);
@@ -52,7 +52,7 @@ TEST(MesherThreads, TheSameOnOneAndOnEight) {
 
 TEST(LabelThreads, TheSameOnOneAndOnEight) {
   // Enough tiles for several tasks, in which labels meet.
-  PreparedLabels labels;
+  LabelInput labels;
   labels.size = {90, 60, 60};
   labels.materials = {{"a", 1, 1, 1}, {"b", 2, 1, 1}};
   for (int z = 0; z < 60; ++z)

@@ -1,17 +1,17 @@
-// What the README shows for C++, as a program of another project.
+// A program of another project: it includes every installed header (all_headers.h lists them) and makes a
+// mesh as the README shows.
 #include <cstdio>
-#include <variant>
 
-#include "common/samples.h"
-#include "mesher/mesher.h"
-#include "simplify/simplify.h"
+#include "all_headers.h"
 
 int main() {
-  tetwright::MaterialSurface body{
-      "body", 1, std::get<tetwright::TriangleMesh>(tetwright::make_sample("torus")), "torus"};
-  tetwright::MesherOptions meshing;
-  meshing.resolution = 40;
-  const auto dense = tetwright::mesh_surfaces(tetwright::prepare_input({body}), meshing, nullptr);
+  tetwright::TriangleMesh cube;
+  for (int k = 0; k < 8; ++k) cube.points.emplace_back(k & 1, k >> 1 & 1, k >> 2);
+  cube.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  tetwright::MaterialSurface body{"body", 1, cube, "cube"};
+  const auto dense =
+      tetwright::mesh_surfaces(tetwright::make_mesher_input({body}), {.resolution = 24}, nullptr);
   tetwright::SimplifyOptions options;
   options.target_tets = 2000;
   const tetwright::TetMesh mesh = tetwright::simplify(dense.mesh, options);

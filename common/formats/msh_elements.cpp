@@ -1,0 +1,153 @@
+#include "common/formats/msh_elements.h"
+
+#include "common/error.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::size_t unknown_dimension = 3;
+
+struct ElementKind {
+  std::string name;       ///< plural
+  std::size_t dimension;  ///< unknown_dimension for unknown types
+};
+
+const std::map<std::int64_t, ElementKind>& flat_kinds() {
+  static const std::map<std::int64_t, ElementKind> kinds{{15, {"points", 0}},
+                                                         {1, {"lines", 1}},
+                                                         {8, {"lines of 3 points", 1}},
+                                                         {26, {"lines of 4 points", 1}},
+                                                         {27, {"lines of 5 points", 1}},
+                                                         {28, {"lines of 6 points", 1}},
+                                                         {2, {"triangles", 2}},
+                                                         {3, {"quads", 2}},
+                                                         {9, {"triangles of 6 points", 2}},
+                                                         {10, {"quads of 9 points", 2}},
+                                                         {16, {"quads of 8 points", 2}},
+                                                         {20, {"triangles of 9 points", 2}},
+                                                         {21, {"triangles of 10 points", 2}},
+                                                         {22, {"triangles of 12 points", 2}},
+                                                         {23, {"triangles of 15 points", 2}}};
+  return kinds;
+}
+
+ElementKind flat_kind(std::int64_t type) {
+  const auto known = flat_kinds().find(type);
+  return known != flat_kinds().end()
+             ? known->second
+             : ElementKind{"elements of type " + std::to_string(type), unknown_dimension};
+}
+
+/// The plural; null for types that are no volume elements, or unknown.
+const char* volume_kind(std::int64_t type) {
+  switch (type) {
+    case 5:
+      return "hexahedra";
+    case 12:
+    case 17:
+      return "quadratic hexahedra";
+    case 92:
+    case 93:
+      return "hexahedra of higher order";
+    case 6:
+      return "prisms";
+    case 13:
+    case 18:
+      return "quadratic prisms";
+    case 90:
+    case 91:
+      return "prisms of higher order";
+    case 7:
+      return "pyramids";
+    case 14:
+    case 19:
+      return "quadratic pyramids";
+    case 118:
+    case 119:
+      return "pyramids of higher order";
+    case 11:
+      return "quadratic tets";
+    case 29:
+    case 30:
+    case 31:
+    case 71:
+    case 72:
+    case 73:
+    case 74:
+    case 75:
+      return "tets of higher order";
+    default:
+      return nullptr;
+  }
+}
+
+}  // namespace
+
+bool OtherMshElements::is_volume(std::int64_t type) { return volume_kind(type) != nullptr; }
+
+void OtherMshElements::add_name(std::int64_t dimension, std::int64_t group, const std::string& name) {
+  if (dimension == 2) triangles_.names[group] = name;
+  if (dimension == 0 || dimension == 1) names_[static_cast<std::size_t>(dimension)][group] = name;
+}
+
+void OtherMshElements::add_volume(std::int64_t type, std::int64_t element, std::size_t line) {
+  if (volumes_.empty()) {
+    first_volume_ = element;
+    first_volume_type_ = type;
+    first_volume_line_ = line;
+  }
+  ++volumes_[type];
+}
+
+void OtherMshElements::add_flat(std::int64_t type, std::int64_t group) {
+  OfKind& kind = flat_[type];
+  ++kind.elements;
+  if (group != 0) kind.groups.insert(group);
+}
+
+void OtherMshElements::add_triangle(const Triangle& ids, std::int64_t group) {
+  triangles_.triangles.push_back(ids);
+  triangles_.groups.push_back(group);
+}
+
+void OtherMshElements::refuse_volumes(const std::string& file) const {
+  if (volumes_.empty()) return;
+  KindCounts counts;
+  for (const auto& [type, count] : volumes_) {
+    const char* kind = volume_kind(type);
+    counts.add(kind ? kind : "volume elements of an unknown type", count);
+  }
+  throw InputError(file, first_volume_line_,
+                   unsupported_cells(counts, "element " + std::to_string(first_volume_) + " (type " +
+                                                 std::to_string(first_volume_type_) + ")"));
+}
+
+void OtherMshElements::note_dropped(ReadTetMesh& read) const {
+  note_dropped_triangles(triangles_, "physical groups", read);
+  std::array<std::set<std::int64_t>, 3> used;
+  used[2].insert(triangles_.groups.begin(), triangles_.groups.end());
+  for (const auto& [type, of_kind] : flat_) {
+    const ElementKind kind = flat_kind(type);
+    std::vector<std::string> groups;
+    for (std::int64_t group : of_kind.groups) {
+      std::string name = std::to_string(group);
+      if (kind.dimension < unknown_dimension) {
+        const auto& names = names_of(kind.dimension);
+        if (const auto known = names.find(group); known != names.end()) name = known->second;
+        used[kind.dimension].insert(group);
+      }
+      groups.push_back(name);
+    }
+    read.dropped.push_back(
+        {kind.name + (groups.empty() ? "" : " of physical groups (" + quoted_list(groups) + ")"),
+         of_kind.elements});
+  }
+  std::vector<std::string> unused;
+  for (std::size_t dimension = 0; dimension < used.size(); ++dimension)
+    for (const auto& [group, name] : names_of(dimension))
+      if (!used[dimension].contains(group)) unused.push_back(name);
+  append_dropped_names(read.dropped, "physical groups of points, lines or faces, without elements", unused);
+}
+
+}  // namespace tetwright

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "common/formats/file_triangles.h"
+#include "common/formats/read_tet_mesh_result.h"
+
+namespace tetwright {
+
+/// Gmsh's numbers of element types.
+inline constexpr std::int64_t msh_triangle_type = 2;
+inline constexpr std::int64_t msh_tet_type = 4;
+
+/// The elements of an MSH file that are not linear tets, counted by kind and group, and the names of the
+/// groups of every dimension.
+class OtherMshElements {
+ public:
+  /// True for the types of volume elements other than linear tets.
+  static bool is_volume(std::int64_t type);
+
+  /// A name of section $PhysicalNames; `dimension` is 0 to 2.
+  void add_name(std::int64_t dimension, std::int64_t group, const std::string& name);
+  /// A volume element other than a linear tet, also one of a type that is_volume() does not know.
+  void add_volume(std::int64_t type, std::int64_t element, std::size_t line);
+  /// A point, line or face other than a linear triangle; `group` is its physical group, 0 for none.
+  void add_flat(std::int64_t type, std::int64_t group);
+  /// A linear triangle; its nodes as indices of points, no_index for a node that the file does not have.
+  void add_triangle(const Triangle& ids, std::int64_t group);
+
+  /// Throws InputError if there were volume elements.
+  void refuse_volumes(const std::string& file) const;
+  /// Adds all the rest to `read.dropped`. To be called when the materials are known.
+  void note_dropped(ReadTetMesh& read) const;
+
+ private:
+  struct OfKind {
+    std::size_t elements = 0;
+    std::set<std::int64_t> groups;  ///< without 0
+  };
+
+  const std::map<std::int64_t, std::string>& names_of(std::size_t dimension) const {
+    return dimension == 2 ? triangles_.names : names_[dimension];
+  }
+
+  std::array<std::map<std::int64_t, std::string>, 2> names_;  ///< of groups of points and of lines
+  FileTriangles triangles_;                                   ///< with the names of groups of faces
+  std::map<std::int64_t, OfKind> flat_;                       ///< by type
+  std::map<std::int64_t, std::size_t> volumes_;               ///< numbers by type
+  std::int64_t first_volume_ = 0, first_volume_type_ = 0;
+  std::size_t first_volume_line_ = 0;
+};
+
+}  // namespace tetwright

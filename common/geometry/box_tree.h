@@ -1,0 +1,168 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "common/types.h"
+
+namespace tetwright {
+
+/// An axis-aligned box; empty at first.
+struct Box3 {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
+  Vec3 high = Vec3::Constant(-std::numeric_limits<double>::infinity());
+
+  void add(const Vec3& p) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  void add(const Box3& b) {
+    low = low.cwiseMin(b.low);
+    high = high.cwiseMax(b.high);
+  }
+  bool contains(const Vec3& p) const {
+    return low.x() <= p.x() && p.x() <= high.x() && low.y() <= p.y() && p.y() <= high.y() &&
+           low.z() <= p.z() && p.z() <= high.z();
+  }
+  bool intersects(const Box3& b) const {
+    return (low.array() <= b.high.array()).all() && (b.low.array() <= high.array()).all();
+  }
+  /// Infinite for an empty box.
+  double squared_distance(const Vec3& p) const {
+    double sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double d = std::max({low[axis] - p[axis], p[axis] - high[axis], 0.0});
+      sum += d * d;
+    }
+    return sum;
+  }
+};
+
+/// A bounding volume hierarchy over items that stand in an order of the caller's: neighbours in the order
+/// should be neighbours in space (morton_order(), median_order()). The tree knows positions in that order and
+/// boxes, never the items.
+///
+/// A node of L > 1 leaves is halved into L / 2 and the other leaves, so that its shape follows from the
+/// number of items alone. Nodes stand in depth-first order: the first child of node k is k + 1, and `next` is
+/// the first node that is not below k. Built in O(n); 64 bytes for each node. Immutable after construction;
+/// all functions may be called concurrently.
+class BoxTree {
+ public:
+  /// A range of positions.
+  struct Range {
+    std::size_t begin, end;
+  };
+  struct Node {
+    Box3 box;
+    std::uint32_t next;
+    std::uint32_t begin, end;  ///< positions
+  };
+
+  BoxTree() = default;
+  /// `box_at(position)` returns an item's box. Fewer than 2^32 items.
+  BoxTree(std::size_t count, std::size_t leaf_size, const std::function<Box3(std::size_t)>& box_at);
+
+  bool empty() const { return nodes_.empty(); }
+  std::span<const Node> nodes() const { return nodes_; }
+  bool is_leaf(const Node& node) const { return node.end - node.begin <= leaf_size_; }
+  Range all() const { return {0, nodes_.empty() ? 0 : nodes_[0].end}; }
+
+  /// Visits items nearest boxes first: `visit(position, best)` returns the smaller of `best` and the squared
+  /// distance of the item from `p`. Leaves farther away than the best so far are passed over, those at the
+  /// same distance are not. Only items of `range`. Returns the best, `squared_limit` where nothing is nearer.
+  template <class Visit>
+  double nearest(const Vec3& p, double squared_limit, const Range& range, const Visit& visit) const {
+    double best = squared_limit;
+    if (nodes_.empty()) return best;
+    struct Entry {
+      std::uint32_t node;
+      double squared_distance;
+    };
+    std::array<Entry, stack_size> stack;
+    std::size_t size = 0;
+    stack[size++] = {0, nodes_[0].box.squared_distance(p)};
+    while (size > 0) {
+      const Entry entry = stack[--size];
+      if (entry.squared_distance > best) continue;
+      const Node& node = nodes_[entry.node];
+      const std::size_t begin = std::max<std::size_t>(node.begin, range.begin),
+                        end = std::min<std::size_t>(node.end, range.end);
+      if (begin >= end) continue;
+      if (is_leaf(node)) {
+        for (std::size_t i = begin; i < end; ++i) best = visit(i, best);
+        continue;
+      }
+      Entry near{entry.node + 1, nodes_[entry.node + 1].box.squared_distance(p)};
+      const std::uint32_t second = nodes_[near.node].next;
+      Entry far{second, nodes_[second].box.squared_distance(p)};
+      if (far.squared_distance < near.squared_distance) std::swap(near, far);
+      stack[size++] = far;
+      stack[size++] = near;
+    }
+    return best;
+  }
+
+  /// Calls `visit(position)` for the items of `range` in leaves whose box contains `p`, in ascending order,
+  /// until it returns true. Whether it did.
+  template <class Visit>
+  bool any_containing(const Vec3& p, const Range& range, const Visit& visit) const {
+    for (std::size_t k = 0; k < nodes_.size();) {
+      const Node& node = nodes_[k];
+      const std::size_t begin = std::max<std::size_t>(node.begin, range.begin),
+                        end = std::min<std::size_t>(node.end, range.end);
+      if (begin >= end || !node.box.contains(p)) {
+        k = node.next;
+        continue;
+      }
+      if (is_leaf(node))
+        for (std::size_t i = begin; i < end; ++i)
+          if (visit(i)) return true;
+      ++k;
+    }
+    return false;
+  }
+
+  /// Calls `visit(leaf)` for the leaf `own` (a place in nodes()) and each later leaf whose box intersects its
+  /// own: over all leaves, each pair once.
+  template <class Visit>
+  void for_each_later_intersecting_leaf(std::size_t own, const Visit& visit) const {
+    const Node& leaf = nodes_[own];
+    for (std::size_t k = 0; k < nodes_.size();) {
+      const Node& node = nodes_[k];
+      if (node.next <= own || !node.box.intersects(leaf.box)) {
+        k = node.next;
+        continue;
+      }
+      if (is_leaf(node)) visit(k);
+      ++k;
+    }
+  }
+
+  /// The number of leaves for so many items.
+  static std::size_t leaf_count(std::size_t items, std::size_t leaf_size) {
+    return (items + leaf_size - 1) / leaf_size;
+  }
+
+ private:
+  static constexpr std::size_t stack_size = 64;  // the tree is at most 32 high, each level leaves one entry
+
+  std::vector<Node> nodes_;
+  std::size_t leaf_size_ = 1;
+};
+
+/// The items 0 to boxes.size() - 1 in the Morton order of their boxes' centres.
+std::vector<Index> morton_order(std::span<const Box3> boxes);
+
+/// The items 0 to centres.size() - 1, halved at the median of the longest side of their boxes in whole
+/// leaves, again and again, as BoxTree halves its nodes: tighter boxes than Morton order gives. The same for
+/// any number of threads.
+std::vector<Index> median_order(std::span<const Box3> boxes, std::span<const Vec3> centres,
+                                std::size_t leaf_size);
+
+}  // namespace tetwright

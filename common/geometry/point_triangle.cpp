@@ -1,0 +1,37 @@
+#include "common/geometry/point_triangle.h"
+
+#include <algorithm>
+
+namespace tetwright {
+
+namespace {
+
+Vec3 closest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 ab = b - a;
+  const double length2 = ab.squaredNorm();
+  const double t = length2 > 0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0;
+  return a + t * ab;
+}
+
+}  // namespace
+
+Vec3 closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  // Barycentric coordinates of the foot on the plane.
+  const double d00 = ab.dot(ab), d01 = ab.dot(ac), d11 = ac.dot(ac), d20 = ap.dot(ab), d21 = ap.dot(ac);
+  const double denominator = d00 * d11 - d01 * d01;
+  if (denominator > 0) {
+    const double v = (d11 * d20 - d01 * d21) / denominator, w = (d00 * d21 - d01 * d20) / denominator;
+    if (v >= 0 && w >= 0 && v + w <= 1) return a + v * ab + w * ac;
+  }
+  Vec3 best = closest_on_segment(p, a, b);
+  for (const Vec3& q : {closest_on_segment(p, b, c), closest_on_segment(p, c, a)})
+    if ((p - q).squaredNorm() < (p - best).squaredNorm()) best = q;
+  return best;
+}
+
+double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  return (p - closest_point(p, a, b, c)).squaredNorm();
+}
+
+}  // namespace tetwright

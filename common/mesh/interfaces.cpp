@@ -1,0 +1,70 @@
+#include "common/mesh/interfaces.h"
+
+#include <algorithm>
+
+#include "common/mesh/mesh_faces.h"
+#include "common/parallel/parallel_sort.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::size_t face_grain = 1 << 14;  // faces to a task, some nanoseconds each
+
+/// A face of a tet, listed from its smallest id on so that the normal points out.
+Triangle outward_face(const Tet& tet, const Triangle& ids) {
+  // Also where a broken tet has a point twice.
+  const Index opposite = tet[0] ^ tet[1] ^ tet[2] ^ tet[3] ^ ids[0] ^ ids[1] ^ ids[2];
+  const auto k = static_cast<std::size_t>(std::find(tet.begin(), tet.end(), opposite) - tet.begin());
+  Triangle face{tet[tet_faces[k][0]], tet[tet_faces[k][1]], tet[tet_faces[k][2]]};
+  std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+  return face;
+}
+
+}  // namespace
+
+std::vector<InterfaceTriangle> find_interfaces(const TetMesh& mesh,
+                                               const std::vector<std::uint8_t>* candidates) {
+  const std::vector<MeshFace> faces = mesh_faces(mesh.tets, mesh.points.size(), candidates);
+  return parallel_collect<InterfaceTriangle>(
+      0, faces.size(), face_grain,
+      [&](std::size_t begin, std::size_t end, std::vector<InterfaceTriangle>& out) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const MeshFace& f = faces[i];
+          const MaterialTag first = mesh.materials[f.first];
+          if (f.count == 1) {
+            out.push_back({outward_face(mesh.tets[f.first], f.ids), first, std::nullopt});
+          } else if (const MaterialTag second = mesh.materials[f.second]; f.count == 2 && first != second) {
+            const Index smaller = first < second ? f.first : f.second;
+            out.push_back(
+                {outward_face(mesh.tets[smaller], f.ids), std::min(first, second), std::max(first, second)});
+          }
+        }
+      });
+}
+
+std::vector<MaterialPair> interface_groups(const std::vector<InterfaceTriangle>& triangles) {
+  std::vector<MaterialPair> groups;
+  for (const InterfaceTriangle& t : triangles) {
+    const MaterialPair pair = t.pair();
+    const auto at = std::lower_bound(groups.begin(), groups.end(), pair);
+    if (at == groups.end() || *at != pair) groups.insert(at, pair);
+  }
+  return groups;
+}
+
+std::size_t group_number(const std::vector<MaterialPair>& groups, const InterfaceTriangle& triangle) {
+  return static_cast<std::size_t>(std::lower_bound(groups.begin(), groups.end(), triangle.pair()) -
+                                  groups.begin()) +
+         1;
+}
+
+std::string pair_name(const MaterialPair& pair, const std::map<MaterialTag, std::string>& names) {
+  const auto name = [&](MaterialTag tag) {
+    const auto at = names.find(tag);
+    return at == names.end() ? std::to_string(tag) : at->second;
+  };
+  return name(pair.first) + "|" + (pair.second ? name(*pair.second) : "outside");
+}
+
+}  // namespace tetwright

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <charconv>
+#include <string>
+
+#include "common/types.h"
+
+namespace tetwright {
+
+/// Appends a number as text: for doubles the shortest text that is read back as the same bits.
+template <class Number>
+void append_number(std::string& out, Number value) {
+  char buffer[32];
+  out.append(buffer, std::to_chars(buffer, buffer + sizeof(buffer), value).ptr);
+}
+
+/// Appends "x y z".
+inline void append_point(std::string& out, const Vec3& p) {
+  append_number(out, p.x());
+  out += ' ';
+  append_number(out, p.y());
+  out += ' ';
+  append_number(out, p.z());
+}
+
+}  // namespace tetwright

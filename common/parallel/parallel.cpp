@@ -1,0 +1,122 @@
+#include "common/parallel/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <vector>
+
+#include "common/parallel/tbb_loop.h"
+
+namespace tetwright {
+
+namespace {
+
+/// The number of threads that parallel work may use; 0 while there is no ThreadLimit.
+std::atomic<unsigned> thread_limit{0};
+
+/// The thread sanitizer cannot see how TBB synchronises its threads, since the library is not instrumented.
+/// These two atomics state what TBB guarantees: everything before a loop happens before each body, and each
+/// body happens before everything after the loop. There are two of them, and no body acquires at its end, so
+/// that no order among the bodies is claimed that does not exist. They are global, so that a body reads
+/// nothing of its caller's before it has acquired.
+std::atomic<unsigned> loop_started{0};
+std::atomic<unsigned> body_ended{0};
+
+/// Releases when a body ends, also by an exception.
+struct BodyEnd {
+  ~BodyEnd() { body_ended.fetch_add(1, std::memory_order_release); }
+};
+/// Acquires in the caller when the loop ends, also by an exception.
+struct LoopEnd {
+  ~LoopEnd() { (void)body_ended.load(std::memory_order_acquire); }
+};
+
+/// body(i) for each i in [0, count), on at most thread_count() threads.
+void run_loop(std::size_t count, const std::function<void(std::size_t)>& body) {
+  // Each slot of an arena that has nothing to do still wakes a thread for every loop.
+  const auto threads = static_cast<unsigned>(std::min<std::size_t>(count, thread_count()));
+  loop_started.fetch_add(1, std::memory_order_release);
+  const LoopEnd loop_end;
+  tbb_loop(
+      count, threads,
+      [](const void* context, std::size_t i) {
+        (void)loop_started.load(std::memory_order_acquire);
+        const BodyEnd body_end;
+        (*static_cast<const std::function<void(std::size_t)>*>(context))(i);
+      },
+      &body);
+}
+
+}  // namespace
+
+struct ThreadLimit::Impl {
+  explicit Impl(unsigned threads) : tbb(threads) {}
+  TbbLimit tbb;
+  unsigned before = 0;
+};
+
+unsigned hardware_threads() { return tbb_concurrency(); }
+
+unsigned max_threads() { return std::max(16u, 4 * hardware_threads()); }
+
+ThreadLimit::ThreadLimit(unsigned threads) {
+  const unsigned limit = threads ? std::min(threads, max_threads()) : hardware_threads();
+  impl_ = std::make_unique<Impl>(limit);
+  impl_->before = thread_limit.exchange(limit);
+}
+
+ThreadLimit::~ThreadLimit() { thread_limit.store(impl_->before); }
+
+unsigned thread_count() {
+  const unsigned limit = thread_limit.load();
+  return limit ? limit : hardware_threads();
+}
+
+void parallel_for(std::size_t begin, std::size_t end, std::size_t grain,
+                  const std::function<void(std::size_t, std::size_t)>& body) {
+  if (begin >= end) return;
+  grain = std::max<std::size_t>(1, grain);
+  const std::size_t parts = (end - begin + grain - 1) / grain;
+  const auto part = [&](std::size_t i) { body(begin + i * grain, std::min(end, begin + (i + 1) * grain)); };
+  if (thread_count() == 1 || parts == 1) {
+    for (std::size_t i = 0; i < parts; ++i) part(i);
+    return;
+  }
+  run_loop(parts, part);
+}
+
+void parallel_chunks(std::size_t chunks, const std::function<void(std::size_t, unsigned)>& body) {
+  const unsigned workers = static_cast<unsigned>(std::min<std::size_t>(thread_count(), chunks));
+  if (workers <= 1) {
+    for (std::size_t i = 0; i < chunks; ++i) body(i, 0);
+    return;
+  }
+  // Relaxed, both: the counter only hands out numbers, and the flag only has to arrive some time.
+  std::atomic<std::size_t> next{0};
+  std::atomic<bool> failed{false};
+  run_loop(workers, [&](std::size_t worker) {
+    for (std::size_t i; !failed.load(std::memory_order_relaxed) &&
+                        (i = next.fetch_add(1, std::memory_order_relaxed)) < chunks;) {
+      try {
+        body(i, static_cast<unsigned>(worker));
+      } catch (...) {
+        failed.store(true, std::memory_order_relaxed);
+        throw;
+      }
+    }
+  });
+}
+
+double parallel_sum(std::size_t begin, std::size_t end, std::size_t grain,
+                    const std::function<double(std::size_t, std::size_t)>& body) {
+  if (begin >= end) return 0;
+  std::vector<double> parts((end - begin + grain - 1) / grain);
+  parallel_for(0, parts.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k)
+      parts[k] = body(begin + k * grain, std::min(end, begin + (k + 1) * grain));
+  });
+  double sum = 0;
+  for (double part : parts) sum += part;
+  return sum;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,44 @@
+#include "common/parallel/tbb_loop.h"
+
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+
+namespace tetwright {
+
+namespace {
+
+/// Keeps TBB's threads until the process ends, which stops them wherever they are. Otherwise the last of them
+/// would destroy the library's data while the program is exiting, and waiting for the threads takes minutes
+/// while other programs keep all processors busy.
+struct KeptThreads {
+  KeptThreads() : handle(tbb::attach{}) {}
+  ~KeptThreads() {}  // the handle is never released
+  union {
+    tbb::task_scheduler_handle handle;
+  };
+};
+
+}  // namespace
+
+struct TbbLimit::Impl {
+  explicit Impl(unsigned threads) : control(tbb::global_control::max_allowed_parallelism, threads) {}
+  tbb::global_control control;
+};
+
+TbbLimit::TbbLimit(unsigned threads) : impl_(std::make_unique<Impl>(threads)) {}
+TbbLimit::~TbbLimit() = default;
+
+unsigned tbb_concurrency() { return static_cast<unsigned>(std::max(1, tbb::info::default_concurrency())); }
+
+void tbb_loop(std::size_t count, unsigned threads, void (*body)(const void* context, std::size_t i),
+              const void* context) {
+  static const KeptThreads kept_threads;
+  tbb::task_arena arena(static_cast<int>(threads));
+  arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { body(context, i); }); });
+}
+
+}  // namespace tetwright

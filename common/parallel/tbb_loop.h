@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+namespace tetwright {
+
+/// Only the source of this header includes oneTBB; all other code uses parallel.h. The source is compiled
+/// without the thread sanitizer: TBB synchronises in a library that is not instrumented, so that the half of
+/// it that is in headers would be reported. parallel.cpp, which is instrumented, states the order that TBB
+/// guarantees.
+
+/// The number of threads that TBB uses by default, at least 1.
+unsigned tbb_concurrency();
+
+/// While an object exists, TBB uses at most `threads` threads, in OpenVDB too.
+class TbbLimit {
+ public:
+  explicit TbbLimit(unsigned threads);
+  ~TbbLimit();
+  TbbLimit(const TbbLimit&) = delete;
+  TbbLimit& operator=(const TbbLimit&) = delete;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Calls body(context, i) for each i in [0, count), concurrently on up to `threads` threads. Rethrows the
+/// first exception. `body` is a plain pointer, since the source, which is not instrumented, would otherwise
+/// read a std::function.
+void tbb_loop(std::size_t count, unsigned threads, void (*body)(const void* context, std::size_t i),
+              const void* context);
+
+}  // namespace tetwright

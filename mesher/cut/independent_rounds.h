@@ -1,0 +1,107 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <span>
+#include <vector>
+
+#include "common/parallel/parallel.h"
+#include "mesher/lattice/labelled_lattice.h"
+
+namespace tetwright {
+
+/// Processes groups of lattice points in parallel with the same result as one group after another in the
+/// given order, by deterministic reservations (Blelloch et al. 2012, "Internally deterministic parallel
+/// algorithms can be fast").
+///
+/// Each group reserves the closed stars of its points. Of two groups whose stars share a point the earlier
+/// one is processed first and the later one waits for a later round, so the result is the same for any number
+/// of threads. Groups of neighbouring points save most of the cost of cache misses.
+class IndependentRounds {
+ public:
+  explicit IndependentRounds(const LabelledLattice& lattice)
+      : lattice_(lattice), reserved_(lattice.stars.points().size(), free_) {}
+
+  /// Group g consists of the points [starts[g], starts[g + 1]) of `points`, which are near interfaces and
+  /// listed once each. Calls `body(groups)` concurrently with lists of groups; it may write data of their
+  /// points and read data of points one edge away, and two edges away across a point near an interface. After
+  /// each round `between_rounds(done)` is called with the number of groups processed so far.
+  template <class Body, class BetweenRounds>
+  void run(std::span<const Index> points, std::span<const std::size_t> starts, Body&& body,
+           BetweenRounds&& between_rounds) {
+    // Enough groups to be worth a parallel loop, few enough that most of them do not share points.
+    constexpr std::size_t min_round = 128, rounds_wanted = 48, grain = 4;
+    const std::size_t groups = starts.size() - 1, max_round = std::max(min_round, groups / rounds_wanted);
+    struct Group {
+      Index number;
+      std::vector<Index> slots;  ///< of those points of its closed stars that are near interfaces
+    };
+    std::vector<Group> waiting, losers;
+    std::vector<Index> winners;
+    std::vector<std::uint8_t> wins;
+    const auto for_waiting = [&](auto&& work) {
+      parallel_for(0, waiting.size(), 4 * grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) work(i);
+      });
+    };
+    for (std::size_t next = 0, done = 0; done < groups;) {
+      while (waiting.size() < max_round && next < groups) waiting.push_back({static_cast<Index>(next++), {}});
+      for_waiting([&](std::size_t i) {
+        Group& group = waiting[i];
+        if (group.slots.empty())
+          group.slots = slots_around(points.subspan(
+              starts[group.number], starts[group.number + std::size_t{1}] - starts[group.number]));
+        for (Index slot : group.slots) {
+          // The smallest number wins in any order of arrival. Relaxed: results are read after the loop only.
+          std::atomic_ref<std::uint32_t> holder(reserved_[slot]);
+          std::uint32_t held = holder.load(std::memory_order_relaxed);
+          while (group.number < held &&
+                 !holder.compare_exchange_weak(held, group.number, std::memory_order_relaxed)) {
+          }
+        }
+      });
+      wins.assign(waiting.size(), 0);
+      for_waiting([&](std::size_t i) {
+        const Group& group = waiting[i];
+        wins[i] = std::all_of(group.slots.begin(), group.slots.end(),
+                              [&](Index slot) { return reserved_[slot] == group.number; });
+      });
+      for_waiting([&](std::size_t i) {
+        for (Index slot : waiting[i].slots)
+          std::atomic_ref<std::uint32_t>(reserved_[slot]).store(free_, std::memory_order_relaxed);
+      });
+      winners.clear();
+      losers.clear();
+      for (std::size_t i = 0; i < waiting.size(); ++i)
+        if (wins[i])
+          winners.push_back(waiting[i].number);
+        else
+          losers.push_back(std::move(waiting[i]));
+      parallel_for(0, winners.size(), grain, [&](std::size_t begin, std::size_t end) {
+        body(std::span<const Index>(winners).subspan(begin, end - begin));
+      });
+      done += winners.size();
+      waiting.swap(losers);
+      between_rounds(done);
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t free_ = ~std::uint32_t{0};
+
+  /// The slots of the points in the closed stars of `points`, without repetitions.
+  std::vector<Index> slots_around(std::span<const Index> points) const {
+    std::vector<Index> slots;
+    for (Index p : points)
+      for (Index t : lattice_.stars.tets(p))
+        for (Index q : lattice_.tets[t])
+          if (const Index s = lattice_.stars.slot(q); s != no_index) slots.push_back(s);
+    std::sort(slots.begin(), slots.end());
+    return {slots.begin(), std::unique(slots.begin(), slots.end())};
+  }
+
+  const LabelledLattice& lattice_;
+  std::vector<std::uint32_t> reserved_;  ///< by slot, the group that holds the point
+};
+
+}  // namespace tetwright

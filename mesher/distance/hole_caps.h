@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cmath>
+#include <compare>
+#include <functional>
+#include <vector>
+
+#include "common/geometry/morton.h"
+#include "common/progress.h"
+#include "common/triangle_mesh.h"
+
+namespace tetwright {
+
+/// Points of at least this generalised winding number are inside: one half plus more than the rounding error,
+/// so that the back of a flat sheet is consistently outside.
+inline constexpr double inside_winding = 0.5001;
+
+/// Distance and winding number at a grid point.
+struct GridReading {
+  double distance = 0;  ///< from the surface, voxels, negative inside, clamped to the band
+  double winding = 0;   ///< generalised winding number
+};
+
+/// The edge of a voxel from a grid point upwards along an axis.
+struct GridEdge {
+  MortonKey lower;
+  int axis;
+  auto operator<=>(const GridEdge&) const = default;
+};
+
+/// True if one end of a grid edge is inside and the other is not although no surface crosses the edge. A
+/// surface that does has distances from both ends that add up to one voxel or less.
+inline bool needs_cap(double distance, double next_distance) {
+  constexpr double slack = 0.02;  // the distances' error near the surface
+  return (distance < 0) != (next_distance < 0) && std::abs(distance) + std::abs(next_distance) > 1 + slack;
+}
+
+/// Caps across the holes of a surface: where the winding number passes inside_winding without a surface.
+/// Starts from the grid edges in `seeds` (those within the band) and follows each cap to its end. Every edge
+/// that needs a cap is crossed by one, so the distances from surface and caps at its ends add up to one voxel
+/// or less.
+///
+/// Caps are surface nets (Gibson 1998) in grid coordinates: a point in each cell at the mean of the crossings
+/// of its edges, and a quadrilateral around each edge that needs a cap, oriented outwards.
+///
+/// `read` is called concurrently, about once for each grid point within a cell of the caps. Seeds, and all
+/// points that `read` reports as inside, must be two cells or more inside the grid. Memory and time are
+/// proportional to the caps. The same result for any order of `seeds` and any number of threads. Throws
+/// Interrupted.
+TriangleMesh cap_holes(const std::vector<GridEdge>& seeds,
+                       const std::function<GridReading(int, int, int)>& read, Progress* progress);
+
+}  // namespace tetwright

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "common/geometry/morton.h"
+#include "common/progress.h"
+#include "mesher/distance/narrow_band.h"
+#include "mesher/domain/grid_frame.h"
+#include "mesher/input/surface_repair.h"
+
+namespace tetwright {
+
+/// A signed distance function on the grid, stored as an OpenVDB volume: negative inside, in voxels, correct
+/// within the band and clamped outside it, where only the sign is meaningful.
+///
+/// A grid point on the surface is consistently classified as inside or outside and never has the value 0.
+/// Memory is proportional to the surface (N^2). Immutable after construction; all functions may be called
+/// concurrently.
+class LevelSet {
+ public:
+  /// The level set of a surface. Magnitudes come from OpenVDB's unsigned conversion (its signed one would
+  /// fill closed cavities), signs at grid points of the band from the exact winding number; points outside
+  /// the band take the sign of the band around them. Throws Interrupted.
+  static std::shared_ptr<const LevelSet> of_surface(const RepairedSurface& surface, const GridFrame& frame,
+                                                    Progress* progress);
+  /// The level set of the surface at `depth` voxels (any number > 0) inside: values are the distance plus
+  /// `depth`, so what is deeper is inside, with a narrow band around the new zero level. Distances are exact.
+  /// Memory is proportional to the new surface. Throws Interrupted.
+  static std::shared_ptr<const LevelSet> at_depth(const RepairedSurface& surface, double depth,
+                                                  const GridFrame& frame, Progress* progress);
+  /// The same, reusing the result of of_surface().
+  static std::shared_ptr<const LevelSet> at_depth(const RepairedSurface& surface, const LevelSet& boundary,
+                                                  double depth, const GridFrame& frame, Progress* progress);
+  ~LevelSet();
+  LevelSet(const LevelSet&) = delete;
+  LevelSet& operator=(const LevelSet&) = delete;
+
+  /// The voxels with corners on both sides, as ascending Morton keys of their lower corners.
+  std::vector<MortonKey> interface_cells() const;
+  /// The leaves that contain the band, ascending.
+  std::vector<LeafOrigin> leaves() const;
+
+ private:
+  friend class LevelSetSampler;
+  struct Impl;
+  explicit LevelSet(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Evaluates a level set, in grid coordinates and voxels. Caches the leaf read last, so evaluating nearby
+/// points one after another is fast. Not thread-safe; any number of samplers of one level set may be used
+/// concurrently.
+class LevelSetSampler {
+ public:
+  explicit LevelSetSampler(const LevelSet& level_set);
+  ~LevelSetSampler();
+  LevelSetSampler(const LevelSetSampler&) = delete;
+  LevelSetSampler& operator=(const LevelSetSampler&) = delete;
+
+  /// The distance at a grid point, clamped to level_set_band.
+  double at_node(int x, int y, int z);
+  /// Trilinear interpolation between grid points.
+  double at(const Vec3& point);
+  /// The same with its gradient (per voxel; of length about 1 within the band).
+  double at(const Vec3& point, Vec3& gradient);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tetwright

@@ -1,0 +1,302 @@
+#include "mesher/distance/level_set_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/parallel/parallel_sort.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Surfaces of two bodies that face each other (the cosine between their normals is below the second number)
+/// and are closer than the first number (voxels) count as one. Common faces of bodies are known to a few
+/// hundredths of a voxel, near sharp edges to a few tenths, and slivers of another region between them would
+/// be noise.
+constexpr double contact = 0.4, contact_facing = -0.7;
+/// Cosine between the normals of two surfaces below which the region between them is a sheet. Otherwise it is
+/// a wedge, which is thin at its edge for any cell size.
+constexpr double sheet_facing = -0.95;
+/// Thinner sheets (voxels) are gaps between two faces that were meant to coincide.
+constexpr double noticed = 0.1;
+
+std::vector<FieldRegion> names_of(const std::vector<LevelSetRegion>& regions) {
+  std::vector<FieldRegion> out;
+  for (const LevelSetRegion& r : regions) out.push_back({r.name, r.tag});
+  return out;
+}
+
+}  // namespace
+
+class LevelSetField::Sampler final : public FieldSampler {
+ public:
+  explicit Sampler(const LevelSetField& f)
+      : FieldSampler(std::ldexp(1, f.refinement())),
+        field(f),
+        per_voxel(std::ldexp(1, f.refinement())),
+        distances(f.level_sets().size()),
+        gradients(f.level_sets().size()),
+        carved(f.terms(outside_region).size()) {
+    readers.reserve(distances.size());
+    for (const auto& level_set : f.level_sets())
+      readers.push_back(std::make_unique<LevelSetSampler>(*level_set));
+  }
+
+  NearestRegion nearest(const Vec3& point) override {
+    read(point);
+    return nearest();
+  }
+  NearestRegion nearest_at_voxel(int x, int y, int z) override {
+    read_voxel(x, y, z);
+    return nearest();
+  }
+  void values(const Vec3& point, std::span<const RegionIndex> regions, float* out) override {
+    read(point);
+    for (RegionIndex r : regions) *out++ = static_cast<float>(value(r));
+  }
+  void values_at_voxel(int x, int y, int z, std::span<const RegionIndex> regions, float* out) override {
+    read_voxel(x, y, z);
+    for (RegionIndex r : regions) *out++ = static_cast<float>(value(r));
+  }
+  std::optional<RegionSet> two_nearest(const Vec3& point) override;
+  std::optional<Sheet> thinnest_sheet(const Vec3& point, double reach) override;
+
+ private:
+  void values_and_gradients(const Vec3& point, std::span<const RegionIndex> regions, double* out,
+                            Vec3* slopes) override {
+    read_gradients(point);
+    for (RegionIndex r : regions) {
+      const RegionTerm* largest;
+      *out++ = value(r, largest);
+      *slopes++ = signed_gradient(*largest);
+    }
+  }
+
+  void read(const Vec3& point) {
+    place = point;
+    const Vec3 at = point / per_voxel;
+    for (std::size_t j = 0; j < distances.size(); ++j) distances[j] = per_voxel * readers[j]->at(at);
+    has_gradients = false;
+    find_carving_maxima();
+  }
+  void read_gradients(const Vec3& point) {
+    place = point;
+    const Vec3 at = point / per_voxel;
+    for (std::size_t j = 0; j < distances.size(); ++j)
+      distances[j] = per_voxel * readers[j]->at(at, gradients[j]);
+    has_gradients = true;
+    find_carving_maxima();
+  }
+  void read_voxel(int x, int y, int z) {
+    place = per_voxel * Vec3(x, y, z);
+    for (std::size_t j = 0; j < distances.size(); ++j)
+      distances[j] = per_voxel * readers[j]->at_node(x, y, z);
+    has_gradients = false;
+    find_carving_maxima();
+  }
+
+  /// For each of the outside's terms the largest from it on, of equal ones the first. Every region shares its
+  /// last terms with the outside, see LevelSetField::own_terms().
+  void find_carving_maxima() {
+    const std::vector<RegionTerm>& terms = field.terms(outside_region);
+    for (std::size_t i = terms.size(); i-- > 0;) {
+      const double v = signed_term(terms[i]);
+      carved[i] = i + 1 == terms.size() || v >= carved[i + 1].value ? Carving{v, &terms[i]} : carved[i + 1];
+    }
+  }
+
+  /// The signed distance of a region and its largest term; the distance is increased where the region is a
+  /// sliver between surfaces in contact. Costs O(own terms), except near the region's surface.
+  double value(RegionIndex r) {
+    const RegionTerm* unused;
+    return value(r, unused);
+  }
+  double value(RegionIndex r, const RegionTerm*& largest) {
+    const std::vector<RegionTerm>& terms = field.terms(r);
+    const std::size_t own = field.own_terms(r);
+    double best = 0;
+    largest = nullptr;
+    for (std::size_t i = 0; i < own; ++i) {
+      const double v = signed_term(terms[i]);
+      if (!largest || v > best) best = v, largest = &terms[i];
+    }
+    if (own < terms.size()) {
+      const Carving& carving = carved[carved.size() - (terms.size() - own)];
+      if (!largest || carving.value > best) best = carving.value, largest = carving.term;
+    }
+    const double thinnest = contact * per_voxel;
+    if (terms.size() < 2 || best < -thinnest || best > thinnest) return best;
+    return best + sliver_excess(terms, best);
+  }
+  /// The maximum, over pairs of bodies in contact that face each other, of the contact distance minus the
+  /// thickness of the region between them; 0 where the region is no sliver. `best` is the largest term.
+  double sliver_excess(const std::vector<RegionTerm>& terms, double best) {
+    const double thinnest = contact * per_voxel;
+    // The terms of a sliver add up to more than -thinnest, so none is below this. The factor allows for
+    // rounding.
+    const double smallest = -1.001 * (thinnest + std::abs(best));
+    candidates.clear();
+    for (const RegionTerm& t : terms)
+      if (signed_term(t) >= smallest) candidates.push_back(&t);
+    double more = 0;
+    for (std::size_t i = 0; i < candidates.size(); ++i)
+      for (std::size_t k = i + 1; k < candidates.size(); ++k)
+        if (const RegionTerm& a = *candidates[i], &b = *candidates[k];
+            in_contact(a, b) && cosine(a, b) < contact_facing)
+          more = std::max(more, thinnest - sheet(a, b));
+    return more;
+  }
+  /// The thickness of the region between two terms: one grows as the other falls, so minus their sum is
+  /// constant.
+  double sheet(const RegionTerm& a, const RegionTerm& b) const { return -signed_term(a) - signed_term(b); }
+  bool in_contact(const RegionTerm& a, const RegionTerm& b) const {
+    return a.body != b.body && sheet(a, b) < contact * per_voxel;
+  }
+  /// Cosine of the angle between the gradients of two terms.
+  double cosine(const RegionTerm& a, const RegionTerm& b) {
+    if (!has_gradients) {
+      const Vec3 at = place / per_voxel;
+      for (const RegionTerm& t : {a, b}) readers[t.level_set]->at(at, gradients[t.level_set]);
+    }
+    const Vec3 ga = signed_gradient(a), gb = signed_gradient(b);
+    const double lengths = ga.norm() * gb.norm();
+    return lengths > 0 ? ga.dot(gb) / lengths : 0;
+  }
+  double signed_term(const RegionTerm& t) const {
+    return t.negated ? -distances[t.level_set] : distances[t.level_set];
+  }
+  Vec3 signed_gradient(const RegionTerm& t) const {
+    return t.negated ? Vec3(-gradients[t.level_set]) : gradients[t.level_set];
+  }
+
+  NearestRegion nearest() {
+    const std::size_t count = field.regions().size();
+    RegionIndex best = 0;
+    double smallest = value(0), next = HUGE_VAL;
+    for (std::size_t r = 1; r < count; ++r) {
+      const double v = value(static_cast<RegionIndex>(r));
+      if (v < smallest) {
+        next = smallest;
+        smallest = v;
+        best = static_cast<RegionIndex>(r);
+      } else if (v < next) {
+        next = v;
+      }
+    }
+    return {best, static_cast<float>(std::min(0.5 * (next - smallest), field.band()))};
+  }
+
+  const LevelSetField& field;
+  double per_voxel;  ///< lattice units
+  Vec3 place;        ///< where was read, lattice units
+  bool has_gradients = false;
+  std::vector<std::unique_ptr<LevelSetSampler>> readers;
+  std::vector<double> distances;
+  std::vector<Vec3> gradients;
+  /// The largest term of the outside from one of its terms on.
+  struct Carving {
+    double value;
+    const RegionTerm* term;
+  };
+  std::vector<Carving> carved;
+  std::vector<const RegionTerm*> candidates;  ///< workspace of sliver_excess()
+};
+
+LevelSetField::LevelSetField(const GridFrame& voxels, std::vector<std::shared_ptr<const LevelSet>> level_sets,
+                             std::vector<LevelSetRegion> regions, int refinement)
+    : MaterialField(voxels, names_of(regions), level_set_band, refinement),
+      level_sets_(std::move(level_sets)),
+      level_set_regions_(std::move(regions)) {
+  const std::vector<RegionTerm>& carving = level_set_regions_[outside_region].terms;
+  for (const LevelSetRegion& region : level_set_regions_) {
+    const auto shared =
+        std::mismatch(region.terms.rbegin(), region.terms.rend(), carving.rbegin(), carving.rend());
+    own_terms_.push_back(static_cast<std::size_t>(region.terms.rend() - shared.first));
+  }
+}
+
+LevelSetField::~LevelSetField() { drop_samplers(); }
+
+std::unique_ptr<FieldSampler> LevelSetField::sampler() const { return std::make_unique<Sampler>(*this); }
+
+std::shared_ptr<const MaterialField> LevelSetField::refined(int refinement) const {
+  return std::make_shared<LevelSetField>(voxels(), level_sets_, level_set_regions_, refinement);
+}
+
+std::vector<LeafOrigin> LevelSetField::band_leaves(RegionIndex region) const {
+  std::vector<LeafOrigin> all;
+  for (const RegionTerm& term : terms(region)) {
+    const std::vector<LeafOrigin> leaves = level_sets_[term.level_set]->leaves();
+    all.insert(all.end(), leaves.begin(), leaves.end());
+  }
+  parallel_sort_unique(all);
+  return all;
+}
+
+std::vector<MortonKey> LevelSetField::interface_voxels() const {
+  std::vector<MortonKey> keys;
+  for (const auto& level_set : level_sets_) {
+    const std::vector<MortonKey> crossed = level_set->interface_cells();
+    keys.insert(keys.end(), crossed.begin(), crossed.end());
+  }
+  if (level_sets_.size() == 1) return keys;
+  parallel_sort_unique(keys);
+  // Where a later material covers an earlier one's surface there is no interface.
+  constexpr std::size_t grain = 1024;
+  return parallel_collect<MortonKey>(
+      0, keys.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+        Sampler sampler(*this);
+        const double voxel = std::ldexp(1, refinement());
+        for (std::size_t i = begin; i < end; ++i) {
+          const auto [x, y, z] = morton_decode(keys[i]);
+          const RegionIndex first = sampler.nearest_at_voxel(x, y, z).region;
+          bool mixed = false;
+          for (int k = 1; k < 8 && !mixed; ++k)
+            mixed = sampler.nearest_at_voxel(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2)).region != first;
+          // A sheet between equal corners: midpoints of edges, centres of faces and of the voxel.
+          for (int k = 0; k < 27 && !mixed; ++k) {
+            const int i0 = k % 3, i1 = k / 3 % 3, i2 = k / 9;
+            if (i0 != 1 && i1 != 1 && i2 != 1) continue;
+            const Vec3 place = voxel * Vec3(x + 0.5 * i0, y + 0.5 * i1, z + 0.5 * i2);
+            mixed = sampler.nearest(place).region != first;
+          }
+          if (mixed) out.push_back(keys[i]);
+        }
+      });
+}
+
+std::optional<RegionSet> LevelSetField::Sampler::two_nearest(const Vec3& point) {
+  read(point);
+  const NearestRegion first = nearest();
+  if (first.margin >= field.band()) return std::nullopt;
+  double smallest = HUGE_VAL;
+  RegionIndex second = first.region;
+  for (std::size_t r = 0; r < field.regions().size(); ++r) {
+    const auto region = static_cast<RegionIndex>(r);
+    if (region == first.region) continue;
+    if (const double v = value(region); v < smallest) smallest = v, second = region;
+  }
+  RegionSet both;
+  both.insert(first.region);
+  both.insert(second);
+  return both;
+}
+
+std::optional<FieldSampler::Sheet> LevelSetField::Sampler::thinnest_sheet(const Vec3& point, double reach) {
+  read_gradients(point);
+  std::optional<Sheet> thinnest;
+  for (std::size_t r = 1; r < field.regions().size(); ++r) {
+    const auto& terms = field.terms(static_cast<RegionIndex>(r));
+    if (terms.size() < 2 || value(static_cast<RegionIndex>(r)) > reach) continue;
+    for (std::size_t i = 0; i < terms.size(); ++i)
+      for (std::size_t k = i + 1; k < terms.size(); ++k) {
+        const double thickness = sheet(terms[i], terms[k]);
+        if (!(thickness > noticed * per_voxel) || cosine(terms[i], terms[k]) > sheet_facing) continue;
+        if (!thinnest || thickness < thinnest->thickness)
+          thinnest = Sheet{static_cast<RegionIndex>(r), thickness, in_contact(terms[i], terms[k])};
+      }
+  }
+  return thinnest;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mesher/distance/level_set.h"
+#include "mesher/distance/material_field.h"
+
+namespace tetwright {
+
+/// A term of a region's signed distance, which is the maximum of its terms: a level set or its negative.
+struct RegionTerm {
+  std::uint16_t level_set;
+  bool negated;
+  /// Level sets of one body are exact offsets of each other; those of different bodies may touch.
+  std::uint16_t body = 0;
+  bool operator==(const RegionTerm&) const = default;
+};
+
+struct LevelSetRegion {
+  std::string name;
+  MaterialTag tag = 0;
+  std::vector<RegionTerm> terms;
+};
+
+/// The field of surfaces: level sets on voxels, and regions as combinations of them.
+class LevelSetField final : public MaterialField {
+ public:
+  /// `regions[0]` is outside. `voxels` is the frame of the level sets.
+  LevelSetField(const GridFrame& voxels, std::vector<std::shared_ptr<const LevelSet>> level_sets,
+                std::vector<LevelSetRegion> regions, int refinement = 0);
+  ~LevelSetField() override;
+
+  std::unique_ptr<FieldSampler> sampler() const override;
+  std::shared_ptr<const MaterialField> refined(int refinement) const override;
+  std::vector<MortonKey> interface_voxels() const override;
+  std::vector<LeafOrigin> band_leaves(RegionIndex region) const override;
+  bool knows_sheets() const override { return level_sets_.size() > 1; }
+  bool is_certain(const Vec3&) const override { return false; }
+
+  const std::vector<std::shared_ptr<const LevelSet>>& level_sets() const { return level_sets_; }
+  const std::vector<RegionTerm>& terms(RegionIndex region) const { return level_set_regions_[region].terms; }
+  /// The number of a region's terms that come before those that it shares with the outside: later bodies
+  /// carve all earlier ones, so the last terms of a region are the last ones of the outside.
+  std::size_t own_terms(RegionIndex region) const { return own_terms_[region]; }
+
+ private:
+  class Sampler;
+
+  std::vector<std::shared_ptr<const LevelSet>> level_sets_;
+  std::vector<LevelSetRegion> level_set_regions_;
+  std::vector<std::size_t> own_terms_;  ///< by region
+};
+
+}  // namespace tetwright

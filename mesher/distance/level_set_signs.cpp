@@ -1,0 +1,155 @@
+#include "mesher/distance/level_set_signs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/parallel/parallel_sort.h"
+#include "mesher/distance/hole_caps.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Leaves for each task.
+constexpr std::size_t band_grain = 16;
+
+float signed_value(float distance, bool inside) {
+  const float size =
+      std::clamp(distance, static_cast<float>(smallest_distance), static_cast<float>(level_set_band));
+  return inside ? -size : size;
+}
+
+std::vector<DistanceLeaf*> leaves_of(DistanceGrid& grid) {
+  std::vector<DistanceLeaf*> leaves;
+  grid.tree().getNodes(leaves);
+  return leaves;
+}
+
+void sign_by_rows(DistanceLeaf& leaf, const GridWinding& winding) {
+  const openvdb::Coord corner = leaf.origin();
+  float* values = leaf.buffer().data();
+  for (int x = 0; x < leaf_side; ++x)
+    for (int y = 0; y < leaf_side; ++y) {
+      const auto row = winding.row(corner.x() + x, corner.y() + y);
+      auto next = row.begin();
+      bool inside = false;
+      for (int z = 0; z < leaf_side; ++z) {
+        for (; next != row.end() && next->first <= corner.z() + z; ++next) inside = next->winding > 0;
+        float& value = values[(x * leaf_side + y) * leaf_side + z];
+        value = signed_value(value, inside);
+      }
+    }
+}
+
+bool is_inside(const NodeWinding& winding, const openvdb::Coord& p) {
+  return winding.at(p.x(), p.y(), p.z()) >= inside_winding;
+}
+
+void sign_by_points(DistanceLeaf& leaf, const NodeWinding& winding) {
+  for (auto value = leaf.beginValueOn(); value; ++value)
+    value.setValue(signed_value(*value, is_inside(winding, value.getCoord())));
+}
+
+std::vector<GridEdge> edges_to_cap(DistanceGrid& grid) {
+  const std::vector<DistanceLeaf*> leaves = leaves_of(grid);
+  return parallel_collect<GridEdge>(
+      0, leaves.size(), band_grain, [&](std::size_t begin, std::size_t end, std::vector<GridEdge>& out) {
+        const DistanceAccessor accessor(grid.constTree());
+        for (std::size_t i = begin; i < end; ++i)
+          for (auto value = leaves[i]->cbeginValueOn(); value; ++value)
+            for (int axis = 0; axis < 3; ++axis) {
+              const openvdb::Coord p = value.getCoord();
+              openvdb::Coord next = p;
+              ++next[axis];
+              float next_value;
+              if (accessor.probeValue(next, next_value) && needs_cap(*value, next_value))
+                out.push_back({morton_encode(p.x(), p.y(), p.z()), axis});
+            }
+      });
+}
+
+/// Makes the signed distances those from surface and caps together, and the band the caps' too.
+void add_caps(DistanceGrid& grid, const TriangleMesh& caps, const NodeWinding& winding, Progress* progress) {
+  const DistanceGrid::Ptr cap_grid = unsigned_distances(caps.points, caps.triangles, progress);
+  const std::vector<DistanceLeaf*> sources = leaves_of(*cap_grid);
+  std::vector<DistanceLeaf*> targets(sources.size());
+  for (std::size_t i = 0; i < sources.size(); ++i) targets[i] = grid.tree().touchLeaf(sources[i]->origin());
+  parallel_for(0, sources.size(), band_grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (auto source = sources[i]->cbeginValueOn(); source; ++source) {
+        const openvdb::Index at = source.pos();
+        const float value = targets[i]->getValue(at);
+        const bool known = targets[i]->isValueOn(at);
+        const bool inside = known ? value < 0 : is_inside(winding, source.getCoord());
+        targets[i]->setValueOn(at,
+                               signed_value(known ? std::min(*source, std::abs(value)) : *source, inside));
+      }
+  });
+}
+
+}  // namespace
+
+NodeWinding::NodeWinding(std::span<const Vec3> points, std::span<const Triangle> triangles,
+                         std::size_t closed, const std::array<int, 3>& cells)
+    : closed_(points, triangles.first(closed), cells) {
+  if (closed == triangles.size()) return;
+  open_.emplace(points, triangles.subspan(closed));
+  Vec3 low = points.front(), high = points.front();
+  for (const Vec3& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  for (int a = 0; a < 3; ++a) {
+    low_[a] = std::max(1, static_cast<int>(std::ceil(low[a])));
+    high_[a] = std::min(cells[a] - 1, static_cast<int>(std::floor(high[a])));
+  }
+}
+
+double NodeWinding::at(int x, int y, int z) const {
+  const int whole = closed_.at(x, y, z);
+  if (!open_) return whole;
+  // A grid point on the surface counts as if it lay a little to one side, the same for all: there the
+  // rounding of several triangles' solid angles could add up to anything.
+  static const Vec3 aside(1.1e-5, 1.9e-5, 2.7e-5);
+  const double winding = whole + open_->winding_number(Vec3(x, y, z) + aside);
+  const std::array<int, 3> p{x, y, z};
+  bool in_box = true;
+  for (int a = 0; a < 3; ++a) in_box &= p[a] >= low_[a] && p[a] <= high_[a];
+  constexpr double outside = 0.5;  // by as little as there is
+  static_assert(outside < inside_winding);
+  return in_box ? winding : std::min(winding, outside);
+}
+
+TriangleMesh sign_band(DistanceGrid& grid, const NodeWinding& winding, Progress* progress) {
+  const std::vector<DistanceLeaf*> leaves = leaves_of(grid);
+  parallel_for(0, leaves.size(), band_grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (winding.whole_numbers())
+        sign_by_rows(*leaves[i], winding.closed());
+      else
+        sign_by_points(*leaves[i], winding);
+  });
+  TriangleMesh all;
+  if (winding.whole_numbers()) return all;
+
+  const auto read = [&](int x, int y, int z) {
+    const double w = winding.at(x, y, z);
+    float value;
+    const bool in_band = grid.constTree().probeValue({x, y, z}, value);
+    const double far = w >= inside_winding ? -level_set_band : level_set_band;
+    return GridReading{in_band ? value : far, w};
+  };
+  // Caps are followed as far as they go; a later round meets only an inside that a cap's own band ran into.
+  constexpr int rounds = 4;
+  for (int round = 0; round < rounds; ++round) {
+    if (progress) progress->throw_if_cancelled();
+    const std::vector<GridEdge> edges = edges_to_cap(grid);
+    if (edges.empty()) break;
+    const TriangleMesh caps = cap_holes(edges, read, progress);
+    add_caps(grid, caps, winding, progress);
+    const auto shift = static_cast<Index>(all.points.size());
+    all.points.insert(all.points.end(), caps.points.begin(), caps.points.end());
+    for (const Triangle& t : caps.triangles)
+      all.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+  }
+  return all;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "common/geometry/surface_tree.h"
+#include "common/progress.h"
+#include "common/triangle_mesh.h"
+#include "mesher/distance/grid_winding.h"
+#include "mesher/distance/level_set_grid.h"
+
+namespace tetwright {
+
+/// The generalised winding number of a repaired surface at grid points: exact for its closed part, by a tree
+/// for its open part. All functions may be called concurrently.
+class NodeWinding {
+ public:
+  /// The surface's points in grid coordinates; its first `closed` triangles make up the closed part.
+  NodeWinding(std::span<const Vec3> points, std::span<const Triangle> triangles, std::size_t closed,
+              const std::array<int, 3>& cells);
+
+  /// True if there is no open part.
+  bool whole_numbers() const { return !open_; }
+  const GridWinding& closed() const { return closed_; }
+  /// At most 1/2 outside the surface's bounding box, where many open parts together could make an inside.
+  double at(int x, int y, int z) const;
+
+ private:
+  GridWinding closed_;
+  std::optional<SurfaceTree> open_;
+  std::array<int, 3> low_, high_;  ///< the grid points of the bounding box
+};
+
+/// Adds signs to the unsigned distances of the band. Where the inside ends without a surface, caps are added
+/// and the distances become those from surface and caps, so that there is an interface wherever the sign
+/// changes. Returns the caps, in grid coordinates. Throws Interrupted.
+TriangleMesh sign_band(DistanceGrid& grid, const NodeWinding& winding, Progress* progress);
+
+}  // namespace tetwright

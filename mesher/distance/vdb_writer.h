@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mesher/distance/narrow_band.h"
+#include "mesher/domain/grid_frame.h"
+
+namespace tetwright {
+
+class OutputFiles;
+
+/// A level set to be written, read leaf by leaf.
+struct LevelSetSource {
+  std::string name;
+  /// All leaves with grid points within the band or next to the surface, in any order. Space between them
+  /// gets the sign of the surrounding leaves.
+  std::vector<LeafOrigin> leaves;
+  /// Signed distances of a leaf's grid points, finest cells, z fastest. Called concurrently.
+  std::function<void(const LeafOrigin&, std::span<float, leaf_points>)> distances;
+};
+
+/// Writes a .vdb file of level sets, in input units, whole or not at all (see atomic_file.h); the same bytes
+/// for any number of threads. Distances are true up to `band_cells` (finest cells, above 0) and cut off
+/// there. Throws OutputError if it can't be written, and where the frame's cells are smaller than OpenVDB's
+/// transforms allow (about 1.5e-5 input units).
+void write_level_sets(const std::string& file, const GridFrame& frame, double band_cells,
+                      std::span<const LevelSetSource> level_sets, OutputFiles* files = nullptr);
+
+}  // namespace tetwright

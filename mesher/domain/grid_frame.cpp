@@ -1,0 +1,34 @@
+#include "mesher/domain/grid_frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tetwright {
+
+GridFrame make_grid_frame(const Vec3& low, const Vec3& high, double cell_size, bool uniform, bool centred) {
+  GridFrame frame;
+  frame.cell_size = cell_size;
+  frame.origin = low - Vec3::Constant(frame_margin * cell_size);
+  std::array<int, 3> needed;
+  for (int a = 0; a < 3; ++a)
+    needed[a] = static_cast<int>(std::ceil((high[a] - low[a]) / cell_size)) + 2 * frame_margin;
+  if (!uniform) {
+    const int longest = *std::max_element(needed.begin(), needed.end());
+    while ((8 << frame.root_level) < longest) ++frame.root_level;
+  }
+  const int root = 1 << frame.root_level;
+  for (int a = 0; a < 3; ++a) {
+    frame.cells[a] = (needed[a] + root - 1) / root * root;
+    if (centred) frame.origin[a] -= (frame.cells[a] - needed[a]) / 2 * cell_size;
+  }
+  return frame;
+}
+
+GridFrame refined_frame(GridFrame frame, int levels) {
+  frame.cell_size = std::ldexp(frame.cell_size, -levels);
+  for (int& c : frame.cells) c <<= levels;
+  frame.root_level += levels;
+  return frame;
+}
+
+}  // namespace tetwright

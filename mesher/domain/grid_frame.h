@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+
+#include "common/types.h"
+
+namespace tetwright {
+
+/// Position and size of the grid of finest cells.
+///
+/// All of mesher/ works in *grid coordinates*: the unit is one finest cell, signed distances and corners of
+/// the octree are at integers, and the box of the octree is [0, cells[0]] x [0, cells[1]] x [0, cells[2]].
+/// Only the finished mesh is transformed back to input units.
+struct GridFrame {
+  Vec3 origin = Vec3::Zero();         ///< position of grid point (0, 0, 0), input units
+  double cell_size = 1;               ///< edge of a finest cell, input units
+  std::array<int, 3> cells{1, 1, 1};  ///< finest cells along each side of the box, a multiple of 2^root_level
+  int root_level = 0;  ///< the octree's largest cells have 2^root_level finest cells to an edge
+  /// Directions of the grid's axes, input space: perpendicular, of length 1, right-handed.
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+
+  Vec3 to_grid(const Vec3& input) const { return axes.transpose() * (input - origin) / cell_size; }
+  Vec3 to_input(const Vec3& grid) const { return origin + cell_size * (axes * grid); }
+};
+
+/// Margin between the surface's bounding box and the box of the octree, finest cells. Points that may move
+/// and their stars reach two cells from the surface; the third cell keeps the faces of the box away from
+/// them.
+inline constexpr int frame_margin = 3;
+
+/// A frame whose box contains [low, high] (input units) and a margin of frame_margin cells. With `uniform`
+/// the root cells are finest cells; otherwise the longest side has about four to eight root cells. The box is
+/// rounded up to whole root cells: the excess is above `high`, or evenly on both sides if `centred`. Requires
+/// `cell_size` > 0 and at most 2^18 cells along each side.
+GridFrame make_grid_frame(const Vec3& low, const Vec3& high, double cell_size, bool uniform,
+                          bool centred = false);
+
+/// The same box with cells of 1/2^levels the size; the root cells keep their size.
+GridFrame refined_frame(GridFrame frame, int levels);
+
+}  // namespace tetwright

@@ -1,0 +1,38 @@
+#include <array>
+
+#include "mesher/distance/material_field.h"
+#include "mesher/distance/vdb_writer.h"
+#include "mesher/mesher.h"
+
+namespace tetwright {
+
+const ReferenceSurface& reference_surface(const MaterialField& field) { return field; }
+
+void write_fields(const MaterialField& field, const std::string& path, OutputFiles* files) {
+  const std::shared_ptr<const MaterialField> on_voxels = field.refined(0);
+  std::vector<LevelSetSource> sources;
+  for (std::size_t r = 1; r < field.regions().size(); ++r) {
+    const FieldRegion& region = field.regions()[r];
+    LevelSetSource source;
+    source.name = region.name;
+    source.leaves = field.band_leaves(static_cast<RegionIndex>(r));
+    source.distances = [on_voxels, number = static_cast<RegionIndex>(r)](const LeafOrigin& leaf,
+                                                                         std::span<float, leaf_points> out) {
+      const std::unique_ptr<FieldSampler> sampler = on_voxels->sampler();
+      for (int i = 0; i < leaf_points; ++i) {
+        const int x = leaf[0] + i / (leaf_side * leaf_side), y = leaf[1] + i / leaf_side % leaf_side,
+                  z = leaf[2] + i % leaf_side;
+        // Its own distance need not pass 0 where it meets others: of what is thin it may be above all along.
+        const NearestRegion there = sampler->nearest_at_voxel(x, y, z);
+        std::array<float, 2> both;
+        sampler->values_at_voxel(x, y, z, std::array{number, there.region}, both.data());
+        out[static_cast<std::size_t>(i)] =
+            there.region == number ? -there.margin : 0.5F * (both[0] - both[1]);
+      }
+    };
+    sources.push_back(std::move(source));
+  }
+  write_level_sets(path, field.voxels(), on_voxels->band(), sources, files);
+}
+
+}  // namespace tetwright

@@ -1,0 +1,349 @@
+#include "mesher/input/label_input.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <tuple>
+#include <unordered_map>
+
+#include "common/error.h"
+#include "common/parallel/parallel_sort.h"
+#include "mesher/input/label_islands.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::size_t max_labels = 60'000;  // regions have numbers of 16 bits, of which few mean other things
+constexpr std::size_t max_listed = 30;      // labels in a message
+constexpr std::size_t max_named = 20;       // labels with a finding of their own
+constexpr std::size_t voxel_grain = 1 << 18;  // voxels
+
+using LabelRange = std::pair<MaterialTag, MaterialTag>;
+using LabelCount = std::pair<MaterialTag, std::size_t>;
+
+std::string counted(std::size_t n, const std::string& noun) {
+  return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
+}
+
+std::string range_text(const LabelRange& range) {
+  return std::to_string(range.first) +
+         (range.first == range.second ? "" : " to " + std::to_string(range.second));
+}
+
+/// Says of a label whether it is to be meshed.
+class Chosen {
+ public:
+  explicit Chosen(const LabelChoice& choice) : outside_(choice.outside_label), all_(choice.labels.empty()) {
+    std::vector<LabelRange> sorted = choice.labels;
+    std::sort(sorted.begin(), sorted.end());
+    for (const LabelRange& range : sorted) {
+      if (range.first > range.second)
+        throw UsageError("the labels " + range_text(range) + " are none; the smaller one comes first");
+      if (range.first <= outside_ && outside_ <= range.second)
+        throw UsageError("label " + std::to_string(outside_) +
+                         " of --labels is the outside label, which is " +
+                         "not meshed; leave it out, or name another one with --outside-label");
+      // Disjoint ones, so that the last that begins in time decides.
+      if (!ranges_.empty() && range.first <= ranges_.back().second)
+        ranges_.back().second = std::max(ranges_.back().second, range.second);
+      else
+        ranges_.push_back(range);
+    }
+  }
+  bool operator()(MaterialTag label) const {
+    if (all_) return label != outside_;
+    const auto after = std::upper_bound(ranges_.begin(), ranges_.end(), label,
+                                        [](MaterialTag l, const LabelRange& r) { return l < r.first; });
+    return after != ranges_.begin() && label <= std::prev(after)->second;
+  }
+
+ private:
+  MaterialTag outside_;
+  bool all_;
+  std::vector<LabelRange> ranges_;
+};
+
+/// Calls `body(begin, end)` for each run of equal labels in [begin, end).
+template <class Body>
+void for_each_run(const std::vector<MaterialTag>& labels, std::size_t begin, std::size_t end, Body&& body) {
+  for (std::size_t i = begin, j; i < end; i = j) {
+    for (j = i + 1; j < end && labels[j] == labels[i];) ++j;
+    body(i, j);
+  }
+}
+
+/// The chosen labels that are there, ascending, with their numbers of voxels.
+std::vector<LabelCount> count_labels(const std::vector<MaterialTag>& labels, const Chosen& chosen,
+                                     const std::string& file) {
+  const auto check = [&](std::size_t n) {
+    if (n > max_labels)
+      throw InputError(file, 0,
+                       "has more than " + std::to_string(max_labels) +
+                           " labels; choose fewer with --labels, if these are labels and not gray values");
+  };
+  std::vector<LabelCount> found = parallel_collect<LabelCount>(
+      0, labels.size(), voxel_grain, [&](std::size_t begin, std::size_t end, auto& out) {
+        std::unordered_map<MaterialTag, std::size_t> counts;
+        for_each_run(labels, begin, end, [&](std::size_t i, std::size_t j) {
+          if (!chosen(labels[i])) return;
+          counts[labels[i]] += j - i;
+          check(counts.size());
+        });
+        out.assign(counts.begin(), counts.end());
+      });
+  parallel_sort(found);
+  std::vector<LabelCount> sums;
+  for (const auto& [label, count] : found) {
+    if (sums.empty() || sums.back().first != label) sums.emplace_back(label, 0);
+    sums.back().second += count;
+  }
+  check(sums.size());
+  return sums;
+}
+
+/// "1, 2, 3" for messages: the labels that are there, without the outside label.
+std::string labels_text(const std::vector<MaterialTag>& labels, MaterialTag outside) {
+  std::vector<MaterialTag> found = parallel_collect<MaterialTag>(
+      0, labels.size(), voxel_grain, [&](std::size_t begin, std::size_t end, auto& out) {
+        std::set<MaterialTag> smallest;
+        for_each_run(labels, begin, end, [&](std::size_t i, std::size_t) {
+          if (labels[i] == outside) return;
+          smallest.insert(labels[i]);
+          if (smallest.size() > max_listed + 1) smallest.erase(std::prev(smallest.end()));
+        });
+        out.assign(smallest.begin(), smallest.end());
+      });
+  parallel_sort_unique(found);
+  std::string text;
+  for (std::size_t i = 0; i < std::min(found.size(), max_listed); ++i)
+    text += (i ? ", " : "") + std::to_string(found[i]);
+  return text + (found.size() > max_listed ? ", ..." : "");
+}
+
+/// Throws if all of the volume is outside, or a range of chosen labels is not there at all.
+void check_choice(const LabelVolume& volume, const std::string& file, const LabelChoice& choice,
+                  const std::vector<LabelCount>& counts) {
+  for (const LabelRange& range : choice.labels) {
+    const auto first = std::lower_bound(counts.begin(), counts.end(), LabelCount(range.first, 0));
+    if (first != counts.end() && first->first <= range.second) continue;
+    const std::string there = labels_text(volume.labels, choice.outside_label);
+    if (there.empty()) break;  // all is outside
+    throw InputError(file, 0,
+                     (range.first == range.second ? "there is no label " : "there are none of the labels ") +
+                         range_text(range) + "; there are " + there);
+  }
+  if (counts.empty())
+    throw NothingToMeshError(file + ": all voxels have the outside label " +
+                             std::to_string(choice.outside_label) +
+                             "; is another one outside? see --outside-label");
+}
+
+/// Refuses a name of the label `tag`: at its line of the file with names if it comes from one.
+[[noreturn]] void refuse_name(const LabelChoice& choice, MaterialTag tag, const std::string& message) {
+  const auto line = choice.name_lines.find(tag);
+  if (line == choice.name_lines.end()) throw UsageError(message + " with --label-names");
+  throw InputError(choice.names_file, line->second, message);
+}
+
+std::vector<LabelMaterial> name_materials(const LabelChoice& choice, const std::vector<LabelCount>& counts) {
+  std::vector<LabelMaterial> materials;
+  materials.reserve(counts.size());
+  for (const auto& [tag, voxels] : counts) {
+    const auto name = choice.names.find(tag);
+    const bool named = name != choice.names.end() && !name->second.empty();
+    materials.push_back({named ? name->second : "label_" + std::to_string(tag), tag, voxels, voxels});
+  }
+  std::vector<const LabelMaterial*> by_name;
+  by_name.reserve(materials.size());
+  for (const LabelMaterial& m : materials) by_name.push_back(&m);
+  std::sort(by_name.begin(), by_name.end(), [](const LabelMaterial* a, const LabelMaterial* b) {
+    return std::tie(a->name, a->tag) < std::tie(b->name, b->tag);
+  });
+  const auto twice = std::adjacent_find(by_name.begin(), by_name.end(),
+                                        [](const auto* a, const auto* b) { return a->name == b->name; });
+  if (twice != by_name.end()) {
+    // At the later line: the earlier one is sound by itself.
+    const auto line = [&](MaterialTag tag) {
+      const auto found = choice.name_lines.find(tag);
+      return found == choice.name_lines.end() ? std::size_t{0} : found->second;
+    };
+    const MaterialTag first = twice[0]->tag, second = twice[1]->tag;
+    refuse_name(choice, line(first) > line(second) ? first : second,
+                "labels " + std::to_string(first) + " and " + std::to_string(second) + " are both called '" +
+                    twice[0]->name + "'; give one another name");
+  }
+  const auto outside =
+      std::find_if(materials.begin(), materials.end(), [](const auto& m) { return m.name == outside_name; });
+  if (outside != materials.end())
+    refuse_name(choice, outside->tag,
+                "label " + std::to_string(outside->tag) +
+                    " is called 'outside', which is what is around all of them; make it the outside label "
+                    "with --outside-label, or give it another name");
+  return materials;
+}
+
+/// The region of each voxel: its place among the materials, from 1; 0 for labels that are none.
+std::vector<RegionIndex> number_regions(const std::vector<MaterialTag>& labels,
+                                        const std::vector<LabelMaterial>& materials) {
+  // A table where labels are close together, as nearly always.
+  const std::int64_t low = materials.front().tag, high = materials.back().tag;
+  std::vector<RegionIndex> table;
+  if (high - low < 1 << 20) table.resize(static_cast<std::size_t>(high - low) + 1, outside_region);
+  for (std::size_t i = 0; !table.empty() && i < materials.size(); ++i)
+    table[static_cast<std::size_t>(materials[i].tag - low)] = static_cast<RegionIndex>(i + 1);
+  const auto region = [&](MaterialTag label) {
+    if (label < low || label > high) return outside_region;
+    if (!table.empty()) return table[static_cast<std::size_t>(label - low)];
+    const auto at = std::lower_bound(materials.begin(), materials.end(), label,
+                                     [](const LabelMaterial& m, MaterialTag l) { return m.tag < l; });
+    return at->tag == label ? static_cast<RegionIndex>(at - materials.begin() + 1) : outside_region;
+  };
+  std::vector<RegionIndex> regions(labels.size());
+  parallel_for(0, labels.size(), voxel_grain, [&](std::size_t begin, std::size_t end) {
+    for_each_run(labels, begin, end, [&](std::size_t i, std::size_t j) {
+      std::fill(regions.begin() + static_cast<std::ptrdiff_t>(i),
+                regions.begin() + static_cast<std::ptrdiff_t>(j), region(labels[i]));
+    });
+  });
+  return regions;
+}
+
+/// Islands of a region that were merged into others.
+struct Loss {
+  std::size_t islands = 0, voxels = 0;
+  std::size_t first_voxel = 0;
+};
+
+class Preparation {
+ public:
+  Preparation(LabelInput& result, const LabelChoice& choice) : result_(result), choice_(choice) {}
+
+  /// `outside`: voxels at first
+  void merge(std::size_t outside, const Progress* progress);
+
+ private:
+  Vec3 place(std::size_t voxel) const {
+    const std::size_t nx = static_cast<std::size_t>(result_.size[0]);
+    const std::size_t ny = static_cast<std::size_t>(result_.size[1]);
+    const Vec3 index(static_cast<double>(voxel % nx), static_cast<double>(voxel / nx % ny),
+                     static_cast<double>(voxel / nx / ny));
+    return result_.origin + result_.directions * index;
+  }
+  void add(const std::string& what, std::size_t count, const std::optional<Vec3>& at,
+           const std::string& done) {
+    if (count > 0) result_.findings.push_back({result_.file, {what, count, at, done}});
+  }
+  void report(const std::vector<Loss>& losses);
+  void drop_lost(const std::vector<Loss>& losses);
+
+  LabelInput& result_;
+  const LabelChoice& choice_;
+};
+
+void Preparation::merge(std::size_t outside, const Progress* progress) {
+  if (outside == 0)
+    add("voxels, none of them outside (label " + std::to_string(choice_.outside_label) + ")",
+        result_.voxel_count(), std::nullopt, "all meshed, up to the border of the volume");
+  const IslandMerging merging =
+      merge_small_islands(result_.regions, result_.size, choice_.min_voxels, progress);
+  if (merging.none_reaches)
+    add("islands of voxels, none of which has " + std::to_string(choice_.min_voxels), merging.islands,
+        std::nullopt, "kept as they are");
+  std::vector<Loss> losses(result_.materials.size() + 1);
+  for (const MergedIsland& m : merging.merged) {
+    Loss& loss = losses[m.from];
+    if (loss.islands++ == 0) loss.first_voxel = m.voxel;
+    loss.voxels += m.voxels;
+    if (m.from != outside_region) result_.materials[m.from - 1u].voxels -= m.voxels;
+    if (m.to != outside_region) result_.materials[m.to - 1u].voxels += m.voxels;
+    ++result_.merged_islands;
+    result_.merged_voxels += m.voxels;
+  }
+  report(losses);
+  drop_lost(losses);
+}
+
+void Preparation::report(const std::vector<Loss>& losses) {
+  const std::string done = "merged into what they touch most";
+  std::size_t named = 0, others = 0;
+  Loss rest;
+  for (std::size_t region = 0; region < losses.size(); ++region) {
+    const Loss& loss = losses[region];
+    if (loss.islands == 0) continue;
+    const std::string voxels = " (" + counted(loss.voxels, "voxel") + ")";
+    if (region == outside_region) {
+      add("islands of outside" + voxels, loss.islands, place(loss.first_voxel), done);
+      continue;
+    }
+    const LabelMaterial& m = result_.materials[region - 1];
+    if (m.voxels == 0) {
+      add("islands of '" + m.name + "'" + voxels + ", all there is of it", loss.islands,
+          place(loss.first_voxel), done + "; this label is lost");
+    } else if (named++ < max_named) {
+      add("islands of '" + m.name + "'" + voxels, loss.islands, place(loss.first_voxel), done);
+    } else {
+      if (others++ == 0) rest.first_voxel = loss.first_voxel;
+      rest.islands += loss.islands;
+      rest.voxels += loss.voxels;
+    }
+  }
+  add("islands of " + counted(others, "other label") + " (" + counted(rest.voxels, "voxel") + ")",
+      rest.islands, place(rest.first_voxel), done);
+}
+
+/// Labels without voxels leave the materials, and the others move up.
+void Preparation::drop_lost(const std::vector<Loss>& losses) {
+  std::vector<LabelMaterial> kept;
+  std::vector<RegionIndex> renumbered(result_.materials.size() + 1, outside_region);
+  for (std::size_t i = 0; i < result_.materials.size(); ++i) {
+    LabelMaterial& m = result_.materials[i];
+    if (m.voxels == 0) {
+      result_.lost.push_back({m.tag, m.name, m.voxels_in_file, place(losses[i + 1].first_voxel)});
+      continue;
+    }
+    kept.push_back(std::move(m));
+    renumbered[i + 1] = static_cast<RegionIndex>(kept.size());
+  }
+  result_.materials = std::move(kept);
+  if (result_.lost.empty()) return;
+  parallel_for(0, result_.regions.size(), voxel_grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) result_.regions[i] = renumbered[result_.regions[i]];
+  });
+}
+
+}  // namespace
+
+LabelInput make_label_input(LabelVolume volume, const std::string& file, const LabelChoice& choice,
+                            Progress* progress) {
+  if (progress) progress->throw_if_cancelled();
+  const Chosen chosen(choice);
+  if (choice.min_voxels > 1 && volume.labels.size() >= no_index)
+    throw InputError(file, 0,
+                     "has " + std::to_string(volume.labels.size()) +
+                         " voxels, too many to look for small islands; give --min-voxels 0");
+  const std::vector<LabelCount> counts = count_labels(volume.labels, chosen, file);
+  check_choice(volume, file, choice, counts);
+
+  LabelInput result;
+  result.file = file;
+  result.size = volume.size;
+  result.origin = volume.origin;
+  result.directions = volume.directions;
+  result.space = volume.space;
+  result.materials = name_materials(choice, counts);
+  result.regions = number_regions(volume.labels, result.materials);
+  std::vector<MaterialTag>().swap(volume.labels);
+  if (progress) progress->throw_if_cancelled();
+
+  std::size_t outside = result.regions.size();
+  for (const LabelMaterial& m : result.materials) outside -= m.voxels;
+  Preparation(result, choice).merge(outside, progress);
+  if (result.materials.empty())
+    throw NothingToMeshError(file + ": every island of a label has fewer than " +
+                             std::to_string(choice.min_voxels) +
+                             " voxels, and what is around them is outside; give a smaller --min-voxels");
+  return result;
+}
+
+}  // namespace tetwright

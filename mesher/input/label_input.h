@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/label_volume.h"
+#include "common/progress.h"
+#include "mesher/domain/regions.h"
+#include "mesher/input/surface_repair.h"
+
+namespace tetwright {
+
+/// Which labels of a segmented volume are meshed, and their names.
+struct LabelChoice {
+  /// Labels that become materials, as ranges that include both ends; empty: all but the outside label. All
+  /// other labels are outside.
+  std::vector<std::pair<MaterialTag, MaterialTag>> labels;
+  std::map<MaterialTag, std::string> names;  ///< labels without a name are called label_N
+  /// The file that `names` were read from, and the line of each, for messages; may be empty.
+  std::string names_file;
+  std::map<MaterialTag, std::size_t> name_lines;
+  MaterialTag outside_label = 0;
+  /// Face-connected islands of fewer voxels are merged into what they touch most; 0 or 1: none.
+  std::size_t min_voxels = 8;
+};
+
+/// A label that is meshed.
+struct LabelMaterial {
+  std::string name;
+  MaterialTag tag = 0;             ///< the label
+  std::size_t voxels = 0;          ///< after merging small islands, 1 or more
+  std::size_t voxels_in_file = 0;  ///< before merging
+};
+
+/// A label that is not meshed although it was chosen, because all of it was in small islands.
+struct LostLabel {
+  MaterialTag tag = 0;
+  std::string name;
+  std::size_t voxels = 0;
+  Vec3 place = Vec3::Zero();  ///< centre of one of its voxels, input units
+};
+
+/// A segmented volume, ready to be meshed.
+struct LabelInput {
+  std::string file;
+  std::array<int, 3> size{};
+  Vec3 origin = Vec3::Zero();
+  Eigen::Matrix3d directions = Eigen::Matrix3d::Identity();
+  std::string space;  ///< see LabelVolume
+  /// Region of each voxel, the first axis fastest: 0 is outside, i + 1 is materials[i].
+  std::vector<RegionIndex> regions;
+  std::vector<LabelMaterial> materials;  ///< by ascending tag
+  std::vector<LostLabel> lost;           ///< by ascending tag
+  std::size_t merged_islands = 0;        ///< including those of the outside
+  std::size_t merged_voxels = 0;
+  std::vector<InputFinding> findings;  ///< changes to the input, for the user
+
+  std::size_t voxel_count() const { return regions.size(); }
+};
+
+/// Chooses the labels and merges islands of fewer than `min_voxels` voxels into their neighbours, see
+/// merge_small_islands(). If no island has that many voxels, nothing is merged and a finding says so. The
+/// same result for any number of threads.
+///
+/// Throws UsageError (impossible ranges and names: the outside label is chosen, two labels have one name, a
+/// label is called "outside"), InputError (impossible names that come from a file; a chosen label does not
+/// exist, with a list of those that do; more than 60,000 labels), NothingToMeshError (all voxels are
+/// outside), Interrupted.
+LabelInput make_label_input(LabelVolume volume, const std::string& file, const LabelChoice& choice,
+                            Progress* progress);
+
+}  // namespace tetwright

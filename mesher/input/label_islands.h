@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "common/progress.h"
+#include "common/types.h"
+#include "mesher/domain/regions.h"
+
+namespace tetwright {
+
+/// An island that was merged into another region.
+struct MergedIsland {
+  Index voxel = 0;   ///< its voxel of the lowest index
+  Index voxels = 0;  ///< number of its voxels before anything was merged
+  RegionIndex from = 0, to = 0;
+};
+
+struct IslandMerging {
+  std::size_t islands = 0;    ///< number in the volume before merging; 0 if not counted
+  bool none_reaches = false;  ///< true if no island has `min_voxels` voxels, so nothing was merged
+  /// By ascending voxel, without islands that ended up in their own region again.
+  std::vector<MergedIsland> merged;
+};
+
+/// Merges islands (face-connected voxels of one region) of fewer than `min_voxels` voxels into the region
+/// with which they share most voxel faces; ties go to the smallest region number. The smallest island is
+/// merged first, of equal ones the one with the lowest voxel. It is united with all islands of that region
+/// that it touches, and the size of the union counts from then on. The border of the volume shares no faces.
+/// All regions, including the outside, are treated alike.
+///
+/// `regions`: the first axis fastest, fewer than 2^32 - 1 voxels. Takes twelve bytes for each run of equal
+/// voxels along the first axis, and O(voxels) time. The same result for any number of threads. Throws
+/// Interrupted.
+IslandMerging merge_small_islands(std::vector<RegionIndex>& regions, const std::array<int, 3>& size,
+                                  std::size_t min_voxels, const Progress* progress);
+
+}  // namespace tetwright

@@ -1,0 +1,112 @@
+#include "mesher/input/mesher_input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "common/error.h"
+#include "common/short_number.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Areas and volumes take squares and cubes of input coordinates, which must neither overflow nor vanish;
+/// single precision fields hold 1e38.
+constexpr double max_coordinate = 1e50;
+/// A region's number has 16 bits, and a few are reserved.
+constexpr std::size_t max_materials = 60000;
+
+/// The tags that the caller gave out. Throws UsageError for a layer without a thickness.
+std::set<MaterialTag> tags_in_use(const std::vector<MaterialSurface>& surfaces,
+                                  const std::vector<MaterialLayer>& layers) {
+  std::set<MaterialTag> tags;
+  for (const MaterialSurface& s : surfaces) tags.insert(s.tag);
+  for (const MaterialLayer& l : layers) {
+    if (!(l.thickness > 0 && std::isfinite(l.thickness)))
+      throw UsageError("the layer '" + l.name + "' must have a thickness above 0, not " +
+                       short_number(l.thickness));
+    tags.insert(l.tag);
+  }
+  return tags;
+}
+
+/// Repairs the surfaces one by one and appends each as a body, followed by its nested components.
+void add_bodies(std::vector<MaterialSurface> surfaces, std::set<MaterialTag> tags, NestedRule nested,
+                MesherInput& input) {
+  MaterialTag next_tag = 1;
+  for (MaterialSurface& s : surfaces) {
+    SurfaceRepair repaired = repair_surface(s.surface, s.file, nested);
+    s.surface = {};
+    for (SurfaceFinding& f : repaired.findings) input.findings.push_back({s.file, std::move(f)});
+    input.bodies.push_back({s.name, s.tag, s.file, std::move(repaired.surface)});
+    for (std::size_t k = 0; k < repaired.nested.size(); ++k) {
+      while (!tags.insert(next_tag).second) ++next_tag;
+      input.bodies.push_back(
+          {s.name + "_" + std::to_string(k + 1), next_tag, s.file, std::move(repaired.nested[k])});
+    }
+  }
+}
+
+void find_bounding_box(MesherInput& input) {
+  input.low = input.bodies[0].surface.low;
+  input.high = input.bodies[0].surface.high;
+  for (const MesherInput::Body& b : input.bodies) {
+    input.low = input.low.cwiseMin(b.surface.low);
+    input.high = input.high.cwiseMax(b.surface.high);
+  }
+}
+
+/// Throws UsageError for too many materials and for two of one name or tag.
+void validate_materials(const MesherInput& input) {
+  if (input.bodies.size() + input.layers.size() > max_materials)
+    throw UsageError(std::to_string(input.bodies.size() + input.layers.size()) +
+                     " materials are too many; at most " + std::to_string(max_materials) +
+                     " can be meshed at a time");
+  std::vector<std::pair<std::string, MaterialTag>> all;
+  for (const MesherInput::Body& b : input.bodies) all.emplace_back(b.name, b.tag);
+  for (const MaterialLayer& l : input.layers) all.emplace_back(l.name, l.tag);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      if (!all[i].first.empty() && all[i].first == all[k].first)
+        throw UsageError("two materials are called '" + all[i].first +
+                         "'; give one another name with --material NAME=FILE");
+      if (all[i].second == all[k].second)
+        throw UsageError("two materials have the tag " + std::to_string(all[i].second));
+    }
+}
+
+/// Throws InputError where areas and volumes would overflow or vanish.
+void validate_size(const MesherInput& input) {
+  const double largest = largest_coordinate(input);
+  if (largest > max_coordinate || longest_side(input) < 1 / max_coordinate)
+    throw InputError(
+        input.bodies[0].file, 0,
+        "a size of " + short_number(longest_side(input)) + " with coordinates up to " +
+            short_number(largest) +
+            " is too large or too small to be measured; scale the surface to between 1e-50 and 1e50");
+}
+
+}  // namespace
+
+double longest_side(const MesherInput& input) { return (input.high - input.low).maxCoeff(); }
+
+double largest_coordinate(const MesherInput& input) {
+  return std::max(input.low.cwiseAbs().maxCoeff(), input.high.cwiseAbs().maxCoeff());
+}
+
+MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers,
+                              NestedRule nested) {
+  if (surfaces.empty()) throw UsageError("there is no surface to mesh");
+  MesherInput input;
+  std::set<MaterialTag> tags = tags_in_use(surfaces, layers);
+  add_bodies(std::move(surfaces), std::move(tags), nested, input);
+  input.layers = std::move(layers);
+  find_bounding_box(input);
+  validate_materials(input);
+  validate_size(input);
+  return input;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/triangle_mesh.h"
+#include "common/types.h"
+#include "mesher/input/surface_repair.h"
+
+namespace tetwright {
+
+/// A surface and the material that it encloses.
+struct MaterialSurface {
+  std::string name;
+  MaterialTag tag = 0;
+  TriangleMesh surface;
+  std::string file;  ///< named in messages
+};
+
+/// A shell of the first surface's material that becomes a material of its own.
+struct MaterialLayer {
+  std::string name;
+  MaterialTag tag = 0;
+  double thickness = 0;  ///< input units
+};
+
+/// Repaired surfaces, ready to be meshed.
+struct MesherInput {
+  struct Body {
+    std::string name;
+    MaterialTag tag;
+    std::string file;
+    RepairedSurface surface;
+  };
+  std::vector<Body> bodies;           ///< later bodies carve earlier ones
+  std::vector<MaterialLayer> layers;  ///< of the first body, outermost first
+  std::vector<InputFinding> findings;
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< bounding box of all bodies, input units
+};
+
+/// Validates and repairs the surfaces, see repair_surface(). With NestedRule::material every enclosed
+/// component becomes a body that directly follows its encloser and gets the smallest free tag from 1 up.
+/// Non-empty names must differ, and so must tags.
+///
+/// Throws InputError (see repair_surface(); coordinates too large or a size too small for areas and volumes
+/// in double precision) and UsageError (no surface, two materials of one name or tag, a layer whose thickness
+/// is not above 0, more than 60,000 materials).
+MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers = {},
+                              NestedRule nested = NestedRule::automatic);
+
+/// The longest side of the bounding box, input units.
+double longest_side(const MesherInput& input);
+
+/// The largest coordinate of the bounding box in size, input units.
+double largest_coordinate(const MesherInput& input);
+
+}  // namespace tetwright

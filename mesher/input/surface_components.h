@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/types.h"
+#include "mesher/input/surface_repair.h"
+
+namespace tetwright {
+
+/// A part of a surface that is reoriented as a whole or not at all.
+struct SurfaceComponent {
+  std::vector<Index> triangles;  ///< ascending
+  bool closed = false;           ///< every edge is used equally often in both directions
+};
+
+/// Appends a finding unless `count` is 0.
+void add_finding(std::vector<SurfaceFinding>& findings, const std::string& what, std::size_t count,
+                 const std::optional<Vec3>& place, const std::string& done);
+
+/// "(x, y, z)" for messages.
+std::string place_text(const Vec3& p);
+
+/// Orients neighbouring triangles consistently, by the majority of each patch, and returns the components in
+/// the order of their first triangles. Inner walls and fins belong to no component. Requires triangles with
+/// three different corners and no repeated triangles.
+///
+/// A *patch* is connected across edges of exactly two triangles. Edges of one, three or more triangles are
+/// *seams*:
+/// - a patch that balances at each of its seams by itself (as each of two cubes that share an edge) is a
+/// closed
+///   component;
+/// - so is a group of patches that balance together, after patches with free edges are set aside; patches are
+///   reversed, small ones first, as long as that makes more edges balance;
+/// - a patch all of whose boundary is at seams of triangles that are closed without it is an inner wall; of
+/// three
+///   patches with common seams the smallest one is;
+/// - a patch that the file lists from both sides (`two_sided`, by triangle) and that has free edges and seams
+/// is a
+///   fin;
+/// - all others are open components, merged with those that continue them.
+///
+/// Throws InputError if a patch is one-sided.
+std::vector<SurfaceComponent> split_into_components(const std::vector<Vec3>& points,
+                                                    std::vector<Triangle>& triangles,
+                                                    const std::vector<char>& two_sided,
+                                                    const std::string& file,
+                                                    std::vector<SurfaceFinding>& findings);
+
+}  // namespace tetwright

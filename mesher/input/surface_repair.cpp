@@ -1,0 +1,202 @@
+#include "mesher/input/surface_repair.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "common/error.h"
+#include "common/geometry/predicates.h"
+#include "common/geometry/self_intersection.h"
+#include "common/parallel/parallel_sort.h"
+#include "mesher/input/surface_components.h"
+#include "mesher/input/surface_nesting.h"
+
+namespace tetwright {
+
+namespace {
+
+/// For each point the number of the first one with equal coordinates.
+std::vector<Index> first_equal_point(const std::vector<Vec3>& points) {
+  const std::size_t slots = std::bit_ceil(2 * points.size() + 1);
+  std::vector<Index> table(slots, no_index), first(points.size());
+  for (Index i = 0; i < points.size(); ++i) {
+    std::uint64_t hash = 0;
+    // Adding 0 makes +0 of -0, which compare equal.
+    for (int a = 0; a < 3; ++a)
+      hash = (hash ^ std::bit_cast<std::uint64_t>(points[i][a] + 0.0)) * 0x9e3779b97f4a7c15u,
+      hash ^= hash >> 29;
+    std::size_t slot = hash & (slots - 1);
+    while (table[slot] != no_index && points[table[slot]] != points[i]) slot = (slot + 1) & (slots - 1);
+    if (table[slot] == no_index) table[slot] = i;
+    first[i] = table[slot];
+  }
+  return first;
+}
+
+/// A triangle turned so that its smallest vertex comes first.
+Triangle canonical(Triangle t) {
+  std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  return t;
+}
+
+/// True if the corners are on one line, exactly.
+bool flat(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 u = b - a, v = c - a;
+  // Rounding leaves less than 1e-14 of the product of the lengths.
+  if (u.cross(v).squaredNorm() > 1e-24 * u.squaredNorm() * v.squaredNorm()) return false;
+  return orient2d(a, b, c, 0, 1) == 0 && orient2d(a, b, c, 1, 2) == 0 && orient2d(a, b, c, 2, 0) == 0;
+}
+
+/// The points that triangles use, in their order; renumbers the triangles accordingly.
+std::vector<Vec3> keep_used(const std::vector<Vec3>& points, std::vector<Triangle>& triangles) {
+  std::vector<Index> renumbered(points.size(), no_index);
+  for (const Triangle& t : triangles)
+    for (Index v : t) renumbered[v] = 0;
+  std::vector<Vec3> used;
+  for (Index i = 0; i < points.size(); ++i)
+    if (renumbered[i] != no_index) {
+      renumbered[i] = static_cast<Index>(used.size());
+      used.push_back(points[i]);
+    }
+  for (Triangle& t : triangles)
+    for (Index& v : t) v = renumbered[v];
+  return used;
+}
+
+struct Cleaned {
+  std::vector<Vec3> points;
+  std::vector<Triangle> triangles;  ///< canonical
+  std::vector<char> two_sided;      ///< of each triangle: wound both ways in the file
+};
+
+/// Merges equal points, drops unused ones, triangles with equal corners and all but one of each set of
+/// triangles with the same corners: the first one of the way in which most of them are wound.
+Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<SurfaceFinding>& findings) {
+  if (surface.triangles.empty()) throw InputError(file, 0, "there are no triangles");
+  for (const Vec3& p : surface.points)
+    if (!p.allFinite()) throw InputError(file, 0, "a point has a coordinate that is not finite");
+  const std::vector<Index> first = first_equal_point(surface.points);
+
+  struct Entry {
+    Index low, middle, high;
+    Index turned;  ///< 1 when wound low, high, middle
+    auto operator<=>(const Entry&) const = default;
+    bool same_corners(const Entry& e) const { return low == e.low && middle == e.middle && high == e.high; }
+  };
+  std::vector<Entry> entries;
+  entries.reserve(surface.triangles.size());
+  std::vector<char> used(surface.points.size(), 0);
+  std::size_t collapsed = 0, repeated = 0, flats = 0;
+  std::optional<Vec3> collapsed_place, repeated_place, flat_place, merged_place, unused_place;
+  for (const Triangle& t : surface.triangles) {
+    Triangle u;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (t[k] >= surface.points.size())
+        throw InputError(file, 0,
+                         "a triangle names point " + std::to_string(t[k]) + " of " +
+                             std::to_string(surface.points.size()));
+      used[t[k]] = 1;
+      u[k] = first[t[k]];
+    }
+    if (u[0] == u[1] || u[1] == u[2] || u[2] == u[0]) {
+      if (collapsed++ == 0) collapsed_place = surface.points[u[0]];
+      continue;
+    }
+    u = canonical(u);
+    entries.push_back({u[0], std::min(u[1], u[2]), std::max(u[1], u[2]), u[1] > u[2]});
+  }
+  parallel_sort(entries);
+
+  Cleaned result;
+  result.triangles.reserve(entries.size());
+  for (std::size_t i = 0, j; i < entries.size(); i = j) {
+    for (j = i + 1; j < entries.size() && entries[j].same_corners(entries[i]);) ++j;
+    if (j - i > 1 && repeated == 0) repeated_place = surface.points[entries[i].low];
+    repeated += j - i - 1;
+    result.two_sided.push_back(entries[i].turned != entries[j - 1].turned);
+    // Both ways of winding stand together; the middle one belongs to the majority.
+    const Entry& e = entries[i + (j - i - 1) / 2];
+    result.triangles.push_back(e.turned ? Triangle{e.low, e.high, e.middle}
+                                        : Triangle{e.low, e.middle, e.high});
+  }
+
+  // Points keep their order, so that what is found first is first in the file.
+  std::size_t merged = 0, unused = 0;
+  for (Index i = 0; i < used.size(); ++i) {
+    if (!used[i] && unused++ == 0) unused_place = surface.points[i];
+    if (used[i] && first[i] != i && merged++ == 0) merged_place = surface.points[i];
+  }
+  for (const Triangle& t : result.triangles) {
+    const Vec3 &a = surface.points[t[0]], &b = surface.points[t[1]], &c = surface.points[t[2]];
+    if (flat(a, b, c) && flats++ == 0) flat_place = a;
+  }
+  result.points = keep_used(surface.points, result.triangles);
+  if (flats == result.triangles.size())
+    throw InputError(file, 0, "all triangles are flat, without any area; write the surface again");
+  add_finding(findings, "points at the place of another one", merged, merged_place, "merged");
+  add_finding(findings, "points that no triangle uses", unused, unused_place, "left out");
+  add_finding(findings, "triangles with equal corners", collapsed, collapsed_place, "left out");
+  add_finding(findings, "repeated triangles", repeated, repeated_place, "one of each kept");
+  add_finding(findings, "triangles with all corners on a line", flats, flat_place,
+              "kept, they join their neighbours");
+  return result;
+}
+
+/// A surface of some of the components, closed ones first.
+RepairedSurface assemble(const Cleaned& from, const std::vector<SurfaceComponent>& components,
+                         const std::vector<Index>& chosen) {
+  RepairedSurface s;
+  for (const bool closed : {true, false}) {
+    for (Index c : chosen)
+      if (components[c].closed == closed)
+        for (Index t : components[c].triangles) s.triangles.push_back(from.triangles[t]);
+    if (closed) s.closed = s.triangles.size();
+  }
+  s.points = keep_used(from.points, s.triangles);
+  s.low = s.high = s.points[0];
+  for (const Vec3& p : s.points) s.low = s.low.cwiseMin(p), s.high = s.high.cwiseMax(p);
+  const Vec3 apex = 0.5 * s.low + 0.5 * s.high;
+  const auto sum = [&](auto&& of_triangle) {
+    return parallel_sum(0, s.triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      double total = 0;
+      for (std::size_t t = begin; t < end; ++t) {
+        const auto& [a, b, c] = s.triangles[t];
+        total += of_triangle(s.points[a], s.points[b], s.points[c]);
+      }
+      return total;
+    });
+  };
+  s.area = sum([](const Vec3& a, const Vec3& b, const Vec3& c) { return 0.5 * (b - a).cross(c - a).norm(); });
+  s.volume = sum([&](const Vec3& a, const Vec3& b, const Vec3& c) {
+    return (a - apex).dot((b - apex).cross(c - apex)) / 6;
+  });
+  return s;
+}
+
+}  // namespace
+
+SurfaceRepair repair_surface(const TriangleMesh& surface, const std::string& file, NestedRule nested) {
+  SurfaceRepair result;
+  Cleaned cleaned = clean(surface, file, result.findings);
+  const std::vector<SurfaceComponent> components =
+      split_into_components(cleaned.points, cleaned.triangles, cleaned.two_sided, file, result.findings);
+  const auto crossing = self_intersections(cleaned.points, cleaned.triangles);
+  if (!crossing.empty())
+    add_finding(result.findings, "pairs of triangles that intersect", crossing.size(),
+                cleaned.points[cleaned.triangles[crossing[0].first][0]],
+                "kept; what is inside any part is inside");
+  const ArrangedComponents arranged =
+      arrange_components(cleaned.points, cleaned.triangles, components, crossing, nested, result.findings);
+  std::vector<char> elsewhere = arranged.redundant;
+  for (Index c : arranged.nested) elsewhere[c] = 1;
+  std::vector<Index> chosen;
+  for (Index c = 0; c < components.size(); ++c) {
+    if (!elsewhere[c]) chosen.push_back(c);
+    if (arranged.turn[c])
+      for (Index t : components[c].triangles) std::swap(cleaned.triangles[t][1], cleaned.triangles[t][2]);
+  }
+  result.surface = assemble(cleaned, components, chosen);
+  for (Index c : arranged.nested) result.nested.push_back(assemble(cleaned, components, {c}));
+  return result;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,312 @@
+#include "mesher/labels/label_bricks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "common/error.h"
+#include "common/parallel/parallel.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr int bricks_per_tile = LabelSmoother::cells / LabelBricks::cells;
+constexpr int tile_parts = LabelSmoother::parts;
+
+/// The bricks of one tile.
+struct TileBricks {
+  struct Made {
+    std::array<int, 3> at;
+    std::uint32_t first;
+    std::uint16_t count;
+    RegionIndex alone;
+  };
+  std::vector<Made> bricks;
+  std::vector<RegionIndex> channels;
+  std::vector<std::int16_t> values;
+  /// Volumes of labels, voxels, in the parts of the tile, x fastest.
+  std::array<std::vector<std::pair<RegionIndex, double>>, tile_parts * tile_parts * tile_parts> shares;
+  std::vector<LabelSmoother::Contact> contacts;
+};
+
+/// Copies the voxels of a tile and around it. Returns false if all of them are of one region.
+bool copy_voxels(const LabelInput& labels, const std::array<int, 3>& tile, std::span<RegionIndex> out) {
+  constexpr int side = LabelSmoother::side;
+  const std::array<int, 3>& size = labels.size;
+  std::array<int, 3> low;  // first index copied
+  for (int a = 0; a < 3; ++a)
+    low[a] = tile[a] * LabelSmoother::cells - LabelSmoother::reach - LabelBricks::padding;
+  const int from = std::clamp(-low[0], 0, side), to = std::clamp(size[0] - low[0], from, side);
+  bool alike = true;
+  RegionIndex first = outside_region;
+  RegionIndex* row = out.data();
+  for (int z = 0; z < side; ++z)
+    for (int y = 0; y < side; ++y, row += side) {
+      const int iy = low[1] + y, iz = low[2] + z;
+      if (iy < 0 || iz < 0 || iy >= size[1] || iz >= size[2]) {
+        std::fill(row, row + side, outside_region);
+      } else {
+        const RegionIndex* in =
+            labels.regions.data() + (static_cast<std::size_t>(iz) * size[1] + iy) * size[0] + (low[0] + from);
+        std::fill(row, row + from, outside_region);
+        std::copy(in, in + (to - from), row + from);
+        std::fill(row + to, row + side, outside_region);
+      }
+      if (y == 0 && z == 0) first = row[0];
+      if (alike)
+        for (int x = 0; x < side; ++x) alike &= row[x] == first;
+    }
+  return !alike;
+}
+
+void add_brick(const LabelSmoother& smoother, const std::array<int, 3>& in_tile, const std::array<int, 3>& at,
+               TileBricks& out) {
+  TileBricks::Made made{at, static_cast<std::uint32_t>(out.channels.size()), 0, outside_region};
+  std::array<std::int16_t, LabelBricks::volume> values;
+  bool all_far = true;
+  for (std::size_t l = 0; l < smoother.labels().size(); ++l) {
+    std::int16_t smallest = LabelBricks::band_units, largest = -LabelBricks::band_units;
+    int i = 0;
+    for (int z = 0; z < LabelBricks::nodes; ++z)
+      for (int y = 0; y < LabelBricks::nodes; ++y)
+        for (int x = 0; x < LabelBricks::nodes; ++x, ++i) {
+          const float d =
+              smoother.distance(l, in_tile[0] * LabelBricks::cells + x, in_tile[1] * LabelBricks::cells + y,
+                                in_tile[2] * LabelBricks::cells + z);
+          values[i] = static_cast<std::int16_t>(std::lrint(LabelBricks::units_per_voxel * d));
+          smallest = std::min(smallest, values[i]);
+          largest = std::max(largest, values[i]);
+        }
+    if (smallest >= LabelBricks::band_units) continue;
+    if (largest <= -LabelBricks::band_units) made.alone = smoother.labels()[l];
+    all_far &= largest <= -LabelBricks::band_units;
+    out.channels.push_back(smoother.labels()[l]);
+    out.values.insert(out.values.end(), values.begin(), values.end());
+    ++made.count;
+  }
+  if (made.count == 1 && all_far) {
+    made.count = 0;
+    out.channels.pop_back();
+    out.values.resize(out.values.size() - LabelBricks::volume);
+  }
+  out.bricks.push_back(made);
+}
+
+/// Computes tile number `t`; `tiles` and `bricks` are numbers of tiles and bricks along each axis. Contacts
+/// depend on voxels only, so they are needed once.
+void make_tile(const LabelInput& labels, int t, const std::array<int, 3>& tiles,
+               const std::array<int, 3>& bricks, std::span<const float> growth, LabelSmoother& smoother,
+               bool with_contacts, TileBricks& out) {
+  const std::array<int, 3> tile{t % tiles[0], t / tiles[0] % tiles[1], t / (tiles[0] * tiles[1])};
+  out = {};
+  const bool mixed = copy_voxels(labels, tile, smoother.voxels());
+  if (mixed) {
+    if (smoother.number_labels() > LabelSmoother::max_labels)
+      throw InputError(
+          labels.file, 0,
+          "has more than " + std::to_string(LabelSmoother::max_labels) + " labels within " +
+              std::to_string(LabelSmoother::side) +
+              " voxels, like an image of gray values; give a segmented volume, or choose --labels");
+    smoother.smooth(growth);
+    for (int k = 0; k < static_cast<int>(out.shares.size()); ++k) {
+      const std::vector<double> shares =
+          smoother.shares({k % tile_parts, k / tile_parts % tile_parts, k / (tile_parts * tile_parts)});
+      for (std::size_t l = 0; l < shares.size(); ++l)
+        out.shares[k].emplace_back(smoother.labels()[l], shares[l]);
+    }
+    if (with_contacts) out.contacts = smoother.contacts();
+  } else if (const RegionIndex alone = smoother.voxels()[0]; alone != outside_region) {
+    constexpr int side = LabelSmoother::part_cells;
+    for (auto& part : out.shares) part.emplace_back(alone, side * side * side);
+  }
+  for (int k = 0; k < bricks_per_tile * bricks_per_tile * bricks_per_tile; ++k) {
+    const std::array<int, 3> in_tile{k % bricks_per_tile, k / bricks_per_tile % bricks_per_tile,
+                                     k / (bricks_per_tile * bricks_per_tile)};
+    std::array<int, 3> at;
+    bool inside = true;
+    for (int a = 0; a < 3; ++a) {
+      at[a] = tile[a] * bricks_per_tile + in_tile[a];
+      inside &= at[a] < bricks[a];
+    }
+    if (!inside) continue;
+    if (mixed)
+      add_brick(smoother, in_tile, at, out);
+    else
+      out.bricks.push_back({at, 0, 0, smoother.voxels()[0]});
+  }
+}
+
+/// Number of rounds of growth: growing a label changes its neighbours.
+constexpr int max_rounds = 4;
+
+/// Determines how far each label is grown so that it keeps its volume.
+///
+/// Where labels r and s share f faces, growing r by d adds about f * d voxels to r, and growing s by d
+/// removes as many. The steps that correct all volumes solve a linear system with one equation for each label
+/// whose volume is wrong. The ratio between actual and expected changes is estimated for each label from one
+/// step to the next.
+class Growth {
+ public:
+  explicit Growth(std::size_t regions)
+      : growth_(regions, 0), step_(regions, 0), volumes_(regions, 0), give_(regions, 1) {}
+
+  const std::vector<float>& growth() const { return growth_; }  ///< by region, voxels
+  /// Whether it was changed by the last adjust().
+  bool changed(RegionIndex region) const { return step_[region] != 0; }
+
+  /// Takes the volumes of the tiles, the first time their contacts too; false if no label's growth changes
+  /// any more. There are tile_counts tiles along each axis, x fastest.
+  bool adjust(const LabelInput& labels, const std::vector<TileBricks>& tiles,
+              const std::array<int, 3>& tile_counts) {
+    if (!begun_) list_contacts(tiles);
+    std::vector<double> now(growth_.size(), 0);
+    // Part by part in the order of the whole volume, so that sums do not depend on the size of tiles.
+    for (int z = 0; z < tile_parts * tile_counts[2]; ++z)
+      for (int y = 0; y < tile_parts * tile_counts[1]; ++y)
+        for (int x = 0; x < tile_parts * tile_counts[0]; ++x) {
+          const auto tile = static_cast<std::size_t>(
+              (z / tile_parts * tile_counts[1] + y / tile_parts) * tile_counts[0] + x / tile_parts);
+          const auto part = static_cast<std::size_t>(
+              (z % tile_parts * tile_parts + y % tile_parts) * tile_parts + x % tile_parts);
+          for (const auto& [region, volume] : tiles[tile].shares[part]) now[region] += volume;
+        }
+    if (begun_) learn(now);
+    begun_ = true;
+    volumes_ = std::move(now);
+    return solve(labels);
+  }
+
+ private:
+  struct Contact {
+    RegionIndex with;
+    double faces;
+  };
+  std::span<const Contact> contacts(std::size_t region) const {
+    return {contacts_.data() + starts_[region], contacts_.data() + starts_[region + 1]};
+  }
+
+  void list_contacts(const std::vector<TileBricks>& tiles) {
+    std::map<std::pair<RegionIndex, RegionIndex>, double> faces;
+    for (const TileBricks& t : tiles)
+      for (const LabelSmoother::Contact& c : t.contacts) {
+        faces[{c.first, c.second}] += c.faces;
+        faces[{c.second, c.first}] += c.faces;
+      }
+    starts_.assign(growth_.size() + 1, 0);
+    for (const auto& [pair, count] : faces) {
+      contacts_.push_back({pair.second, count});
+      ++starts_[pair.first + 1u];
+    }
+    std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+  }
+
+  /// Compares what the last steps did with what they should have done.
+  void learn(const std::vector<double>& now) {
+    // The faces of voxels have a larger area than the interface, and enforced nodes do not move.
+    constexpr double min_give = 0.25, max_give = 1.25;
+    constexpr double telling = 1e-3;  ///< fraction of the volume; smaller steps are dominated by noise
+    for (std::size_t r = 1; r < growth_.size(); ++r) {
+      double expected = 0;
+      for (const Contact& c : contacts(r)) expected += c.faces * (step_[r] - step_[c.with]);
+      if (std::abs(expected) > telling * volumes_[r])
+        give_[r] = std::clamp((now[r] - volumes_[r]) / expected, min_give, max_give);
+    }
+  }
+
+  bool solve(const LabelInput& labels) {
+    // Relative to the label's voxels; meshing adds a few tenths of a percent. Small labels are promised less.
+    constexpr double tolerance = 0.004, tolerance_small = 0.02, small = 1000;
+    constexpr int sweeps = 30;  // of Gauss-Seidel; the outside and labels of correct volume are not changed
+    std::vector<RegionIndex> off;
+    for (std::size_t r = 1; r < growth_.size(); ++r) {
+      step_[r] = 0;
+      const auto voxels = static_cast<double>(labels.materials[r - 1].voxels);
+      if (!contacts(r).empty() &&
+          std::abs(voxels - volumes_[r]) > (voxels > small ? tolerance : tolerance_small) * voxels)
+        off.push_back(static_cast<RegionIndex>(r));
+    }
+    for (int sweep = 0; sweep < sweeps; ++sweep)
+      for (RegionIndex r : off) {
+        double gain = (static_cast<double>(labels.materials[r - 1u].voxels) - volumes_[r]) / give_[r];
+        double faces = 0;
+        for (const Contact& c : contacts(r)) {
+          gain += c.faces * step_[c.with];
+          faces += c.faces;
+        }
+        const double max_growth = LabelSmoother::max_growth;
+        step_[r] = std::clamp(growth_[r] + gain / faces, -max_growth, max_growth) - growth_[r];
+      }
+    bool any = false;
+    for (RegionIndex r : off) {
+      const float before = growth_[r];
+      growth_[r] = static_cast<float>(before + step_[r]);
+      step_[r] = static_cast<double>(growth_[r]) - before;
+      any |= step_[r] != 0;
+    }
+    return any;
+  }
+
+  bool begun_ = false;
+  std::vector<float> growth_;
+  std::vector<double> step_, volumes_;
+  std::vector<double> give_;  ///< by region: gain in voxels per face and voxel of growth
+  std::vector<std::size_t> starts_;
+  std::vector<Contact> contacts_;  ///< rows by region
+};
+
+}  // namespace
+
+LabelBricks make_label_bricks(const LabelInput& labels, const Progress* progress) {
+  LabelBricks made;
+  std::array<int, 3> tiles;
+  for (int a = 0; a < 3; ++a) {
+    made.counts[a] =
+        (labels.size[a] + 2 * LabelBricks::padding - 1 + LabelBricks::cells - 1) / LabelBricks::cells;
+    tiles[a] = (made.counts[a] + bricks_per_tile - 1) / bricks_per_tile;
+  }
+  const auto product = [](const std::array<int, 3>& n) {
+    return static_cast<std::size_t>(n[0]) * n[1] * n[2];
+  };
+  made.bricks.resize(product(made.counts));
+
+  const std::size_t tile_count = product(tiles);
+  std::vector<TileBricks> parts(tile_count);
+  // Only tiles with labels whose growth changed are computed again.
+  Growth growth(labels.materials.size() + 1);
+  for (int round = 0;; ++round) {
+    constexpr std::size_t grain = 2;  // tiles to a task, several milliseconds each where labels meet
+    parallel_for(0, tile_count, grain, [&](std::size_t begin, std::size_t end) {
+      if (progress) progress->throw_if_cancelled();
+      LabelSmoother smoother;
+      for (std::size_t t = begin; t < end; ++t) {
+        // Every part lists all labels that the tile depends on.
+        const auto& listed = parts[t].shares[0];
+        const bool again = round == 0 || std::any_of(listed.begin(), listed.end(),
+                                                     [&](const auto& v) { return growth.changed(v.first); });
+        if (again)
+          make_tile(labels, static_cast<int>(t), tiles, made.counts, growth.growth(), smoother, round == 0,
+                    parts[t]);
+      }
+    });
+    if (round == max_rounds || !growth.adjust(labels, parts, tiles)) break;
+  }
+  std::size_t channel_count = 0;
+  for (const TileBricks& p : parts) channel_count += p.channels.size();
+  made.channels.reserve(channel_count);
+  made.values.reserve(channel_count * LabelBricks::volume);
+  for (TileBricks& p : parts) {
+    const auto first = static_cast<std::uint32_t>(made.channels.size());
+    for (const TileBricks::Made& b : p.bricks)
+      made.bricks[(static_cast<std::size_t>(b.at[2]) * made.counts[1] + b.at[1]) * made.counts[0] + b.at[0]] =
+          {first + b.first, b.count, b.alone};
+    made.channels.insert(made.channels.end(), p.channels.begin(), p.channels.end());
+    made.values.insert(made.values.end(), p.values.begin(), p.values.end());
+    p = {};
+  }
+
+  return made;
+}
+
+}  // namespace tetwright

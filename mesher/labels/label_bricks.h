@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/progress.h"
+#include "mesher/input/label_input.h"
+#include "mesher/labels/label_smoothing.h"
+
+namespace tetwright {
+
+/// The distances of LabelSmoother for a whole volume, stored in bricks of 8 x 8 x 8 cells between nodes. Node
+/// (0, 0, 0) is `padding` voxels before the first voxel along each axis, which is as far as smoothing spreads
+/// labels beyond the volume.
+struct LabelBricks {
+  static constexpr int padding = 4;
+  static constexpr int cells = 8, nodes = cells + 1, volume = nodes * nodes * nodes;
+  /// Distances are stored as 16-bit integers with this many units per voxel, finer than any decision needs.
+  static constexpr float units_per_voxel = 15000;
+  static constexpr auto band_units = static_cast<std::int16_t>(LabelSmoother::band * units_per_voxel);
+
+  /// The labels near a brick have the channels first, first + 1, ...; none if the brick has a single label.
+  struct Brick {
+    std::uint32_t first = 0;
+    std::uint16_t count = 0;
+    RegionIndex alone = outside_region;
+  };
+
+  std::array<int, 3> counts{};  ///< bricks along each axis
+  std::vector<Brick> bricks;    ///< x fastest
+  std::vector<RegionIndex> channels;
+  std::vector<std::int16_t> values;  ///< `volume` for each channel, x fastest
+
+  const Brick& brick(int x, int y, int z) const {
+    return bricks[(static_cast<std::size_t>(z) * counts[1] + y) * counts[0] + x];
+  }
+  const std::int16_t* channel(std::uint32_t number) const {
+    return values.data() + static_cast<std::size_t>(number) * volume;
+  }
+};
+
+/// Smooths all labels, then grows or shrinks those whose volume changed, in a few rounds. Parallel over
+/// tiles, with the same result for any number of threads. Throws InputError (too many labels in one place,
+/// like an image of gray values) and Interrupted.
+LabelBricks make_label_bricks(const LabelInput& labels, const Progress* progress);
+
+}  // namespace tetwright

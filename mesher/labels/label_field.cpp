@@ -1,0 +1,469 @@
+#include "mesher/labels/label_field.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "common/parallel/parallel_sort.h"
+#include "mesher/labels/label_bricks.h"
+#include "mesher/labels/label_depth.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Tolerance for cells that only touch a cube of nodes, cells.
+constexpr double touching = 1e-6;
+
+/// The volume's axes made perpendicular and right-handed (Gram-Schmidt). Positions along them, relative to
+/// the first voxel's centre, are to_local * index.
+struct LocalAxes {
+  explicit LocalAxes(const Eigen::Matrix3d& directions) {
+    Eigen::Matrix3d r = Eigen::Matrix3d::Zero();
+    for (int a = 0; a < 3; ++a) {
+      Vec3 rest = directions.col(a);
+      for (int b = 0; b < a; ++b) {
+        r(b, a) = axes.col(b).dot(rest);
+        rest -= r(b, a) * axes.col(b);
+      }
+      r(a, a) = rest.norm();
+      axes.col(a) = rest / r(a, a);
+    }
+    if (axes.determinant() < 0) {
+      axes.col(2) = -axes.col(2);
+      r.row(2) = -r.row(2);
+    }
+    to_local = r;
+  }
+  Eigen::Matrix3d axes, to_local;
+};
+
+constexpr int padding = LabelBricks::padding;
+constexpr int brick_cells = LabelBricks::cells, brick_nodes = LabelBricks::nodes;
+constexpr int brick_volume = LabelBricks::volume;
+constexpr float units_per_voxel = LabelBricks::units_per_voxel;
+constexpr std::int16_t band_units = LabelBricks::band_units;
+
+/// Of each node of a brick the channel of the smallest distance, of equal ones the first.
+void find_own_channels(const LabelBricks& all, const LabelBricks::Brick& brick,
+                       std::array<std::uint16_t, brick_volume>& own) {
+  std::array<std::int16_t, brick_volume> smallest;
+  smallest.fill(INT16_MAX);
+  for (std::uint16_t c = 0; c < brick.count; ++c) {
+    const std::int16_t* v = all.channel(brick.first + c);
+    for (int i = 0; i < brick_volume; ++i)
+      if (v[i] < smallest[i]) smallest[i] = v[i], own[i] = c;
+  }
+}
+
+/// Calls `use(cube)` with the lowest node of each cube of eight nodes that do not all have the same channel.
+template <class Use>
+void for_each_mixed_cube(const std::array<std::uint16_t, brick_volume>& own, Use&& use) {
+  for (int k = 0; k < brick_cells * brick_cells * brick_cells; ++k) {
+    const std::array<int, 3> cube{k % brick_cells, k / brick_cells % brick_cells,
+                                  k / (brick_cells * brick_cells)};
+    const int i = (cube[2] * brick_nodes + cube[1]) * brick_nodes + cube[0];
+    constexpr int y = brick_nodes, z = brick_nodes * brick_nodes;
+    const std::uint16_t o = own[i];
+    if (own[i + 1] != o || own[i + y] != o || own[i + y + 1] != o || own[i + z] != o || own[i + z + 1] != o ||
+        own[i + z + y] != o || own[i + z + y + 1] != o)
+      use(cube);
+  }
+}
+
+}  // namespace
+
+double voxel_size(const LabelInput& labels) { return labels.directions.colwise().norm().minCoeff(); }
+
+GridFrame label_frame(const LabelInput& labels, double cell_size, bool uniform) {
+  const LocalAxes local(labels.directions);
+  Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
+  for (int k = 0; k < 8; ++k) {
+    Vec3 corner;
+    for (int a = 0; a < 3; ++a) corner[a] = (k >> a & 1) ? labels.size[a] - 0.5 : -0.5;
+    corner = local.to_local * corner;
+    low = low.cwiseMin(corner);
+    high = high.cwiseMax(corner);
+  }
+  // Whole cells downwards from the first voxel's centre.
+  for (int a = 0; a < 3; ++a) low[a] = std::floor(low[a] / cell_size) * cell_size;
+  GridFrame frame = make_grid_frame(low, high, cell_size, uniform);
+  frame.origin = labels.origin + local.axes * frame.origin;
+  frame.axes = local.axes;
+  return frame;
+}
+
+/// Data shared by the fields of all refinements.
+struct LabelField::Shared {
+  LabelBricks bricks;
+  double voxel;              ///< smallest spacing, input units
+  double min_slope;          ///< smallest spacing by largest
+  Eigen::Matrix3d to_index;  ///< from local positions
+  Vec3 origin;               ///< first voxel's centre, input units
+  /// For cells larger than a voxel, whose corners may be farther than the band from an interface; else empty.
+  LabelDepths depths;
+};
+
+std::shared_ptr<const LabelField> LabelField::make(const LabelInput& labels, const GridFrame& frame,
+                                                   bool keep_outside, Progress* progress) {
+  auto made = std::make_shared<Shared>();
+  made->bricks = make_label_bricks(labels, progress);
+  made->voxel = voxel_size(labels);
+  made->min_slope = made->voxel / labels.directions.colwise().norm().maxCoeff();
+  made->to_index = LocalAxes(labels.directions).to_local.inverse();
+  made->origin = labels.origin;
+  if (frame.cell_size > (1 + touching) * made->voxel) made->depths = label_depths(labels);
+  std::vector<FieldRegion> regions{{keep_outside ? outside_name : "", outside_tag}};
+  for (const LabelMaterial& m : labels.materials) regions.push_back({m.name, m.tag});
+  return std::shared_ptr<const LabelField>(new LabelField(std::move(made), frame, std::move(regions), 0));
+}
+
+double LabelField::band_in_cells(const Shared& shared, const GridFrame& voxels) {
+  // With depths the band is as wide as that of level sets, which is what lattice edges need.
+  return shared.depths.steps.empty() ? LabelSmoother::band * shared.voxel / voxels.cell_size : level_set_band;
+}
+
+LabelField::LabelField(std::shared_ptr<const Shared> shared, const GridFrame& voxels,
+                       std::vector<FieldRegion> regions, int refinement)
+    : MaterialField(voxels, std::move(regions), band_in_cells(*shared, voxels), refinement),
+      shared_(std::move(shared)),
+      to_nodes_(shared_->to_index * frame().cell_size),
+      first_node_(shared_->to_index * (frame().axes.transpose() * (frame().origin - shared_->origin)) +
+                  Vec3::Constant(padding)) {}
+
+LabelField::~LabelField() { drop_samplers(); }
+
+std::shared_ptr<const MaterialField> LabelField::refined(int refinement) const {
+  return std::shared_ptr<const LabelField>(new LabelField(shared_, voxels(), regions(), refinement));
+}
+
+class LabelField::Sampler final : public FieldSampler {
+ public:
+  explicit Sampler(const LabelField& f)
+      : FieldSampler(std::ldexp(1, f.refinement()), f.shared_->min_slope),
+        field_(f),
+        shared_(*f.shared_),
+        bricks_(f.shared_->bricks),
+        per_unit_(f.shared_->voxel / f.frame().cell_size / units_per_voxel),
+        cells_per_voxel_(std::ldexp(1, f.refinement())) {}
+
+  NearestRegion nearest(const Vec3& point) override {
+    const Place p = find(point);
+    if (const std::optional<Far> far = far_from_interfaces(p, point))
+      return {far->region, static_cast<float>(std::min(far->depth, field_.band()))};
+    return nearest(p).first;
+  }
+  NearestRegion nearest_at_voxel(int x, int y, int z) override {
+    return nearest(cells_per_voxel_ * Vec3(x, y, z));
+  }
+  void values(const Vec3& point, std::span<const RegionIndex> regions, float* out) override {
+    const Place p = find(point);
+    if (const std::optional<Far> far = far_from_interfaces(p, point)) {
+      for (RegionIndex r : regions) *out++ = static_cast<float>(r == far->region ? -far->depth : far->depth);
+      return;
+    }
+    for (RegionIndex r : regions) *out++ = static_cast<float>(per_unit_ * value(p, r));
+  }
+  void values_at_voxel(int x, int y, int z, std::span<const RegionIndex> regions, float* out) override {
+    values(cells_per_voxel_ * Vec3(x, y, z), regions, out);
+  }
+  std::optional<RegionSet> two_nearest(const Vec3& point) override {
+    const auto [first, second] = nearest(find(point));
+    if (first.margin >= field_.band() || first.region == second) return std::nullopt;
+    RegionSet both;
+    both.insert(first.region);
+    both.insert(second);
+    return both;
+  }
+  std::optional<Sheet> thinnest_sheet(const Vec3&, double) override { return std::nullopt; }
+
+ private:
+  /// A brick, the lowest node of a cell in it, and the position in the cell.
+  struct Place {
+    const LabelBricks::Brick* brick;
+    int node;
+    std::array<double, 3> share;
+  };
+
+  Place find(const Vec3& point) const {
+    const Vec3 at = field_.to_nodes_ * point + field_.first_node_;
+    Place p{&outside_, 0, {0, 0, 0}};
+    std::array<int, 3> brick, cell;
+    for (int a = 0; a < 3; ++a) {
+      // Negated so that NaN is outside too.
+      if (!(at[a] >= 0 && at[a] < bricks_.counts[a] * brick_cells)) return p;
+      const int whole = static_cast<int>(at[a]);
+      brick[a] = whole / brick_cells;
+      cell[a] = whole % brick_cells;
+      p.share[a] = at[a] - whole;
+    }
+    p.brick = &bricks_.brick(brick[0], brick[1], brick[2]);
+    p.node = (cell[2] * brick_nodes + cell[1]) * brick_nodes + cell[0];
+    return p;
+  }
+
+  static constexpr int step_y = brick_nodes, step_z = brick_nodes * brick_nodes;
+  static double mix(double a, double b, double share) { return a + share * (b - a); }
+
+  double channel_value(const Place& p, std::uint32_t channel) const {
+    const std::int16_t* v = bricks_.channel(channel) + p.node;
+    const double low =
+        mix(mix(v[0], v[1], p.share[0]), mix(v[step_y], v[step_y + 1], p.share[0]), p.share[1]);
+    const double high = mix(mix(v[step_z], v[step_z + 1], p.share[0]),
+                            mix(v[step_z + step_y], v[step_z + step_y + 1], p.share[0]), p.share[1]);
+    return mix(low, high, p.share[2]);
+  }
+
+  /// `gradient` per node.
+  double channel_value(const Place& p, std::uint32_t channel, Vec3& gradient) const {
+    const std::int16_t* v = bricks_.channel(channel) + p.node;
+    double along_x[2][2], slope_x[2][2];
+    for (int z = 0; z < 2; ++z)
+      for (int y = 0; y < 2; ++y) {
+        const std::int16_t* row = v + z * step_z + y * step_y;
+        along_x[z][y] = mix(row[0], row[1], p.share[0]);
+        slope_x[z][y] = row[1] - row[0];
+      }
+    const double low = mix(along_x[0][0], along_x[0][1], p.share[1]);
+    const double high = mix(along_x[1][0], along_x[1][1], p.share[1]);
+    gradient = {mix(mix(slope_x[0][0], slope_x[0][1], p.share[1]),
+                    mix(slope_x[1][0], slope_x[1][1], p.share[1]), p.share[2]),
+                mix(along_x[0][1] - along_x[0][0], along_x[1][1] - along_x[1][0], p.share[2]), high - low};
+    return mix(low, high, p.share[2]);
+  }
+
+  std::optional<std::uint32_t> channel_of(const Place& p, RegionIndex region) const {
+    for (std::uint32_t c = p.brick->first; c < p.brick->first + p.brick->count; ++c)
+      if (bricks_.channels[c] == region) return c;
+    return std::nullopt;
+  }
+  double far_value(const Place& p, RegionIndex region) const {
+    return p.brick->count == 0 && p.brick->alone == region ? -band_units : band_units;
+  }
+  double value(const Place& p, RegionIndex region) const {
+    const auto channel = channel_of(p, region);
+    return channel ? channel_value(p, *channel) : far_value(p, region);
+  }
+
+  /// Where all distances are clamped: the region, the depth of the point in it (lattice units) and its
+  /// gradient.
+  struct Far {
+    RegionIndex region;
+    double depth;
+    Vec3 slope;
+  };
+  /// Nothing where distances are not clamped, or depths are not known.
+  std::optional<Far> far_from_interfaces(const Place& p, const Vec3& point) const {
+    if (shared_.depths.steps.empty()) return std::nullopt;
+    const NearestRegion first = nearest(p).first;
+    const double cut_off = per_unit_ * band_units;
+    // Rounding and interpolation give slightly less than the band.
+    if (first.margin < 0.98 * cut_off) return std::nullopt;
+    const Vec3 index = field_.to_nodes_ * point + field_.first_node_ - Vec3::Constant(padding);
+    Vec3 by_voxels;
+    const double per_voxel = per_unit_ * units_per_voxel;
+    const double depth = per_voxel * shared_.depths.at(index, by_voxels);
+    if (depth <= cut_off) return std::nullopt;
+    return Far{first.region, depth, per_voxel * (field_.to_nodes_.transpose() * by_voxels)};
+  }
+
+  /// The region of the smallest distance and that of the second smallest.
+  std::pair<NearestRegion, RegionIndex> nearest(const Place& p) const {
+    const LabelBricks::Brick& b = *p.brick;
+    const auto band = static_cast<float>(field_.band());
+    if (b.count == 0) return {{b.alone, band}, b.alone};
+    double smallest = HUGE_VAL, next = HUGE_VAL;
+    RegionIndex first = 0, second = 0;
+    for (std::uint32_t c = b.first; c < b.first + b.count; ++c) {
+      const double v = channel_value(p, c);
+      if (v < smallest) {
+        next = smallest, second = first;
+        smallest = v, first = bricks_.channels[c];
+      } else if (v < next) {
+        next = v, second = bricks_.channels[c];
+      }
+    }
+    return {{first, std::min(static_cast<float>(0.5 * per_unit_ * (next - smallest)), band)}, second};
+  }
+
+  void values_and_gradients(const Vec3& point, std::span<const RegionIndex> regions, double* values,
+                            Vec3* gradients) override {
+    const Place p = find(point);
+    if (const std::optional<Far> far = far_from_interfaces(p, point)) {
+      for (RegionIndex r : regions) {
+        const double sign = r == far->region ? -1 : 1;
+        *values++ = sign * far->depth;
+        *gradients++ = sign * far->slope;
+      }
+      return;
+    }
+    for (RegionIndex r : regions) {
+      Vec3 by_nodes = Vec3::Zero();
+      const auto channel = channel_of(p, r);
+      *values++ = per_unit_ * (channel ? channel_value(p, *channel, by_nodes) : far_value(p, r));
+      *gradients++ = per_unit_ * (field_.to_nodes_.transpose() * by_nodes);
+    }
+  }
+
+  const LabelField& field_;
+  const Shared& shared_;
+  const LabelBricks& bricks_;
+  const double per_unit_;         ///< lattice units
+  const double cells_per_voxel_;  ///< lattice units per voxel of the frame
+  const LabelBricks::Brick outside_;
+};
+
+bool LabelField::is_certain(const Vec3& point) const {
+  constexpr double cells_per_voxel = 2;
+  if (cells_per_voxel * voxels().cell_size > (1 + touching) * shared_->voxel) return false;
+  const Vec3 at = to_nodes_ * point + first_node_;
+  // Only rounding separates a point from the voxel centre that it is meant to be at; in voxels.
+  return (at - at.array().round().matrix()).cwiseAbs().maxCoeff() < touching;
+}
+
+std::unique_ptr<FieldSampler> LabelField::sampler() const { return std::make_unique<Sampler>(*this); }
+
+/// Finds the cells that an interface passes within one cube of eight nodes after another.
+class LabelField::InterfaceFinder {
+ public:
+  /// Where cells are as large as voxels or larger, all that overlap the cube count. Of smaller ones a cell
+  /// counts whose corners, middles of edges, faces or centre are of more than one region.
+  explicit InterfaceFinder(const LabelField& field)
+      : cells_(field.voxels().cells),
+        smaller_(field.voxels().cell_size < (1 - touching) * field.shared_->voxel),
+        on_voxels_(field.refined(0)),
+        sampler_(on_voxels_->sampler()),
+        max_slope_(std::sqrt(3.0) * 2 * LabelSmoother::band * field.voxels().cell_size *
+                   field.shared_->to_index.norm()),
+        band_(LabelSmoother::band) {}
+
+  /// `low`, `high`: the bounding box of the cube, in cells.
+  void append_cells(const Vec3& low, const Vec3& high, std::vector<MortonKey>& out) {
+    std::array<int, 3> from, to;
+    for (int a = 0; a < 3; ++a) {
+      from[a] = std::max(0, static_cast<int>(std::floor(low[a] + touching)));
+      to[a] = std::min(cells_[a], static_cast<int>(std::ceil(high[a] - touching)));
+    }
+    append_range(from, to, out);
+  }
+
+ private:
+  void append_range(const std::array<int, 3>& from, const std::array<int, 3>& to,
+                    std::vector<MortonKey>& out) {
+    constexpr int small_range =
+        8;  // cells along a side; nothing is gained by looking at smaller ranges first
+    int longest = 0;
+    for (int a = 1; a < 3; ++a)
+      if (to[a] - from[a] > to[longest] - from[longest]) longest = a;
+    if (smaller_ && to[longest] - from[longest] > small_range) {
+      if (is_far_from_interfaces(from, to)) return;
+      std::array<int, 3> middle_to = to, middle_from = from;
+      middle_to[longest] = middle_from[longest] = (from[longest] + to[longest]) / 2;
+      append_range(from, middle_to, out);
+      append_range(middle_from, to, out);
+      return;
+    }
+    for (int z = from[2]; z < to[2]; ++z)
+      for (int y = from[1]; y < to[1]; ++y)
+        for (int x = from[0]; x < to[0]; ++x)
+          if (!smaller_ || is_mixed(x, y, z)) out.push_back(morton_encode(x, y, z));
+  }
+
+  /// True if the region at the middle of a range of cells leads by more than any distances can change on the
+  /// way to its corners.
+  bool is_far_from_interfaces(const std::array<int, 3>& from, const std::array<int, 3>& to) {
+    Vec3 middle, half;
+    for (int a = 0; a < 3; ++a) {
+      middle[a] = 0.5 * (from[a] + to[a]);
+      half[a] = 0.5 * (to[a] - from[a]);
+    }
+    const double voxels_per_cell = band_ / on_voxels_->band();
+    return sampler_->nearest(middle).margin * voxels_per_cell > (1 + touching) * max_slope_ * half.norm();
+  }
+
+  bool is_mixed(int x, int y, int z) {
+    const RegionIndex there = sampler_->nearest_at_voxel(x, y, z).region;
+    for (int k = 1; k < 27; ++k)
+      if (sampler_->nearest(Vec3(x + 0.5 * (k % 3), y + 0.5 * (k / 3 % 3), z + 0.5 * (k / 9))).region !=
+          there)
+        return true;
+    return false;
+  }
+
+  const std::array<int, 3> cells_;
+  const bool smaller_;
+  const std::shared_ptr<const MaterialField> on_voxels_;
+  const std::unique_ptr<FieldSampler> sampler_;
+  /// The most that a distance (smallest spacings) changes over a cell: trilinear between nodes, each of them
+  /// within the band.
+  const double max_slope_;
+  const double band_;
+};
+
+std::vector<MortonKey> LabelField::interface_voxels() const {
+  const LabelBricks& all = shared_->bricks;
+  const Eigen::Matrix3d to_cells = (shared_->to_index * voxels().cell_size).inverse();
+  const Vec3 first = shared_->to_index * (voxels().axes.transpose() * (voxels().origin - shared_->origin)) +
+                     Vec3::Constant(padding);
+  const auto rows = static_cast<std::size_t>(all.counts[1]) * all.counts[2];
+  std::vector<MortonKey> keys = parallel_collect<MortonKey>(
+      0, rows, 1, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+        InterfaceFinder finder(*this);
+        std::array<std::uint16_t, brick_volume> own;
+        for (std::size_t row = begin; row < end; ++row)
+          for (int bx = 0; bx < all.counts[0]; ++bx) {
+            const int by = static_cast<int>(row) % all.counts[1], bz = static_cast<int>(row) / all.counts[1];
+            const LabelBricks::Brick& b = all.brick(bx, by, bz);
+            if (b.count == 0) continue;
+            find_own_channels(all, b, own);
+            for_each_mixed_cube(own, [&](const std::array<int, 3>& cube) {
+              const Vec3 node(bx * brick_cells + cube[0], by * brick_cells + cube[1],
+                              bz * brick_cells + cube[2]);
+              Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
+              for (int corner = 0; corner < 8; ++corner) {
+                const Vec3 at = to_cells * (node + Vec3(corner & 1, corner >> 1 & 1, corner >> 2) - first);
+                low = low.cwiseMin(at);
+                high = high.cwiseMax(at);
+              }
+              finder.append_cells(low, high, out);
+            });
+          }
+      });
+  parallel_sort_unique(keys);
+  return keys;
+}
+
+std::vector<LeafOrigin> LabelField::band_leaves(RegionIndex region) const {
+  const LabelBricks& all = shared_->bricks;
+  const Eigen::Matrix3d to_cells = (shared_->to_index * voxels().cell_size).inverse();
+  const Vec3 first = shared_->to_index * (voxels().axes.transpose() * (voxels().origin - shared_->origin)) +
+                     Vec3::Constant(padding);
+  const double around = std::max(1.0, std::ceil(std::ldexp(band(), -refinement())));
+  std::vector<LeafOrigin> leaves;
+  for (int bz = 0; bz < all.counts[2]; ++bz)
+    for (int by = 0; by < all.counts[1]; ++by)
+      for (int bx = 0; bx < all.counts[0]; ++bx) {
+        const LabelBricks::Brick& b = all.brick(bx, by, bz);
+        const auto channels = all.channels.begin() + b.first;
+        if (std::find(channels, channels + b.count, region) == channels + b.count) continue;
+        Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
+        for (int corner = 0; corner < 8; ++corner) {
+          const Vec3 at =
+              to_cells *
+              (brick_cells * Vec3(bx + (corner & 1), by + (corner >> 1 & 1), bz + (corner >> 2)) - first);
+          low = low.cwiseMin(at);
+          high = high.cwiseMax(at);
+        }
+        // If cells are large, the far side of an interface may be in another brick.
+        low -= Vec3::Constant(around);
+        high += Vec3::Constant(around);
+        const auto leaf = [](double x) { return static_cast<int>(std::floor(x / leaf_side)) * leaf_side; };
+        for (int z = leaf(low[2]); z <= high[2]; z += leaf_side)
+          for (int y = leaf(low[1]); y <= high[1]; y += leaf_side)
+            for (int x = leaf(low[0]); x <= high[0]; x += leaf_side) leaves.push_back({x, y, z});
+      }
+  parallel_sort_unique(leaves);
+  return leaves;
+}
+
+}  // namespace tetwright

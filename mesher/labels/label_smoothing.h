@@ -1,0 +1,145 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mesher/domain/regions.h"
+
+namespace tetwright {
+
+/// Smooth signed distances for the labels of a segmented volume, computed tile by tile.
+///
+/// Requirements: interfaces have no staircases and are shared exactly by their two labels; the centre of each
+/// voxel stays in its label; each label keeps its volume, also locally, so that thin sheets neither vanish
+/// nor swell; interfaces stay within the voxels that contain them.
+///
+/// Distances are computed at the centres of voxels ("nodes") in index space, where a voxel is 1 along each
+/// axis:
+///  1. The indicator function of each label is smoothed with a binomial kernel of variance 1. A point belongs
+///  to the
+///     label of the largest value, so labels share their interfaces by construction.
+///  2. Smoothing moves curved interfaces inwards and removes thin parts. The part of each voxel that every
+///  label
+///     occupies (by eight sample points) is compared with what it should occupy; the difference is smoothed
+///     likewise and added: back projection, as in superresolution (Irani & Peleg 1991, section 3). Done
+///     twice.
+///  3. After each back projection, and after step 4, the value of each node's own label is raised above the
+///  others
+///     by a margin (a constraint as in Whitaker 2000, "Reducing aliasing artifacts in iso-surfaces of binary
+///     volumes"). Labels that still lack most of a voxel of theirs, rods and single voxels, get a fixed depth
+///     there.
+///  4. The remaining error of each label's total volume is removed by growing or shrinking the label
+///  uniformly. The
+///     caller, who sees all tiles, determines by how much, from shares() and contacts().
+///  5. Values u become distances -probit(u), which are correct for a flat interface.
+///  6. Where labels alternate in the four voxels around an edge, the two voxels of one label are connected;
+///  of two
+///     such pairs, those of the label that is rarer nearby. Slanted sheets one voxel thick are connected by
+///     such edges only, and labels that touch in just an edge are kept apart.
+///  7. Labels that share a face of voxels get a contact of a minimum size, as far as step 6 and the band
+///  permit.
+///
+/// Nodes that neighbouring tiles have in common get the same bits in both.
+class LabelSmoother {
+ public:
+  /// Cells of a tile along each side. Nodes around the tile are computed with it and thrown away: of side^3
+  /// nodes cells^3 are kept, a quarter. Larger tiles would hold more labels at a time than fit in the cache.
+  static constexpr int cells = 32;
+  /// Volumes are summed in parts of a tile of so many cells along each side.
+  static constexpr int part_cells = 16, parts = cells / part_cells;
+  static constexpr int nodes = cells + 1;  ///< of a tile
+  static constexpr int reach = 9;          ///< width of the layer of nodes around the tile that affect it
+  static constexpr int side = nodes + 2 * reach;
+  /// Distances are clamped to this, voxels.
+  static constexpr float band = 2.125F;
+
+  LabelSmoother();
+
+  /// The labels of side^3 voxels with the tile in their middle, x fastest; to be filled with two or more
+  /// labels.
+  std::span<RegionIndex> voxels() { return raw_; }
+  /// Finds the labels and returns their number, which must not exceed max_labels: each takes a megabyte.
+  std::size_t number_labels();
+  static constexpr std::size_t max_labels = 1024;
+  /// Computes the distances; to be called after number_labels(). `growth`, by region: how far each label is
+  /// to be grown (or, if negative, shrunk) in all directions, voxels; at most max_growth in size.
+  void smooth(std::span<const float> growth);
+  static constexpr float max_growth = 0.7F;
+
+  /// The labels of the voxels, ascending.
+  std::span<const RegionIndex> labels() const { return labels_; }
+  /// The signed distance of a label (an index into labels()) at a node of the tile, voxels, negative inside.
+  float distance(std::size_t label, int x, int y, int z) const {
+    return fields_[label][place(x + reach, y + reach, z + reach)];
+  }
+  /// The volume of each of labels() in a part of the tile (its place along x, y, z, each below `parts`),
+  /// voxels: within 2 %, except for rods much narrower than a voxel.
+  std::vector<double> shares(const std::array<int, 3>& part) const;
+  /// The number of faces between voxels of two labels in the tile; each pair once, ascending.
+  struct Contact {
+    RegionIndex first, second;  ///< first < second
+    std::uint32_t faces;
+  };
+  std::vector<Contact> contacts() const;
+
+ private:
+  using Field = std::vector<float>;
+  /// The part of a field that may differ from 0: from `low` to `high` (exclusive) along each axis.
+  struct Box {
+    std::array<int, 3> low, high;
+  };
+  /// A node with a different label among its 26 neighbours, and the labels of these 27 nodes.
+  struct MixedNode {
+    int place;
+    std::uint16_t own, label_count;
+    std::uint32_t first_label;
+    float lack;  ///< the part of its voxel that its own label did not occupy at the last back projection
+  };
+
+  static constexpr int place(int x, int y, int z) { return (z * side + y) * side + x; }
+  static constexpr std::array<int, 3> position(int place) {
+    return {place % side, place / side % side, place / (side * side)};
+  }
+  /// True for coordinates, along one axis, of nodes whose distances are final except for steps 6 and 7.
+  static constexpr bool settled(int i) { return i >= reach - 1 && i <= side - reach; }
+  static constexpr int volume = side * side * side;
+  static constexpr std::array<int, 3> steps{1, side, side* side};
+
+  void find_mixed_nodes();
+  /// Adds `factor` times the smoothed `from` to `to`, except at nodes less than `margin` from the border.
+  void add_smoothed(const Field& from, const Box& box, int margin, float factor, Field& to);
+  static void clear(Field& field, const Box& box);
+  void add_missing_shares(int margin);
+  /// Step 3: raises own values above all others by the margin.
+  void enforce_own_labels();
+  void grow(std::span<const float> growth);
+  void distances_from_shares(int margin, std::span<const float> growth);
+  /// The amount by which the distance of a node's own label is to be decreased.
+  struct Lift {
+    int place;
+    float by;
+  };
+  /// Steps 6 and 7.
+  void enforce_contacts();
+  void connect_edge(const MixedNode& n, int normal, std::vector<Lift>& lifts) const;
+  void widen_contact(const MixedNode& n, int normal, std::vector<Lift>& lifts) const;
+  std::span<const std::uint16_t> labels_near(const MixedNode& n) const {
+    return {near_.data() + n.first_label, n.label_count};
+  }
+
+  std::vector<RegionIndex> raw_;
+  std::vector<std::uint16_t> own_;      ///< place in labels_ of each node's label
+  std::vector<std::uint16_t> numbers_;  ///< by region: place in labels_ plus 1 while labels are numbered
+  std::vector<RegionIndex> labels_;
+  std::vector<Box> boxes_;               ///< of each label's voxels
+  std::vector<Field> fields_, missing_;  ///< missing_ is 0 between uses
+  std::vector<Box> missing_boxes_;
+  std::vector<MixedNode> mixed_;
+  std::vector<std::int32_t> mixed_at_;  ///< by place: number in mixed_, or -1
+  std::vector<std::uint16_t> near_;
+  Field rows_, slices_;
+};
+
+}  // namespace tetwright

@@ -1,0 +1,288 @@
+#include "mesher/labels/label_thickness.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/parallel/parallel_sort.h"
+
+namespace tetwright {
+
+namespace {
+
+using Sides = std::array<int, 3>;
+
+/// Finds the voxels that no box of `sides` voxels of their region contains, as ascending indices.
+class Opening {
+ public:
+  Opening(const LabelInput& labels, const Sides& sides, const Progress* progress)
+      : regions_(labels.regions),
+        size_(labels.size),
+        sides_(sides),
+        progress_(progress),
+        holds_(labels.regions.size(), 1),
+        runs_(labels.regions.size()) {}
+
+  std::vector<std::size_t> thin_voxels() {
+    // A box starts at a voxel if, along each axis in turn, enough voxels in a row pass the test of the axes
+    // before. Then every voxel of such a box is thick.
+    for (int axis = 0; axis < 3; ++axis) sweep(axis, [&](int a, auto&&... p) { start_boxes(a, p...); });
+    for (int axis = 0; axis < 3; ++axis) sweep(axis, [&](int a, auto&&... p) { fill_boxes(a, p...); });
+    constexpr std::size_t voxels_at_once = 1 << 18;
+    return parallel_collect<std::size_t>(
+        0, holds_.size(), voxels_at_once,
+        [&](std::size_t begin, std::size_t end, std::vector<std::size_t>& out) {
+          for (std::size_t i = begin; i < end; ++i)
+            if (!holds_[i] && !beside_thick(i) &&
+                !(regions_[i] == outside_region && in_box_from_outside_volume(i)))
+              out.push_back(i);
+        });
+  }
+
+ private:
+  /// Calls `work(axis, first, step, lines)` for lines of voxels along an axis: the first voxel, the step
+  /// between voxels of a line, and the number of lines side by side.
+  template <class Work>
+  void sweep(int axis, Work&& work) {
+    if (progress_) progress_->throw_if_cancelled();
+    const auto nx = static_cast<std::size_t>(size_[0]), ny = static_cast<std::size_t>(size_[1]);
+    // Whole rows along x at a time, for sequential memory access.
+    if (axis < 2)
+      parallel_for(0, static_cast<std::size_t>(size_[2]), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t z = begin; z < end; ++z) {
+          if (axis == 1) {
+            work(axis, z * nx * ny, nx, nx);
+            continue;
+          }
+          for (std::size_t y = 0; y < ny; ++y) work(axis, (z * ny + y) * nx, std::size_t{1}, std::size_t{1});
+        }
+      });
+    else
+      parallel_for(0, ny, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t y = begin; y < end; ++y) work(axis, y * nx, nx * ny, nx);
+      });
+  }
+
+  void start_boxes(int axis, std::size_t first, std::size_t step, std::size_t lines) {
+    const int side = sides_[axis];
+    for (int k = size_[axis] - 1; k >= 0; --k)
+      for (std::size_t line = 0; line < lines; ++line) {
+        const std::size_t i = first + static_cast<std::size_t>(k) * step + line;
+        const bool last = k + 1 == size_[axis];
+        int run = 0;
+        if (holds_[i])
+          // The outside continues beyond the volume.
+          run = last ? (regions_[i] == outside_region ? side : 1)
+                     : (regions_[i + step] == regions_[i] ? std::min<int>(runs_[i + step] + 1, side) : 1);
+        runs_[i] = static_cast<std::uint8_t>(run);
+      }
+    for (int k = 0; k < size_[axis]; ++k)
+      for (std::size_t line = 0; line < lines; ++line) {
+        const std::size_t i = first + static_cast<std::size_t>(k) * step + line;
+        holds_[i] = runs_[i] >= side;
+      }
+  }
+
+  void fill_boxes(int axis, std::size_t first, std::size_t step, std::size_t lines) {
+    const int side = sides_[axis];
+    for (int k = 0; k < size_[axis]; ++k)
+      for (std::size_t line = 0; line < lines; ++line) {
+        const std::size_t i = first + static_cast<std::size_t>(k) * step + line;
+        const int left = holds_[i] ? side : k > 0 ? std::max(0, runs_[i - step] - 1) : 0;
+        runs_[i] = static_cast<std::uint8_t>(left);
+      }
+    for (int k = 0; k < size_[axis]; ++k)
+      for (std::size_t line = 0; line < lines; ++line) {
+        const std::size_t i = first + static_cast<std::size_t>(k) * step + line;
+        holds_[i] = runs_[i] > 0;
+      }
+  }
+
+  /// True for a voxel of the outside in a box that starts before the volume. sweep() does not find those, so
+  /// all are tried.
+  bool in_box_from_outside_volume(std::size_t i) const {
+    std::array<int, 3> at, low;
+    std::size_t rest = i;
+    bool near_border = false;
+    for (int a = 0; a < 3; ++a) {
+      const auto n = static_cast<std::size_t>(size_[a]);
+      at[a] = static_cast<int>(rest % n);
+      rest /= n;
+      near_border |= at[a] < sides_[a] - 1;
+    }
+    if (!near_border) return false;
+    // Larger boxes belong to cells much larger than voxels, where gaps this small hardly matter.
+    constexpr int max_tried = 512;
+    if (sides_[0] * sides_[1] * sides_[2] > max_tried) return true;
+    for (low[2] = at[2] - sides_[2] + 1; low[2] <= at[2]; ++low[2])
+      for (low[1] = at[1] - sides_[1] + 1; low[1] <= at[1]; ++low[1])
+        for (low[0] = at[0] - sides_[0] + 1; low[0] <= at[0]; ++low[0])
+          if (box_is_outside(low)) return true;
+    return false;
+  }
+  bool box_is_outside(const std::array<int, 3>& low) const {
+    std::array<int, 3> from, to;
+    for (int a = 0; a < 3; ++a) {
+      from[a] = std::max(0, low[a]);
+      to[a] = std::min(size_[a], low[a] + sides_[a]);
+    }
+    for (int z = from[2]; z < to[2]; ++z)
+      for (int y = from[1]; y < to[1]; ++y)
+        for (int x = from[0]; x < to[0]; ++x)
+          if (regions_[(static_cast<std::size_t>(z) * size_[1] + y) * size_[0] + x] != outside_region)
+            return false;
+    return true;
+  }
+
+  /// True for a voxel next to a thick one: roughness of one voxel, which smoothing removes.
+  bool beside_thick(std::size_t i) const {
+    std::size_t rest = i, step = 1;
+    for (int a = 0; a < 3; ++a) {
+      const auto n = static_cast<std::size_t>(size_[a]), at = rest % n;
+      if (at > 0 && holds_[i - step] && regions_[i - step] == regions_[i]) return true;
+      if (at + 1 < n && holds_[i + step] && regions_[i + step] == regions_[i]) return true;
+      rest /= n;
+      step *= n;
+    }
+    return false;
+  }
+
+  const std::vector<RegionIndex>& regions_;
+  const std::array<int, 3> size_;
+  const Sides sides_;
+  const Progress* progress_;
+  std::vector<std::uint8_t> holds_, runs_;
+};
+
+/// True if the face-connected island of a voxel has fewer than `count` voxels.
+bool in_small_island(const LabelInput& labels, std::size_t voxel, std::size_t count) {
+  const std::array<int, 3>& n = labels.size;
+  const std::array<std::size_t, 3> steps{1, static_cast<std::size_t>(n[0]),
+                                         static_cast<std::size_t>(n[0]) * n[1]};
+  std::vector<std::size_t> island{voxel};
+  for (std::size_t k = 0; k < island.size(); ++k)
+    for (int a = 0; a < 3; ++a) {
+      const std::size_t at = island[k] / steps[a] % static_cast<std::size_t>(n[a]);
+      const auto visit = [&](std::size_t beside) {
+        if (labels.regions[beside] == labels.regions[voxel] &&
+            std::find(island.begin(), island.end(), beside) == island.end())
+          island.push_back(beside);
+      };
+      if (at > 0) visit(island[k] - steps[a]);
+      if (at + 1 < static_cast<std::size_t>(n[a])) visit(island[k] + steps[a]);
+      if (island.size() >= count) return false;
+    }
+  return true;
+}
+
+}  // namespace
+
+ThinLabels find_thin_labels(const LabelInput& labels, const GridFrame& frame, const Progress* progress) {
+  constexpr double cells_enough = 2;
+  constexpr double slack = 1e-6;  // of a voxel: two cells of half a voxel are one
+  constexpr int longest_box = 200;
+  // Islands of fewer voxels would have no shape with two cells per voxel.
+  constexpr std::size_t small_island = 8;
+  // Each takes thousands of tets, so this is not for noise.
+  constexpr std::size_t max_island_voxels = 32;
+  constexpr double cells_per_island_voxel = 8;
+  // Maximum distance of interfaces from the centre of a thin voxel, voxels.
+  constexpr double around = 0.75;
+  const Vec3 spacing = labels.directions.colwise().norm();
+  const Eigen::Matrix3d to_grid = frame.axes.transpose() * labels.directions / frame.cell_size;
+  const Vec3 first = frame.to_grid(labels.origin);
+  const Vec3 reach = around * to_grid.cwiseAbs().rowwise().sum();
+
+  ThinLabels thin;
+  // Larger cells must not contain an interface, or the promises for finer ones would be broken.
+  constexpr double max_cell = 0.5 + slack;  // voxels
+  int& coarsest = thin.finer.coarsest_interface_level;
+  while (coarsest > 0 && std::ldexp(frame.cell_size, coarsest) > max_cell * spacing.minCoeff()) --coarsest;
+  std::vector<std::vector<MortonKey>> by_depth;
+  std::vector<std::size_t> voxels;
+  int island_levels = 0;
+  for (int depth = 0; depth <= max_refinement; ++depth) {
+    const double cell = std::ldexp(frame.cell_size, -depth);
+    Sides sides;
+    for (int a = 0; a < 3; ++a)
+      sides[a] =
+          std::clamp(static_cast<int>(std::ceil(cells_enough * cell / spacing[a] - slack)), 1, longest_box);
+    if (sides != Sides{1, 1, 1}) {
+      voxels = Opening(labels, sides, progress).thin_voxels();
+    } else {
+      // Two cells to every voxel, too few for what is hardly larger than one; eight or more are enough.
+      if (island_levels == 2 || cells_per_island_voxel * frame.cell_size <= spacing.minCoeff()) break;
+      ++island_levels;
+      if (depth == 0) voxels = Opening(labels, {2, 2, 2}, progress).thin_voxels();
+      std::erase_if(voxels, [&](std::size_t v) {
+        return labels.regions[v] == outside_region || !in_small_island(labels, v, small_island);
+      });
+      if (voxels.size() > max_island_voxels) break;
+    }
+    if (voxels.empty()) break;
+    const auto index_of = [&](std::size_t i) {
+      const auto nx = static_cast<std::size_t>(labels.size[0]), ny = static_cast<std::size_t>(labels.size[1]);
+      return Vec3(static_cast<double>(i % nx), static_cast<double>(i / nx % ny),
+                  static_cast<double>(i / (nx * ny)));
+    };
+    if (depth == max_refinement) {
+      std::vector<ThinPart> parts;
+      for (std::size_t r = 0; r <= labels.materials.size(); ++r)
+        parts.push_back({static_cast<RegionIndex>(r), 0, Vec3::Zero()});
+      for (std::size_t i : voxels) {
+        ThinPart& part = parts[labels.regions[i]];
+        if (part.places++ == 0) part.first = first + to_grid * index_of(i);
+      }
+      for (const ThinPart& p : parts)
+        if (p.places > 0) thin.too_thin.push_back(p);
+      break;
+    }
+    by_depth.push_back(parallel_collect<MortonKey>(
+        0, voxels.size(), 1 << 12, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+          for (std::size_t k = begin; k < end; ++k) {
+            const Vec3 centre = first + to_grid * index_of(voxels[k]);
+            std::array<int, 3> from, to;
+            for (int a = 0; a < 3; ++a) {
+              const double low = std::ldexp(centre[a] - reach[a], depth),
+                           high = std::ldexp(centre[a] + reach[a], depth);
+              from[a] = std::max(0, static_cast<int>(std::floor(low)));
+              to[a] = std::min(frame.cells[a] << depth, static_cast<int>(std::ceil(high)));
+            }
+            for (int z = from[2]; z < to[2]; ++z)
+              for (int y = from[1]; y < to[1]; ++y)
+                for (int x = from[0]; x < to[0]; ++x) out.push_back(morton_encode(x, y, z));
+          }
+        }));
+    parallel_sort_unique(by_depth.back());
+  }
+  thin.finer.refinement = static_cast<int>(by_depth.size());
+  thin.finer.cells.resize(by_depth.size() + 1);
+  for (std::size_t depth = 0; depth < by_depth.size(); ++depth)
+    thin.finer.cells[by_depth.size() - depth] = std::move(by_depth[depth]);
+  return thin;
+}
+
+ThinCells count_thin_cells(const LabelInput& labels, const GridFrame& frame, const FinerCells& finer) {
+  const Eigen::Matrix3d to_index = labels.directions.inverse();
+  ThinCells count;
+  for (std::size_t level = 0; level < finer.cells.size(); ++level) {
+    const double side = std::ldexp(1, static_cast<int>(level) - finer.refinement);  // voxels of the frame
+    for (const MortonKey key : finer.cells[level]) {
+      const std::array<int, 3> low = morton_decode(key);
+      const Vec3 centre = side * (Vec3(low[0], low[1], low[2]) + Vec3::Constant(0.5));
+      const Vec3 index = to_index * (frame.to_input(centre) - labels.origin);
+      std::size_t voxel = 0, step = 1;
+      bool in_volume = true;
+      for (int a = 0; a < 3; ++a) {
+        const double at = std::round(index[a]);
+        in_volume &= at >= 0 && at < labels.size[a];
+        if (!in_volume) break;
+        voxel += static_cast<std::size_t>(at) * step;
+        step *= static_cast<std::size_t>(labels.size[a]);
+      }
+      ++(in_volume && labels.regions[voxel] != outside_region ? count.inside : count.outside);
+    }
+  }
+  return count;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/types.h"
+#include "mesher/distance/material_field.h"
+#include "mesher/domain/regions.h"
+#include "mesher/lattice/lattice.h"
+#include "mesher/lattice/star_map.h"
+#include "mesher/lattice/tet_list.h"
+
+namespace tetwright {
+
+/// The lattice whose points are moved and whose tets are cut: those tets that can contribute to the mesh, and
+/// the region of every point.
+///
+/// For each point near an interface the signed distances of the regions in its closed star are stored; the
+/// cuts of its edges depend on nothing else. The region of a pure point is the one of the smallest distance.
+class LabelledLattice {
+ public:
+  std::vector<Vec3> positions;  ///< lattice units
+  /// 1 for centres of leaves. Long edges join two centres or two corners, short ones a centre and a corner.
+  std::vector<std::uint8_t> is_centre;
+  std::vector<RegionIndex> first_region;  ///< region of each point before it was moved onto an interface
+  std::vector<std::uint8_t> is_on;        ///< 1 for points that were moved onto an interface
+  TetList tets;                           ///< positive
+  StarMap stars;                          ///< of all points of tets with more than one region
+  bool keep_outside = false;
+
+  /// The current region of a point, or on_interface.
+  RegionIndex region(Index p) const { return is_on[p] ? on_interface : first_region[p]; }
+
+  /// The regions that the closed star of a point near an interface had before any point was moved, ascending,
+  /// and their signed distances at the point, in the same order.
+  std::span<const RegionIndex> star_regions(Index p) const {
+    const Index s = stars.slot(p);
+    return {regions_.data() + starts_[s], regions_.data() + starts_[s + 1]};
+  }
+  std::span<const float> star_values(Index p) const {
+    const Index s = stars.slot(p);
+    return {values_.data() + starts_[s], values_.data() + starts_[s + 1]};
+  }
+  std::span<float> star_values(Index p) {
+    const Index s = stars.slot(p);
+    return {values_.data() + starts_[s], values_.data() + starts_[s + 1]};
+  }
+  /// The signed distance of region b minus that of region a at a point near an interface; both must be in its
+  /// star.
+  float gap(Index p, RegionIndex a, RegionIndex b) const;
+  /// Where the edge from p (region a) to q (region b) is cut, as a fraction of the edge.
+  double cut_share(Index p, RegionIndex a, Index q, RegionIndex b) const {
+    const double at_p = gap(p, a, b), at_q = gap(q, b, a);
+    return at_p + at_q > 0 ? at_p / (at_p + at_q) : 0.5;
+  }
+  /// The smallest signed distance of the other regions in the star minus that of the point's own.
+  float margin(Index p) const;
+
+  /// Finds the regions of all stars and sets their values to 0.
+  void list_star_regions(std::size_t region_count);
+  /// Frees the stars, their regions and values, which must not be used any more.
+  void forget_stars();
+
+ private:
+  std::vector<std::size_t> starts_;  ///< by slot
+  std::vector<RegionIndex> regions_;
+  std::vector<float> values_;
+};
+
+/// Makes a labelled lattice of points, their regions (`nearest`, of `region_count` regions) and tets.
+///
+/// Tets outside without a point next to an interface are dropped, unless `keep_outside`. Isolated vertices,
+/// points without a neighbour of their own region, get the region that most of their neighbours have, those
+/// outside first; `isolated_vertices` (may be null) receives their number. They come from cracks and
+/// self-intersections smaller than a cell, and each would become a component or a cavity.
+LabelledLattice label_lattice(LatticePoints points, std::vector<NearestRegion> nearest, TetList tets,
+                              std::size_t region_count, bool keep_outside, std::size_t* isolated_vertices);
+
+/// Reads the signed distances of all stars. Where a point's own region is not the nearest in the field
+/// (isolated vertices, ties), its distance is lowered just below the others, so that every cut is defined.
+void read_star_values(LabelledLattice& lattice, const MaterialField& field);
+
+}  // namespace tetwright

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "common/geometry/morton.h"
+#include "common/progress.h"
+#include "mesher/distance/material_field.h"
+
+namespace tetwright {
+
+/// A linear octree over the box of a frame: its sorted leaves. A leaf of level l is a cube with an edge of
+/// 2^l finest cells (lattice units). Leaves that share a face or an edge differ by at most one level; across
+/// corners they may differ by more.
+struct Octree {
+  struct Leaf {
+    MortonKey key;  ///< of the lower corner, in finest cells
+    int level;
+  };
+
+  std::array<int, 3> cells;           ///< the box, in finest cells; see GridFrame
+  int root_level;                     ///< maximum level of a leaf
+  std::vector<std::uint64_t> packed;  ///< key << 5 | level, ascending
+
+  std::size_t size() const { return packed.size(); }
+  Leaf leaf(std::size_t i) const { return {packed[i] >> 5, static_cast<int>(packed[i] & 31)}; }
+  /// The number of the leaf that contains the finest cell with this lower corner, which must be in the box.
+  /// Fast if it is close to the number `hint`.
+  std::size_t find(MortonKey finest_cell, std::size_t hint = 0) const;
+};
+
+/// Returns the cells of a level (keys >> 3 * level) that must be split, given the ascending list of those
+/// that already are. Called for levels 1 and up, in that order. The result need be neither sorted nor unique.
+using SplitCells = std::function<std::vector<MortonKey>(int level, const std::vector<MortonKey>& already)>;
+
+/// The coarsest octree in which all cells returned by `split` are split and that is balanced across faces and
+/// edges, by one sweep from the finest level up.
+Octree build_octree(const std::array<int, 3>& cells, int root_level, const SplitCells& split);
+
+struct OctreeOptions {
+  bool uniform = false;      ///< cells of one voxel everywhere (the frame's root level must be 0)
+  double adaptivity = 0.05;  ///< the error that a coarse cell may have at an interface, voxels
+  /// Level above a voxel of the largest cells that may contain an interface. Larger ones would be costly to
+  /// test, since all voxel corners in a cell are read, and their own corners would mostly be outside the
+  /// narrow band.
+  int coarsest_interface_level = 2;
+};
+
+/// The octree for a field: cells of one voxel at interfaces, except where trilinear interpolation over a
+/// coarser cell is accurate enough, and larger cells away from them. `interface_voxels` are the field's. The
+/// cells listed in `thin`, by level, are split further. Throws Interrupted.
+Octree build_octree(const MaterialField& field, const OctreeOptions& options,
+                    std::vector<MortonKey> interface_voxels, const std::vector<std::vector<MortonKey>>& thin,
+                    Progress* progress);
+
+}  // namespace tetwright

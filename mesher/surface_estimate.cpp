@@ -1,0 +1,363 @@
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <unordered_set>
+
+#include "common/geometry/morton.h"
+#include "common/geometry/surface_tree.h"
+#include "common/parallel/parallel.h"
+#include "mesher/domain/finer_cells.h"
+#include "mesher/domain/grid_frame.h"
+#include "mesher/mesh_estimate.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Dense tets of an adaptive mesh for each squared finest cell of interface and each side of it that is
+/// meshed: they tend to the first number where the material is thick, and half of it fill one that has as
+/// many finest cells of volume for each squared cell of interface as the second number says.
+constexpr double tets_per_area = 29, half_full_thickness = 1.6;
+/// Lattice tets for each squared cell on a side that is not meshed, and on uniform cells.
+constexpr double outside_tets_per_area = 14, outside_tets_per_area_uniform = 15.5;
+/// Dense tets of uniform cells: for each cell, and for each squared cell of interface.
+constexpr double tets_per_cell = 12, cut_tets_per_area = 0.7, kept_outside_tets_per_area = 3;
+/// Memory for each triangle while signed distances are computed, bytes; open parts take a tree as well.
+constexpr double bytes_per_triangle = 150, bytes_per_open_triangle = 300;
+
+/// Samples of a surface, and of the inside of bodies along each axis.
+constexpr int surface_samples = 256, volume_samples = 24;
+/// Distances at a surface sample are needed as far as this, finest cells.
+constexpr double sample_reach = 12;
+/// So many triangles are enough for distances; of finer surfaces every other one, or every third, ... is
+/// read.
+constexpr std::size_t max_triangles = 1 << 20;
+
+/// A low-discrepancy sequence in the unit interval (Roberts 2018: multiples of the inverses of the plastic
+/// number and its square).
+double sequence(int i, double step) { return std::fmod(0.5 + i * step, 1.0); }
+constexpr double first_step = 0.7548776662466927, second_step = 0.5698402909980532;
+
+struct Sample {
+  Vec3 place, normal;  ///< finest cells; the normal points out
+};
+
+/// A surface in grid coordinates and what can be asked about it.
+class SampledSurface {
+ public:
+  SampledSurface(const RepairedSurface& surface, const GridFrame& frame) : surface_(surface), frame_(frame) {
+    take_samples();
+  }
+
+  const std::vector<Sample>& samples() const { return samples_; }
+  double area() const { return surface_.area / (frame_.cell_size * frame_.cell_size); }
+  double volume() const { return std::max(0.0, surface_.volume) / std::pow(frame_.cell_size, 3); }
+
+  /// Dense tets at its flat parts as a share of those that finest cells everywhere would give.
+  double coarse_share(double adaptivity) {
+    if (!(adaptivity > 0) || samples_.empty()) return 1;
+    const SurfaceTree tree = nearby_triangles();
+    // Half of what is smooth but curved: one in twenty of OpenVDB's distances is off by more than 0.05 voxels
+    // there, which keeps about half of such cells from being coarse.
+    std::atomic<int> coarse = 0, coarsest = 0;
+    parallel_for(0, samples_.size(), 8, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        for (const bool plane : {false, true}) {
+          if (!is_flat(tree, samples_[i], 1, adaptivity, plane)) continue;
+          ++coarse;
+          coarsest += is_flat(tree, samples_[i], 2, adaptivity, plane);
+        }
+    });
+    const auto n = 2 * static_cast<double>(samples_.size());
+    return share_of_coarse_cells(coarse / n, coarsest / n);
+  }
+
+  /// All triangles.
+  SurfaceTree tree() const {
+    std::vector<Vec3> points(surface_.points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) points[i] = frame_.to_grid(surface_.points[i]);
+    return {points, surface_.triangles};
+  }
+
+ private:
+  std::array<Vec3, 3> corners(const Triangle& t) const {
+    return {frame_.to_grid(surface_.points[t[0]]), frame_.to_grid(surface_.points[t[1]]),
+            frame_.to_grid(surface_.points[t[2]])};
+  }
+
+  /// Places spread evenly over the area.
+  void take_samples() {
+    double sum = 0;
+    int next = 0;
+    for (const Triangle& t : surface_.triangles) {
+      const auto [a, b, c] = corners(t);
+      const Vec3 normal = (b - a).cross(c - a);
+      sum += 0.5 * normal.norm();
+      for (; next < surface_samples && (next + 0.5) / surface_samples * area() <= sum; ++next) {
+        double u = sequence(next, first_step), v = sequence(next, second_step);
+        if (u + v > 1) u = 1 - u, v = 1 - v;
+        samples_.push_back({a + u * (b - a) + v * (c - a), normal.normalized()});
+      }
+    }
+  }
+
+  /// The triangles around the samples.
+  SurfaceTree nearby_triangles() const {
+    const auto cube = [](const Vec3& p) {
+      std::array<int, 3> at;
+      for (int a = 0; a < 3; ++a) at[a] = std::max(0, static_cast<int>(std::floor(p[a] / sample_reach)) + 1);
+      return at;
+    };
+    std::unordered_set<MortonKey> cubes;
+    for (const Sample& s : samples_) {
+      const auto [x, y, z] = cube(s.place);
+      for (int k = 0; k < 27; ++k)
+        cubes.insert(morton_encode(std::max(0, x + k % 3 - 1), std::max(0, y + k / 3 % 3 - 1),
+                                   std::max(0, z + k / 9 - 1)));
+    }
+    std::vector<Triangle> near;
+    for (const Triangle& t : surface_.triangles) {
+      const auto [a, b, c] = corners(t);
+      const std::array<int, 3> low = cube(a.cwiseMin(b).cwiseMin(c)), high = cube(a.cwiseMax(b).cwiseMax(c));
+      bool found = false;
+      for (int z = low[2]; z <= high[2] && !found; ++z)
+        for (int y = low[1]; y <= high[1] && !found; ++y)
+          for (int x = low[0]; x <= high[0] && !found; ++x) found = cubes.contains(morton_encode(x, y, z));
+      if (found) near.push_back(t);
+    }
+    const std::size_t step = near.size() / max_triangles + 1;
+    std::vector<Vec3> points;
+    std::vector<Triangle> triangles;
+    for (std::size_t i = 0; i < near.size(); i += step) {
+      const auto first = static_cast<Index>(points.size());
+      for (const Vec3& p : corners(near[i])) points.push_back(p);
+      triangles.push_back({first, first + 1, first + 2});
+    }
+    return {points, triangles};
+  }
+
+  /// True if the cell of a level around a sample and those beside it along the surface could be that large:
+  /// as the octree does, trilinear interpolation between the corners is compared with the distances. With
+  /// `plane` the surface must also be a plane there.
+  static bool is_flat(const SurfaceTree& tree, const Sample& sample, int level, double adaptivity,
+                      bool plane) {
+    const Vec3 first = sample.normal.unitOrthogonal(), second = sample.normal.cross(first);
+    const double side = 1 << level;
+    for (const Vec3& step : {Vec3(Vec3::Zero()), first, Vec3(-first), second, Vec3(-second)})
+      if (!interpolates(tree, sample, sample.place + side * step, level, adaptivity, plane)) return false;
+    return true;
+  }
+  /// How far a place is above the surface along the sample's normal; the surface near the sample is one
+  /// sheet.
+  static double height_over(const SurfaceTree& tree, const Sample& sample, const Vec3& place) {
+    const double height = (place - sample.place).dot(sample.normal);
+    // The surface is as far from the sample's plane there, on the side that is nearer to it.
+    const Vec3 in_plane = place - height * sample.normal;
+    constexpr double aside = 0.25;
+    const double away = tree.distance(in_plane, sample_reach);
+    const bool above = tree.distance(in_plane + aside * sample.normal, sample_reach) <
+                       tree.distance(in_plane - aside * sample.normal, sample_reach);
+    return height - (above ? away : -away);
+  }
+  static bool interpolates(const SurfaceTree& tree, const Sample& sample, const Vec3& place, int level,
+                           double adaptivity, bool plane) {
+    const double side = 1 << level;
+    const Vec3 low = side * (place / side).array().floor().matrix();
+    std::array<double, 27> values;
+    for (int i = 0; i < 27; ++i) {
+      const Vec3 p = low + 0.5 * side * Vec3(i % 3, i / 3 % 3, i / 9);
+      const double height = plane ? (p - sample.place).dot(sample.normal) : height_over(tree, sample, p);
+      values[i] = std::copysign(tree.distance(p, 2 * sample_reach), height);
+    }
+    for (int i = 0; i < 27; ++i) {
+      double coarse = 0;
+      for (int k = 0; k < 8; ++k) {
+        double share = 1;
+        for (int a = 0, at = i; a < 3; ++a, at /= 3)
+          share *= (k >> a & 1) ? 0.5 * (at % 3) : 1 - 0.5 * (at % 3);
+        coarse += share * values[(k & 1) * 2 + (k >> 1 & 1) * 6 + (k >> 2) * 18];
+      }
+      if (std::min(std::abs(values[i]), std::abs(coarse)) >= 1 && (values[i] < 0) == (coarse < 0)) continue;
+      if (std::abs(coarse - values[i]) > adaptivity) return false;
+    }
+    return true;
+  }
+
+  const RepairedSurface& surface_;
+  const GridFrame& frame_;
+  std::vector<Sample> samples_;
+};
+
+/// Interfaces by area, squared finest cells.
+struct Interfaces {
+  double meshed_sides = 0;  ///< each side that is meshed counts
+  double outside = 0;       ///< with the outside, which is not meshed
+};
+
+class SurfaceEstimate {
+ public:
+  SurfaceEstimate(const MesherInput& input, const MesherOptions& options)
+      : input_(input), options_(options), h_(cell_size(input, options)) {
+    frame_ = make_grid_frame(input.low, input.high, h_, options.uniform, options.keep_outside);
+    for (const MesherInput::Body& b : input.bodies) surfaces_.emplace_back(b.surface, frame_);
+    if (input.bodies.size() > 1)
+      for (const SampledSurface& s : surfaces_) trees_.push_back(std::make_unique<SurfaceTree>(s.tree()));
+  }
+
+  MesherEstimate run() {
+    double before = 0;
+    for (const MesherInput::Body& b : input_.bodies)
+      before += bytes_per_triangle * static_cast<double>(b.surface.closed) +
+                bytes_per_open_triangle * static_cast<double>(b.surface.triangles.size() - b.surface.closed);
+    return options_.uniform ? uniform(before) : adaptive(before);
+  }
+
+ private:
+  bool is_inside(std::size_t body, const Vec3& place) const {
+    const Vec3 p = frame_.to_input(place);
+    const RepairedSurface& s = input_.bodies[body].surface;
+    if ((p.array() < s.low.array()).any() || (p.array() > s.high.array()).any()) return false;
+    return trees_[body]->winding_number(place) > 0.5;
+  }
+
+  /// What is left of a body's surface, as later bodies carve it, and what is on either side of it.
+  Interfaces interfaces_of(std::size_t body) const {
+    constexpr double beside = 0.1;  // finest cells from a sample to the places that tell its sides
+    Interfaces found;
+    const std::vector<Sample>& samples = surfaces_[body].samples();
+    if (samples.empty()) return found;
+    const double area = surfaces_[body].area() / static_cast<double>(samples.size());
+    for (const Sample& s : samples) {
+      bool hidden = false, faces_later = false, faces_earlier = false;
+      for (std::size_t other = 0; other < trees_.size(); ++other) {
+        if (other == body) continue;
+        const bool out = is_inside(other, s.place + beside * s.normal);
+        faces_later |= out && other > body;
+        faces_earlier |= out && other < body;
+        hidden |= other > body && is_inside(other, s.place - beside * s.normal);
+      }
+      if (hidden) continue;
+      found.meshed_sides += area;
+      if (faces_later) continue;  // that side is counted with the later body's surface
+      if (faces_earlier || options_.keep_outside)
+        found.meshed_sides += area;
+      else
+        found.outside += area;
+    }
+    return found;
+  }
+
+  /// The volume of all bodies together, finest cells.
+  double volume() const {
+    if (surfaces_.size() == 1) return surfaces_[0].volume();
+    return for_inside([](const Vec3&) {});
+  }
+
+  /// Calls `use(place)` for sample places inside of any body; returns the volume that they stand for.
+  template <class Use>
+  double for_inside(Use&& use) const {
+    const Vec3 low = frame_.to_grid(input_.low), size = frame_.to_grid(input_.high) - low;
+    constexpr int n = volume_samples;
+    int inside = 0;
+    for (int i = 0; i < n * n * n; ++i) {
+      const Vec3 share((i % n + sequence(i, first_step)) / n, (i / n % n + sequence(i, second_step)) / n,
+                       (i / (n * n) + 0.5) / n);
+      const Vec3 place = low + size.cwiseProduct(share);
+      bool in = false;
+      for (std::size_t b = 0; b < trees_.size() && !in; ++b) in = is_inside(b, place);
+      if (!in) continue;
+      ++inside;
+      use(place);
+    }
+    return size.prod() * inside / (n * n * n);
+  }
+
+  MesherEstimate uniform(double before) const {
+    double area = 0;
+    for (const SampledSurface& s : surfaces_) area += s.area();
+    const double box = static_cast<double>(frame_.cells[0]) * frame_.cells[1] * frame_.cells[2];
+    double dense = tets_per_cell * volume() + cut_tets_per_area * area;
+    double lattice = dense + outside_tets_per_area_uniform * area;
+    if (options_.keep_outside) {
+      lattice = tets_per_cell * box;
+      dense = lattice + kept_outside_tets_per_area * area;
+    }
+    return estimate_of({box, lattice, dense}, {surface_bytes_per_lattice_tet, 0, before}, options_);
+  }
+
+  MesherEstimate adaptive(double before) {
+    double dense = 0, lattice = 0;
+    for (std::size_t b = 0; b < surfaces_.size(); ++b) {
+      Interfaces found = interfaces_of(b);
+      const double share = surfaces_[b].coarse_share(options_.adaptivity);
+      const double body_volume = surfaces_[b].volume();
+      if (b == 0) add_layers(found.meshed_sides);
+      // The outside around, or the body that this one lies in, is thick as a rule.
+      const double own = std::min(found.meshed_sides, surfaces_[b].area()), others = found.meshed_sides - own;
+      double tets = share * tets_per_area *
+                    filling(b == 0 && !input_.layers.empty() ? found.meshed_sides : own, body_volume);
+      if (b > 0 || input_.layers.empty()) tets += share * tets_per_area * others;
+      dense += tets;
+      lattice += tets + share * outside_tets_per_area * found.outside;
+    }
+    if (options_.keep_outside) lattice = dense;
+    return estimate_of({0, lattice, dense}, {surface_bytes_per_lattice_tet, 0, before}, options_);
+  }
+
+  /// Sides of interfaces in a volume, less as it gets full of tets.
+  static double filling(double sides, double volume) {
+    return volume > 0 ? sides / (1 + half_full_thickness * sides / volume) : 0;
+  }
+
+  /// Adds the sides of the interfaces between layers; thin layers have smaller cells.
+  void add_layers(double& sides) {
+    if (input_.layers.empty()) return;
+    const SurfaceTree tree = surfaces_[0].tree();
+    double depth = 0;
+    for (const MaterialLayer& layer : input_.layers) {
+      depth += layer.thickness / h_;
+      double times = 1;
+      for (double side = 1;
+           side > std::ldexp(1, -max_refinement) && layer.thickness / h_ < sheet_cells * side; side /= 2)
+        times *= 4;
+      sides += 2 * times * area_at_depth(tree, depth);
+    }
+  }
+
+  /// The area of the surface at a depth inside the first body, squared finest cells: of the volume between
+  /// two depths not far apart.
+  double area_at_depth(const SurfaceTree& tree, double depth) {
+    const Vec3 size = (input_.high - input_.low) / h_;
+    constexpr int n = volume_samples;
+    const double half = std::max(0.5, 0.5 * size.maxCoeff() / n);
+    const Vec3 low = frame_.to_grid(input_.low);
+    int found = 0;
+    for (int i = 0; i < n * n * n; ++i) {
+      const Vec3 share((i % n + sequence(i, first_step)) / n, (i / n % n + sequence(i, second_step)) / n,
+                       (i / (n * n) + 0.5) / n);
+      const Vec3 place = low + size.cwiseProduct(share);
+      const double distance = tree.distance(place, depth + half);
+      found += distance > depth - half && distance < depth + half && tree.winding_number(place) > 0.5;
+    }
+    return size.prod() * found / (n * n * n) / (2 * half);
+  }
+
+  /// As field_thickness.h refines for sheets.
+  static constexpr double sheet_cells = 1.5;
+
+  const MesherInput& input_;
+  const MesherOptions& options_;
+  double h_;
+  GridFrame frame_;
+  std::vector<SampledSurface> surfaces_;
+  std::vector<std::unique_ptr<SurfaceTree>> trees_;  ///< of several bodies
+};
+
+}  // namespace
+
+MesherEstimate estimate_mesh(const MesherInput& input, const MesherOptions& options) {
+  return SurfaceEstimate(input, options).run();
+}
+
+}  // namespace tetwright

@@ -1,0 +1,117 @@
+#include "mesher/mesher.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.h"
+#include "mesher/distance/body_field.h"
+#include "mesher/distance/field_thickness.h"
+#include "mesher/distance/material_field.h"
+#include "mesher/field_mesher.h"
+#include "mesher/mesh_estimate.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr double min_in_cells = 1e-6;  ///< longest side of a surface that is looked at
+
+/// Throws InputError about a surface, of which nothing is left, that is not closed.
+void validate_encloses(const MesherInput::Body& body) {
+  if (body.surface.closed < body.surface.triangles.size())
+    throw InputError(
+        body.file, 0,
+        "the surface is not closed and encloses nothing that cells of this size could show; close "
+        "its holes, or use a higher resolution if it is closed but for small ones");
+}
+
+/// Refuses an input of which a material has nothing left: which one, and what to do about it.
+void validate_materials_left(const MesherInput& input, const MaterialField& field,
+                             const std::vector<std::uint8_t>& there) {
+  if (std::count(there.begin() + 1, there.end(), 1) == 0) {
+    validate_encloses(input.bodies[0]);
+    throw NothingToMeshError(
+        input.bodies[0].file +
+        ": the surface is smaller than a cell; use a higher resolution or a smaller voxel size");
+  }
+  for (std::size_t r = 1; r < there.size(); ++r) {
+    if (there[r]) continue;
+    const FieldRegion& region = field.regions()[r];
+    const auto body = std::find_if(input.bodies.begin(), input.bodies.end(),
+                                   [&](const MesherInput::Body& b) { return b.tag == region.tag; });
+    if (body == input.bodies.end())
+      throw InputError(
+          input.bodies[0].file, 0,
+          "nothing is left of the layer '" + region.name +
+              "': it is thinner than the smallest cells or later surfaces cover it; use a higher "
+              "resolution, or list the surfaces that it goes round first");
+    if (body == input.bodies.begin() && !input.layers.empty())
+      throw InputError(body->file, 0,
+                       "nothing is left of '" + region.name +
+                           "' inside its layers; make the layers thinner or use a higher resolution");
+    validate_encloses(*body);
+    throw InputError(
+        body->file, 0,
+        "nothing is left of the material '" + region.name +
+            "': it is smaller than a cell or later surfaces cover it; list the outermost surface "
+            "first, or use a higher resolution");
+  }
+}
+
+void validate_outside_is_free(const MesherInput& input) {
+  const auto taken = [](const std::string& name, MaterialTag tag) {
+    if (name == outside_name || tag == outside_tag)
+      throw UsageError("the material '" + name + "' of tag " + std::to_string(tag) +
+                       " would be taken for the outside that is kept; give it another name or tag");
+  };
+  for (const MesherInput::Body& b : input.bodies) taken(b.name, b.tag);
+  for (const MaterialLayer& l : input.layers) taken(l.name, l.tag);
+}
+
+}  // namespace
+
+double cell_size(const MesherInput& input, const MesherOptions& options) {
+  return finest_cell_size(options, longest_side(input), largest_coordinate(input), input.bodies[0].file);
+}
+
+DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, Progress* progress) {
+  MesherReport report;
+  Stages stages(progress);
+
+  stages.begin("signed distances");
+  report.cell_size = cell_size(input, options);
+  if (options.keep_outside) validate_outside_is_free(input);
+  // So much smaller that no lattice could be laid out in numbers that are still exact; a little smaller is
+  // found out by the lattice itself.
+  if (longest_side(input) < report.cell_size * min_in_cells) {
+    validate_encloses(input.bodies[0]);
+    throw NothingToMeshError(
+        input.bodies[0].file +
+        ": the surface is smaller than a cell; use a higher resolution or a smaller voxel size");
+  }
+  report.resolution = static_cast<int>(std::ceil(longest_side(input) / report.cell_size - 0.5));
+  report.estimate = estimate_mesh(input, options);
+  validate_estimate(report.estimate);
+  const GridFrame voxels =
+      make_grid_frame(input.low, input.high, report.cell_size, options.uniform, options.keep_outside);
+  std::shared_ptr<const MaterialField> field = build_field(input, voxels, options.keep_outside, progress);
+  report.seconds_sdf = stages.seconds();
+
+  stages.begin("octree");
+  std::vector<MortonKey> interface_voxels = field->interface_voxels();
+  ThinSheets sheets;
+  if (!options.uniform) sheets = find_thin_sheets(*field, interface_voxels);
+  const auto add_thin = [&](const std::vector<ThinPart>& parts, bool refined) {
+    for (const ThinPart& p : parts)
+      report.thin_parts.push_back({p.region == outside_region ? "" : field->regions()[p.region].name,
+                                   p.places, voxels.to_input(p.first), refined});
+  };
+  add_thin(sheets.too_thin, true);
+  add_thin(find_thin_parts(*field, interface_voxels), false);
+
+  return mesh_field(
+      field, std::move(interface_voxels), std::move(sheets.finer), options, MemoryModel{}, std::move(report),
+      stages, [&](const std::vector<std::uint8_t>& there) { validate_materials_left(input, *field, there); });
+}
+
+}  // namespace tetwright

@@ -1,0 +1,99 @@
+// Cells for a wanted number of tets. These rules of thumb only have to be roughly right, but must not change
+// with estimate_mesh(): they decide what mesh a user gets.
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.h"
+#include "mesher/labels/label_faces.h"
+#include "mesher/labels/label_field.h"
+#include "mesher/mesh_estimate.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Dense tets of an adaptive mesh for each squared finest cell of surface: they tend to the first number
+/// where the solid is thick, and half of it fill one that is as thick as the second, in finest cells of
+/// volume for each of surface. Fitted to scans at 32 to 256 cells: within 10 % there, up to twice too high
+/// for flat ones.
+constexpr double tets_per_area_thick = 29;
+constexpr double half_full_thickness = 1.6;
+/// Lattice tets along the surface that are accepted at most for each dense tet that is wanted.
+constexpr double max_lattice_per_dense = 4;
+/// Thin layers take smaller cells, see field_thickness.h.
+constexpr double cells_per_sheet = 1.5, min_refined = 0.125;
+/// Dense tets for each tet that is wanted in the end: fewer leave the simplifier no choice, more take time.
+constexpr double surface_dense_per_target = 40, label_dense_per_target = 5;
+constexpr double max_dense_tets = 20e6;
+constexpr int min_target_resolution = 32;
+/// Dense tets of labels for each face between two materials, as large as a squared cell; half of them for one
+/// to the outside.
+constexpr double tets_per_face = 45;
+/// Finer cells show nothing more of voxels.
+constexpr int max_cells_per_voxel = 4;
+
+/// Dense tets of surfaces with finest cells of edge `h`, input units.
+double dense_tets(const MesherInput& input, double h) {
+  double tets = 0;
+  const auto add = [&](const RepairedSurface& s, double sides) {
+    const double area = s.area / (h * h), volume = std::max(0.0, s.volume) / (h * h * h);
+    if (!(area > 0)) return;
+    const double thickness = volume / area;
+    tets += sides * tets_per_area_thick * area * thickness / (thickness + half_full_thickness);
+  };
+  // On a surface within another body there are tets on both sides.
+  for (std::size_t b = 0; b < input.bodies.size(); ++b) add(input.bodies[b].surface, b == 0 ? 1 : 2);
+  for (const MaterialLayer& layer : input.layers) {
+    double sides = 2;
+    for (double side = h; side > min_refined * h && layer.thickness < cells_per_sheet * side; side /= 2)
+      sides *= 4;
+    add(input.bodies[0].surface, sides);
+  }
+  return tets;
+}
+
+}  // namespace
+
+int resolution_for_target(const MesherInput& input, std::size_t target_tets) {
+  if (target_tets == 0) throw UsageError("the target must be at least one tet");
+  const double longest = longest_side(input);
+  const double dense = std::min(max_dense_tets, surface_dense_per_target * static_cast<double>(target_tets));
+  double area = 0;
+  for (const MesherInput::Body& b : input.bodies) area += b.surface.area;
+  const auto enough = [&](int resolution) {
+    const double h = longest / resolution;
+    // A body thinner than a cell has few tets but a lattice as large as its surface: there is no end to
+    // refining it.
+    const double lattice = tets_per_area_thick * area / (h * h);
+    return std::floor(dense_tets(input, h)) >= dense || lattice >= max_lattice_per_dense * dense;
+  };
+  // The smallest one that is enough; the number of tets grows with the resolution.
+  int low = min_target_resolution, high = max_resolution;
+  while (low < high) {
+    const int middle = (low + high) / 2;
+    if (enough(middle))
+      high = middle;
+    else
+      low = middle + 1;
+  }
+  return low;
+}
+
+double cell_size_for_target(const LabelInput& labels, std::size_t target_tets) {
+  if (target_tets == 0) throw UsageError("the target must be at least one tet");
+  const FaceAreas areas = face_areas(labels);
+  const double voxel = voxel_size(labels);
+  const double wanted = label_dense_per_target * static_cast<double>(target_tets);
+  // Tets grow with the square of the cells.
+  const double at_voxel = std::floor(tets_per_face * (areas.inner + 0.5 * areas.outer) / (voxel * voxel));
+  const double finer = std::sqrt(std::max(1.0, wanted / std::max(1.0, at_voxel)));
+  return std::max(voxel / std::min(finer, static_cast<double>(max_cells_per_voxel)),
+                  longest_side(labels) / max_resolution);
+}
+
+double default_cell_size(const LabelInput& labels) {
+  return std::max(voxel_size(labels), longest_side(labels) / max_resolution);
+}
+
+}  // namespace tetwright

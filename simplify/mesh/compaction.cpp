@@ -1,0 +1,146 @@
+#include "simplify/mesh/compaction.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "common/geometry/morton.h"
+#include "common/parallel/parallel.h"
+#include "common/parallel/parallel_sort.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::size_t grain = 8192;  ///< tets a parallel loop hands out at a time
+
+}  // namespace
+
+std::vector<Index> MeshCompaction::points_in_curve_order() const {
+  const std::vector<Vec3>& positions = mesh_.positions_;
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (std::size_t p = 0; p < positions.size(); ++p)
+    if (mesh_.incident_tets_[p] != no_index) {
+      low = low.cwiseMin(positions[p]);
+      high = high.cwiseMax(positions[p]);
+    }
+  const MortonGrid grid(low, high);
+  struct Key {
+    std::uint64_t morton;
+    Index point;
+  };
+  std::vector<Key> keys;
+  keys.reserve(positions.size());
+  for (std::size_t p = 0; p < positions.size(); ++p)
+    if (mesh_.incident_tets_[p] != no_index) keys.push_back({grid.key(positions[p]), static_cast<Index>(p)});
+  parallel_sort(keys, [](const Key& a, const Key& b) {
+    return a.morton != b.morton ? a.morton < b.morton : a.point < b.point;
+  });
+  std::vector<Index> order(keys.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) order[i] = keys[i].point;
+  return order;
+}
+
+void MeshCompaction::move_points(const std::vector<Index>& order, const std::vector<Index>& new_point,
+                                 std::size_t spare) {
+  std::vector<Vec3> positions(order.size() + spare, Vec3::Zero());
+  for (std::size_t i = 0; i < order.size(); ++i) positions[i] = mesh_.positions_[order[i]];
+  mesh_.positions_ = std::move(positions);
+  if (!mesh_.any_pinned()) return;
+  std::vector<std::uint8_t> pinned(mesh_.positions_.size(), 0);
+  std::vector<Index> originals(mesh_.positions_.size());
+  std::iota(originals.begin(), originals.end(), Index{0});
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    pinned[i] = mesh_.pinned_[order[i]];
+    originals[i] = new_point[mesh_.originals_[order[i]]];  // pinned points are never removed
+  }
+  mesh_.pinned_ = std::move(pinned);
+  mesh_.originals_ = std::move(originals);
+}
+
+std::vector<Index> MeshCompaction::number_tets(const std::vector<Index>& new_point, std::size_t points,
+                                               std::size_t& live) const {
+  // A counting sort.
+  std::vector<Index> next(points + 1, 0);
+  const auto first_point = [&](const TetRecord& t) {
+    return std::min(std::min(new_point[t.points[0]], new_point[t.points[1]]),
+                    std::min(new_point[t.points[2]], new_point[t.points[3]]));
+  };
+  live = 0;
+  for (const TetRecord& t : mesh_.tets_)
+    if (t.points[0] != no_index) {
+      ++next[first_point(t) + 1];
+      ++live;
+    }
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<Index> new_tet(mesh_.tets_.size(), no_index);
+  for (std::size_t t = 0; t < mesh_.tets_.size(); ++t)
+    if (mesh_.tets_[t].points[0] != no_index) new_tet[t] = next[first_point(mesh_.tets_[t])]++;
+  return new_tet;
+}
+
+void MeshCompaction::move_tets(const std::vector<Index>& new_point, const std::vector<Index>& new_tet,
+                               std::size_t live, std::size_t spare) {
+  std::vector<TetRecord> tets(live + spare);
+  parallel_for(0, mesh_.tets_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      if (new_tet[t] == no_index) continue;
+      TetRecord r = mesh_.tets_[t];
+      for (Index& p : r.points) p = new_point[p];
+      for (Index& n : r.neighbours)
+        if (n != no_index) n = new_tet[n];
+      tets[new_tet[t]] = r;
+    }
+  });
+  for (std::size_t t = live; t < tets.size(); ++t) tets[t] = {dead_tet, dead_tet, 0, 0};
+  mesh_.tets_ = std::move(tets);
+}
+
+void MeshCompaction::run(std::size_t spare_tets, std::size_t spare_points) {
+  std::vector<Index> new_point(mesh_.positions_.size(), no_index);
+  std::size_t points = 0;
+  {
+    const std::vector<Index> order = points_in_curve_order();
+    points = order.size();
+    for (std::size_t i = 0; i < order.size(); ++i) new_point[order[i]] = static_cast<Index>(i);
+    move_points(order, new_point, spare_points);
+  }
+  std::size_t live = 0;
+  {
+    const std::vector<Index> new_tet = number_tets(new_point, points, live);
+    move_tets(new_point, new_tet, live, spare_tets);
+  }
+  mesh_.live_ = static_cast<std::int64_t>(live);
+  mesh_.free_tets_.reset(live, mesh_.tets_.size());
+  mesh_.free_points_.reset(points, mesh_.positions_.size());
+  mesh_.locks_.reset(mesh_.positions_.size());
+  mesh_.touched_.assign(mesh_.positions_.size(), 0);
+  mesh_.set_incident_tets();
+}
+
+TetMesh MeshCompaction::to_mesh() {
+  run(0, 0);
+  const auto is_original = [&](std::size_t p) { return mesh_.original(static_cast<Index>(p)) == p; };
+  std::vector<Index> number(mesh_.positions_.size());
+  Index next = 0;
+  for (std::size_t p = 0; p < number.size(); ++p)
+    if (is_original(p)) number[p] = next++;
+  for (std::size_t p = 0; p < number.size(); ++p) number[p] = number[mesh_.original(static_cast<Index>(p))];
+  TetMesh mesh;
+  mesh.points = std::move(mesh_.positions_);
+  for (std::size_t p = 0; p < number.size(); ++p)
+    if (is_original(p)) mesh.points[number[p]] = mesh_.space_.to_input(mesh.points[p]);
+  mesh.points.resize(next);
+  mesh.tets.reserve(mesh_.tets_.size());
+  mesh.materials.reserve(mesh_.tets_.size());
+  for (const TetRecord& t : mesh_.tets_) {
+    mesh.tets.push_back({number[t.points[0]], number[t.points[1]], number[t.points[2]], number[t.points[3]]});
+    mesh.materials.push_back(mesh_.tags_[t.region]);
+  }
+  mesh.material_names = std::move(mesh_.names_);
+  mesh_.tets_ = {};
+  mesh_.incident_tets_ = {};
+  return mesh;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "common/tet_mesh.h"
+#include "simplify/mesh/editable_mesh.h"
+
+namespace tetwright {
+
+/// Renumbers an EditableMesh without its dead tets and points; only while no task runs.
+class MeshCompaction {
+ public:
+  explicit MeshCompaction(EditableMesh& mesh) : mesh_(mesh) {}
+  /// See EditableMesh::compact().
+  void run(std::size_t spare_tets, std::size_t spare_points);
+  /// See EditableMesh::to_mesh().
+  TetMesh to_mesh();
+
+ private:
+  /// The points with a tet, in Morton order of their positions in the bounding box.
+  std::vector<Index> points_in_curve_order() const;
+  void move_points(const std::vector<Index>& order, const std::vector<Index>& new_point, std::size_t spare);
+  /// The new numbers of the living tets, by their first point in the new order; `live` is how many there are.
+  std::vector<Index> number_tets(const std::vector<Index>& new_point, std::size_t points,
+                                 std::size_t& live) const;
+  void move_tets(const std::vector<Index>& new_point, const std::vector<Index>& new_tet, std::size_t live,
+                 std::size_t spare);
+
+  EditableMesh& mesh_;
+};
+
+}  // namespace tetwright

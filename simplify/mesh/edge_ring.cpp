@@ -1,0 +1,92 @@
+#include "simplify/mesh/edge_ring.h"
+
+#include <algorithm>
+
+namespace tetwright {
+
+Outcome EdgeRing::gather(const EditableMesh& mesh, Index tet, int edge, HeldLocks& held) {
+  points.clear();
+  tets.clear();
+  regions.clear();
+  worst = 1;
+  interface_triangles = 0;
+  closed = false;
+  const TetRecord& first = mesh.tet(tet);
+  const int i0 = tet_edges[edge][0], i1 = tet_edges[edge][1];
+  const int j0 = tet_edges[5 - edge][0], j1 = tet_edges[5 - edge][1];
+  a = first.points[i0];
+  b = first.points[i1];
+  // (i0, i1, j0, j1) of tet_edges is an even permutation but for the edges 02 and 13.
+  const bool even = edge != 1 && edge != 4;
+  const Index start = first.points[even ? j0 : j1], second = first.points[even ? j1 : j0];
+
+  const auto add = [&](Index t) {
+    const TetRecord& r = mesh.tet(t);
+    tets.push_back(t);
+    regions.push_back(r.region);
+    worst = std::min(worst, r.quality);
+  };
+  /// The tet beyond the face (a, b, keep) of t, whose fourth point is `leave`.
+  const auto beyond = [&](Index t, Index leave) { return mesh.neighbour(t, mesh.slot_of(t, leave)); };
+  /// The point of t that is none of a, b, known.
+  const auto fourth = [&](Index t, Index known) {
+    for (Index p : mesh.tet(t).points)
+      if (p != a && p != b && p != known) return p;
+    return no_index;
+  };
+
+  add(tet);
+  points = {start, second};
+  for (Index at = tet, leave = start;;) {
+    const Index next = beyond(at, leave);
+    if (next == no_index) break;
+    if (next == tet) {
+      closed = true;
+      points.pop_back();
+      break;
+    }
+    if (tets.size() == max_tets) return Outcome::too_large;
+    const Index p = fourth(next, points.back());
+    if (p == no_index) return Outcome::too_large;  // a tet that the input repeats: no ring to speak of
+    if (!held.holds(p) && !held.try_lock(p)) return Outcome::lock_taken;
+    leave = points.back();  // on across (a, b, p)
+    add(next);
+    points.push_back(p);
+    at = next;
+  }
+  if (!closed) {
+    // The other way, in front.
+    for (Index at = tet, leave = second;;) {
+      const Index next = beyond(at, leave);
+      if (next == no_index) break;
+      if (tets.size() == max_tets) return Outcome::too_large;
+      const Index p = fourth(next, points.front());
+      if (p == no_index) return Outcome::too_large;
+      if (!held.holds(p) && !held.try_lock(p)) return Outcome::lock_taken;
+      leave = points.front();
+      const TetRecord& r = mesh.tet(next);
+      tets.insert(tets.begin(), next);
+      regions.insert(regions.begin(), r.region);
+      worst = std::min(worst, r.quality);
+      points.insert(points.begin(), p);
+      at = next;
+    }
+    interface_triangles = 2;
+  }
+  for (std::size_t i = 0; i + 1 < tets.size(); ++i) interface_triangles += regions[i] != regions[i + 1];
+  if (closed) interface_triangles += regions.front() != regions.back();
+  return Outcome::done;
+}
+
+void EdgeRing::begin_at_interface() {
+  const std::size_t n = tets.size();
+  std::size_t k = 0;
+  while (k < n && regions[k] == regions[(k + n - 1) % n]) ++k;
+  if (k == n) return;
+  const auto by = static_cast<std::ptrdiff_t>(k);
+  std::rotate(tets.begin(), tets.begin() + by, tets.end());
+  std::rotate(regions.begin(), regions.begin() + by, regions.end());
+  std::rotate(points.begin(), points.begin() + by, points.end());
+}
+
+}  // namespace tetwright

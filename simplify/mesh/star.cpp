@@ -1,0 +1,191 @@
+#include "simplify/mesh/star.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/portable_math.h"
+
+namespace tetwright {
+
+Outcome Star::gather(const EditableMesh& mesh, Index centre_point, HeldLocks& held) {
+  begin(centre_point, mesh.position(centre_point));
+  tet_numbers_.clear();
+  pinned = mesh.pinned(centre);
+
+  const Index first = mesh.incident_tet(centre);
+  if (first == no_index) return Outcome::stale;
+  bool added;
+  tet_numbers_.number(first, added);
+  tets.push_back({first, {}, 0, 0, 0});
+  for (std::size_t i = 0; i < tets.size(); ++i) {
+    StarTet& s = tets[i];
+    const TetRecord& t = mesh.tet(s.tet);
+    const int slot = mesh.slot_of(s.tet, centre);
+    s.slot = static_cast<std::uint8_t>(slot);
+    s.region = t.region;
+    s.quality = t.quality;
+    worst = std::min(worst, t.quality);
+    // (centre, face opposite it as seen from outside) is positive.
+    const auto& face = tet_faces[slot];
+    for (int k = 0; k < 3; ++k) {
+      const Index p = t.points[face[k]];
+      const std::uint32_t n = point_numbers_.number(p, added);
+      if (added) {
+        if (n >= max_points) return Outcome::too_large;
+        if (!held.holds(p) && !held.try_lock(p)) return Outcome::lock_taken;
+        points.push_back(p);
+        positions.push_back(mesh.position(p));
+        interface_count.push_back(0);
+        near_pinned |= mesh.pinned(p);
+      }
+      s.link[k] = static_cast<std::uint16_t>(n);
+    }
+    const std::array<std::uint16_t, 3> link = s.link;
+    const RegionId region = s.region;
+    const Index tet = s.tet;
+    for (int k = 0; k < 3; ++k) {
+      const Index other = t.neighbours[face[k]];  // across the face opposite link[k]
+      const std::uint16_t a = link[(k + 1) % 3], b = link[(k + 2) % 3];
+      if (other != no_index) {
+        tet_numbers_.number(other, added);
+        if (added) tets.push_back({other, {}, 0, 0, 0});  // s is no longer valid
+        const RegionId across = mesh.tet(other).region;
+        if (across == region || other < tet) continue;  // an inner interface is met twice
+        interface_triangles.push_back({a, b, region, across});
+      } else {
+        interface_triangles.push_back({a, b, region, outside_id});
+      }
+      ++interface_count[a];
+      ++interface_count[b];
+    }
+  }
+  return Outcome::done;
+}
+
+void Star::begin(Index centre_point, const Vec3& position) {
+  centre = centre_point;
+  centre_position = position;
+  tets.clear();
+  points.clear();
+  positions.clear();
+  interface_triangles.clear();
+  interface_count.clear();
+  gradients.clear();
+  point_numbers_.clear();
+  worst = 1;
+  pinned = false;
+  near_pinned = false;
+}
+
+std::uint16_t Star::add_point(Index p, const Vec3& position) {
+  bool added;
+  const std::uint32_t n = point_numbers_.number(p, added);
+  if (added) {
+    points.push_back(p);
+    positions.push_back(position);
+    interface_count.push_back(0);
+  }
+  return static_cast<std::uint16_t>(n);
+}
+
+void Star::add_interface_triangle(Index first, Index second, RegionId inside, RegionId across) {
+  const auto a = static_cast<std::uint16_t>(point_numbers_.find(first)),
+             b = static_cast<std::uint16_t>(point_numbers_.find(second));
+  interface_triangles.push_back({a, b, inside, across});
+  ++interface_count[a];
+  ++interface_count[b];
+}
+
+int Star::dimension() const {
+  if (pinned) return 0;
+  if (interface_triangles.empty()) return 3;
+  // The interface triangles at the centre are the edges of a graph on the link's points; a dimension-2 edge
+  // of the centre is a node of degree 2. Walk from interface triangle to interface triangle across such
+  // nodes.
+  std::size_t ends[2] = {0, 0};
+  std::size_t end_count = 0;
+  for (std::size_t p = 0; p < points.size(); ++p)
+    if (interface_count[p] != 0 && interface_count[p] != 2) {
+      if (end_count == 2) return 0;
+      ends[end_count++] = p;
+    }
+  if (end_count == 1) return 0;
+  visited_.assign(interface_triangles.size(), 0);
+  const auto walk = [&](std::size_t interface_triangle, std::size_t from) {
+    // Follows the path of interface triangles to the next node that is not of degree 2, or round to where it
+    // began.
+    std::size_t at = from;
+    for (;;) {
+      visited_[interface_triangle] = 1;
+      at = interface_triangles[interface_triangle].first == at
+               ? interface_triangles[interface_triangle].second
+               : interface_triangles[interface_triangle].first;
+      if (at == from || interface_count[at] != 2) return at;
+      std::size_t next = interface_triangles.size();
+      for (std::size_t k = 0; k < interface_triangles.size(); ++k)
+        if (!visited_[k] && (interface_triangles[k].first == at || interface_triangles[k].second == at))
+          next = k;
+      if (next == interface_triangles.size()) return at;
+      interface_triangle = next;
+    }
+  };
+  if (end_count == 0) {
+    walk(0, interface_triangles[0].first);
+    return std::all_of(visited_.begin(), visited_.end(), [](std::uint8_t v) { return v != 0; }) ? 2 : 0;
+  }
+  for (std::size_t k = 0; k < interface_triangles.size(); ++k) {
+    if (visited_[k] || (interface_triangles[k].first != ends[0] && interface_triangles[k].second != ends[0]))
+      continue;
+    if (walk(k, ends[0]) != ends[1]) return 0;
+  }
+  return std::all_of(visited_.begin(), visited_.end(), [](std::uint8_t v) { return v != 0; }) ? 1 : 0;
+}
+
+void Star::compute_gradients() {
+  gradients.clear();
+  areas_.clear();
+  if (interface_triangles.empty()) return;
+  for (const InterfaceTriangle& s : interface_triangles)
+    areas_.push_back((positions[s.first] - centre_position).cross(positions[s.second] - centre_position) *
+                     (1.0 / 6));
+  for (const StarTet& t : tets) {
+    const Vec3 &x = positions[t.link[0]], &y = positions[t.link[1]], &z = positions[t.link[2]];
+    // Volume of (c, x, y, z) is (x - c) . ((y - x) x (z - x)) / 6: linear in c.
+    const Vec3 change = (y - x).cross(z - x) * (-1.0 / 6);
+    auto g = std::find_if(gradients.begin(), gradients.end(),
+                          [&](const VolumeGradient& v) { return v.region == t.region; });
+    if (g == gradients.end()) {
+      gradients.push_back({t.region, change});
+    } else {
+      g->change += change;
+    }
+  }
+}
+
+const std::vector<VolumeChange>& Star::volume_changes(const Vec3& step) {
+  changes_.clear();
+  for (const VolumeGradient& g : gradients) changes_.push_back({g.region, g.change.dot(step)});
+  return changes_;
+}
+
+double Star::surface_error(const Vec3& step, double gamma, bool losses_cancel) {
+  if (losses_cancel) {
+    double sum = 0;
+    for (const VolumeGradient& g : gradients) sum += portable_cbrt(std::fabs(g.change.dot(step)));
+    return gamma * sum;
+  }
+  // A moving centre makes each interface triangle sweep a tet of volume |area vector . step| / 3.
+  swept_.assign(gradients.size(), 0);
+  for (std::size_t k = 0; k < interface_triangles.size(); ++k) {
+    const double swept = std::fabs(areas_[k].dot(step));
+    for (std::size_t i = 0; i < gradients.size(); ++i)
+      if (gradients[i].region == interface_triangles[k].inside ||
+          gradients[i].region == interface_triangles[k].across)
+        swept_[i] += swept;
+  }
+  double sum = 0;
+  for (double swept : swept_) sum += portable_cbrt(swept);
+  return gamma * sum;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <vector>
+
+#include "simplify/mesh/edge_ring.h"
+#include "simplify/mesh/editable_mesh.h"
+#include "simplify/mesh/local_numbers.h"
+
+namespace tetwright {
+
+inline bool contains(const Tet& t, Index p) { return t[0] == p || t[1] == p || t[2] == p || t[3] == p; }
+
+/// Walks the star of a locked point from tet to tet by ids alone, without locking its other points. Keeps its
+/// memory from walk to walk.
+class StarWalk {
+ public:
+  /// Whether `test(points of the tet)` is true for one tet at `point`.
+  template <class Test>
+  bool any(const EditableMesh& mesh, Index point, const Test& test) {
+    numbers_.clear();
+    tets_.clear();
+    bool added;
+    tets_.push_back(mesh.incident_tet(point));
+    numbers_.number(tets_[0], added);
+    for (std::size_t i = 0; i < tets_.size(); ++i) {
+      const TetRecord& r = mesh.tet(tets_[i]);
+      if (test(r.points)) return true;
+      for (int k = 0; k < 4; ++k) {
+        if (r.points[k] == point || r.neighbours[k] == no_index) continue;
+        numbers_.number(r.neighbours[k], added);
+        if (added) tets_.push_back(r.neighbours[k]);
+      }
+    }
+    return false;
+  }
+
+  /// Whether an edge of the mesh joins the locked point p to q.
+  bool joined(const EditableMesh& mesh, Index p, Index q) {
+    return any(mesh, p, [q](const Tet& t) { return contains(t, q); });
+  }
+
+  /// Whether a gathered ring has all tets at its edge: where wedges of material touch along an edge it has
+  /// only those of one wedge.
+  bool is_whole(const EditableMesh& mesh, const EdgeRing& ring) {
+    std::size_t count = 0;
+    any(mesh, ring.a, [&](const Tet& t) {
+      count += contains(t, ring.b);
+      return false;
+    });
+    return count == ring.tets.size();
+  }
+
+ private:
+  LocalNumbers numbers_;
+  std::vector<Index> tets_;
+};
+
+}  // namespace tetwright

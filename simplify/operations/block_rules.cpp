@@ -1,0 +1,15 @@
+#include "simplify/operations/block_rules.h"
+
+namespace tetwright {
+
+bool near_reference(const BlockRules& rules, const MeshTriangle& t, RegionId inside, RegionId across) {
+  if (!rules.projection || !(rules.max_distance > 0)) return true;
+  const Vec3 centre = (t.points[0] + t.points[1] + t.points[2]) / 3;
+  return rules.projection->onto_surface(centre, inside, across, rules.max_distance).has_value();
+}
+
+float quality_of(const EditableMesh& mesh, const BlockRules& rules, const Tet& t) {
+  return rules.objective(mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2]), mesh.position(t[3]));
+}
+
+}  // namespace tetwright

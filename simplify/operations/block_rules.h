@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "common/geometry/triangle_intersection.h"
+#include "simplify/constraints/surface_projection.h"
+#include "simplify/mesh/editable_mesh.h"
+#include "simplify/operations/objective.h"
+
+namespace tetwright {
+
+/// The bounds within which all operations of a block stay. Lengths in working coordinates.
+struct BlockRules {
+  Objective objective;
+  double max_error = 0;  ///< E of Cutler, Dorsey & McMillan 2004, section 3
+  double gamma = 10;     ///< weight of the volume error
+  /// No operation may take the count below the minimum; none that adds tets may take it above the maximum.
+  std::size_t min_tets = 0, max_tets = std::numeric_limits<std::int64_t>::max();
+  /// Error(op) takes the net change of each volume, as the paper has it; otherwise the volumes that the
+  /// interface triangles sweep are added up.
+  bool losses_cancel = false;
+  double accept_worse = 0;    ///< annealing: probability of an action that leaves a worse tet than before
+  float annealing_floor = 0;  ///< share of the worst quality that such an action must keep
+  float good_enough =
+      1;  ///< operations whose new tets are all better are accepted, whatever was there before
+  /// The number of targets that a collapse tries, in the order of their weight.
+  std::size_t max_targets = 4;
+  /// Weight, against E, of the distance by which a collapse moves the surface at the removed point; 0: the
+  /// volume alone decides, as in the paper.
+  double distance_weight = 0;
+  /// How far the centre of a new interface triangle may be from the reference (needs `projection`); 0: not
+  /// checked. Unlike E it does not add up over several operations.
+  double max_distance = 0;
+  /// Points of interfaces, junction curves and corners may leave them by up to max_distance (or as far as
+  /// they are away already) where that improves the shapes (needs `projection`).
+  bool leave_surface = false;
+  /// What points of interfaces and junction curves are projected onto; null: they stay in planes of constant
+  /// volume.
+  const SurfaceProjection* projection = nullptr;
+};
+
+/// Whether an added interface triangle stays near the reference, as far as the rules ask for it. `inside` and
+/// `across` are the regions that it separates.
+bool near_reference(const BlockRules& rules, const MeshTriangle& t, RegionId inside, RegionId across);
+
+/// The objective's value for a tet of locked points.
+float quality_of(const EditableMesh& mesh, const BlockRules& rules, const Tet& t);
+
+}  // namespace tetwright

@@ -1,0 +1,203 @@
+#include "simplify/operations/edge_removal.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/geometry/predicates.h"
+#include "common/portable_math.h"
+
+namespace tetwright {
+
+namespace {
+
+Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
+
+/// The interface triangles of an edge (a, b) with interface triangles to s and t, turned to the edge (s, t).
+Outcome begin_surface_edit(Workspace& ws, const BlockRules& rules, Index s, Index t, RegionId inside,
+                           RegionId across) {
+  const EditableMesh& mesh = ws.mesh;
+  const EdgeRing& ring = ws.ring;
+  const Vec3 &a = mesh.position(ring.a), &b = mesh.position(ring.b), &ps = mesh.position(s),
+             &pt = mesh.position(t);
+  const double swept = std::fabs(orient3d_value(a, b, ps, pt)) / 6;
+  const int materials = across == outside_id ? 1 : 2;
+  if (rules.gamma * materials * portable_cbrt(swept) > rules.max_error) return Outcome::surface_error;
+  // No fold: every new triangle looks the way both old ones look.
+  const std::array<Vec3, 2> before{normal_of(a, ps, b), normal_of(a, b, pt)};
+  const std::array<Vec3, 2> after{normal_of(a, ps, pt), normal_of(b, pt, ps)};
+  for (const Vec3& n : after)
+    for (const Vec3& m : before)
+      if (!(n.dot(m) > 0)) return Outcome::surface_error;
+  ws.edit.clear();
+  ws.edit.removed = {{{ring.a, ring.b, s}, {a, b, ps}}, {{ring.a, ring.b, t}, {a, b, pt}}};
+  ws.edit.added = {{{ring.a, s, t}, {a, ps, pt}}, {{ring.b, s, t}, {b, ps, pt}}};
+  for (const MeshTriangle& n : ws.edit.added)
+    if (!near_reference(rules, n, inside, across)) return Outcome::surface_error;
+  return ws.grid.begin_edit(ws.edit, ws.grid_workspace, ws.cells);
+}
+
+/// The removal of an edge whose ring is gathered in the workspace.
+class EdgeRemoval {
+ public:
+  EdgeRemoval(Workspace& ws, const BlockRules& rules)
+      : ws_(ws), rules_(rules), dimension_(ws.ring.dimension()) {}
+
+  /// `kind` becomes the flip that it is, where it is one.
+  Outcome run(const FlipReach& reach, Operation& kind) {
+    if (dimension_ == 1) return Outcome::material_rule;
+    make_chains();
+    kind = kind_of_flip();
+    if (reach.basic() && kind == Operation::edge_removal) return Outcome::no_candidate;
+    if (const Outcome o = check_chains(reach); o != Outcome::done) return o;
+    const EdgeRing& ring = ws_.ring;
+    const float limit = ws_.acceptance_limit(rules_, ring.worst);
+    for (std::size_t c = 0; c < chain_count_; ++c)
+      if (!ws_.triangulations[c].find(ws_.mesh, rules_, ring.a, ring.b, ws_.chains[c], limit))
+        return Outcome::quality;
+    if (!fill_cavity()) return Outcome::link_condition;
+    const std::size_t added = ws_.cavity.added.size(), removed = ring.tets.size();
+    if (added > removed && !ws_.free_tets.reserve(added - removed)) return Outcome::no_room;
+    return carry_out();
+  }
+
+ private:
+  /// Chains of points around the edge, one for each region.
+  void make_chains() {
+    EdgeRing& ring = ws_.ring;
+    std::array<std::vector<Index>, 2>& chains = ws_.chains;
+    chains[0].clear();
+    chains[1].clear();
+    regions_ = {ring.regions[0], ring.regions[0]};
+    if (dimension_ == 3 || !ring.closed) {
+      chains[0] = ring.points;
+      return;
+    }
+    ring.begin_at_interface();
+    chain_count_ = 2;
+    regions_ = {ring.regions.front(), ring.regions.back()};
+    const std::size_t n = ring.tets.size();
+    std::size_t k = 0;
+    for (; k < n && ring.regions[k] == regions_[0]; ++k) chains[0].push_back(ring.points[k]);
+    chains[0].push_back(ring.points[k]);
+    for (; k < n; ++k) chains[1].push_back(ring.points[k]);
+    chains[1].push_back(ring.points[0]);
+  }
+
+  Operation kind_of_flip() const {
+    const std::size_t n = ws_.ring.tets.size();
+    if (chain_count_ == 2)
+      return n == 4 && ws_.chains[0].size() == 3 ? Operation::flip44 : Operation::edge_removal;
+    if (dimension_ == 3) return n == 3 ? Operation::flip32 : Operation::edge_removal;
+    return n == 2 ? Operation::flip22 : Operation::edge_removal;
+  }
+
+  Outcome check_chains(const FlipReach& reach) {
+    const EdgeRing& ring = ws_.ring;
+    const EditableMesh& mesh = ws_.mesh;
+    for (std::size_t c = 0; c < chain_count_; ++c) {
+      if (ws_.chains[c].size() < 3) return Outcome::no_candidate;
+      if (ws_.chains[c].size() > RingTriangulation::max_points ||
+          (dimension_ == 3 && ring.tets.size() > reach.max_ring))
+        return Outcome::too_large;
+    }
+    if (mesh.any_pinned() &&
+        (mesh.pinned(ring.a) || mesh.pinned(ring.b) ||
+         std::any_of(ring.points.begin(), ring.points.end(), [&](Index p) { return mesh.pinned(p); })))
+      return Outcome::material_rule;
+    if (!ring.closed && !ws_.walk.is_whole(mesh, ring)) return Outcome::material_rule;
+    return Outcome::done;
+  }
+
+  /// False if an edge or triangle of the triangulation is in the mesh already.
+  bool fill_cavity() {
+    const EdgeRing& ring = ws_.ring;
+    const EditableMesh& mesh = ws_.mesh;
+    Cavity& cavity = ws_.cavity;
+    cavity.clear();
+    cavity.removed = ring.tets;
+    const bool single_triangle = dimension_ == 3 && ring.tets.size() == 3;
+    bool present = false;
+    for (std::size_t c = 0; c < chain_count_; ++c) {
+      const std::vector<Index>& p = ws_.chains[c];
+      ws_.triangulations[c].triangles([&](std::size_t i, std::size_t k, std::size_t j) {
+        for (const Tet& t : {Tet{p[i], p[k], p[j], ring.b}, Tet{p[i], p[j], p[k], ring.a}})
+          cavity.added.push_back({t, regions_[c], quality_of(mesh, rules_, t)});
+        // Diagonals must be new; of a ring of three the triangle must be.
+        if (single_triangle) {
+          present |=
+              ws_.walk.any(mesh, p[i], [&](const Tet& t) { return contains(t, p[k]) && contains(t, p[j]); });
+        } else if (j - i > 1 && !(dimension_ == 3 && i == 0 && j + 1 == p.size())) {
+          present |= ws_.walk.joined(mesh, p[i], p[j]);
+        }
+      });
+    }
+    return !present;
+  }
+
+  /// What the regions on both sides of the edge gain.
+  std::array<VolumeChange, 2> volume_changes() const {
+    const EdgeRing& ring = ws_.ring;
+    const EditableMesh& mesh = ws_.mesh;
+    double gained = 0;
+    for (const NewTet& t : ws_.cavity.added)
+      if (t.region == regions_[0])
+        gained += orient3d_value(mesh.position(t.points[0]), mesh.position(t.points[1]),
+                                 mesh.position(t.points[2]), mesh.position(t.points[3])) /
+                  6;
+    for (std::size_t i = 0; i < ring.tets.size(); ++i)
+      if (ring.regions[i] == regions_[0]) gained -= mesh.signed_volume(ring.tets[i]);
+    std::array<VolumeChange, 2> changes{{{regions_[0], gained}, {outside_id, 0}}};
+    if (ring.closed) changes[1] = {regions_[1], -gained};
+    return changes;
+  }
+
+  Outcome carry_out() {
+    EditableMesh& mesh = ws_.mesh;
+    const auto change =
+        static_cast<std::int64_t>(ws_.cavity.added.size()) - static_cast<std::int64_t>(ws_.ring.tets.size());
+    if (dimension_ == 3) {
+      if (!mesh.change_count(change, rules_.min_tets, rules_.max_tets)) return Outcome::count;
+      ws_.retriangulation.carry_out(mesh, ws_.free_tets, ws_.cavity);
+      return Outcome::done;
+    }
+    const auto refuse = [&](Outcome o) {
+      ws_.cells.release();
+      return o;
+    };
+    if (const Outcome o = begin_surface_edit(ws_, rules_, ws_.chains[0].front(), ws_.chains[0].back(),
+                                             regions_[0], ws_.ring.closed ? regions_[1] : outside_id);
+        o != Outcome::done)
+      return refuse(o);
+    const std::array<VolumeChange, 2> volumes = volume_changes();
+    if (!ws_.ledger.book(volumes)) return refuse(Outcome::volume);
+    if (!mesh.change_count(change, rules_.min_tets, rules_.max_tets)) {
+      ws_.ledger.take_back(volumes);
+      return refuse(Outcome::count);
+    }
+    ws_.retriangulation.carry_out(mesh, ws_.free_tets, ws_.cavity);
+    ws_.grid.commit(ws_.edit, ws_.grid_workspace);
+    ws_.cells.release();
+    return Outcome::done;
+  }
+
+  Workspace& ws_;
+  const BlockRules& rules_;
+  int dimension_;
+  std::size_t chain_count_ = 1;
+  std::array<RegionId, 2> regions_{};
+};
+
+}  // namespace
+
+Outcome remove_edge(Workspace& ws, const BlockRules& rules, Index tet, int edge, const FlipReach& reach) {
+  Operation kind = Operation::edge_removal;
+  Outcome o = ws.ring.gather(ws.mesh, tet, edge, ws.points);
+  if (o == Outcome::done) o = EdgeRemoval(ws, rules).run(reach, kind);
+  if (reach.basic() && kind == Operation::edge_removal)
+    return o;  // none of the three flips: nothing was tried
+  ws.counts.add(kind, o);
+  return o;
+}
+
+}  // namespace tetwright

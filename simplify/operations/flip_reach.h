@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+
+namespace tetwright {
+
+/// How far edge and face removal may reach.
+struct FlipReach {
+  std::size_t max_ring = 7;   ///< points of a chain around an edge
+  std::size_t max_faces = 5;  ///< faces removed at once
+  /// Whether only the swaps of the paper, section 4, are allowed (and 4-4, its 2-2 on an interface): rings of
+  /// three, single faces.
+  bool basic() const { return max_ring == 3; }
+};
+
+inline constexpr FlipReach basic_reach{3, 1};
+inline constexpr FlipReach full_reach{7, 5};
+
+}  // namespace tetwright

@@ -1,0 +1,232 @@
+#include "simplify/schedule/engine.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+
+#include "common/error.h"
+#include "common/mesh/interfaces.h"
+#include "common/parallel/parallel.h"
+#include "common/parallel/parallel_sort.h"
+#include "simplify/operations/smoothing.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::size_t slot_grain = 8192;  ///< tets or points a parallel loop hands out at a time
+/// The mesh is compacted and renumbered when fewer than this share of its slots are alive.
+constexpr double compact_below = 0.7;
+/// Free slots left for operations that add, as shares of what is alive; flips 2-3 add tets where collapses
+/// take away more, so that this is never used up before the next compact.
+constexpr std::size_t spare_share = 16;
+constexpr std::size_t min_spare = 4096;
+
+/// Share by which the volume of a material may change.
+constexpr double volume_share = 0.015;
+
+}  // namespace
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, Progress* progress)
+    : report_(report),
+      progress_(progress),
+      mesh_(std::move(mesh), options.name),
+      projection_(mesh_, options.reference),
+      runner_(mesh_, grid_, ledger_, options.seed, options.chunk_size, progress) {
+  const double volume = mesh_.total_volume();
+  if (!(volume > 0))
+    throw InputError(
+        options.name, 0,
+        "the volumes of its tets add up to nothing or less; turn the tets so that they are positive");
+  rules.objective.quality = TetQuality::for_target(volume, options.target_tets, options.beta);
+  rules.objective.shape = options.objective;
+  rules.gamma = options.gamma;
+  if (options.keep_volumes) ledger_.open(mesh_, volume_share);
+}
+
+TetMesh Engine::take() && {
+  TetMesh mesh = std::move(mesh_).to_mesh();
+  mesh.interfaces = find_interfaces(mesh);
+  return mesh;
+}
+
+void Engine::begin_stage(const char* name) {
+  if (!progress_) return;
+  progress_->throw_if_cancelled();
+  progress_->begin_stage(name);
+}
+
+void Engine::compact() {
+  const std::size_t spare = mesh_.live_tets() / spare_share + min_spare;
+  mesh_.compact(spare, spare / 2);
+  grid_.build(mesh_, rules.objective.quality.ideal_edge / 2, spare / 2);
+  runner_.reset_workspaces();
+  rate_all();
+}
+
+void Engine::compact_if_sparse() {
+  if (static_cast<double>(mesh_.live_tets()) < compact_below * static_cast<double>(mesh_.tet_slots()))
+    compact();
+}
+
+void Engine::rate_all() {
+  parallel_for(0, mesh_.tet_slots(), slot_grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto t = static_cast<Index>(i);
+      const Tet& p = mesh_.tet(t).points;
+      if (p[0] == no_index) continue;
+      mesh_.set_quality(t, rules.objective(mesh_.position(p[0]), mesh_.position(p[1]), mesh_.position(p[2]),
+                                           mesh_.position(p[3])));
+    }
+  });
+}
+
+float Engine::cutoff(double percent) const {
+  // Bit patterns of floats in [0, 1] ascend with their values: a histogram of their upper halves finds the
+  // bin, and only its tets are looked at again.
+  constexpr std::size_t bins = 1 << 14;
+  const auto bin = [](float q) { return std::bit_cast<std::uint32_t>(q) >> 16; };
+  std::vector<std::atomic<std::uint32_t>> shared(bins);
+  std::atomic<std::size_t> alive{0};
+  parallel_for(0, mesh_.tet_slots(), 16 * slot_grain, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> counts(bins, 0);
+    std::size_t count = 0;
+    for (std::size_t t = begin; t < end; ++t) {
+      const TetRecord& r = mesh_.tet(static_cast<Index>(t));
+      if (r.points[0] == no_index) continue;
+      ++counts[bin(r.quality)];
+      ++count;
+    }
+    for (std::size_t b = 0; b < bins; ++b)
+      if (counts[b]) shared[b].fetch_add(counts[b], std::memory_order_relaxed);
+    alive.fetch_add(count, std::memory_order_relaxed);
+  });
+  if (alive == 0) return 0;
+  auto wanted = static_cast<std::size_t>(percent / 100 * static_cast<double>(alive));
+  if (wanted >= alive) return 1;
+  std::size_t b = 0;
+  while (wanted >= shared[b]) wanted -= shared[b++];
+  std::vector<float> in_bin = parallel_collect<float>(
+      0, mesh_.tet_slots(), slot_grain, [&](std::size_t begin, std::size_t end, std::vector<float>& out) {
+        for (std::size_t t = begin; t < end; ++t) {
+          const TetRecord& r = mesh_.tet(static_cast<Index>(t));
+          if (r.points[0] != no_index && bin(r.quality) == b) out.push_back(r.quality);
+        }
+      });
+  std::nth_element(in_bin.begin(), in_bin.begin() + static_cast<std::ptrdiff_t>(wanted), in_bin.end());
+  return in_bin[wanted];
+}
+
+template <class Test>
+std::vector<ListedTet> Engine::tets_where(const Test& test) const {
+  return parallel_collect<ListedTet>(0, mesh_.tet_slots(), slot_grain,
+                                     [&](std::size_t begin, std::size_t end, std::vector<ListedTet>& out) {
+                                       for (std::size_t t = begin; t < end; ++t) {
+                                         const TetRecord& r = mesh_.tet(static_cast<Index>(t));
+                                         if (r.points[0] != no_index && test(r))
+                                           out.push_back({static_cast<Index>(t), r.points});
+                                       }
+                                     });
+}
+
+std::vector<ListedTet> Engine::poor_tets(float limit) const {
+  return tets_where([&](const TetRecord& r) { return r.quality <= limit; });
+}
+
+template <class Mark>
+std::vector<Index> Engine::marked_points(const Mark& mark) const {
+  std::vector<std::uint8_t> marks(mesh_.point_slots(), 0);
+  parallel_for(0, mesh_.tet_slots(), slot_grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const TetRecord& r = mesh_.tet(static_cast<Index>(t));
+      if (r.points[0] == no_index) continue;
+      // Relaxed: the same value whoever writes it, and read after the loop.
+      for (int k = 0; k < 4; ++k)
+        if (mark(static_cast<Index>(t), r, k))
+          std::atomic_ref<std::uint8_t>(marks[r.points[k]]).store(1, std::memory_order_relaxed);
+    }
+  });
+  return parallel_collect<Index>(0, marks.size(), slot_grain,
+                                 [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+                                   for (std::size_t p = begin; p < end; ++p)
+                                     if (marks[p]) out.push_back(static_cast<Index>(p));
+                                 });
+}
+
+std::vector<Index> Engine::poor_points(float limit) const {
+  return marked_points([&](Index, const TetRecord& r, int) { return r.quality <= limit; });
+}
+
+std::vector<std::uint8_t> Engine::points_of(const std::vector<ListedTet>& tets) const {
+  std::vector<std::uint8_t> listed(mesh_.point_slots(), 0);
+  for (const ListedTet& t : tets)
+    for (Index p : t.points) listed[p] = 1;
+  return listed;
+}
+
+std::vector<ListedTet> Engine::tets_around(const std::vector<ListedTet>& tets) const {
+  const std::vector<std::uint8_t> listed = points_of(tets);
+  return tets_where([&](const TetRecord& r) {
+    return std::any_of(r.points.begin(), r.points.end(), [&](Index p) { return listed[p] != 0; });
+  });
+}
+
+std::vector<Index> Engine::points_around(const std::vector<ListedTet>& tets) const {
+  const std::vector<std::uint8_t> listed = points_of(tets);
+  return marked_points([&](Index, const TetRecord& r, int) {
+    return std::any_of(r.points.begin(), r.points.end(), [&](Index p) { return listed[p] != 0; });
+  });
+}
+
+std::vector<Index> Engine::interface_points() const {
+  return marked_points([&](Index t, const TetRecord& r, int k) {
+    for (int f = 0; f < 4; ++f)
+      if (f != k && mesh_.region_across(t, f) != r.region) return true;
+    return false;
+  });
+}
+
+void Engine::each_star(const std::vector<Index>& points, Operation kind,
+                       const std::function<Outcome(Workspace&)>& operation,
+                       const std::function<bool()>& stop) {
+  runner_.points(
+      points,
+      [&](Workspace& ws, Index p) {
+        if (!ws.points.try_lock(p)) return Outcome::lock_taken;
+        Outcome o = ws.star.gather(mesh_, p, ws.points);
+        if (o == Outcome::done) o = operation(ws);
+        ws.counts.add(kind, o);
+        return o;
+      },
+      stop);
+}
+
+void Engine::fit_interfaces(float floor) {
+  BlockRules fitting = rules;
+  fitting.projection = &projection_;
+  each_star(interface_points(), Operation::fit,
+            [&](Workspace& ws) { return fit_to_surface(ws, fitting, floor); });
+}
+
+Engine::Round::Round(Engine& engine, const char* kind) : engine_(engine) {
+  report_.kind = kind;
+  report_.tets_before = engine.mesh_.live_tets();
+  report_.max_error = engine.rules.max_error / engine.mesh_.space().scale();
+}
+
+void Engine::Round::finish() {
+  const BlockRunner::Totals totals = engine_.runner_.take_totals();
+  report_.counts = totals.counts;
+  report_.lock_conflicts = totals.lock_conflicts;
+  report_.skipped = totals.skipped;
+  report_.tets_after = engine_.mesh_.live_tets();
+  report_.seconds = seconds_since(start_);
+  if (engine_.report_) engine_.report_->iterations.push_back(report_);
+}
+
+}  // namespace tetwright

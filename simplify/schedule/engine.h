@@ -1,0 +1,107 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "simplify/schedule/block_runner.h"
+#include "simplify/schedule/options.h"
+
+namespace tetwright {
+
+/// State that the schedules share: the mesh, its grid, the block runner, the selection of poor tets, the
+/// report.
+class Engine {
+ public:
+  struct Options {
+    std::string name;
+    double target_tets;  ///< for the ideal sizes of Quality(t)
+    double beta, gamma;
+    std::uint64_t seed;
+    std::size_t chunk_size;
+    ShapeObjective objective;
+    const ReferenceSurface* reference;
+    bool keep_volumes = true;  ///< by a VolumeLedger
+  };
+  Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, Progress* progress);
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  /// Ends the work; the mesh with its interface triangles.
+  TetMesh take() &&;
+
+  EditableMesh& mesh() { return mesh_; }
+  BlockRunner& runner() { return runner_; }
+  const SurfaceProjection& projection() const { return projection_; }
+  const VolumeLedger& ledger() const { return ledger_; }
+  Progress* progress() { return progress_; }
+  BlockRules rules;
+
+  void begin_stage(const char* name);
+  /// Compacts the mesh, then rebuilds the grid, the workspaces and all qualities. Leaves free slots for
+  /// operations that add tets. Every schedule calls it first, after setting its objective.
+  void compact();
+  /// compact() where so many slots are dead that it pays.
+  void compact_if_sparse();
+  /// Every tet's quality by rules.objective.
+  void rate_all();
+
+  // Only while no task runs. Parallel; the results do not depend on the threads.
+
+  /// The quality below which `percent` of the tets lie; 1 if all.
+  float cutoff(double percent) const;
+  /// The tets of at most that quality, in the order of the curve.
+  std::vector<ListedTet> poor_tets(float limit) const;
+  /// The points of these tets, each once, in the order of the curve.
+  std::vector<Index> poor_points(float limit) const;
+  /// The tets that share a point with a listed one, in the order of the curve, and their points, each once.
+  std::vector<ListedTet> tets_around(const std::vector<ListedTet>& tets) const;
+  std::vector<Index> points_around(const std::vector<ListedTet>& tets) const;
+  /// The points of boundary and interfaces, in the order of the curve.
+  std::vector<Index> interface_points() const;
+
+  /// One try at each of the points with an operation on its star, which may answer anything; `stop` is asked
+  /// before each.
+  void each_star(
+      const std::vector<Index>& points, Operation kind, const std::function<Outcome(Workspace&)>& operation,
+      const std::function<bool()>& stop = [] { return false; });
+  /// fit_to_surface() for all interface points.
+  void fit_interfaces(float floor);
+
+  /// Times a round of the schedule and takes down what its tasks counted.
+  class Round {
+   public:
+    Round(Engine& engine, const char* kind);
+    IterationReport& report() { return report_; }
+    /// Into the engine's report.
+    void finish();
+
+   private:
+    Engine& engine_;
+    IterationReport report_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  };
+
+ private:
+  /// The points for which mark(tet, its record, place in it) holds for some tet.
+  template <class Mark>
+  std::vector<Index> marked_points(const Mark& mark) const;
+  /// The living tets whose record passes the test, in the order of the curve.
+  template <class Test>
+  std::vector<ListedTet> tets_where(const Test& test) const;
+  /// 1 for the points of the listed tets.
+  std::vector<std::uint8_t> points_of(const std::vector<ListedTet>& tets) const;
+
+  SimplifyReport* report_;
+  Progress* progress_;
+  EditableMesh mesh_;
+  SurfaceGrid grid_;
+  VolumeLedger ledger_;
+  SurfaceProjection projection_;
+  BlockRunner runner_;
+};
+
+double seconds_since(std::chrono::steady_clock::time_point start);
+
+}  // namespace tetwright

@@ -1,0 +1,234 @@
+#include "simplify/schedule/improvement.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "simplify/operations/collapse.h"
+#include "simplify/operations/edge_removal.h"
+#include "simplify/operations/face_removal.h"
+#include "simplify/operations/insertion.h"
+#include "simplify/operations/smoothing.h"
+
+namespace tetwright {
+
+namespace {
+
+/// A round that leaves more than this share of the poor tets is followed by one that moves all points around
+/// them too, for the tets that stand in their way.
+constexpr double stuck_above = 0.8;
+/// What collapses that make room for insertions must leave, over the quality that is aimed at.
+constexpr float thinning_margin = 1.1f;
+/// Error bound E of collapses and edge removals, and the distance by which they may move the surface away
+/// from the reference; both in ideal edges.
+constexpr double surgery_error_edges = 12;
+constexpr double surgery_distance_edges = 0.3;
+constexpr std::size_t surgery_targets = 30;  ///< all neighbours of nearly every point
+/// Share of the poor tets that a round must get rid of to count as gain.
+constexpr double min_round_gain = 0.02;
+/// The same where more than this share of all tets is poor.
+constexpr double many_poor = 0.01;
+constexpr double min_gain_of_many = 0.05;
+/// Rounds without gain before the work ends: while some tets are below ImprovementPlan::leave_surface_angle,
+/// else.
+constexpr int max_idle_rounds = 8;
+constexpr int max_idle_rounds_when_good = 2;
+
+/// Qualities (shape_quality()) below which a tet is worked on, and points may leave the surface for it.
+struct Bounds {
+  float poor, leave_surface;
+};
+
+/// One tet's turn: the first action that makes the worst tet around better ends it.
+Outcome improve_tet(Workspace& ws, const BlockRules& rules, const BlockRules& surgery, bool last_resort,
+                    const ListedTet& item, const Bounds& bounds) {
+  EditableMesh& mesh = ws.mesh;
+  if (const Outcome o = validate(ws, item); o != Outcome::done) return o;
+  const float quality = mesh.tet(item.tet).quality;
+  if (quality > bounds.poor) return Outcome::stale;
+  const BlockRules& moving = last_resort && quality < bounds.leave_surface ? surgery : rules;
+  const auto ends = [](Outcome o) { return o == Outcome::done || o == Outcome::lock_taken; };
+  for (Index p : item.points) {
+    Outcome o = ws.star.gather(mesh, p, ws.points);
+    if (o == Outcome::done) o = optimise(ws, moving);
+    ws.counts.add(Operation::optimise, o);
+    if (ends(o)) return o;
+  }
+  for (int e = 0; e < 6; ++e)
+    if (const Outcome o = remove_edge(ws, surgery, item.tet, e, full_reach); ends(o)) return o;
+  for (int f = 0; f < 4; ++f)
+    if (const Outcome o = remove_face(ws, rules, item.tet, f, full_reach); ends(o)) return o;
+  for (Index p : item.points) {
+    if (mesh.live_tets() <= rules.min_tets) break;
+    Outcome o = ws.star.gather(mesh, p, ws.points);
+    if (o == Outcome::done) o = collapse(ws, surgery);
+    ws.counts.add(Operation::collapse, o);
+    if (ends(o)) return o;
+  }
+  if (mesh.live_tets() >= rules.max_tets) return Outcome::no_candidate;
+  for (int e = 0; e < 6; ++e)
+    if (const Outcome o = insert_in_edge(ws, rules, item.tet, e, InsertionPlace::best, true); ends(o))
+      return o;
+  for (int f = 0; f < 4; ++f)
+    if (const Outcome o = insert_in_face(ws, rules, item.tet, f, InsertionPlace::best); ends(o)) return o;
+  return insert_in_tet(ws, rules, item.tet, InsertionPlace::best);
+}
+
+/// A flip of the tet, chosen at random, that leaves only good tets or an improvement: it changes the
+/// connectivity near tets that no operation improves.
+Outcome perturb_tet(Workspace& ws, const BlockRules& perturbation, const ListedTet& item) {
+  if (const Outcome o = validate(ws, item); o != Outcome::done) return o;
+  const auto pick = static_cast<int>(ws.random.below(10));
+  return pick < 6 ? remove_edge(ws, perturbation, item.tet, pick, full_reach)
+                  : remove_face(ws, perturbation, item.tet, pick - 6, full_reach);
+}
+
+/// The rounds of run_improvement().
+class ImprovementLoop {
+ public:
+  ImprovementLoop(Engine& engine, const ImprovementPlan& plan)
+      : engine_(engine),
+        mesh_(engine.mesh()),
+        plan_(plan),
+        bounds_{quality(plan.angle), quality(plan.leave_surface_angle)} {
+    BlockRules& rules = engine_.rules;
+    rules.objective.kind = Objective::Kind::shape;
+    rules.accept_worse = 0;
+    rules.min_tets = plan_.min_tets;
+    rules.max_tets = plan_.max_tets;
+    rules.projection = &engine_.projection();
+  }
+
+  /// The number of rounds.
+  int run() {
+    engine_.compact();
+    for (int sweep = 0; sweep < plan_.fit_sweeps; ++sweep) {
+      Engine::Round round(engine_, plan_.kind);
+      engine_.fit_interfaces(bounds_.poor);
+      round.finish();
+    }
+    set_surgery_rules();
+    min_poor_ = 4 * mesh_.live_tets();
+    int i = 0;
+    for (; i < plan_.max_rounds; ++i) {
+      std::vector<ListedTet> poor = engine_.poor_tets(bounds_.poor);
+      if (poor.empty() || !worth_a_round(poor)) break;
+      run_round(std::move(poor));
+      if (engine_.progress()) engine_.progress()->update(static_cast<double>(i + 1) / plan_.max_rounds);
+    }
+    return i;
+  }
+
+ private:
+  float quality(double angle) const {
+    return static_cast<float>(std::min(0.99, shape_quality_bound(engine_.rules.objective.shape, angle)));
+  }
+
+  /// Rules of collapses that cut off an ear and of edge removal. They sweep much volume though the surface
+  /// hardly moves, so that the distance from the reference bounds them instead of E.
+  void set_surgery_rules() {
+    surgery_ = engine_.rules;
+    const double edge = engine_.rules.objective.quality.ideal_edge;
+    surgery_.max_error = std::max(engine_.rules.max_error, surgery_error_edges * edge);
+    surgery_.leave_surface = true;
+    surgery_.max_targets = surgery_targets;
+    surgery_.max_distance = surgery_distance_edges * edge;
+  }
+
+  /// Judges the round before by what it left: false where the last ones gained too little. Decides whether
+  /// the next one also moves the points around the poor tets, and whether it resorts to perturbation.
+  bool worth_a_round(const std::vector<ListedTet>& poor) {
+    const bool bad = std::any_of(poor.begin(), poor.end(), [&](const ListedTet& t) {
+      return mesh_.tet(t.tet).quality < bounds_.leave_surface;
+    });
+    stuck_ = static_cast<double>(poor.size()) > stuck_above * static_cast<double>(min_poor_);
+    const double gain = 1 - static_cast<double>(poor.size()) / static_cast<double>(min_poor_);
+    // Where a large share is poor, the interfaces are the reason, and more rounds would take long for little.
+    const bool many = static_cast<double>(poor.size()) > many_poor * static_cast<double>(mesh_.live_tets());
+    idle_ = gain >= (many ? min_gain_of_many : min_round_gain) ? 0 : idle_ + 1;
+    if (idle_ >= ((bad && !many) ? max_idle_rounds : max_idle_rounds_when_good)) return false;
+    min_poor_ = std::min(min_poor_, poor.size());
+    last_resort_ = stuck_ && idle_ > 0;
+    return true;
+  }
+
+  void run_round(std::vector<ListedTet> poor) {
+    Engine::Round round(engine_, plan_.kind);
+    IterationReport& it = round.report();
+    it.cutoff = plan_.angle;
+    it.percent = 100 * static_cast<double>(poor.size()) / static_cast<double>(it.tets_before);
+    if (2 * mesh_.live_tets() > plan_.target_tets + plan_.max_tets) make_room(poor);
+    if (last_resort_) perturb(poor);
+    if (stuck_) move_points_around(poor);
+    std::vector<ListedTet> tries = worth_trying(poor);
+    tried_ = std::move(poor);
+    mesh_.begin_round();
+    std::sort(tries.begin(), tries.end(), [&](const ListedTet& a, const ListedTet& b) {
+      const float qa = mesh_.tet(a.tet).quality, qb = mesh_.tet(b.tet).quality;
+      return qa != qb ? qa < qb : a.tet < b.tet;
+    });
+    engine_.runner().tets_in_order(tries, [&](Workspace& ws, const ListedTet& item) {
+      return improve_tet(ws, engine_.rules, surgery_, last_resort_, item, bounds_);
+    });
+    round.finish();
+  }
+
+  /// Makes room for insertions: collapses that leave only good tets, or better ones.
+  void make_room(const std::vector<ListedTet>& poor) {
+    BlockRules thinning = engine_.rules;
+    thinning.good_enough = bounds_.poor * thinning_margin;
+    thinning.min_tets = plan_.target_tets;
+    engine_.each_star(
+        plan_.local ? engine_.points_around(poor) : engine_.poor_points(1), Operation::collapse,
+        [&](Workspace& ws) { return collapse(ws, thinning); },
+        [&] { return mesh_.live_tets() <= plan_.target_tets; });
+  }
+
+  void perturb(const std::vector<ListedTet>& poor) {
+    BlockRules perturbation = surgery_;
+    perturbation.good_enough = bounds_.poor;
+    engine_.runner().tets(
+        engine_.tets_around(poor),
+        [&](Workspace& ws, const ListedTet& item) { return perturb_tet(ws, perturbation, item); },
+        [] { return false; });
+  }
+
+  void move_points_around(const std::vector<ListedTet>& poor) {
+    std::vector<Index> around = engine_.points_around(poor);
+    if (!last_resort_) std::erase_if(around, [&](Index p) { return !mesh_.touched(p); });
+    engine_.each_star(around, Operation::optimise,
+                      [&](Workspace& ws) { return optimise(ws, engine_.rules); });
+  }
+
+  /// Tets that the last round tried come again only where something around them changed, or where this round
+  /// allows more.
+  std::vector<ListedTet> worth_trying(const std::vector<ListedTet>& poor) const {
+    if (last_resort_) return poor;
+    std::vector<ListedTet> tries;
+    const auto before = [](const ListedTet& a, const ListedTet& b) { return a.tet < b.tet; };
+    for (const ListedTet& t : poor) {
+      const auto known = std::lower_bound(tried_.begin(), tried_.end(), t, before);
+      if (known == tried_.end() || known->tet != t.tet || known->points != t.points ||
+          std::any_of(t.points.begin(), t.points.end(), [&](Index p) { return mesh_.touched(p); }))
+        tries.push_back(t);
+    }
+    return tries;
+  }
+
+  Engine& engine_;
+  EditableMesh& mesh_;
+  const ImprovementPlan& plan_;
+  Bounds bounds_;
+  BlockRules surgery_;
+  std::vector<ListedTet> tried_;  ///< in the last round, by number
+  std::size_t min_poor_ = 0;      ///< the minimum of poor tets after a round
+  int idle_ = 0;                  ///< rounds in a row without gain
+  bool stuck_ = false, last_resort_ = false;
+};
+
+}  // namespace
+
+int run_improvement(Engine& engine, const ImprovementPlan& plan) {
+  return ImprovementLoop(engine, plan).run();
+}
+
+}  // namespace tetwright

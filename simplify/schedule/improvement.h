@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+
+#include "simplify/schedule/engine.h"
+
+namespace tetwright {
+
+struct ImprovementPlan {
+  const char* kind;  ///< of its rounds in the report
+  /// Steradians: tets whose shape is worse than shape_quality_bound() of it are worked on.
+  double angle;
+  /// Likewise: for tets worse than this, points of the surface may leave it a little.
+  double leave_surface_angle;
+  std::size_t target_tets, min_tets, max_tets;
+  bool local;  ///< only near such tets: no room for insertions is made elsewhere
+  int max_rounds;
+  int fit_sweeps;  ///< of fit_to_surface() over all interface points, before the rounds
+};
+
+/// Improves the shapes of the worst tets, worst first (README.md, Improvement). Returns the number of rounds
+/// it took. Throws Interrupted.
+int run_improvement(Engine& engine, const ImprovementPlan& plan);
+
+}  // namespace tetwright

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "simplify/schedule/engine.h"
+#include "simplify/schedule/options.h"
+
+namespace tetwright {
+
+/// Figure 3 of Cutler, Dorsey & McMillan 2004 (README.md, The paper's schedule). Throws Interrupted.
+void run_paper_schedule(Engine& engine, const SimplifyOptions& options);
+
+}  // namespace tetwright

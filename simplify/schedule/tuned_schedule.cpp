@@ -1,0 +1,125 @@
+#include "simplify/schedule/tuned_schedule.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/portable_math.h"
+#include "simplify/operations/collapse.h"
+#include "simplify/operations/edge_removal.h"
+#include "simplify/operations/face_removal.h"
+#include "simplify/operations/smoothing.h"
+#include "simplify/schedule/schedule_constants.h"
+
+namespace tetwright {
+
+namespace {
+
+// Found by trying on scans (README.md, Schedule).
+constexpr double first_error_edges = 4;  ///< E at first, in ideal edges
+constexpr double error_growth = 1.3;     ///< E's factor after an iteration that removed too little
+constexpr double min_removed = 0.15;     ///< of the tets: less than that is too little
+constexpr double flip_percent = 40;      ///< of the tets, at most, that flips and smoothing take up
+constexpr double swaps_below = 3;        ///< times the target: above it flips and smoothing are wasted work
+/// What annealing must leave of the worst Quality^3. Below it (0: anything positive) the loop ends with
+/// 5-10 % of tets under 0.1 sr instead of 2-3 %; larger ones need a larger E to reach the target, which costs
+/// surface and volume.
+constexpr float annealing_floor = 0.1f;
+/// TetQuality::needle_angle, steradians: without it thin layers of tiny tets end in needles of no angle at
+/// all.
+constexpr double needle_angle = 0.02;
+/// E over the distance that a surface may move at a point that goes. On five scans (10,000 tets) the largest
+/// distance ended at 1.3-2.2 % of the diagonal without it, at 1.0-1.7 % with it; larger ones drive E up
+/// instead.
+constexpr double distance_weight = 50;
+/// VolumeLedger::strain() from which on the loop fits surfaces.
+constexpr double fit_above_strain = 0.6;
+
+void collapse_block(Engine& engine, float limit, std::size_t target) {
+  EditableMesh& mesh = engine.mesh();
+  engine.each_star(
+      engine.poor_points(limit), Operation::collapse,
+      [&](Workspace& ws) { return collapse(ws, engine.rules); }, [&] { return mesh.live_tets() <= target; });
+}
+
+/// Flips and smoothing of what is still poor.
+void flip_and_smooth_block(Engine& engine, float limit) {
+  EditableMesh& mesh = engine.mesh();
+  engine.runner().tets(
+      engine.poor_tets(limit),
+      [&](Workspace& ws, const ListedTet& item) {
+        if (const Outcome o = validate(ws, item); o != Outcome::done) return o;
+        // The tet may have been improved by a neighbour's operation since it was listed.
+        if (mesh.tet(item.tet).quality > limit) return Outcome::stale;
+        for (int f = 0; f < 4; ++f) {
+          const Outcome o = remove_face(ws, engine.rules, item.tet, f, basic_reach);
+          if (o == Outcome::done || o == Outcome::lock_taken) return o;
+        }
+        for (int e = 0; e < 6; ++e) {
+          const Outcome o = remove_edge(ws, engine.rules, item.tet, e, basic_reach);
+          if (o == Outcome::done || o == Outcome::lock_taken) return o;
+        }
+        for (Index p : item.points) {
+          Outcome o = ws.star.gather(mesh, p, ws.points);
+          if (o == Outcome::done) o = smooth(ws, engine.rules);
+          ws.counts.add(Operation::smooth, o);
+          if (o == Outcome::done || o == Outcome::lock_taken) return o;
+        }
+        return Outcome::no_candidate;
+      },
+      [] { return false; });
+}
+
+}  // namespace
+
+void run_tuned_schedule(Engine& engine, const SimplifyOptions& options) {
+  EditableMesh& mesh = engine.mesh();
+  BlockRules& rules = engine.rules;
+  const auto target = static_cast<double>(options.target_tets);
+  const std::size_t loop_target = options.target_tets;
+  const double log_first = portable_log(std::max(static_cast<double>(mesh.live_tets()) / target, 1 + 1e-9));
+  const double max_error = max_useful_error * std::max(1.0, options.gamma / 10);
+  rules.objective.kind = Objective::Kind::paper;
+  rules.objective.quality.needle_angle = needle_angle;
+  rules.max_error = first_error_edges * rules.objective.quality.ideal_edge;
+  rules.annealing_floor = annealing_floor;
+  rules.distance_weight = distance_weight;
+  // Rounded up: for small targets the slack is less than one tet.
+  rules.min_tets = static_cast<std::size_t>(std::ceil(target * (1 - closing_slack)));
+  engine.compact();
+  double percent = percent_step;
+  int idle = 0;
+  for (int i = 0; i < options.max_iterations && mesh.live_tets() > loop_target; ++i) {
+    engine.compact_if_sparse();
+    Engine::Round round(engine, "simplify");
+    IterationReport& it = round.report();
+    it.percent = percent;
+    const double log_now = portable_log(static_cast<double>(it.tets_before) / target);
+    rules.accept_worse = first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
+    const float limit = engine.cutoff(percent);
+    it.cutoff = portable_cbrt(limit);
+    collapse_block(engine, limit, loop_target);
+    const std::size_t collapsed = mesh.live_tets();
+    const double removed = 1 - static_cast<double>(collapsed) / static_cast<double>(it.tets_before);
+    // Where collapses stall, other connectivity and places may let them go on.
+    if (collapsed > loop_target &&
+        (static_cast<double>(collapsed) < swaps_below * target || (removed < min_removed && percent >= 100)))
+      flip_and_smooth_block(engine, removed < min_removed && percent >= 100
+                                        ? limit
+                                        : std::min(limit, engine.cutoff(flip_percent)));
+    // Where a body has lost much of its volume, its surface is put back to the middle of what it stands for.
+    if (collapsed > loop_target && engine.ledger().strain() > fit_above_strain) engine.fit_interfaces(1);
+    round.finish();
+    // A larger E helps as long as E is what refuses.
+    const bool error_refuses =
+        rules.max_error < max_error &&
+        10 * it.counts.of(Operation::collapse, Outcome::surface_error) > it.counts.tried(Operation::collapse);
+    if (removed < min_removed) rules.max_error = std::min(max_error, error_growth * rules.max_error);
+    idle = removed < idle_below && percent >= 100 && !error_refuses ? idle + 1 : 0;
+    if (idle == max_idle_iterations) break;
+    percent = std::min(100.0, percent + percent_step);
+    if (engine.progress()) engine.progress()->update(1 - log_now / log_first);
+  }
+  rules.accept_worse = 0;
+}
+
+}  // namespace tetwright

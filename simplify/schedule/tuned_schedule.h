@@ -1,0 +1,12 @@
+#pragma once
+
+#include "simplify/schedule/engine.h"
+#include "simplify/schedule/options.h"
+
+namespace tetwright {
+
+/// The block loop with the tuned schedule (README.md, The tuned schedule), down to the target. Throws
+/// Interrupted.
+void run_tuned_schedule(Engine& engine, const SimplifyOptions& options);
+
+}  // namespace tetwright

@@ -1,0 +1,132 @@
+// Fuzzes the operations of the simplifier: the input's bytes choose a mesh of several materials, then tets
+// and operations on them. After each operation that changed the mesh it must be valid, with the topology it
+// began with.
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "common/error.h"
+#include "common/mesh/mesh_check.h"
+#include "common/mesh/topology.h"
+#include "simplify/operations/collapse.h"
+#include "simplify/operations/edge_removal.h"
+#include "simplify/operations/face_removal.h"
+#include "simplify/operations/insertion.h"
+#include "simplify/operations/smoothing.h"
+#include "tests/simplify/meshes.h"
+
+namespace {
+
+using namespace tetwright;
+
+/// The bytes of the input, one after the other; 0 at its end.
+class Bytes {
+ public:
+  Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
+  bool empty() const { return size_ == 0; }
+  std::uint32_t below(std::uint32_t n) {
+    if (empty()) return 0;
+    --size_;
+    return *data_++ % n;
+  }
+
+ private:
+  const std::uint8_t* data_;
+  std::size_t size_;
+};
+
+TetMesh choose_mesh(Bytes& bytes) {
+  const std::uint32_t kind = bytes.below(4);
+  TetMesh mesh = grid_mesh({3, 3, 3}, [kind](int x, int y, int z) -> std::optional<MaterialTag> {
+    if (kind == 1) return x < 2 ? 1 : 2;
+    if (kind == 2) return z < 1 ? 1 : x < 2 ? 2 : y < 2 ? 3 : 4;
+    if (kind == 3 && x == 1 && y == 1 && z == 1) return {};
+    return 1;
+  });
+  jitter(mesh, bytes.below(256), 0.3);
+  return mesh;
+}
+
+/// The living tets as a plain mesh.
+TetMesh snapshot(const EditableMesh& mesh) {
+  TetMesh out;
+  std::vector<Index> number(mesh.point_slots(), no_index);
+  for (Index t = 0; t < mesh.tet_slots(); ++t) {
+    if (mesh.dead(t)) continue;
+    Tet ids = mesh.tet(t).points;
+    for (Index& p : ids) {
+      if (number[p] == no_index) {
+        number[p] = static_cast<Index>(out.points.size());
+        out.points.push_back(mesh.space().to_input(mesh.position(p)));
+      }
+      p = number[p];
+    }
+    out.tets.push_back(ids);
+    out.materials.push_back(mesh.tag(mesh.tet(t).region));
+  }
+  return out;
+}
+
+Outcome operate(Workspace& ws, BlockRules rules, Bytes& bytes, Index t) {
+  rules.accept_worse = bytes.below(2);
+  const FlipReach reach = bytes.below(2) ? full_reach : basic_reach;
+  const auto place = bytes.below(2) ? InsertionPlace::best : InsertionPlace::centre;
+  const Tet points = ws.mesh.tet(t).points;
+  for (Index p : points) TETWRIGHT_CHECK(ws.points.try_lock(p));
+  const auto gather = [&] {
+    return ws.star.gather(ws.mesh, points[bytes.below(4)], ws.points) == Outcome::done;
+  };
+  switch (bytes.below(8)) {
+    case 0:
+      return remove_edge(ws, rules, t, static_cast<int>(bytes.below(6)), reach);
+    case 1:
+      return remove_face(ws, rules, t, static_cast<int>(bytes.below(4)), reach);
+    case 2:
+      return gather() ? collapse(ws, rules) : Outcome::no_candidate;
+    case 3:
+      return gather() ? smooth(ws, rules) : Outcome::no_candidate;
+    case 4:
+      return gather() ? optimise(ws, rules) : Outcome::no_candidate;
+    case 5:
+      return insert_in_tet(ws, rules, t, place);
+    case 6:
+      return insert_in_face(ws, rules, t, static_cast<int>(bytes.below(4)), place);
+    default:
+      return insert_in_edge(ws, rules, t, static_cast<int>(bytes.below(6)), place, true);
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  constexpr int max_operations = 100;
+  Bytes bytes(data, size);
+  TetMesh input = choose_mesh(bytes);
+  const Topology before = topology(input);
+  EditableMesh mesh(std::move(input), "fuzz");
+  mesh.compact(2048, 512);
+  SurfaceGrid grid;
+  grid.build(mesh, 0, 512);
+  VolumeLedger ledger;
+  BlockRules rules;
+  rules.objective.quality = TetQuality::for_target(mesh.total_volume(), 1);
+  rules.objective.kind = bytes.below(2) ? Objective::Kind::shape : Objective::Kind::paper;
+  rules.max_error = 1e9;
+  rules.max_tets = 2 * mesh.live_tets();
+  for (Index t = 0; t < mesh.tet_slots(); ++t)
+    if (!mesh.dead(t)) mesh.set_quality(t, quality_of(mesh, rules, mesh.tet(t).points));
+  Workspace ws(mesh, grid, ledger);
+  for (int i = 0; i < max_operations && !bytes.empty(); ++i) {
+    const Index t = (bytes.below(256) << 8 | bytes.below(256)) % static_cast<Index>(mesh.tet_slots());
+    if (mesh.dead(t)) continue;
+    const Outcome o = operate(ws, rules, bytes, t);
+    TETWRIGHT_CHECK(ws.cells.count() == 0);
+    ws.release();
+    if (o != Outcome::done) continue;
+    TETWRIGHT_CHECK(mesh.links_consistent());
+    const TetMesh now = snapshot(mesh);
+    TETWRIGHT_CHECK(check_mesh(now).empty());
+    TETWRIGHT_CHECK(topology_differences(before, topology(now)).empty());
+  }
+  return 0;
+}

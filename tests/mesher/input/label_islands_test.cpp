@@ -1,0 +1,251 @@
+#include "mesher/input/label_islands.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "common/parallel/parallel.h"
+#include "common/random.h"
+
+namespace tetwright::label_islands_test {
+namespace {
+
+using Size = std::array<int, 3>;
+using Regions = std::vector<RegionIndex>;
+
+Regions merged(Regions regions, const Size& size, std::size_t min_voxels) {
+  merge_small_islands(regions, size, min_voxels, nullptr);
+  return regions;
+}
+
+/// One row of voxels, a digit each.
+Regions row(const std::string& digits) {
+  Regions regions;
+  for (char c : digits) regions.push_back(static_cast<RegionIndex>(c - '0'));
+  return regions;
+}
+std::string merged_row(const std::string& digits, std::size_t min_voxels) {
+  std::string text;
+  for (RegionIndex r : merged(row(digits), {static_cast<int>(digits.size()), 1, 1}, min_voxels))
+    text += static_cast<char>('0' + r);
+  return text;
+}
+/// A plane of 3 x 3 voxels.
+std::string merged_plane(const std::string& nine, std::size_t min_voxels) {
+  std::string text;
+  for (RegionIndex r : merged(row(nine), {3, 3, 1}, min_voxels)) text += static_cast<char>('0' + r);
+  return text;
+}
+
+/// The rules taken literally: all islands sought again after each merge.
+class Plain {
+ public:
+  Plain(Regions regions, const Size& size) : regions_(std::move(regions)), size_(size) {}
+
+  Regions merge(std::size_t min_voxels) {
+    for (;;) {
+      std::vector<std::vector<std::size_t>> islands = find();
+      // By their lowest voxels so far; equal sizes stay in that order.
+      std::stable_sort(islands.begin(), islands.end(),
+                       [](const auto& a, const auto& b) { return a.size() < b.size(); });
+      if (islands.back().size() < min_voxels || islands.front().size() >= min_voxels) return regions_;
+      std::map<RegionIndex, int> faces;
+      for (std::size_t v : islands.front())
+        for (std::size_t n : neighbours(v))
+          if (regions_[n] != regions_[v]) ++faces[regions_[n]];
+      const auto best = std::max_element(faces.begin(), faces.end(),
+                                         [](const auto& a, const auto& b) { return a.second < b.second; });
+      for (std::size_t v : islands.front()) regions_[v] = best->first;
+    }
+  }
+
+  std::vector<std::vector<std::size_t>> find() const {
+    std::vector<std::vector<std::size_t>> islands;
+    std::vector<char> seen(regions_.size(), 0);
+    for (std::size_t start = 0; start < regions_.size(); ++start) {
+      if (seen[start]) continue;
+      seen[start] = 1;
+      std::vector<std::size_t> island{start};
+      for (std::size_t i = 0; i < island.size(); ++i)
+        for (std::size_t n : neighbours(island[i]))
+          if (!seen[n] && regions_[n] == regions_[start]) {
+            seen[n] = 1;
+            island.push_back(n);
+          }
+      islands.push_back(island);
+    }
+    return islands;
+  }
+
+ private:
+  std::vector<std::size_t> neighbours(std::size_t v) const {
+    std::vector<std::size_t> result;
+    std::size_t step = 1, rest = v;
+    for (int n : size_) {
+      const std::size_t count = static_cast<std::size_t>(n), at = rest % count;
+      if (at > 0) result.push_back(v - step);
+      if (at + 1 < count) result.push_back(v + step);
+      rest /= count;
+      step *= count;
+    }
+    return result;
+  }
+
+  Regions regions_;
+  Size size_;
+};
+
+TEST(LabelIslands, TheSameAsByTheRulesTakenLiterally) {
+  Random random(1);
+  std::size_t changed = 0;
+  for (int round = 0; round < 1500; ++round) {
+    const Size size{1 + static_cast<int>(random.below(7)), 1 + static_cast<int>(random.below(7)),
+                    1 + static_cast<int>(random.below(7))};
+    const std::uint32_t labels = 2 + random.below(4), same = random.below(4);
+    Regions regions(static_cast<std::size_t>(size[0] * size[1] * size[2]));
+    for (std::size_t i = 0; i < regions.size(); ++i)
+      regions[i] =
+          i > 0 && random.below(4) < same ? regions[i - 1] : static_cast<RegionIndex>(random.below(labels));
+    const std::size_t min_voxels = 1 + random.below(14);
+    SCOPED_TRACE("round " + std::to_string(round));
+    Plain plain(regions, size);
+    const std::vector<std::vector<std::size_t>> islands = plain.find();
+    const Regions expected = plain.merge(min_voxels);
+    Regions result = regions;
+    const IslandMerging merging = merge_small_islands(result, size, min_voxels, nullptr);
+    ASSERT_EQ(result, expected);
+    changed += result != regions;
+
+    // What it says was done is what was done.
+    std::map<Index, MergedIsland> merged;
+    for (const MergedIsland& m : merging.merged) merged[m.voxel] = m;
+    ASSERT_EQ(merged.size(), merging.merged.size());
+    std::size_t largest = 0;
+    for (const std::vector<std::size_t>& island : islands) {
+      largest = std::max(largest, island.size());
+      const auto found = merged.find(static_cast<Index>(island[0]));
+      ASSERT_EQ(found != merged.end(), result[island[0]] != regions[island[0]]);
+      if (found == merged.end()) continue;
+      EXPECT_EQ(found->second.voxels, island.size());
+      EXPECT_EQ(found->second.from, regions[island[0]]);
+      EXPECT_EQ(found->second.to, result[island[0]]);
+      merged.erase(found);
+    }
+    EXPECT_TRUE(merged.empty());
+    EXPECT_EQ(merging.islands, min_voxels > 1 ? islands.size() : 0);
+    EXPECT_EQ(merging.none_reaches, min_voxels > 1 && largest < min_voxels);
+  }
+  EXPECT_GT(changed, 500u);
+}
+
+TEST(LabelIslands, JoinWhatTheyShareMostFacesWith) {
+  EXPECT_EQ(merged_plane("111"
+                         "121"
+                         "333",
+                         2),
+            "111111333");
+  EXPECT_EQ(merged_plane("313"
+                         "323"
+                         "111",
+                         2)
+                .substr(3, 3),
+            "333");
+}
+
+TEST(LabelIslands, BetweenEqualNeighboursTheSmallestRegionIsJoined) {
+  EXPECT_EQ(merged_row("3331222", 2), "3332222");
+  EXPECT_EQ(merged_row("2221333", 2), "2222333");
+  EXPECT_EQ(merged_row("2221000", 2), "2220000");
+}
+
+TEST(LabelIslands, OfEqualIslandsThatWithTheLowestVoxelIsFirst) {
+  // The 1 joins the 2, which then is large enough; the other way round 2 would be gone.
+  EXPECT_EQ(merged_row("3331233", 2), "3332233");
+  // Here the 2 joins the 1.
+  EXPECT_EQ(merged_row("3332133", 2), "3331133");
+}
+
+TEST(LabelIslands, TheSmallestIsFirst) {
+  // The 2 joins the 1, which then is large enough; before it, the 1 would have joined the 0.
+  EXPECT_EQ(merged_row("00001123333", 3), "00001113333");
+}
+
+TEST(LabelIslands, ChainsOfMerges) {
+  // The 3 joins the 2, both the 1, all of them the 4, as each is still too small.
+  EXPECT_EQ(merged_row("44444112300000", 1), "44444112300000");
+  EXPECT_EQ(merged_row("5555552311155555", 4), "5555551111155555");
+  EXPECT_EQ(merged_row("9999991299999", 4), "9999999999999");
+  // One that joins two of a region makes them one, large enough.
+  EXPECT_EQ(merged_row("999991121199999", 5), "999991111199999");
+}
+
+TEST(LabelIslands, OutsideIsARegionLikeOthersAndBeyondTheVolumeIsNothing) {
+  EXPECT_EQ(merged_row("0111", 2), "1111");
+  EXPECT_EQ(merged_row("1101", 2), "1111");
+  EXPECT_EQ(merged_row("1000", 2), "0000");
+  // A corner has three faces beyond the volume, which don't count.
+  Regions corner(27, 1);
+  corner[0] = 2;
+  EXPECT_EQ(merged(corner, {3, 3, 3}, 2), Regions(27, 1));
+}
+
+TEST(LabelIslands, IslandsHangTogetherByFacesAlone) {
+  EXPECT_EQ(merged_plane("100"
+                         "010"
+                         "000",
+                         2),
+            "000000000");
+  // Neither do rows or planes follow each other.
+  EXPECT_EQ(merged_plane("001"
+                         "100"
+                         "000",
+                         2),
+            "000000000");
+  Regions planes(18, 0);
+  planes[8] = planes[9] = 1;
+  EXPECT_EQ(merged(planes, {3, 3, 2}, 2), Regions(18, 0));
+}
+
+TEST(LabelIslands, NothingIsMergedWhereNoIslandReachesTheNumber) {
+  for (const std::string text : {"0123", "1", "1111"}) {
+    Regions regions = row(text);
+    const Size size{static_cast<int>(text.size()), 1, 1};
+    const IslandMerging merging = merge_small_islands(regions, size, 5, nullptr);
+    EXPECT_EQ(regions, row(text));
+    EXPECT_TRUE(merging.none_reaches);
+    EXPECT_TRUE(merging.merged.empty());
+    EXPECT_EQ(merging.islands, std::set<char>(text.begin(), text.end()).size());
+  }
+  Regions regions = row("1121");
+  EXPECT_TRUE(merge_small_islands(regions, {4, 1, 1}, std::size_t{1} << 40, nullptr).none_reaches);
+}
+
+TEST(LabelIslands, TheSameForAnyNumberOfThreads) {
+  Random random(2);
+  const Size size{40, 30, 50};
+  Regions regions(60000);
+  for (std::size_t i = 0; i < regions.size(); ++i)
+    regions[i] = i > 1200 && random.below(3) ? regions[i - (random.below(2) ? 1 : 1200)]
+                                             : static_cast<RegionIndex>(random.below(5));
+  for (std::size_t min_voxels : {2u, 20u}) {
+    std::vector<Regions> results;
+    for (unsigned threads : {1u, 2u, 3u, 8u}) {
+      const ThreadLimit limit(threads);
+      results.push_back(merged(regions, size, min_voxels));
+      EXPECT_EQ(results.back(), results[0]) << threads;
+    }
+    EXPECT_NE(results[0], regions);
+  }
+}
+
+TEST(LabelIslands, CanBeInterrupted) {
+  Progress progress;
+  progress.cancel();
+  Regions regions = row("1121");
+  EXPECT_THROW(merge_small_islands(regions, {4, 1, 1}, 2, &progress), Interrupted);
+}
+
+}  // namespace
+}  // namespace tetwright::label_islands_test

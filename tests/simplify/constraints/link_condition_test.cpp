@@ -1,0 +1,123 @@
+#include "simplify/constraints/link_condition.h"
+
+#include <set>
+
+#include "common/mesh/mesh_faces.h"
+#include "common/mesh/topology.h"
+#include "simplify/operations/collapse.h"
+#include "tests/simplify/workbench.h"
+
+namespace tetwright::link_condition_test {
+namespace {
+
+using Tag = std::optional<MaterialTag>;
+
+/// The mesh with point a drawn onto b, whatever it does to the shapes: only who meets whom.
+TetMesh contracted(const EditableMesh& mesh, Index a, Index b) {
+  TetMesh out;
+  std::vector<Index> number(mesh.point_slots(), no_index);
+  for (Index t = 0; t < mesh.tet_slots(); ++t) {
+    if (mesh.dead(t)) continue;
+    Tet points = mesh.tet(t).points;
+    const bool has_b = std::find(points.begin(), points.end(), b) != points.end();
+    const auto at_a = std::find(points.begin(), points.end(), a);
+    if (at_a != points.end()) {
+      if (has_b) continue;
+      *at_a = b;
+    }
+    for (Index& p : points) {
+      if (number[p] == no_index) {
+        number[p] = static_cast<Index>(out.points.size());
+        out.points.push_back(mesh.position(p));
+      }
+      p = number[p];
+    }
+    out.tets.push_back(points);
+    out.materials.push_back(mesh.tag(mesh.tet(t).region));
+  }
+  return out;
+}
+
+TetMesh as_mesh(const EditableMesh& mesh) { return contracted(mesh, no_index, no_index); }
+
+bool manifold(const TetMesh& mesh) {
+  std::set<Tet> distinct;
+  for (Tet t : mesh.tets) {
+    std::sort(t.begin(), t.end());
+    if (!distinct.insert(t).second) return false;
+  }
+  for (const MeshFace& f : mesh_faces(mesh.tets, mesh.points.size()))
+    if (f.count > 2) return false;
+  return true;
+}
+
+// Small meshes with materials at random: whatever the condition lets pass must keep the signature of every
+// part.
+TEST(LinkCondition, WhatPassesKeepsTheTopology) {
+  int passed = 0, refused = 0, refused_rightly = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Random random(seed);
+    std::vector<int> tags(27);
+    for (int& tag : tags) tag = static_cast<int>(random.below(seed % 2 ? 2 : 3));
+    TetMesh mesh = grid_mesh({3, 3, 3}, [&](int x, int y, int z) {
+      return Tag(tags[static_cast<std::size_t>(x + 3 * y + 9 * z)]);
+    });
+    jitter(mesh, seed);
+    Workbench w(mesh);
+    // Coarse meshes are where links meet: first some collapses as they come.
+    w.rules.accept_worse = 1;
+    for (Index p : w.live_points()) {
+      w.star(p);
+      if (random.below(4)) collapse(*w.ws, w.rules);
+      w.ws->release();
+    }
+    const Topology before = topology(as_mesh(w.mesh));
+    for (Index a : w.live_points()) {
+      if (w.mesh.incident_tet(a) == no_index) continue;
+      const Star& star = w.star(a);
+      const int dimension = star.dimension();
+      if (dimension == 0) continue;
+      for (std::size_t b = 0; b < star.points.size(); ++b) {
+        if (star.edge_dimension(b) != dimension) continue;
+        const bool allowed = w.ws->link_condition.holds(w.mesh, star, b);
+        const TetMesh after = contracted(w.mesh, a, star.points[b]);
+        if (after.tets.empty()) {
+          EXPECT_FALSE(allowed);
+          continue;
+        }
+        const bool kept = manifold(after) && topology(after) == before;
+        if (allowed) {
+          ++passed;
+          EXPECT_TRUE(kept) << "seed " << seed << ", " << a << " onto " << star.points[b];
+        } else {
+          ++refused;
+          refused_rightly += !kept;
+        }
+      }
+    }
+  }
+  // Neither always yes nor always no.
+  EXPECT_GT(passed, 500);
+  EXPECT_GT(refused_rightly, 20);
+  // It may refuse more than it must, since it is sufficient and not necessary, but seldom.
+  EXPECT_LT(refused - refused_rightly, refused / 2) << refused;
+}
+
+// A tube three edges around: contracting one of them would pinch it off.
+TEST(LinkCondition, ASpanOverAHoleIsRefused) {
+  const auto ring = [](int x, int y, int) { return x == 1 && y == 1 ? Tag() : Tag(1); };
+  Workbench w(grid_mesh({3, 3, 1}, ring));
+  int allowed = 0;
+  for (Index a : w.live_points()) {
+    const Star& star = w.star(a);
+    for (std::size_t b = 0; b < star.points.size(); ++b)
+      if (star.edge_dimension(b) == star.dimension() && w.ws->link_condition.holds(w.mesh, star, b)) {
+        ++allowed;
+        EXPECT_EQ(topology(contracted(w.mesh, a, star.points[b])), topology(as_mesh(w.mesh)));
+      }
+  }
+  EXPECT_GT(allowed, 0);
+}
+
+}  // namespace
+}  // namespace tetwright::link_condition_test

@@ -1,0 +1,75 @@
+#include "simplify/constraints/surface_projection.h"
+
+#include "common/geometry/point_triangle.h"
+#include "tests/simplify/workbench.h"
+
+namespace tetwright::slide_test {
+namespace {
+
+TEST(NearestTree, FindsWhatASearchOfAllFinds) {
+  Random random(4);
+  const auto number = [&] { return 2 * random.uniform() - 1; };
+  std::vector<Vec3> points;
+  std::vector<NearestTree::Item> items;
+  for (Index i = 0; i < 500; ++i) {
+    const Vec3 c(number(), number(), number());
+    for (int k = 0; k < 3; ++k) points.push_back(c + 0.1 * Vec3(number(), number(), number()));
+    items.push_back({{3 * i, 3 * i + 1, i % 7 ? 3 * i + 2 : 3 * i + 1}, i % 3, 9});
+  }
+  const NearestTree tree(points, items);
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 p = 1.2 * Vec3(number(), number(), number());
+    const RegionId kind = static_cast<RegionId>(i % 3);
+    double best = 0.3;
+    for (const auto& item : items)
+      if (item.first == kind)
+        best = std::min(best, std::sqrt(squared_distance(p, points[item.corners[0]], points[item.corners[1]],
+                                                         points[item.corners[2]])));
+    const auto found = tree.nearest(p, 9, kind, 0.3);
+    ASSERT_EQ(found.has_value(), best < 0.3);
+    if (found) {
+      EXPECT_NEAR((*found - p).norm(), best, 1e-12);
+    }
+    EXPECT_FALSE(tree.nearest(p, 5, 6, 10));
+  }
+  EXPECT_FALSE(NearestTree().nearest({0, 0, 0}, 0, 0, 10));
+}
+
+TEST(SurfaceProjection, KnowsSurfacesByTheirMaterialsAndJunctionCurves) {
+  Workbench w(
+      grid_mesh({4, 4, 4}, [](int x, int, int) { return std::optional<MaterialTag>(x < 2 ? 1 : 2); }));
+  const SurfaceProjection projection(w.mesh, nullptr);
+  const double s = w.mesh.space().scale();
+  const auto at = [&](double x, double y, double z) { return w.mesh.space().to_working({x, y, z}); };
+  const auto interface = projection.onto_surface(at(1.7, 2.2, 2.1), 0, 1, s);
+  ASSERT_TRUE(interface);
+  EXPECT_NEAR((*interface - at(2, 2.2, 2.1)).norm(), 0, 1e-12);
+  const auto boundary = projection.onto_surface(at(1, 2.2, 0.3), 0, outside_id, s);
+  ASSERT_TRUE(boundary);
+  EXPECT_NEAR((*boundary - at(1, 2.2, 0)).norm(), 0, 1e-12);
+  EXPECT_FALSE(
+      projection.onto_surface(at(3, 2.2, 0.3), 0, outside_id, 0.5 * s));  // there it is the other's boundary
+  const auto curve = projection.onto_curve(at(2.1, 3, 0.2), s);
+  ASSERT_TRUE(curve);
+  EXPECT_NEAR((*curve - at(2, 3, 0)).norm(), 0, 1e-12);
+  EXPECT_FALSE(projection.onto_curve(at(2, 2, 2), s));
+}
+
+TEST(SurfaceProjection, KnowsWhereJunctionCurvesBranch) {
+  Workbench w(grid_mesh({4, 4, 4}, [](int x, int y, int z) {
+    return std::optional<MaterialTag>(z < 2 ? 1 : x < 2 ? 2 : y < 2 ? 3 : 4);
+  }));
+  const SurfaceProjection projection(w.mesh, nullptr);
+  const double s = w.mesh.space().scale();
+  const auto at = [&](double x, double y, double z) { return w.mesh.space().to_working({x, y, z}); };
+  const auto corner = projection.onto_corner(at(2.2, 1.9, 2.3), s);
+  ASSERT_TRUE(corner);
+  EXPECT_NEAR((*corner - at(2, 2, 2)).norm(), 0, 1e-12);
+  const auto on_boundary = projection.onto_corner(at(2.1, 2, 3.8), s);
+  ASSERT_TRUE(on_boundary);
+  EXPECT_NEAR((*on_boundary - at(2, 2, 4)).norm(), 0, 1e-12);
+  EXPECT_FALSE(projection.onto_corner(at(2, 0.9, 2), 0.5 * s));  // a curve alone
+}
+
+}  // namespace
+}  // namespace tetwright::slide_test

@@ -1,0 +1,113 @@
+#include "simplify/operations/smoothing.h"
+
+#include "tests/simplify/workbench.h"
+
+namespace tetwright::smoothing_test {
+namespace {
+
+using Tag = std::optional<MaterialTag>;
+
+TEST(Smoothing, BringsADisplacedInnerPointBack) {
+  TetMesh mesh = grid_mesh(2);
+  for (Vec3& p : mesh.points)
+    if (p == Vec3(1, 1, 1)) p = Vec3(1.3, 1.25, 1.2);
+  Workbench w(mesh);
+  const float before = w.star(w.at(1.3, 1.25, 1.2)).worst;
+  ASSERT_EQ(smooth(*w.ws, w.rules), Outcome::done);
+  const float after = w.star(w.at(1, 1, 1)).worst;  // the centroid of the cube's points
+  EXPECT_GT(after, before);
+  w.expect_sound();
+}
+
+TEST(Smoothing, SlidesOnTheBoundaryWithoutChangingTheVolume) {
+  for (auto* operation : {&smooth, &optimise}) {
+    TetMesh mesh = grid_mesh(4);
+    for (Vec3& p : mesh.points)
+      if (p == Vec3(2, 2, 4)) p = Vec3(2.4, 2.3, 4.25);
+    Workbench w(mesh);
+    const double volume = w.mesh.total_volume();
+    w.rules.objective.kind = Objective::Kind::shape;
+    const Index p = w.at(2.4, 2.3, 4.25);
+    for (const auto& t : w.star(p).tets) {
+      const Tet& v = w.mesh.tet(t.tet).points;
+      w.mesh.set_quality(t.tet, w.rules.objective(w.mesh.position(v[0]), w.mesh.position(v[1]),
+                                                  w.mesh.position(v[2]), w.mesh.position(v[3])));
+    }
+    const float before = w.star(p).worst;
+    ASSERT_EQ(operation(*w.ws, w.rules), Outcome::done);
+    EXPECT_GT(w.star(p).worst, before);
+    EXPECT_NEAR(w.mesh.total_volume(), volume, 1e-14);
+    w.expect_sound();
+  }
+}
+
+TEST(Smoothing, OptimisingBeatsTheCentroid) {
+  TetMesh mesh = grid_mesh(3);
+  jitter(mesh, 21, 0.6);
+  int better = 0, compared = 0;
+  for (Index p = 0; p < mesh.points.size(); ++p) {
+    float reached[2];
+    int i = 0;
+    for (auto* operation : {&smooth, &optimise}) {
+      Workbench w(mesh);
+      w.star(p);
+      operation(*w.ws, w.rules);
+      reached[i++] = w.star(p).worst;
+      w.expect_sound();
+    }
+    better += reached[1] >= reached[0];
+    ++compared;
+  }
+  EXPECT_GT(better, compared * 3 / 4);
+}
+
+TEST(Smoothing, ACornerStays) {
+  Workbench w(grid_mesh({4, 4, 4}, [](int x, int y, int z) {
+    return Tag(z < 2 ? 1 : x < 2 ? 2 : y < 2 ? 3 : 4);
+  }));
+  w.star(w.at(2, 2, 2));
+  EXPECT_EQ(smooth(*w.ws, w.rules), Outcome::material_rule);
+  EXPECT_EQ(optimise(*w.ws, w.rules), Outcome::material_rule);
+}
+
+TEST(Smoothing, ACornerMayLeaveItsPlaceALittleWhereThatIsAsked) {
+  const auto material = [](int x, int y, int z) { return Tag(z < 2 ? 1 : x < 2 ? 2 : y < 2 ? 3 : 4); };
+  TetMesh mesh = grid_mesh({4, 4, 4}, material);
+  for (Vec3& p : mesh.points)
+    if (p == Vec3(2, 2, 2)) p = Vec3(2.5, 2.45, 2.4);
+  Workbench w(mesh);
+  const SurfaceProjection projection(w.mesh, nullptr);
+  w.rules.projection = &projection;
+  w.rules.leave_surface = true;
+  w.rules.max_distance = 0.2 * w.mesh.space().scale();
+  const Index p = w.at(2.5, 2.45, 2.4);
+  float worst = w.star(p).worst;
+  for (int k = 0; k < 10; ++k) {
+    w.star(p);
+    if (optimise(*w.ws, w.rules) != Outcome::done) break;
+    EXPECT_GT(w.star(p).worst, worst);
+    worst = w.star(p).worst;
+  }
+  const double moved = (w.mesh.space().to_input(w.mesh.position(p)) - Vec3(2.5, 2.45, 2.4)).norm();
+  EXPECT_GT(moved, 0.1);
+  EXPECT_LE(moved, 0.2 + 1e-9);  // from where it was at first, however often it moves
+  w.expect_sound();
+}
+
+TEST(Smoothing, AJunctionPointStaysOnAStraightCurve) {
+  TetMesh mesh = grid_mesh({4, 4, 4}, [](int x, int, int) { return Tag(x < 2 ? 1 : 2); });
+  for (Vec3& p : mesh.points)
+    if (p == Vec3(2, 2, 0)) p = Vec3(2, 2.4, 0);
+  Workbench w(mesh);
+  const Index p = w.at(2, 2.4, 0);
+  w.star(p);
+  ASSERT_EQ(optimise(*w.ws, w.rules), Outcome::done);
+  const Vec3 now = w.mesh.space().to_input(w.mesh.position(p));
+  EXPECT_NEAR(now.x(), 2, 1e-12);
+  EXPECT_NEAR(now.z(), 0, 1e-12);
+  EXPECT_LT(now.y(), 2.4);
+  w.expect_sound();
+}
+
+}  // namespace
+}  // namespace tetwright::smoothing_test

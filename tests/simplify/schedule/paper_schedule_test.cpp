@@ -1,0 +1,56 @@
+#include <gtest/gtest.h>
+
+#include "common/mesh/mesh_check.h"
+#include "common/mesh/mesh_statistics.h"
+#include "common/mesh/topology.h"
+#include "common/parallel/parallel.h"
+#include "simplify/simplify.h"
+#include "tests/simplify/meshes.h"
+
+namespace tetwright::paper_schedule_test {
+namespace {
+
+TEST(PaperSchedule, ReachesTheTargetByFigure3) {
+  TetMesh mesh =
+      grid_mesh({16, 16, 16}, [](int x, int, int) { return std::optional<MaterialTag>(x < 8 ? 1 : 2); });
+  jitter(mesh, 3);
+  SimplifyOptions options;
+  options.target_tets = 1000;
+  options.schedule = Schedule::paper;
+  SimplifyReport report;
+  const TetMesh after = simplify(mesh, options, &report);
+  EXPECT_NEAR(static_cast<double>(after.tets.size()), 1000, 10);
+  for (const MeshFinding& f : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(f);
+  for (const std::string& d : topology_differences(topology(mesh), topology(after))) ADD_FAILURE() << d;
+
+  // percent and E as Figure 3 has them, until the count is reached; no closing improvement.
+  ASSERT_GE(report.iterations.size(), 2u);
+  const double volume = 16.0 * 16 * 16;
+  EXPECT_NEAR(report.iterations[0].max_error, std::cbrt(volume / 1000), 0.02 * std::cbrt(volume / 1000));
+  bool reached = false;
+  for (std::size_t i = 0; i < report.iterations.size(); ++i) {
+    const IterationReport& it = report.iterations[i];
+    EXPECT_EQ(it.kind, "simplify");
+    EXPECT_EQ(it.percent, std::min(100.0, 10.0 * static_cast<double>(i + 1)));
+    if (i == 0) continue;
+    const IterationReport& last = report.iterations[i - 1];
+    reached |= last.tets_before <= 1000;
+    const double growth = reached ? 1 : std::max(1.0, std::cbrt(static_cast<double>(last.tets_after) / 1000));
+    EXPECT_NEAR(it.max_error, growth * last.max_error, 1e-9 * it.max_error);
+  }
+}
+
+TEST(PaperSchedule, OneThreadAndOneSeedGiveTheSameBytes) {
+  const ThreadLimit one(1);
+  TetMesh mesh = grid_mesh(8);
+  jitter(mesh, 4);
+  SimplifyOptions options;
+  options.target_tets = 300;
+  options.schedule = Schedule::paper;
+  const TetMesh a = simplify(mesh, options), b = simplify(mesh, options);
+  EXPECT_EQ(a.points, b.points);
+  EXPECT_EQ(a.tets, b.tets);
+}
+
+}  // namespace
+}  // namespace tetwright::paper_schedule_test

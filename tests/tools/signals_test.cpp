@@ -1,0 +1,230 @@
+// Signals at any time of a run: the status is 130, and the files that the program writes are either complete
+// or untouched. Whether a signal arrives in time is read from the state of the process, never assumed from a
+// delay.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <thread>
+
+#include "common/formats/formats.h"
+#include "tests/tools/program.h"
+
+extern char** environ;
+
+namespace tetwright::signals_test {
+namespace {
+
+constexpr int interrupted = 130;
+const std::string nothing_written = "tetwright: interrupted, nothing was written\n";
+
+void wait_a_moment() { std::this_thread::sleep_for(std::chrono::milliseconds(1)); }
+
+/// A run of the program that the test can watch and send signals to.
+class Process {
+ public:
+  Process(const std::vector<std::string>& arguments, const std::string& err) {
+    std::vector<std::string> words{TETWRIGHT_PROGRAM};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&files, 1, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&files, 2, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    EXPECT_EQ(posix_spawn(&id_, TETWRIGHT_PROGRAM, &files, nullptr, argv.data(), environ), 0);
+    posix_spawn_file_actions_destroy(&files);
+  }
+  ~Process() {
+    if (!status_) {
+      kill(id_, SIGKILL);
+      (void)wait();
+    }
+  }
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  void send(int signal) const { kill(id_, signal); }
+
+  /// A line of /proc/ID/status, without its name; empty if the process has ended.
+  std::string state(const std::string& name) const {
+    std::ifstream in("/proc/" + std::to_string(id_) + "/status");
+    for (std::string line; std::getline(in, line);)
+      if (line.starts_with(name + ":")) return line.substr(name.size() + 1);
+    return "";
+  }
+  /// True once main() has installed the handlers.
+  bool handles_signals() const {
+    const std::string caught = state("SigCgt");
+    if (caught.empty()) return false;
+    const unsigned long long set = std::stoull(caught, nullptr, 16);
+    return (set >> (SIGINT - 1) & 1) != 0 && (set >> (SIGTERM - 1) & 1) != 0;
+  }
+  void wait_for_main() {
+    while (!handles_signals() && !ended()) wait_a_moment();
+  }
+  bool ended() {
+    if (status_) return true;
+    int code = 0;
+    if (waitpid(id_, &code, WNOHANG) != id_) return false;
+    keep(code);
+    return true;
+  }
+  int wait() {
+    int code = 0;
+    if (!status_ && waitpid(id_, &code, 0) == id_) keep(code);
+    return status_.value_or(-1);
+  }
+  /// Stops the process and waits until it has stopped; false if it ended before.
+  bool stop() {
+    send(SIGSTOP);
+    while (!ended()) {
+      if (state("State").find('T') != std::string::npos) return true;
+      wait_a_moment();
+    }
+    return false;
+  }
+
+ private:
+  void keep(int code) { status_ = WIFEXITED(code) ? WEXITSTATUS(code) : 1000 + WTERMSIG(code); }
+
+  pid_t id_ = 0;
+  std::optional<int> status_;
+};
+
+std::size_t temporary_files(const std::string& folder) {
+  std::size_t n = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    n += entry.path().filename().string().starts_with(".tetwright-");
+  return n;
+}
+
+constexpr int ending_signals[] = {SIGINT, SIGTERM, SIGHUP};
+
+class Signals : public ::testing::Test {
+ protected:
+  std::string in(const std::string& name) const { return folder_ / name; }
+  std::string err() const { return contents(logs_ / "err"); }
+  Process start(const std::vector<std::string>& arguments) const { return {arguments, logs_ / "err"}; }
+
+  TemporaryFolder folder_, logs_;
+};
+
+TEST_F(Signals, BeforeTheWorkBegins) {
+  ASSERT_EQ(mkfifo(in("pipe.off").c_str(), 0600), 0);
+  ASSERT_EQ(mkfifo(in("pipe.msh").c_str(), 0600), 0);
+  for (const int signal : ending_signals)
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"mesh", in("pipe.off"), "-o", in("out.vtu")},
+          std::vector<std::string>{"check", in("pipe.msh")}}) {
+      // Nobody writes into the pipe: the program is waiting for it or has not opened it yet.
+      Process process = start(arguments);
+      process.wait_for_main();
+      process.send(signal);
+      EXPECT_EQ(process.wait(), interrupted) << signal;
+      EXPECT_EQ(err(), nothing_written);
+    }
+  EXPECT_EQ(folder_.entries(), 2u);
+}
+
+TEST_F(Signals, WhileAPipeIsRead) {
+  ASSERT_EQ(mkfifo(in("pipe.off").c_str(), 0600), 0);
+  for (const int signal : ending_signals) {
+    Process process = start({"mesh", in("pipe.off"), "-o", in("out.vtu")});
+    std::ofstream writer(in("pipe.off"));  // opens when the program does
+    writer << "OFF\n4 4 6\n" << std::flush;
+    process.send(signal);
+    EXPECT_EQ(process.wait(), interrupted) << signal;
+    EXPECT_EQ(err(), nothing_written);
+  }
+  EXPECT_EQ(folder_.entries(), 1u);
+}
+
+TEST_F(Signals, AnIgnoredHangUpStaysIgnored) {
+  ASSERT_EQ(run("sample sphere -o " + in("s.off")).status, 0);
+  ASSERT_EQ(mkfifo(in("pipe.off").c_str(), 0600), 0);
+  std::signal(SIGHUP, SIG_IGN);  // children inherit it
+  Process process = start({"mesh", in("pipe.off"), "-o", in("out.vtu"), "--resolution", "8"});
+  std::signal(SIGHUP, SIG_DFL);
+  process.wait_for_main();
+  process.send(SIGHUP);
+  std::ofstream(in("pipe.off")) << contents(in("s.off"));
+  EXPECT_EQ(process.wait(), 0) << err();
+}
+
+/// Signals at times spread over a whole run: all files are as before, or all are complete.
+TEST_F(Signals, AtManyMoments) {
+  ASSERT_EQ(run("sample torus -o " + in("torus.off")).status, 0);
+  const std::vector<std::string> call{
+      "mesh",        in("torus.off"), "-o",           in("out.msh"),  "--write-sdf",
+      in("out.vdb"), "--stats",       in("out.json"), "--resolution", "28"};
+  const auto begin = std::chrono::steady_clock::now();
+  Process whole = start(call);
+  ASSERT_EQ(whole.wait(), 0) << err();
+  const auto life = std::chrono::steady_clock::now() - begin;
+  const std::string mesh = contents(in("out.msh")), fields = contents(in("out.vdb"));
+  ASSERT_FALSE(mesh.empty());
+
+  constexpr int moments = 24;
+  int ended_early = 0;
+  for (int i = 0; i < moments; ++i) {
+    for (const char* name : {"out.msh", "out.vdb", "out.json"}) put(in(name), "old");
+    Process process = start(call);
+    process.wait_for_main();
+    std::this_thread::sleep_for(life * i / moments);
+    process.send(ending_signals[i % 3]);
+    const int status = process.wait();
+    ASSERT_TRUE(status == interrupted || status == 0) << status << err();
+    ended_early += status == interrupted && err() == nothing_written;
+    if (err() == nothing_written) {
+      for (const char* name : {"out.msh", "out.vdb", "out.json"}) ASSERT_EQ(contents(in(name)), "old") << i;
+    } else {
+      ASSERT_EQ(contents(in("out.msh")), mesh) << i;
+      ASSERT_EQ(contents(in("out.vdb")), fields) << i;
+      ASSERT_EQ(contents(in("out.json")).substr(0, 1), "{") << i;
+    }
+    ASSERT_EQ(folder_.entries(), 4u) << i;
+  }
+  EXPECT_GT(ended_early, 0);
+}
+
+/// The program is stopped as soon as it has begun to write, gets its signals, and goes on.
+TEST_F(Signals, WhileAFileIsWritten) {
+  ASSERT_EQ(run("sample sphere -o " + in("s.off")).status, 0);
+  for (const char* extension : {"vtu", "msh"})
+    for (const int signal : ending_signals) {
+      const std::string out = in(std::string("out.") + extension);
+      int caught = 0;
+      // The program may have finished its file before it is stopped: then it is run again.
+      for (int attempt = 0; attempt < 50 && caught == 0; ++attempt) {
+        put(out, "old");
+        Process process = start({"mesh", in("s.off"), "-o", out, "--resolution", "60"});
+        while (temporary_files(in("")) == 0 && !process.ended()) std::this_thread::yield();
+        if (process.stop()) {
+          const bool writing = temporary_files(in("")) == 1;
+          process.send(signal);
+          process.send(signal == SIGINT ? SIGTERM : SIGINT);  // a second one changes nothing
+          process.send(SIGCONT);
+          const int status = process.wait();
+          EXPECT_EQ(status, interrupted) << extension << " " << signal << " " << err();
+          if (err() == nothing_written) {
+            EXPECT_EQ(contents(out), "old");
+          }
+          caught += writing && err() == nothing_written;
+        }
+        EXPECT_EQ(temporary_files(in("")), 0u);
+      }
+      EXPECT_EQ(caught, 1) << extension << " " << signal;
+    }
+}
+
+}  // namespace
+}  // namespace tetwright::signals_test

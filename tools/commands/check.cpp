@@ -1,0 +1,84 @@
+#include <cstdio>
+
+#include "common/formats/atomic_file.h"
+#include "common/formats/formats.h"
+#include "common/mesh/interfaces.h"
+#include "common/mesh/topology.h"
+#include "tools/commands/command_run.h"
+#include "tools/commands/commands.h"
+#include "tools/commands/output_paths.h"
+#include "tools/report.h"
+#include "tools/stats_json.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Reads a mesh to be checked or compared with; `field_found` becomes true if it has --material-field.
+TetMesh read_checked(const std::string& file, CommandRun& run, bool& field_found) {
+  // Of two meshes one may have the field under the name `material`, if it was made from the other.
+  ReadTetMesh read = read_tet_mesh(file, {run.line.material_field, run.line.before.empty()});
+  field_found |= read.material_field == run.line.material_field;
+  if (file == run.line.inputs.front()) run.report.material_field = read.material_field;
+  report_dropped(read.dropped, file, run.report, !run.line.json);
+  return std::move(read.mesh);
+}
+
+/// Checks and measures the mesh. Its topology is left out where its arrays are unsound.
+CheckReport examine(TetMesh& mesh, CommandRun& run) {
+  CheckReport check;
+  check.findings = check_mesh(mesh);
+  for (const MeshFinding& f : check.findings) check.measurable &= f.fault > MeshFault::coordinates_not_finite;
+  if (!check.measurable) return check;
+  mesh.interfaces = find_interfaces(mesh);
+  run.report.result = mesh_statistics(mesh, run.line.min_solid_angle);
+  run.report.material_names = mesh.material_names;
+  return check;
+}
+
+void print_check(const CheckReport& check, const CommandRun& run) {
+  for (const MeshFinding& f : check.findings)
+    std::printf("%s: %s\n", is_warning(f.fault) ? "warning" : "error", mesh_finding_line(f).c_str());
+  if (check.measurable) {
+    print_report(run.line, run.report);
+    for (const std::string& l : check.topology) std::printf("%s\n", l.c_str());
+  }
+  if (check.topology_differences)
+    for (const std::string& d : *check.topology_differences) std::printf("topology differs: %s\n", d.c_str());
+  std::printf("%s\n", !check.valid()          ? "not valid"
+                      : check.topology_kept() ? "valid"
+                                              : "valid, but of another topology");
+}
+
+}  // namespace
+
+ExitStatus run_check(const CommandLine& line) {
+  CommandRun run(line);
+  check_stats_path(line);
+  bool field_found = false;
+  TetMesh mesh = read_checked(line.inputs.front(), run, field_found);
+  run.report.input_points = mesh.points.size();
+  run.report.seconds_read = run.since_start.seconds();
+  CheckReport check = examine(mesh, run);
+  if (!line.before.empty()) check.topology_differences.emplace();
+  if (check.measurable) {
+    const Topology signature = topology(mesh);
+    check.topology = topology_lines(signature);
+    if (!line.before.empty())
+      check.topology_differences =
+          topology_differences(topology(read_checked(line.before, run, field_found)), signature);
+  }
+  // The error of the reader lists the fields that there are.
+  if (!line.material_field.empty() && !field_found)
+    (void)read_tet_mesh(line.inputs.front(), {line.material_field});
+  run.report.seconds_total = run.since_start.seconds();
+  if (!line.stats.empty()) write_file_atomically(line.stats, stats_json(line, run.report) + "\n");
+  if (!line.quiet) print_notes(run.report);
+  if (line.json)
+    std::printf("%s\n", check_json(line, run.report, check).c_str());
+  else if (!line.quiet)
+    print_check(check, run);
+  return check.valid() && check.topology_kept() ? ExitStatus::done : ExitStatus::short_of_request;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,15 @@
+#include "tools/commands/commands.h"
+#include "tools/commands/output_paths.h"
+#include "tools/commands/result.h"
+#include "tools/commands/scan_input.h"
+
+namespace tetwright {
+
+ExitStatus run_mesh(const CommandLine& line) {
+  CommandRun run(line);
+  check_output_paths(line);
+  const DenseMesh dense = make_dense_mesh(read_scan(run), run);
+  return finish(dense.mesh, dense.field.get(), run);
+}
+
+}  // namespace tetwright

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "tools/command_line.h"
+
+namespace tetwright {
+
+/// Checks the files that a command will write, before any work: -o, --write-sdf and --stats have a known
+/// extension, can be written, and replace neither an input nor each other, not even through a link. Only
+/// `simplify` and `improve` may replace their input. Throws UsageError and OutputError.
+void check_output_paths(const CommandLine& line);
+
+/// The same for --stats alone; does nothing if it is not given.
+void check_stats_path(const CommandLine& line);
+
+}  // namespace tetwright

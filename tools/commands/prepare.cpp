@@ -1,0 +1,21 @@
+#include <utility>
+
+#include "mesher/mesher.h"
+#include "tools/commands/commands.h"
+#include "tools/commands/output_paths.h"
+#include "tools/commands/result.h"
+#include "tools/commands/scan_input.h"
+#include "tools/commands/simplification.h"
+
+namespace tetwright {
+
+ExitStatus run_prepare(const CommandLine& line) {
+  CommandRun run(line);
+  check_output_paths(line);
+  DenseMesh dense = make_dense_mesh(read_scan(run), run);
+  const TetMesh mesh = simplify_to_target(std::move(dense.mesh), &reference_surface(*dense.field), run);
+  if (line.write_sdf.empty()) dense.field.reset();  // memory that writing the mesh needs
+  return finish(mesh, dense.field.get(), run);
+}
+
+}  // namespace tetwright

@@ -1,0 +1,144 @@
+#include "tools/commands/result.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "common/formats/atomic_file.h"
+#include "common/formats/formats.h"
+#include "tools/limiting_rules.h"
+#include "tools/report.h"
+#include "tools/stats_json.h"
+
+namespace tetwright {
+
+namespace {
+
+// How far the count may be from what was asked, as a share of it.
+constexpr double target_slack = 0.01;
+constexpr double improve_slack = 0.05;
+
+/// Relative change of a material's volume above which it is reported.
+constexpr double volume_note_share = 0.02;
+
+/// Lost labels that are named one by one.
+constexpr std::size_t max_lost_named = 5;
+
+std::string number(double value) {
+  char buffer[40];
+  std::snprintf(buffer, sizeof buffer, "%.10g", value);
+  return buffer;
+}
+
+/// Reports materials whose volume the simplification has changed.
+void report_volumes(const TetMesh& mesh, const std::string& file, RunReport& report) {
+  for (const auto& [tag, before] : report.dense->materials) {
+    const auto after = report.result->materials.find(tag);
+    const double volume = after == report.result->materials.end() ? 0 : after->second.volume;
+    if (!(std::fabs(volume - before.volume) > volume_note_share * std::fabs(before.volume))) continue;
+    const auto name = mesh.material_names.find(tag);
+    report.findings.push_back(
+        {file,
+         {"material '" + (name != mesh.material_names.end() ? name->second : std::to_string(tag)) +
+              "' whose volume changed by " +
+              std::to_string(static_cast<int>(std::lround(100 * (volume / before.volume - 1)))) + " %",
+          1,
+          {},
+          "the schedule does not bound it"}});
+  }
+}
+
+void report_pinned_points(const std::string& file, RunReport& report) {
+  if (report.simplify->pinned_points > 0)
+    report.findings.push_back({file,
+                               {"points where parts touch without a common face",
+                                report.simplify->pinned_points,
+                                {},
+                                "kept as they are with all their tets"}});
+}
+
+std::string rules_behind_count(const CommandLine& line, const RunReport& report, double asked,
+                               double reached) {
+  if (line.command == Command::improve)
+    return "nothing: shapes were worth " + std::string(reached < asked ? "fewer" : "more") + " tets";
+  if (reached > asked) return rules_limiting_count(*report.simplify, line.max_iterations);
+  return static_cast<double>(report.dense->tets) < asked
+             ? "the dense mesh, which has too few tets; raise --resolution"
+             : "nothing: the closing improvement took tets away";
+}
+
+void find_count_and_shape_shortfall(const CommandLine& line, RunReport& report) {
+  const auto add = [&](const std::string& what, const std::string& option, double asked, double reached,
+                       const std::string& limited_by) {
+    report.shortfall.push_back({what, asked, reached, limited_by,
+                                "short of " + option + ": " + number(asked) + " was asked, " +
+                                    number(reached) + " reached; held back by: " + limited_by});
+  };
+  const bool improved = line.command == Command::improve;
+  const double asked = static_cast<double>(improved ? report.dense->tets : line.target_tets);
+  const double reached = static_cast<double>(report.result->tets);
+  if (std::fabs(reached - asked) > (improved ? improve_slack : target_slack) * asked)
+    add("target_tets", improved ? "about the same count" : "--target-tets", asked, reached,
+        rules_behind_count(line, report, asked, reached));
+  if (line.min_solid_angle_given && report.result->min_solid_angle < line.min_solid_angle)
+    add("min_solid_angle", "--min-solid-angle", line.min_solid_angle, report.result->min_solid_angle,
+        rules_limiting_shapes(*report.simplify));
+}
+
+/// Labels that were to be meshed and are not in the mesh.
+void find_lost_labels(const CommandLine& line, RunReport& report) {
+  if (!report.volume || report.volume->lost.empty()) return;
+  const std::vector<LostLabel>& lost = report.volume->lost;
+  const std::size_t kept = report.volume->labels.size(), all = kept + lost.size();
+  std::string names;
+  for (std::size_t i = 0; i < std::min(lost.size(), max_lost_named); ++i) {
+    char place[100];
+    std::snprintf(place, sizeof place, "(%g, %g, %g)", lost[i].place.x(), lost[i].place.y(),
+                  lost[i].place.z());
+    names += (i ? ", " : "") + std::to_string(lost[i].tag) + " '" + lost[i].name + "' (" +
+             std::to_string(lost[i].voxels) +
+             (lost[i].voxels == 1 ? " voxel at " : " voxels, the first at ") + place + ")";
+  }
+  if (lost.size() > max_lost_named) names += ", ...";
+  const std::string rule = "--min-voxels " + std::to_string(line.min_voxels);
+  report.shortfall.push_back(
+      {"labels", static_cast<double>(all), static_cast<double>(kept), rule + ": " + names,
+       "lost " + std::to_string(lost.size()) + " of " + std::to_string(all) + " labels: " + names +
+           "; all their islands have fewer voxels than " + rule + " keeps; give a smaller number"});
+}
+
+void write_files(const TetMesh& mesh, const MaterialField* field, CommandRun& run) {
+  const Stopwatch watch;
+  run.progress.begin_stage("write");
+  OutputFiles files(&run.progress);
+  if (field) write_fields(*field, run.line.write_sdf, &files);
+  write_tet_mesh(mesh, run.line.output, &files);
+  run.report.seconds_write = watch.seconds();
+  run.report.seconds_total = run.since_start.seconds();
+  if (!run.line.stats.empty()) files.write(run.line.stats, stats_json(run.line, run.report) + "\n");
+  files.commit();
+  run.progress.clear();
+}
+
+}  // namespace
+
+ExitStatus finish(const TetMesh& mesh, const MaterialField* field, CommandRun& run) {
+  RunReport& report = run.report;
+  report.material_names = mesh.material_names;
+  if (report.simplify) {
+    report.result = mesh_statistics(mesh, run.line.min_solid_angle);
+    report_pinned_points(report.inputs.front(), report);
+    report_volumes(mesh, report.inputs.front(), report);
+    find_count_and_shape_shortfall(run.line, report);
+  } else {
+    report.result = report.dense;  // the dense mesh is the result
+  }
+  find_lost_labels(run.line, report);
+  write_files(mesh, field, run);
+  if (!run.line.quiet) print_notes(report);
+  if (!run.line.quiet) print_report(run.line, report);
+  for (const Shortfall& s : report.shortfall) print_line(s.message);
+  return report.shortfall.empty() ? ExitStatus::done : ExitStatus::short_of_request;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,196 @@
+#include "tools/commands/scan_input.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "common/error.h"
+#include "common/formats/formats.h"
+#include "common/formats/label_names.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Refuses files that cannot be an input of `prepare` and `mesh` by their extension.
+void check_input_kinds(const CommandLine& line) {
+  for (const std::string& file : input_files(line)) {
+    const FileKind kind = file_kind(file);
+    if (is_vdb(file) || kind == FileKind::surface || kind == FileKind::volume) continue;
+    const std::string read =
+        std::string(name_of(line.command)) + " reads surfaces (" + known_extensions(FileKind::surface) +
+        "), level sets (.vdb) and segmented volumes (" + known_extensions(FileKind::volume) + " .vdb)";
+    if (kind == FileKind::tet_mesh)
+      throw UsageError(file + " is a tet mesh, which 'tetwright simplify' and 'tetwright improve' take; " +
+                       read);
+    const std::string extension = std::filesystem::path(file).extension().string();
+    throw UsageError(file + ": " +
+                     (extension.empty() ? "no extension" : "unknown extension '" + extension + "'") + "; " +
+                     read);
+  }
+}
+
+/// Whether the input is a segmented volume, which must then be the only one, since it names all materials.
+/// What a .vdb file holds is known only once it has been read: its labels are put into `vdb_labels`.
+bool is_volume(const CommandLine& line, std::optional<LabelVolume>& vdb_labels) {
+  const std::vector<std::string> inputs = input_files(line);
+  bool volume =
+      std::any_of(inputs.begin(), inputs.end(), [](auto& f) { return file_kind(f) == FileKind::volume; });
+  for (const std::string& file : line.inputs) {
+    if (!is_vdb(file)) continue;
+    vdb_labels = read_label_grid(file);
+    volume |= vdb_labels.has_value();
+  }
+  if (!volume) {
+    if (!line.labels.empty() || !line.label_names.empty() || line.outside_label_given ||
+        line.min_voxels_given)
+      throw UsageError(
+          "--labels, --label-names, --outside-label and --min-voxels are for segmented volumes, and no "
+          "input is one");
+    return false;
+  }
+  if (inputs.size() > 1 || line.inputs.empty())
+    throw UsageError("a segmented volume must be the only input; leave out the others");
+  if (!line.layers.empty()) throw UsageError("--layer is for surfaces, and the input is a segmented volume");
+  if (line.nested != NestedRule::automatic)
+    throw UsageError("--nested is for surfaces, and the input is a segmented volume");
+  return true;
+}
+
+LabelChoice label_choice(const CommandLine& line) {
+  LabelChoice choice;
+  choice.labels = line.labels;
+  choice.outside_label = line.outside_label;
+  choice.min_voxels = line.min_voxels;
+  if (!line.label_names.empty()) {
+    choice.names = read_label_names(line.label_names, &choice.name_lines);
+    choice.names_file = line.label_names;
+  }
+  return choice;
+}
+
+LabelInput read_labels(std::optional<LabelVolume> vdb_labels, CommandRun& run) {
+  const std::string& file = run.line.inputs.front();
+  const LabelChoice choice = label_choice(run.line);  // before the volume, which takes longer to read
+  LabelVolume volume = vdb_labels ? std::move(*vdb_labels) : read_label_volume(file);
+  LabelInput labels = make_label_input(std::move(volume), file, choice, &run.progress);
+  run.report.findings = labels.findings;
+  run.report.volume.emplace(labels);
+  return labels;
+}
+
+/// The level set of a --material option.
+TriangleMesh read_one_level_set(const NamedValue& material) {
+  std::vector<NamedSurface> level_sets = read_level_sets(material.value);
+  if (level_sets.size() > 1)
+    throw InputError(material.value, 0,
+                     "holds " + std::to_string(level_sets.size()) + " level sets, but --material " +
+                         material.name +
+                         " is one; give the file as an input, and its grids name the materials");
+  return std::move(level_sets[0].surface);
+}
+
+/// One material for each surface and level set, with tags from 1 in the order of the call.
+std::vector<MaterialSurface> read_material_surfaces(const CommandLine& line, RunReport& report) {
+  std::vector<MaterialSurface> surfaces;
+  const auto read = [&](const std::string& file) {
+    std::vector<Dropped> dropped;
+    TriangleMesh surface = read_surface(file, &dropped);
+    report_dropped(dropped, file, report);
+    return surface;
+  };
+  const auto add = [&](const std::string& name, const std::string& file, TriangleMesh surface) {
+    report.input_triangles += surface.triangles.size();
+    report.input_points += surface.points.size();
+    surfaces.push_back({name, static_cast<MaterialTag>(surfaces.size() + 1), std::move(surface), file});
+  };
+  for (const std::string& file : line.inputs) {
+    if (is_vdb(file))
+      for (NamedSurface& s : read_level_sets(file))
+        add(s.name.empty() ? file_stem(file) : s.name, file, std::move(s.surface));
+    else
+      add(file_stem(file), file, read(file));
+  }
+  for (const NamedValue& m : line.materials)
+    add(m.name, m.value, is_vdb(m.value) ? read_one_level_set(m) : read(m.value));
+  return surfaces;
+}
+
+MesherInput read_surfaces(CommandRun& run) {
+  std::vector<MaterialSurface> surfaces = read_material_surfaces(run.line, run.report);
+  std::vector<MaterialLayer> layers;
+  for (const NamedValue& l : run.line.layers)
+    layers.push_back(
+        {l.name, static_cast<MaterialTag>(surfaces.size() + layers.size() + 1), std::stod(l.value)});
+  MesherInput input = make_mesher_input(std::move(surfaces), std::move(layers), run.line.nested);
+  run.report.findings.insert(run.report.findings.end(), input.findings.begin(), input.findings.end());
+  return input;
+}
+
+/// The options that do not depend on the kind of input.
+MesherOptions common_options(const CommandLine& line) {
+  MesherOptions options;
+  options.voxel_size = line.voxel_size;
+  options.uniform = line.uniform;
+  options.adaptivity = line.adaptivity;
+  options.keep_outside = line.keep_outside;
+  if (line.resolution) options.resolution = line.resolution;
+  // Measured: the simplifier's tets with all that belongs to them; the text of a file, which is held in
+  // memory beside the mesh.
+  constexpr double simplifier_bytes = 110, text_bytes = 130;
+  if (line.command == Command::prepare)
+    options.later_bytes_per_tet = simplifier_bytes;
+  else if (!line.output.ends_with(".vtu"))
+    options.later_bytes_per_tet = text_bytes;
+  return options;
+}
+
+DenseMesh mesh_input(const MesherInput& surfaces, const CommandLine& line, Progress* progress) {
+  MesherOptions options = common_options(line);
+  if (!line.resolution && line.voxel_size == 0 && line.command == Command::prepare)
+    options.resolution = resolution_for_target(surfaces, line.target_tets);
+  return mesh_surfaces(surfaces, options, progress);
+}
+
+DenseMesh mesh_input(const LabelInput& labels, const CommandLine& line, Progress* progress) {
+  MesherOptions options = common_options(line);
+  if (!line.resolution && line.voxel_size == 0)
+    options.voxel_size = line.command == Command::prepare ? cell_size_for_target(labels, line.target_tets)
+                                                          : default_cell_size(labels);
+  return mesh_labels(labels, options, progress);
+}
+
+}  // namespace
+
+bool is_vdb(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension == ".vdb";
+}
+
+ScanInput read_scan(CommandRun& run) {
+  const Stopwatch watch;
+  run.progress.begin_stage("read");
+  check_input_kinds(run.line);
+  std::optional<LabelVolume> vdb_labels;
+  ScanInput input = is_volume(run.line, vdb_labels) ? ScanInput(read_labels(std::move(vdb_labels), run))
+                                                    : ScanInput(read_surfaces(run));
+  run.report.seconds_read = watch.seconds();
+  return input;
+}
+
+DenseMesh make_dense_mesh(ScanInput input, CommandRun& run) {
+  const Stopwatch watch;
+  DenseMesh dense =
+      std::visit([&](const auto& scan) { return mesh_input(scan, run.line, &run.progress); }, input);
+  if (run.line.command == Command::mesh && run.line.write_sdf.empty()) dense.field.reset();
+  run.report.mesher = dense.report;
+  run.report.seconds_mesh = watch.seconds();
+  input = {};  // gigabytes of a large volume
+  run.report.dense = mesh_statistics(dense.mesh, run.line.min_solid_angle);
+  return dense;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,65 @@
+#include "tools/commands/tet_input.h"
+
+#include <utility>
+
+#include "common/error.h"
+#include "common/formats/formats.h"
+#include "common/mesh/foreign_mesh.h"
+#include "tools/commands/scan_input.h"
+
+namespace tetwright {
+
+namespace {
+
+void check_input_kind(const CommandLine& line) {
+  const std::string& file = line.inputs.front();
+  const FileKind kind = file_kind(file);
+  if (kind == FileKind::surface || kind == FileKind::volume || is_vdb(file))
+    throw UsageError(file + " is a " + (kind == FileKind::surface ? "surface" : "volume") +
+                     ", which 'tetwright prepare' and 'tetwright mesh' take; " + name_of(line.command) +
+                     " reads tet meshes (" + known_extensions(FileKind::tet_mesh) + ")");
+}
+
+/// Other programs list tets in the opposite orientation or repeat points for each tet.
+void repair(TetMesh& mesh, const std::string& file, RunReport& report) {
+  const ForeignReport found = make_coherent(mesh);
+  const auto add = [&](std::size_t count, const char* what, const char* done,
+                       std::optional<Vec3> place = {}) {
+    if (count) report.findings.push_back({file, {what, count, place, done}});
+  };
+  add(found.merged_points, "points repeated for each tet", "merged where coordinates are equal");
+  add(found.removed_tets, "tets with a vertex twice", "left out");
+  add(found.turned_tets, "tets listed the other way round", "turned");
+  std::optional<Vec3> first;
+  if (!found.first_inverted.empty()) first = mesh.points[mesh.tets[found.first_inverted.front()][0]];
+  add(found.inverted_tets, "flat or negative tets", "kept unless the work puts them right", first);
+  if (mesh.tets.empty()) throw InputError(file, 0, "all its tets have a vertex twice; nothing is left of it");
+}
+
+}  // namespace
+
+TetInput read_tets(CommandRun& run) {
+  const Stopwatch watch;
+  const std::string& file = run.line.inputs.front();
+  run.progress.begin_stage("read");
+  check_input_kind(run.line);
+  ReadTetMesh read = read_tet_mesh(file, {run.line.material_field});
+  run.report.material_field = read.material_field;
+  run.report.input_points = read.mesh.points.size();
+  report_dropped(read.dropped, file, run.report);
+  TetInput input{std::move(read.mesh), {}};
+  repair(input.mesh, file, run.report);
+  if (!input.mesh.point_fields.empty() || !input.mesh.cell_fields.empty()) {
+    input.with_fields = input.mesh;
+    input.mesh.point_fields.clear();
+    input.mesh.cell_fields.clear();
+  }
+  run.report.seconds_read = watch.seconds();
+  if (run.line.target_tets > input.mesh.tets.size())
+    throw UsageError("--target-tets " + std::to_string(run.line.target_tets) + " is above the " +
+                     std::to_string(input.mesh.tets.size()) + " tets of " + file + "; give fewer");
+  run.report.dense = mesh_statistics(input.mesh, run.line.min_solid_angle);
+  return input;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <exception>
+
+namespace tetwright {
+
+/// The exit statuses of the program.
+enum class ExitStatus : int {
+  done = 0,
+  short_of_request = 1,  ///< written, but a request was not met; `check`: not valid
+  usage = 2,
+  bad_input = 3,
+  nothing_to_mesh = 4,
+  output_failed = 5,    ///< output could not be written, or memory ran out
+  internal_error = 70,  ///< a broken invariant, which is a bug here (EX_SOFTWARE of sysexits.h)
+  interrupted = 130
+};
+
+/// The status with which the program ends when `error` reaches main().
+ExitStatus exit_status(const std::exception& error);
+
+}  // namespace tetwright

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/mesh/mesh_check.h"
+#include "common/mesh/mesh_statistics.h"
+#include "mesher/mesher.h"
+#include "simplify/simplify.h"
+
+namespace tetwright {
+
+/// A request that was not met, which makes the exit status 1.
+struct Shortfall {
+  std::string what;  ///< as in --stats: "target_tets", "min_solid_angle" or "labels"
+  double asked = 0, reached = 0;
+  std::string limited_by;  ///< the rules that prevented it
+  std::string message;     ///< the line for the user, without its end
+};
+
+/// A segmented volume as it was read: LabelInput without its voxels.
+struct VolumeReport {
+  explicit VolumeReport(const LabelInput& from)
+      : size(from.size),
+        origin(from.origin),
+        directions(from.directions),
+        space(from.space),
+        labels(from.materials),
+        lost(from.lost),
+        merged_islands(from.merged_islands),
+        merged_voxels(from.merged_voxels) {}
+  /// The distance between voxels along each axis, input units.
+  Vec3 spacing() const { return directions.colwise().norm(); }
+
+  std::array<int, 3> size;
+  Vec3 origin;
+  Eigen::Matrix3d directions;
+  std::string space;
+  std::vector<LabelMaterial> labels;
+  std::vector<LostLabel> lost;
+  std::size_t merged_islands, merged_voxels;
+};
+
+/// Everything that a run of the program reports. What a command does not do stays empty.
+struct RunReport {
+  std::vector<std::string> inputs;
+  std::size_t input_triangles = 0, input_points = 0;
+  std::string material_field;          ///< the cell field of a tet mesh that its materials came from
+  std::optional<VolumeReport> volume;  ///< if the input is a segmented volume
+  std::vector<InputFinding> findings;
+  std::optional<MesherReport> mesher;
+  std::optional<MeshStatistics> dense, result;
+  std::map<MaterialTag, std::string> material_names;
+  std::optional<SimplifyReport> simplify;
+  double seconds_read = 0, seconds_mesh = 0, seconds_write = 0, seconds_total = 0;
+  std::vector<Shortfall> shortfall;
+};
+
+/// What `check` found in a mesh.
+struct CheckReport {
+  std::vector<MeshFinding> findings;
+  /// False if indices or coordinates are unsound: then there are no statistics and no topology.
+  bool measurable = true;
+  std::vector<std::string> topology;                             ///< lines of text
+  std::optional<std::vector<std::string>> topology_differences;  ///< from the mesh of --before, if given
+
+  bool valid() const { return is_valid(findings); }
+  bool topology_kept() const { return !topology_differences || topology_differences->empty(); }
+};
+
+}  // namespace tetwright
