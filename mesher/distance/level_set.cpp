@@ -2,21 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
+#include <utility>
 
 #include "common/parallel/parallel_sort.h"
-#include "mesher/distance/level_set_grid.h"
 #include "mesher/distance/level_set_signs.h"
 
 namespace tetwright {
 
-void initialise_openvdb() {
-  static std::once_flag once;
-  std::call_once(once, [] { openvdb::initialize(); });
-}
-
-LevelSet::LevelSet(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-LevelSet::~LevelSet() = default;
+LevelSet::LevelSet(DistanceGrid grid, TriangleMesh caps, const std::array<int, 3>& cells)
+    : grid_(std::move(grid)), caps_(std::move(caps)), cells_(cells) {}
 
 std::shared_ptr<const LevelSet> LevelSet::of_surface(const RepairedSurface& surface, const GridFrame& frame,
                                                      Progress* progress) {
@@ -27,39 +21,34 @@ std::shared_ptr<const LevelSet> LevelSet::of_surface(const RepairedSurface& surf
   const NodeWinding winding(points, surface.triangles, surface.closed, frame.cells);
   if (progress) progress->throw_if_cancelled();
 
-  auto impl = std::make_unique<Impl>();
-  impl->cells = frame.cells;
-  impl->grid = unsigned_distances(points, surface.triangles, progress);
-  impl->caps = sign_band(*impl->grid, winding, progress);
-  fill_outside_band(*impl->grid);
-  return std::shared_ptr<const LevelSet>(new LevelSet(std::move(impl)));
+  DistanceGrid grid = DistanceGrid::unsigned_distances(points, surface.triangles, progress);
+  TriangleMesh caps = sign_band(grid, winding, progress);
+  grid.fill_outside_band();
+  return std::shared_ptr<const LevelSet>(new LevelSet(std::move(grid), std::move(caps), frame.cells));
 }
 
 std::vector<MortonKey> LevelSet::interface_cells() const {
-  std::vector<const DistanceLeaf*> leaves;
-  const DistanceTree& tree = impl_->grid->constTree();
-  tree.getNodes(leaves);
+  const std::vector<GridLeaf<const float>> leaves = grid_.leaves();
   constexpr int n = leaf_side + 1;
   std::vector<MortonKey> keys = parallel_collect<MortonKey>(
       0, leaves.size(), 64, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
-        const DistanceAccessor accessor(tree);
+        DistanceGridReader reader(grid_);
         for (std::size_t i = begin; i < end; ++i) {
-          const openvdb::Coord o = leaves[i]->origin();
+          const auto& [ox, oy, oz] = leaves[i].origin;
           // Bit z of a row: the grid point is inside. A leaf that does not exist lies wholly on one side,
-          // beyond the band.
+          // outside the band.
           unsigned rows[n][n] = {};
           for (int neighbour = 0; neighbour < 8; ++neighbour) {
             const int dx = neighbour & 1, dy = neighbour >> 1 & 1, dz = neighbour >> 2;
-            const openvdb::Coord first = o.offsetBy(dx * leaf_side, dy * leaf_side, dz * leaf_side);
-            const DistanceLeaf* leaf = neighbour == 0 ? leaves[i] : accessor.probeConstLeaf(first);
-            const bool far_inside = !leaf && accessor.getValue(first) < 0;
-            const float* values = leaf ? leaf->buffer().data() : nullptr;
+            const int x0 = ox + dx * leaf_side, y0 = oy + dy * leaf_side, z0 = oz + dz * leaf_side;
+            const float* values = neighbour == 0 ? leaves[i].values : reader.leaf_values(x0, y0, z0);
+            const bool tile_inside = !values && reader.value(x0, y0, z0) < 0;
             for (int x = 0; x < (dx ? 1 : leaf_side); ++x)
               for (int y = 0; y < (dy ? 1 : leaf_side); ++y)
                 for (int z = 0; z < (dz ? 1 : leaf_side); ++z)
                   rows[dx * leaf_side + x][dy * leaf_side + y] |=
                       static_cast<unsigned>(values ? values[(x * leaf_side + y) * leaf_side + z] < 0
-                                                   : far_inside)
+                                                   : tile_inside)
                       << (dz * leaf_side + z);
           }
           for (int x = 0; x < leaf_side; ++x)
@@ -68,7 +57,7 @@ std::vector<MortonKey> LevelSet::interface_cells() const {
               const unsigned all = rows[x][y] & rows[x + 1][y] & rows[x][y + 1] & rows[x + 1][y + 1];
               const unsigned mixed = (any | any >> 1) & ~(all & all >> 1);
               for (int z = 0; z < leaf_side; ++z)
-                if (mixed >> z & 1) out.push_back(morton_encode(o.x() + x, o.y() + y, o.z() + z));
+                if (mixed >> z & 1) out.push_back(morton_encode(ox + x, oy + y, oz + z));
             }
         }
       });
@@ -77,46 +66,16 @@ std::vector<MortonKey> LevelSet::interface_cells() const {
 }
 
 std::vector<LeafOrigin> LevelSet::leaves() const {
-  std::vector<const DistanceLeaf*> nodes;
-  impl_->grid->constTree().getNodes(nodes);
   std::vector<LeafOrigin> origins;
-  for (const DistanceLeaf* leaf : nodes)
-    origins.push_back({leaf->origin().x(), leaf->origin().y(), leaf->origin().z()});
+  for (const GridLeaf<const float>& leaf : grid_.leaves()) origins.push_back(leaf.origin);
   std::sort(origins.begin(), origins.end());
   return origins;
 }
 
-struct LevelSetSampler::Impl {
-  explicit Impl(const LevelSet& level_set)
-      : accessor(level_set.impl_->grid->constTree()), cells(level_set.impl_->cells) {}
+LevelSetSampler::LevelSetSampler(const LevelSet& level_set)
+    : reader_(level_set.grid_), cells_(level_set.cells_) {}
 
-  double node(int x, int y, int z) const { return accessor.getValue({x, y, z}); }
-
-  /// The lower corner of the cell around `p` and the eight values around it, z fastest.
-  Eigen::Vector3i cell(const Vec3& p, double v[8]) const {
-    Eigen::Vector3i c;
-    for (int a = 0; a < 3; ++a)
-      c[a] = static_cast<int>(std::floor(std::clamp(p[a], 0.0, static_cast<double>(cells[a]) - 0.5)));
-    const openvdb::Coord corner(c.x(), c.y(), c.z());
-    constexpr int last = leaf_side - 1;
-    const DistanceLeaf* leaf = accessor.probeConstLeaf(corner);
-    if (leaf && (c.x() & last) != last && (c.y() & last) != last && (c.z() & last) != last) {
-      const float* at = leaf->buffer().data() + DistanceLeaf::coordToOffset(corner);
-      for (int k = 0; k < 8; ++k) v[k] = at[((k >> 2) * leaf_side + (k >> 1 & 1)) * leaf_side + (k & 1)];
-    } else {
-      for (int k = 0; k < 8; ++k) v[k] = node(c.x() + (k >> 2), c.y() + (k >> 1 & 1), c.z() + (k & 1));
-    }
-    return c;
-  }
-
-  DistanceAccessor accessor;
-  std::array<int, 3> cells;
-};
-
-LevelSetSampler::LevelSetSampler(const LevelSet& level_set) : impl_(std::make_unique<Impl>(level_set)) {}
-LevelSetSampler::~LevelSetSampler() = default;
-
-double LevelSetSampler::at_node(int x, int y, int z) { return impl_->node(x, y, z); }
+double LevelSetSampler::at_node(int x, int y, int z) { return reader_.value(x, y, z); }
 
 double LevelSetSampler::at(const Vec3& point) {
   Vec3 unused;
@@ -124,8 +83,12 @@ double LevelSetSampler::at(const Vec3& point) {
 }
 
 double LevelSetSampler::at(const Vec3& point, Vec3& gradient) {
+  Eigen::Vector3i cell;
+  for (int a = 0; a < 3; ++a)
+    cell[a] = static_cast<int>(std::floor(std::clamp(point[a], 0.0, static_cast<double>(cells_[a]) - 0.5)));
   double v[8];
-  const Vec3 f = point - impl_->cell(point, v).cast<double>();
+  reader_.corners(cell.x(), cell.y(), cell.z(), v);
+  const Vec3 f = point - cell.cast<double>();
   // Along z, then y, then x.
   double z0[4], dz[4];
   for (int k = 0; k < 4; ++k) {

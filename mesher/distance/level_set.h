@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
 #include "common/geometry/morton.h"
 #include "common/progress.h"
 #include "mesher/distance/narrow_band.h"
+#include "mesher/distance/openvdb_grids.h"
 #include "mesher/domain/grid_frame.h"
 #include "mesher/input/surface_repair.h"
 
@@ -32,9 +34,6 @@ class LevelSet {
   /// The same, reusing the result of of_surface().
   static std::shared_ptr<const LevelSet> at_depth(const RepairedSurface& surface, const LevelSet& boundary,
                                                   double depth, const GridFrame& frame, Progress* progress);
-  ~LevelSet();
-  LevelSet(const LevelSet&) = delete;
-  LevelSet& operator=(const LevelSet&) = delete;
 
   /// The voxels with corners on both sides, as ascending Morton keys of their lower corners.
   std::vector<MortonKey> interface_cells() const;
@@ -43,9 +42,10 @@ class LevelSet {
 
  private:
   friend class LevelSetSampler;
-  struct Impl;
-  explicit LevelSet(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
+  LevelSet(DistanceGrid grid, TriangleMesh caps, const std::array<int, 3>& cells);
+  DistanceGrid grid_;
+  TriangleMesh caps_;  ///< what closes the surface's holes, in grid coordinates
+  std::array<int, 3> cells_;
 };
 
 /// Evaluates a level set, in grid coordinates and voxels. Caches the leaf read last, so evaluating nearby
@@ -54,9 +54,6 @@ class LevelSet {
 class LevelSetSampler {
  public:
   explicit LevelSetSampler(const LevelSet& level_set);
-  ~LevelSetSampler();
-  LevelSetSampler(const LevelSetSampler&) = delete;
-  LevelSetSampler& operator=(const LevelSetSampler&) = delete;
 
   /// The distance at a grid point, clamped to level_set_band.
   double at_node(int x, int y, int z);
@@ -66,8 +63,8 @@ class LevelSetSampler {
   double at(const Vec3& point, Vec3& gradient);
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  DistanceGridReader reader_;
+  std::array<int, 3> cells_;
 };
 
 }  // namespace tetwright

@@ -1,12 +1,10 @@
-#include <openvdb/tools/Prune.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "common/geometry/surface_tree.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/distance/level_set.h"
-#include "mesher/distance/level_set_grid.h"
+#include "mesher/distance/level_set_signs.h"
 
 namespace tetwright {
 
@@ -48,7 +46,7 @@ class DepthFinder {
   }
 
   /// The distances of a box's grid points from the surface at the depth into a leaf.
-  void fill(const GridBox& box, LevelSetSampler& sampler, DistanceLeaf& leaf) const {
+  void fill(const GridBox& box, LevelSetSampler& sampler, const GridLeaf<float>& leaf) const {
     if (box.side > 1) {
       for_each_part(box, sampler, [&](const GridBox& part) { fill(part, sampler, leaf); });
       return;
@@ -57,7 +55,7 @@ class DepthFinder {
     const double value = depth_ + (sampler.at_node(x, y, z) < 0 ? -box.distance : box.distance);
     if (!outside_band(value)) {
       const double size = std::max(std::abs(value), smallest_distance);
-      leaf.setValueOn(DistanceLeaf::coordToOffset({x, y, z}), static_cast<float>(std::copysign(size, value)));
+      leaf.activate(leaf.number(x, y, z), static_cast<float>(std::copysign(size, value)));
     }
   }
 
@@ -97,7 +95,7 @@ std::shared_ptr<const LevelSet> LevelSet::at_depth(const RepairedSurface& surfac
 
 std::shared_ptr<const LevelSet> LevelSet::at_depth(const RepairedSurface& surface, const LevelSet& boundary,
                                                    double depth, const GridFrame& frame, Progress* progress) {
-  TriangleMesh all = boundary.impl_->caps;
+  TriangleMesh all = boundary.caps_;
   const auto shift = static_cast<Index>(all.points.size());
   for (const Vec3& p : surface.points) all.points.push_back(frame.to_grid(p));
   for (const auto& [a, b, c] : surface.triangles) all.triangles.push_back({a + shift, b + shift, c + shift});
@@ -105,22 +103,18 @@ std::shared_ptr<const LevelSet> LevelSet::at_depth(const RepairedSurface& surfac
 
   const DepthFinder finder(tree, boundary, depth);
   const std::vector<GridBox> boxes = finder.boxes(frame.cells, leaf_side, progress);
-  auto impl = std::make_unique<Impl>();
-  impl->cells = frame.cells;
-  impl->grid = DistanceGrid::create(level_set_band);
-  std::vector<DistanceLeaf*> leaves(boxes.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const auto& [x, y, z] = boxes[i].lowest;
-    leaves[i] = impl->grid->tree().touchLeaf({x, y, z});
-  }
+  DistanceGrid grid(level_set_band);
+  std::vector<GridLeaf<float>> leaves;
+  leaves.reserve(boxes.size());
+  for (const GridBox& box : boxes) leaves.push_back(grid.touch_leaf(box.lowest));
   parallel_for(0, boxes.size(), 16, [&](std::size_t begin, std::size_t end) {
     if (progress) progress->throw_if_cancelled();
     LevelSetSampler sampler(boundary);
-    for (std::size_t i = begin; i < end; ++i) finder.fill(boxes[i], sampler, *leaves[i]);
+    for (std::size_t i = begin; i < end; ++i) finder.fill(boxes[i], sampler, leaves[i]);
   });
-  openvdb::tools::pruneInactive(impl->grid->tree());
-  fill_outside_band(*impl->grid);
-  return std::shared_ptr<const LevelSet>(new LevelSet(std::move(impl)));
+  grid.prune_inactive();
+  grid.fill_outside_band();
+  return std::shared_ptr<const LevelSet>(new LevelSet(std::move(grid), {}, frame.cells));
 }
 
 }  // namespace tetwright

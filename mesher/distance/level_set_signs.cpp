@@ -19,70 +19,66 @@ float signed_value(float distance, bool inside) {
   return inside ? -size : size;
 }
 
-std::vector<DistanceLeaf*> leaves_of(DistanceGrid& grid) {
-  std::vector<DistanceLeaf*> leaves;
-  grid.tree().getNodes(leaves);
-  return leaves;
-}
-
-void sign_by_rows(DistanceLeaf& leaf, const GridWinding& winding) {
-  const openvdb::Coord corner = leaf.origin();
-  float* values = leaf.buffer().data();
+void sign_by_rows(const GridLeaf<float>& leaf, const GridWinding& winding) {
+  const auto& [ox, oy, oz] = leaf.origin;
   for (int x = 0; x < leaf_side; ++x)
     for (int y = 0; y < leaf_side; ++y) {
-      const auto row = winding.row(corner.x() + x, corner.y() + y);
+      const auto row = winding.row(ox + x, oy + y);
       auto next = row.begin();
       bool inside = false;
       for (int z = 0; z < leaf_side; ++z) {
-        for (; next != row.end() && next->first <= corner.z() + z; ++next) inside = next->winding > 0;
-        float& value = values[(x * leaf_side + y) * leaf_side + z];
+        for (; next != row.end() && next->first <= oz + z; ++next) inside = next->winding > 0;
+        float& value = leaf.values[(x * leaf_side + y) * leaf_side + z];
         value = signed_value(value, inside);
       }
     }
 }
 
-bool is_inside(const NodeWinding& winding, const openvdb::Coord& p) {
-  return winding.at(p.x(), p.y(), p.z()) >= inside_winding;
+bool is_inside(const NodeWinding& winding, const std::array<int, 3>& p) {
+  return winding.at(p[0], p[1], p[2]) >= inside_winding;
 }
 
-void sign_by_points(DistanceLeaf& leaf, const NodeWinding& winding) {
-  for (auto value = leaf.beginValueOn(); value; ++value)
-    value.setValue(signed_value(*value, is_inside(winding, value.getCoord())));
+void sign_by_points(const GridLeaf<float>& leaf, const NodeWinding& winding) {
+  for (int k = 0; k < leaf_points; ++k)
+    if (leaf.active(k)) leaf.values[k] = signed_value(leaf.values[k], is_inside(winding, leaf.point(k)));
 }
 
-std::vector<GridEdge> edges_to_cap(DistanceGrid& grid) {
-  const std::vector<DistanceLeaf*> leaves = leaves_of(grid);
-  return parallel_collect<GridEdge>(
-      0, leaves.size(), band_grain, [&](std::size_t begin, std::size_t end, std::vector<GridEdge>& out) {
-        const DistanceAccessor accessor(grid.constTree());
-        for (std::size_t i = begin; i < end; ++i)
-          for (auto value = leaves[i]->cbeginValueOn(); value; ++value)
-            for (int axis = 0; axis < 3; ++axis) {
-              const openvdb::Coord p = value.getCoord();
-              openvdb::Coord next = p;
-              ++next[axis];
-              float next_value;
-              if (accessor.probeValue(next, next_value) && needs_cap(*value, next_value))
-                out.push_back({morton_encode(p.x(), p.y(), p.z()), axis});
-            }
-      });
+std::vector<GridEdge> edges_to_cap(const DistanceGrid& grid) {
+  const std::vector<GridLeaf<const float>> leaves = grid.leaves();
+  return parallel_collect<GridEdge>(0, leaves.size(), band_grain,
+                                    [&](std::size_t begin, std::size_t end, std::vector<GridEdge>& out) {
+                                      DistanceGridReader reader(grid);
+                                      for (std::size_t i = begin; i < end; ++i)
+                                        for (int k = 0; k < leaf_points; ++k) {
+                                          if (!leaves[i].active(k)) continue;
+                                          const std::array<int, 3> p = leaves[i].point(k);
+                                          for (int axis = 0; axis < 3; ++axis) {
+                                            std::array<int, 3> next = p;
+                                            ++next[axis];
+                                            float next_value;
+                                            if (reader.active(next[0], next[1], next[2], next_value) &&
+                                                needs_cap(leaves[i].values[k], next_value))
+                                              out.push_back({morton_encode(p[0], p[1], p[2]), axis});
+                                          }
+                                        }
+                                    });
 }
 
 /// Makes the signed distances those from surface and caps together, and the band the caps' too.
 void add_caps(DistanceGrid& grid, const TriangleMesh& caps, const NodeWinding& winding, Progress* progress) {
-  const DistanceGrid::Ptr cap_grid = unsigned_distances(caps.points, caps.triangles, progress);
-  const std::vector<DistanceLeaf*> sources = leaves_of(*cap_grid);
-  std::vector<DistanceLeaf*> targets(sources.size());
-  for (std::size_t i = 0; i < sources.size(); ++i) targets[i] = grid.tree().touchLeaf(sources[i]->origin());
+  const DistanceGrid cap_grid = DistanceGrid::unsigned_distances(caps.points, caps.triangles, progress);
+  const std::vector<GridLeaf<const float>> sources = cap_grid.leaves();
+  std::vector<GridLeaf<float>> targets;
+  targets.reserve(sources.size());
+  for (const GridLeaf<const float>& source : sources) targets.push_back(grid.touch_leaf(source.origin));
   parallel_for(0, sources.size(), band_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      for (auto source = sources[i]->cbeginValueOn(); source; ++source) {
-        const openvdb::Index at = source.pos();
-        const float value = targets[i]->getValue(at);
-        const bool known = targets[i]->isValueOn(at);
-        const bool inside = known ? value < 0 : is_inside(winding, source.getCoord());
-        targets[i]->setValueOn(at,
-                               signed_value(known ? std::min(*source, std::abs(value)) : *source, inside));
+      for (int k = 0; k < leaf_points; ++k) {
+        if (!sources[i].active(k)) continue;
+        const float distance = sources[i].values[k], value = targets[i].values[k];
+        const bool known = targets[i].active(k);
+        const bool inside = known ? value < 0 : is_inside(winding, sources[i].point(k));
+        targets[i].activate(k, signed_value(known ? std::min(distance, std::abs(value)) : distance, inside));
       }
   });
 }
@@ -118,23 +114,21 @@ double NodeWinding::at(int x, int y, int z) const {
 }
 
 TriangleMesh sign_band(DistanceGrid& grid, const NodeWinding& winding, Progress* progress) {
-  const std::vector<DistanceLeaf*> leaves = leaves_of(grid);
+  const std::vector<GridLeaf<float>> leaves = grid.leaves();
   parallel_for(0, leaves.size(), band_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       if (winding.whole_numbers())
-        sign_by_rows(*leaves[i], winding.closed());
+        sign_by_rows(leaves[i], winding.closed());
       else
-        sign_by_points(*leaves[i], winding);
+        sign_by_points(leaves[i], winding);
   });
   TriangleMesh all;
   if (winding.whole_numbers()) return all;
 
   const auto read = [&](int x, int y, int z) {
     const double w = winding.at(x, y, z);
-    float value;
-    const bool in_band = grid.constTree().probeValue({x, y, z}, value);
-    const double far = w >= inside_winding ? -level_set_band : level_set_band;
-    return GridReading{in_band ? value : far, w};
+    const float far = w >= inside_winding ? -level_set_band : level_set_band;
+    return GridReading{grid.active_or(x, y, z, far), w};
   };
   // Caps are followed as far as they go; a later round meets only an inside that a cap's own band ran into.
   constexpr int rounds = 4;

@@ -8,9 +8,12 @@
 #include "common/progress.h"
 #include "common/triangle_mesh.h"
 #include "mesher/distance/grid_winding.h"
-#include "mesher/distance/level_set_grid.h"
+#include "mesher/distance/openvdb_grids.h"
 
 namespace tetwright {
+
+/// Smaller distances (voxels) are raised to this, so that every grid point has a sign.
+inline constexpr double smallest_distance = 1e-6;
 
 /// The generalised winding number of a repaired surface at grid points: exact for its closed part, by a tree
 /// for its open part. All functions may be called concurrently.

@@ -1,0 +1,133 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "common/label_volume.h"
+#include "common/progress.h"
+#include "common/triangle_mesh.h"
+#include "common/types.h"
+#include "mesher/distance/narrow_band.h"
+#include "mesher/distance/vdb_structure.h"
+#include "mesher/domain/grid_frame.h"
+
+namespace tetwright {
+
+// All that the project uses of OpenVDB, without its headers.
+
+/// The 8 x 8 x 8 grid points of a leaf of a DistanceGrid, in place: `Value` is float or const float. Grid
+/// point (x, y, z) from the origin has the number (x * leaf_side + y) * leaf_side + z.
+template <class Value>
+struct GridLeaf {
+  using Word = std::conditional_t<std::is_const_v<Value>, const std::uint64_t, std::uint64_t>;
+  LeafOrigin origin;
+  Value* values;
+  Word* active_bits;  ///< leaf_side words; grid point k is bit k % 64 of word k / 64
+
+  bool active(int k) const { return active_bits[k / 64] >> (k % 64) & 1; }
+  void activate(int k, float value) const {
+    values[k] = value;
+    active_bits[k / 64] |= std::uint64_t{1} << (k % 64);
+  }
+  int number(int x, int y, int z) const {
+    return ((x - origin[0]) * leaf_side + y - origin[1]) * leaf_side + z - origin[2];
+  }
+  std::array<int, 3> point(int k) const {
+    return {origin[0] + k / (leaf_side * leaf_side), origin[1] + k / leaf_side % leaf_side,
+            origin[2] + k % leaf_side};
+  }
+};
+
+/// Distances at grid points, stored as an OpenVDB grid of floats: leaves where there is something to store,
+/// one value for whole tiles elsewhere. Active grid points are those of the narrow band.
+///
+/// Const functions may be called concurrently; so may writes to different leaves.
+class DistanceGrid {
+ public:
+  /// All grid points inactive, with the value `background` (> 0).
+  explicit DistanceGrid(double background);
+  ~DistanceGrid();
+  DistanceGrid(DistanceGrid&&) noexcept;
+  DistanceGrid& operator=(DistanceGrid&&) noexcept;
+
+  /// Unsigned distances of grid points from triangles in grid coordinates: active within level_set_band, that
+  /// value elsewhere. Throws Interrupted.
+  static DistanceGrid unsigned_distances(std::span<const Vec3> points, std::span<const Triangle> triangles,
+                                         Progress* progress);
+  /// The stored grid, which must be of floats and have its bytes; they are gone afterwards. Throws InputError
+  /// that begins with `file` if OpenVDB can't read it.
+  static DistanceGrid from_vdb(VdbGrid& stored, const std::string& file);
+
+  float background() const;
+  /// True if there are active values above and below 0.
+  bool has_both_signs() const;
+  /// The active value of a grid point, or `otherwise`.
+  float active_or(int x, int y, int z, float otherwise) const;
+  /// All leaves, in OpenVDB's order.
+  std::vector<GridLeaf<const float>> leaves() const;
+  std::vector<GridLeaf<float>> leaves();
+  /// The leaf at `origin` (multiples of leaf_side), made if it isn't there.
+  GridLeaf<float> touch_leaf(const LeafOrigin& origin);
+
+  /// Takes out leaves without active grid points.
+  void prune_inactive();
+  /// Sets all inactive grid points and tiles to level_set_band, with the sign of the adjacent active points.
+  void fill_outside_band();
+  /// Sets tiles only to `band`, with the sign of the adjacent grid points, active or not.
+  void fill_tiles_outside_band(double band);
+
+  /// The zero level in world coordinates, where the grid's own transform puts it, with the negative side
+  /// inside; without triangles if the values do not pass 0. Throws std::domain_error if the transform can't
+  /// be inverted.
+  TriangleMesh zero_surface() const;
+
+  /// OpenVDB's view of the grid, for the two files that have its headers.
+  struct Impl;
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  explicit DistanceGrid(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Reads a DistanceGrid that does not change meanwhile. Caches the leaf read last, so reading nearby points
+/// one after another is fast. Not thread-safe; any number of readers of one grid may be used concurrently.
+class DistanceGridReader {
+ public:
+  explicit DistanceGridReader(const DistanceGrid& grid);
+  ~DistanceGridReader();
+  DistanceGridReader(DistanceGridReader&&) noexcept;
+
+  float value(int x, int y, int z);
+  /// True if the grid point is active, with its value.
+  bool active(int x, int y, int z, float& value);
+  /// The values of the leaf around a grid point, or null where there is a tile.
+  const float* leaf_values(int x, int y, int z);
+  /// The values at the corners of the voxel whose lowest corner is given, z fastest.
+  void corners(int x, int y, int z, double values[8]);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+struct NamedGrid {
+  std::string name;
+  DistanceGrid grid;
+};
+
+/// A .vdb file of level sets whose grid points lie as `frame` says. The file's identifier is random. Throws
+/// std::domain_error if the frame's cells are smaller than OpenVDB's transforms allow.
+std::string level_sets_to_vdb(std::span<const NamedGrid> grids, const GridFrame& frame);
+
+/// The labels of a stored grid, which must be of int32 or int64 and have its bytes; they are gone afterwards.
+/// Throws as read_label_grid() of vdb_files.h does.
+LabelVolume labels_from_vdb(VdbGrid& stored, std::size_t max_voxels, const std::string& file);
+
+}  // namespace tetwright

@@ -1,0 +1,18 @@
+#pragma once
+
+// OpenVDB's own types behind openvdb_grids.h. Included by openvdb_conversion.cpp and openvdb_grids.cpp alone:
+// whatever includes OpenVDB's headers takes long to compile.
+#include <openvdb/openvdb.h>
+
+#include "mesher/distance/openvdb_grids.h"
+
+namespace tetwright {
+
+struct DistanceGrid::Impl {
+  openvdb::FloatGrid::Ptr grid;
+};
+
+/// Must be called before any other function of OpenVDB; may be called repeatedly and concurrently.
+void initialise_openvdb();
+
+}  // namespace tetwright
