@@ -1,3 +1,4 @@
+#include "common/tolerances.h"
 #include "mesher/mesher.h"
 
 #include <algorithm>
@@ -13,8 +14,6 @@
 namespace tetwright {
 
 namespace {
-
-constexpr double min_in_cells = 1e-6;  ///< longest side of a surface that is looked at
 
 /// Throws InputError about a surface, of which nothing is left, that is not closed.
 void validate_encloses(const MesherInput::Body& body) {
@@ -83,7 +82,7 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   if (options.keep_outside) validate_outside_is_free(input);
   // So much smaller that no lattice could be laid out in numbers that are still exact; a little smaller is
   // found out by the lattice itself.
-  if (longest_side(input) < report.cell_size * min_in_cells) {
+  if (longest_side(input) < report.cell_size * tolerance::min_surface_size) {
     validate_encloses(input.bodies[0]);
     throw NothingToMeshError(
         input.bodies[0].file +

@@ -7,6 +7,7 @@
 #include "common/formats/byte_order.h"
 #include "common/formats/voxel_data.h"
 #include "common/number_text.h"
+#include "common/tolerances.h"
 
 namespace tetwright {
 
@@ -167,7 +168,7 @@ class NiftiHeader {
     if (!std::isfinite(rest)) fail("the quaternion of the qform is not finite; repair the header");
     double a = 0;
     // Rounding may have made a half turn's quaternion too long.
-    if (rest < 1e-7) {
+    if (rest < tolerance::unit_quaternion) {
       const double length = std::sqrt(b * b + c * c + d * d);
       b /= length;
       c /= length;

@@ -12,6 +12,7 @@
 #include "common/formats/byte_order.h"
 #include "common/number_text.h"
 #include "common/parallel/parallel.h"
+#include "common/tolerances.h"
 
 namespace tetwright {
 
@@ -23,11 +24,6 @@ constexpr std::int64_t max_voxels = std::int64_t{1} << 31;
 constexpr std::size_t block_bytes = std::size_t{1} << 22;
 
 constexpr std::size_t voxel_grain = std::size_t{1} << 17;
-
-/// Directions count as coplanar if the parallelepiped of their unit vectors has less than this volume: far
-/// flatter than the gantry tilt of any scanner makes it, far above the rounding of directions stored as
-/// floats.
-constexpr double min_box_volume = 1e-5;
 
 std::size_t voxel_count(const std::array<int, 3>& size) {
   return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *
@@ -226,7 +222,7 @@ void check_geometry(const LabelVolume& volume, const std::string& file) {
                        std::to_string(k) + " is zero or not finite; repair the spacing in the header");
     units.col(k) = step / length;
   }
-  if (!(std::fabs(units.determinant()) > min_box_volume))
+  if (!(std::fabs(units.determinant()) > tolerance::coplanar_directions))
     throw InputError(file + ": the directions " + written(volume.directions.col(0)) + ", " +
                      written(volume.directions.col(1)) + " and " + written(volume.directions.col(2)) +
                      " of the axes lie in one plane; repair the header");

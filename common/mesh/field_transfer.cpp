@@ -13,6 +13,7 @@
 #include "common/mesh/point_table.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
+#include "common/tolerances.h"
 
 namespace tetwright {
 
@@ -22,10 +23,6 @@ constexpr std::size_t grain = 1024;
 
 /// A box has 48 bytes: with fewer tets to a leaf the boxes outweigh the mesh.
 constexpr std::size_t leaf_tets = 8;
-
-/// Volume or area, squared and relative to its edges' product, below which the shape counts as flat: the
-/// rounding of orient3d_value is about 1e-15, and below it weights would be noise.
-constexpr double flat_squared = 1e-28;
 
 /// Weights, one for each vertex of a tet; none negative, their sum is 1 but for rounding.
 using Weights = std::array<double, 4>;
@@ -38,7 +35,7 @@ std::optional<Weights> weights_inside(const TetCorners& c, const Vec3& p) {
   const double volume = orient3d_value(c[0], c[1], c[2], c[3]);
   const double edges =
       (c[1] - c[0]).squaredNorm() * (c[2] - c[0]).squaredNorm() * (c[3] - c[0]).squaredNorm();
-  if (volume * volume <= flat_squared * edges) return {};
+  if (volume * volume <= tolerance::flat_squared * edges) return {};
   Weights w{orient3d_value(p, c[1], c[2], c[3]), orient3d_value(c[0], p, c[2], c[3]),
             orient3d_value(c[0], c[1], p, c[3]), orient3d_value(c[0], c[1], c[2], p)};
   double sum = 0;
@@ -57,7 +54,7 @@ std::array<double, 3> weights_in_triangle(const std::array<Vec3, 3>& c, const Ve
   std::array<double, 3> w{1, 0, 0};
   const Vec3 normal = (c[1] - c[0]).cross(c[2] - c[0]);
   const double area = normal.squaredNorm();
-  if (area > flat_squared * (c[1] - c[0]).squaredNorm() * (c[2] - c[0]).squaredNorm()) {
+  if (area > tolerance::flat_squared * (c[1] - c[0]).squaredNorm() * (c[2] - c[0]).squaredNorm()) {
     double sum = 0;
     for (int i = 0; i < 3; ++i) {
       w[i] = std::max(0.0, normal.dot((c[(i + 1) % 3] - p).cross(c[(i + 2) % 3] - p)));

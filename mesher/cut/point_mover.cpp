@@ -9,6 +9,7 @@
 
 #include "common/geometry/quality.h"
 #include "common/parallel/parallel_sort.h"
+#include "common/tolerances.h"
 #include "mesher/cut/arrangement.h"
 #include "mesher/cut/cutting.h"
 #include "mesher/cut/independent_rounds.h"
@@ -385,7 +386,8 @@ class Mover {
       const double value = sampler.between(lattice_.first_region[p], other, from, gradient);
       // Steps are fractions of the distance, so that the point keeps its side whatever the size of the cells.
       for (double share : {-0.4, -0.2, 0.3, 0.6})
-        places.push_back(from + gradient * (share * value / std::max(1e-3, gradient.squaredNorm())));
+        places.push_back(from + gradient * (share * value /
+                                            std::max(tolerance::min_squared_slope, gradient.squaredNorm())));
       places.push_back(from + 0.5 * to_middle);
     }
     take_best(p, places, sampler);

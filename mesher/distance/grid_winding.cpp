@@ -5,6 +5,7 @@
 
 #include "common/geometry/ray_crossing.h"
 #include "common/parallel/parallel_sort.h"
+#include "common/tolerances.h"
 
 namespace tetwright {
 
@@ -59,9 +60,6 @@ int first_node_above(const std::array<Vec3, 3>& p, int crossing, int x, int y) {
   return z;
 }
 
-/// Slack on rounded intersections, in cells: nodes farther than this from a shadow are surely not covered.
-constexpr double shadow_slack = 1e-3;
-
 }  // namespace
 
 GridWinding::GridWinding(std::span<const Vec3> points, std::span<const Triangle> triangles,
@@ -79,8 +77,10 @@ GridWinding::GridWinding(std::span<const Vec3> points, std::span<const Triangle>
                x <= std::min(cells[0], static_cast<int>(std::floor(right))); ++x) {
             const Range shadow = shadow_at(p, x);
             if (shadow.low > shadow.high) continue;
-            for (int y = std::max(0, static_cast<int>(std::ceil(shadow.low - shadow_slack)));
-                 y <= std::min(cells[1], static_cast<int>(std::floor(shadow.high + shadow_slack))); ++y) {
+            for (int y = std::max(0, static_cast<int>(std::ceil(shadow.low - tolerance::projected_triangle)));
+                 y <= std::min(cells[1],
+                               static_cast<int>(std::floor(shadow.high + tolerance::projected_triangle)));
+                 ++y) {
               const int crossing = vertical_crossing(p[0], p[1], p[2], Vec3(x, y, 0));
               if (crossing == 0) continue;
               const auto row = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(nodes_x_) +

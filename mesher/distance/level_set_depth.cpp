@@ -3,8 +3,8 @@
 
 #include "common/geometry/surface_tree.h"
 #include "common/parallel/parallel_sort.h"
+#include "common/tolerances.h"
 #include "mesher/distance/level_set.h"
-#include "mesher/distance/level_set_signs.h"
 
 namespace tetwright {
 
@@ -54,7 +54,7 @@ class DepthFinder {
     const auto& [x, y, z] = box.lowest;
     const double value = depth_ + (sampler.at_node(x, y, z) < 0 ? -box.distance : box.distance);
     if (!outside_band(value)) {
-      const double size = std::max(std::abs(value), smallest_distance);
+      const double size = std::max(std::abs(value), tolerance::smallest_distance);
       leaf.activate(leaf.number(x, y, z), static_cast<float>(std::copysign(size, value)));
     }
   }
@@ -67,9 +67,8 @@ class DepthFinder {
       const int side = box.side / 2;
       GridBox part{box.lowest, side, 0};
       for (int a = 0; a < 3; ++a) part.lowest[a] += (k >> a & 1) * side;
-      constexpr double rounding = 1e-6;
-      const double farthest = depth_ + level_set_band + part.reach() + rounding;
-      const double known = box.distance + (part.middle() - box.middle()).norm() + rounding;
+      const double farthest = depth_ + level_set_band + part.reach() + tolerance::box_distance;
+      const double known = box.distance + (part.middle() - box.middle()).norm() + tolerance::box_distance;
       part.distance = surface_.distance(part.middle(), std::min(farthest, known));
       if (std::abs(part.distance - depth_) >= level_set_band + part.reach()) continue;
       if (part.distance > part.reach() && depth_ + part.distance >= level_set_band + part.reach()) {

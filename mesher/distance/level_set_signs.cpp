@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/parallel/parallel_sort.h"
+#include "common/tolerances.h"
 #include "mesher/distance/hole_caps.h"
 
 namespace tetwright {
@@ -14,8 +15,8 @@ namespace {
 constexpr std::size_t band_grain = 16;
 
 float signed_value(float distance, bool inside) {
-  const float size =
-      std::clamp(distance, static_cast<float>(smallest_distance), static_cast<float>(level_set_band));
+  const float size = std::clamp(distance, static_cast<float>(tolerance::smallest_distance),
+                                static_cast<float>(level_set_band));
   return inside ? -size : size;
 }
 
@@ -101,9 +102,7 @@ NodeWinding::NodeWinding(std::span<const Vec3> points, std::span<const Triangle>
 double NodeWinding::at(int x, int y, int z) const {
   const int whole = closed_.at(x, y, z);
   if (!open_) return whole;
-  // A grid point on the surface counts as if it lay a little to one side, the same for all: there the
-  // rounding of several triangles' solid angles could add up to anything.
-  static const Vec3 aside(1.1e-5, 1.9e-5, 2.7e-5);
+  static const Vec3 aside(tolerance::aside[0], tolerance::aside[1], tolerance::aside[2]);
   const double winding = whole + open_->winding_number(Vec3(x, y, z) + aside);
   const std::array<int, 3> p{x, y, z};
   bool in_box = true;

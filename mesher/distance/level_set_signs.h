@@ -12,9 +12,6 @@
 
 namespace tetwright {
 
-/// Smaller distances (voxels) are raised to this, so that every grid point has a sign.
-inline constexpr double smallest_distance = 1e-6;
-
 /// The generalised winding number of a repaired surface at grid points: exact for its closed part, by a tree
 /// for its open part. All functions may be called concurrently.
 class NodeWinding {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <new>
 
+#include "common/tolerances.h"
+
 namespace tetwright {
 
 MaterialField::MaterialField(const GridFrame& voxels, std::vector<FieldRegion> regions, double band,
@@ -28,13 +30,12 @@ double FieldSampler::between(RegionIndex a, RegionIndex b, const Vec3& point, Ve
 
 bool FieldSampler::project(const RegionSet& regions, Vec3& point) {
   constexpr int steps = 8;
-  constexpr double close_enough = 1e-3;  // voxels; far below the accuracy of the distances
   // Of the squared slope; below this the point is near a ridge of the distance.
   const double smallest_slope = 0.1 * min_slope_ * min_slope_;
   // Damping (Levenberg 1944): on one side of a junction curve two of the distances may be the same function,
   // so their difference has no slope there and must not contribute to the step.
   const double damping = 0.01 * min_slope_ * min_slope_;
-  const double enough = close_enough * per_voxel_;
+  const double enough = tolerance::on_interface * per_voxel_;
   const int equations = regions.size() - 1;
   if (equations < 1) return false;
   Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> slopes(equations, 3);

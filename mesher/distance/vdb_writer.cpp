@@ -10,6 +10,7 @@
 #include "common/error.h"
 #include "common/formats/atomic_file.h"
 #include "common/parallel/parallel.h"
+#include "common/tolerances.h"
 #include "mesher/distance/openvdb_grids.h"
 
 namespace tetwright {
@@ -22,8 +23,7 @@ constexpr std::size_t identifier_start = 21, identifier_length = 36;
 DistanceGrid make_grid(const GridFrame& frame, double band_cells, const LevelSetSource& source) {
   const auto size = static_cast<float>(frame.cell_size);
   const auto band = static_cast<float>(band_cells);
-  // What was cut off may be rounded.
-  const float true_below = band * (1 - 1e-5F);
+  const float true_below = band * (1 - tolerance::band_share);
   DistanceGrid grid(size * band);
   std::vector<GridLeaf<float>> leaves;
   leaves.reserve(source.leaves.size());

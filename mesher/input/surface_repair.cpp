@@ -7,6 +7,7 @@
 #include "common/geometry/predicates.h"
 #include "common/geometry/self_intersection.h"
 #include "common/parallel/parallel_sort.h"
+#include "common/tolerances.h"
 #include "mesher/input/surface_components.h"
 #include "mesher/input/surface_nesting.h"
 
@@ -41,8 +42,8 @@ Triangle canonical(Triangle t) {
 /// True if the corners are on one line, exactly.
 bool flat(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 u = b - a, v = c - a;
-  // Rounding leaves less than 1e-14 of the product of the lengths.
-  if (u.cross(v).squaredNorm() > 1e-24 * u.squaredNorm() * v.squaredNorm()) return false;
+  if (u.cross(v).squaredNorm() > tolerance::collinear_squared * u.squaredNorm() * v.squaredNorm())
+    return false;
   return orient2d(a, b, c, 0, 1) == 0 && orient2d(a, b, c, 1, 2) == 0 && orient2d(a, b, c, 2, 0) == 0;
 }
 

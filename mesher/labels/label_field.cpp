@@ -5,15 +5,13 @@
 #include <cmath>
 
 #include "common/parallel/parallel_sort.h"
+#include "common/tolerances.h"
 #include "mesher/labels/label_bricks.h"
 #include "mesher/labels/label_depth.h"
 
 namespace tetwright {
 
 namespace {
-
-/// Tolerance for cells that only touch a cube of nodes, cells.
-constexpr double touching = 1e-6;
 
 /// The volume's axes made perpendicular and right-handed (Gram-Schmidt). Positions along them, relative to
 /// the first voxel's centre, are to_local * index.
@@ -112,7 +110,7 @@ std::shared_ptr<const LabelField> LabelField::make(const LabelInput& labels, con
   made->min_slope = made->voxel / labels.directions.colwise().norm().maxCoeff();
   made->to_index = LocalAxes(labels.directions).to_local.inverse();
   made->origin = labels.origin;
-  if (frame.cell_size > (1 + touching) * made->voxel) made->depths = label_depths(labels);
+  if (frame.cell_size > (1 + tolerance::coinciding_cells) * made->voxel) made->depths = label_depths(labels);
   std::vector<FieldRegion> regions{{keep_outside ? outside_name : "", outside_tag}};
   for (const LabelMaterial& m : labels.materials) regions.push_back({m.name, m.tag});
   return std::shared_ptr<const LabelField>(new LabelField(std::move(made), frame, std::move(regions), 0));
@@ -315,10 +313,10 @@ class LabelField::Sampler final : public FieldSampler {
 
 bool LabelField::is_certain(const Vec3& point) const {
   constexpr double cells_per_voxel = 2;
-  if (cells_per_voxel * voxels().cell_size > (1 + touching) * shared_->voxel) return false;
+  if (cells_per_voxel * voxels().cell_size > (1 + tolerance::coinciding_cells) * shared_->voxel) return false;
   const Vec3 at = to_nodes_ * point + first_node_;
   // Only rounding separates a point from the voxel centre that it is meant to be at; in voxels.
-  return (at - at.array().round().matrix()).cwiseAbs().maxCoeff() < touching;
+  return (at - at.array().round().matrix()).cwiseAbs().maxCoeff() < tolerance::coinciding_cells;
 }
 
 std::unique_ptr<FieldSampler> LabelField::sampler() const { return std::make_unique<Sampler>(*this); }
@@ -330,7 +328,7 @@ class LabelField::InterfaceFinder {
   /// counts whose corners, middles of edges, faces or centre are of more than one region.
   explicit InterfaceFinder(const LabelField& field)
       : cells_(field.voxels().cells),
-        smaller_(field.voxels().cell_size < (1 - touching) * field.shared_->voxel),
+        smaller_(field.voxels().cell_size < (1 - tolerance::coinciding_cells) * field.shared_->voxel),
         on_voxels_(field.refined(0)),
         sampler_(on_voxels_->sampler()),
         max_slope_(std::sqrt(3.0) * 2 * LabelSmoother::band * field.voxels().cell_size *
@@ -341,8 +339,8 @@ class LabelField::InterfaceFinder {
   void append_cells(const Vec3& low, const Vec3& high, std::vector<MortonKey>& out) {
     std::array<int, 3> from, to;
     for (int a = 0; a < 3; ++a) {
-      from[a] = std::max(0, static_cast<int>(std::floor(low[a] + touching)));
-      to[a] = std::min(cells_[a], static_cast<int>(std::ceil(high[a] - touching)));
+      from[a] = std::max(0, static_cast<int>(std::floor(low[a] + tolerance::coinciding_cells)));
+      to[a] = std::min(cells_[a], static_cast<int>(std::ceil(high[a] - tolerance::coinciding_cells)));
     }
     append_range(from, to, out);
   }
@@ -378,7 +376,8 @@ class LabelField::InterfaceFinder {
       half[a] = 0.5 * (to[a] - from[a]);
     }
     const double voxels_per_cell = band_ / on_voxels_->band();
-    return sampler_->nearest(middle).margin * voxels_per_cell > (1 + touching) * max_slope_ * half.norm();
+    return sampler_->nearest(middle).margin * voxels_per_cell >
+           (1 + tolerance::coinciding_cells) * max_slope_ * half.norm();
   }
 
   bool is_mixed(int x, int y, int z) {

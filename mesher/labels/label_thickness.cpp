@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/parallel/parallel_sort.h"
+#include "common/tolerances.h"
 
 namespace tetwright {
 
@@ -174,85 +175,132 @@ bool in_small_island(const LabelInput& labels, std::size_t voxel, std::size_t co
   return true;
 }
 
-}  // namespace
+/// Finds the thin voxels of a volume and the cells that they need, from the frame's cells to ever smaller
+/// ones.
+class ThinLabelFinder {
+ public:
+  ThinLabelFinder(const LabelInput& labels, const GridFrame& frame, const Progress* progress)
+      : labels_(labels),
+        frame_(frame),
+        progress_(progress),
+        spacing_(labels.directions.colwise().norm()),
+        to_grid_(frame.axes.transpose() * labels.directions / frame.cell_size),
+        first_(frame.to_grid(labels.origin)) {}
 
-ThinLabels find_thin_labels(const LabelInput& labels, const GridFrame& frame, const Progress* progress) {
-  constexpr double cells_enough = 2;
-  constexpr double slack = 1e-6;  // of a voxel: two cells of half a voxel are one
-  constexpr int longest_box = 200;
-  // Islands of fewer voxels would have no shape with two cells per voxel.
-  constexpr std::size_t small_island = 8;
-  // Each takes thousands of tets, so this is not for noise.
-  constexpr std::size_t max_island_voxels = 32;
-  constexpr double cells_per_island_voxel = 8;
-  // Maximum distance of interfaces from the centre of a thin voxel, voxels.
-  constexpr double around = 0.75;
-  const Vec3 spacing = labels.directions.colwise().norm();
-  const Eigen::Matrix3d to_grid = frame.axes.transpose() * labels.directions / frame.cell_size;
-  const Vec3 first = frame.to_grid(labels.origin);
-  const Vec3 reach = around * to_grid.cwiseAbs().rowwise().sum();
+  /// The level of the largest cells that may contain an interface: half a voxel, or the promises for finer
+  /// cells would be broken.
+  int coarsest_interface_level(int coarsest) const {
+    constexpr double max_cell = 0.5 + tolerance::coinciding_cells;  // voxels
+    while (coarsest > 0 && std::ldexp(frame_.cell_size, coarsest) > max_cell * spacing_.minCoeff())
+      --coarsest;
+    return coarsest;
+  }
 
-  ThinLabels thin;
-  // Larger cells must not contain an interface, or the promises for finer ones would be broken.
-  constexpr double max_cell = 0.5 + slack;  // voxels
-  int& coarsest = thin.finer.coarsest_interface_level;
-  while (coarsest > 0 && std::ldexp(frame.cell_size, coarsest) > max_cell * spacing.minCoeff()) --coarsest;
-  std::vector<std::vector<MortonKey>> by_depth;
-  std::vector<std::size_t> voxels;
-  int island_levels = 0;
-  for (int depth = 0; depth <= max_refinement; ++depth) {
-    const double cell = std::ldexp(frame.cell_size, -depth);
-    Sides sides;
-    for (int a = 0; a < 3; ++a)
-      sides[a] =
-          std::clamp(static_cast<int>(std::ceil(cells_enough * cell / spacing[a] - slack)), 1, longest_box);
+  /// Whether cells halved `depth` times are to be tried, after all larger ones; voxels() are then those that
+  /// are too thin for them.
+  bool find_voxels(int depth) {
+    const Sides sides = sides_at(depth);
     if (sides != Sides{1, 1, 1}) {
-      voxels = Opening(labels, sides, progress).thin_voxels();
-    } else {
-      // Two cells to every voxel, too few for what is hardly larger than one; eight or more are enough.
-      if (island_levels == 2 || cells_per_island_voxel * frame.cell_size <= spacing.minCoeff()) break;
-      ++island_levels;
-      if (depth == 0) voxels = Opening(labels, {2, 2, 2}, progress).thin_voxels();
-      std::erase_if(voxels, [&](std::size_t v) {
-        return labels.regions[v] == outside_region || !in_small_island(labels, v, small_island);
-      });
-      if (voxels.size() > max_island_voxels) break;
+      voxels_ = Opening(labels_, sides, progress_).thin_voxels();
+      return !voxels_.empty();
     }
-    if (voxels.empty()) break;
-    const auto index_of = [&](std::size_t i) {
-      const auto nx = static_cast<std::size_t>(labels.size[0]), ny = static_cast<std::size_t>(labels.size[1]);
-      return Vec3(static_cast<double>(i % nx), static_cast<double>(i / nx % ny),
-                  static_cast<double>(i / (nx * ny)));
-    };
-    if (depth == max_refinement) {
-      std::vector<ThinPart> parts;
-      for (std::size_t r = 0; r <= labels.materials.size(); ++r)
-        parts.push_back({static_cast<RegionIndex>(r), 0, Vec3::Zero()});
-      for (std::size_t i : voxels) {
-        ThinPart& part = parts[labels.regions[i]];
-        if (part.places++ == 0) part.first = first + to_grid * index_of(i);
-      }
-      for (const ThinPart& p : parts)
-        if (p.places > 0) thin.too_thin.push_back(p);
-      break;
+    // Two cells to every voxel, too few for what is hardly larger than one; eight or more are enough.
+    constexpr double cells_per_island_voxel = 8;
+    if (island_levels_ == 2 || cells_per_island_voxel * frame_.cell_size <= spacing_.minCoeff()) return false;
+    ++island_levels_;
+    if (depth == 0) voxels_ = Opening(labels_, {2, 2, 2}, progress_).thin_voxels();
+    // Islands of fewer voxels would have no shape with two cells per voxel.
+    constexpr std::size_t small_island = 8;
+    std::erase_if(voxels_, [&](std::size_t v) {
+      return labels_.regions[v] == outside_region || !in_small_island(labels_, v, small_island);
+    });
+    // Each takes thousands of tets, so this is not for noise.
+    constexpr std::size_t max_island_voxels = 32;
+    return !voxels_.empty() && voxels_.size() <= max_island_voxels;
+  }
+
+  /// The voxels found, as parts of the regions that are thinner than even the smallest cells resolve.
+  std::vector<ThinPart> too_thin() const {
+    std::vector<ThinPart> parts;
+    for (std::size_t r = 0; r <= labels_.materials.size(); ++r)
+      parts.push_back({static_cast<RegionIndex>(r), 0, Vec3::Zero()});
+    for (const std::size_t voxel : voxels_) {
+      ThinPart& part = parts[labels_.regions[voxel]];
+      if (part.places++ == 0) part.first = centre(voxel);
     }
-    by_depth.push_back(parallel_collect<MortonKey>(
-        0, voxels.size(), 1 << 12, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+    std::erase_if(parts, [](const ThinPart& part) { return part.places == 0; });
+    return parts;
+  }
+
+  /// The cells halved `depth` times around the voxels found, ascending.
+  std::vector<MortonKey> cells_around(int depth) const {
+    // Maximum distance of interfaces from the centre of a thin voxel, voxels.
+    constexpr double around = 0.75;
+    const Vec3 reach = around * to_grid_.cwiseAbs().rowwise().sum();
+    std::vector<MortonKey> cells = parallel_collect<MortonKey>(
+        0, voxels_.size(), 1 << 12, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
           for (std::size_t k = begin; k < end; ++k) {
-            const Vec3 centre = first + to_grid * index_of(voxels[k]);
+            const Vec3 middle = centre(voxels_[k]);
             std::array<int, 3> from, to;
             for (int a = 0; a < 3; ++a) {
-              const double low = std::ldexp(centre[a] - reach[a], depth),
-                           high = std::ldexp(centre[a] + reach[a], depth);
+              const double low = std::ldexp(middle[a] - reach[a], depth),
+                           high = std::ldexp(middle[a] + reach[a], depth);
               from[a] = std::max(0, static_cast<int>(std::floor(low)));
-              to[a] = std::min(frame.cells[a] << depth, static_cast<int>(std::ceil(high)));
+              to[a] = std::min(frame_.cells[a] << depth, static_cast<int>(std::ceil(high)));
             }
             for (int z = from[2]; z < to[2]; ++z)
               for (int y = from[1]; y < to[1]; ++y)
                 for (int x = from[0]; x < to[0]; ++x) out.push_back(morton_encode(x, y, z));
           }
-        }));
-    parallel_sort_unique(by_depth.back());
+        });
+    parallel_sort_unique(cells);
+    return cells;
+  }
+
+ private:
+  /// Voxels that two cells halved `depth` times span along each axis.
+  Sides sides_at(int depth) const {
+    constexpr double cells_enough = 2;
+    constexpr int longest_box = 200;
+    const double cell = std::ldexp(frame_.cell_size, -depth);
+    Sides sides;
+    for (int a = 0; a < 3; ++a)
+      sides[a] = std::clamp(
+          static_cast<int>(std::ceil(cells_enough * cell / spacing_[a] - tolerance::coinciding_cells)), 1,
+          longest_box);
+    return sides;
+  }
+
+  /// Of a voxel, in grid coordinates.
+  Vec3 centre(std::size_t voxel) const {
+    const auto nx = static_cast<std::size_t>(labels_.size[0]), ny = static_cast<std::size_t>(labels_.size[1]);
+    return first_ + to_grid_ * Vec3(static_cast<double>(voxel % nx), static_cast<double>(voxel / nx % ny),
+                                    static_cast<double>(voxel / (nx * ny)));
+  }
+
+  const LabelInput& labels_;
+  const GridFrame& frame_;
+  const Progress* progress_;
+  Vec3 spacing_;             ///< of the voxels, input units
+  Eigen::Matrix3d to_grid_;  ///< of steps between voxels
+  Vec3 first_;               ///< the first voxel's centre, grid coordinates
+  std::vector<std::size_t> voxels_;
+  int island_levels_ = 0;  ///< levels that were made for small islands
+};
+
+}  // namespace
+
+ThinLabels find_thin_labels(const LabelInput& labels, const GridFrame& frame, const Progress* progress) {
+  ThinLabelFinder finder(labels, frame, progress);
+  ThinLabels thin;
+  int& coarsest = thin.finer.coarsest_interface_level;
+  coarsest = finder.coarsest_interface_level(coarsest);
+  std::vector<std::vector<MortonKey>> by_depth;
+  for (int depth = 0; depth <= max_refinement && finder.find_voxels(depth); ++depth) {
+    if (depth == max_refinement)
+      thin.too_thin = finder.too_thin();
+    else
+      by_depth.push_back(finder.cells_around(depth));
   }
   thin.finer.refinement = static_cast<int>(by_depth.size());
   thin.finer.cells.resize(by_depth.size() + 1);

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "common/parallel/parallel_sort.h"
+#include "common/tolerances.h"
 
 namespace tetwright {
 
@@ -180,8 +181,6 @@ LabelledLattice label_lattice(LatticePoints points, std::vector<NearestRegion> n
 }
 
 void read_star_values(LabelledLattice& lattice, const MaterialField& field) {
-  // How far a point's own distance is lowered below the others where it is not the smallest.
-  constexpr float smallest_lead = 1e-6f;
   const std::vector<Index>& points = lattice.stars.points();
   parallel_for(0, points.size(), 1024, [&](std::size_t begin, std::size_t end) {
     const std::unique_ptr<FieldSampler> owned = field.sampler();
@@ -198,7 +197,7 @@ void read_star_values(LabelledLattice& lattice, const MaterialField& field) {
           own = &values[i];
         else
           others = std::min(others, values[i]);
-      if (own && !(*own <= others - smallest_lead)) *own = others - smallest_lead;
+      if (own && !(*own <= others - tolerance::smallest_lead)) *own = others - tolerance::smallest_lead;
     }
   });
 }

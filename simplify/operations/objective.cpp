@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/geometry/predicates.h"
+#include "common/tolerances.h"
 
 namespace tetwright {
 
@@ -12,8 +13,8 @@ double Objective::precise_signed_value(const Vec3& a, const Vec3& b, const Vec3&
   if (value > 0) return value;
   const double longest2 = std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (d - a).squaredNorm(),
                                     (c - b).squaredNorm(), (d - b).squaredNorm(), (d - c).squaredNorm()});
-  // Strictly below 0, also for a tet that is exactly flat.
-  return std::min(0.0, orient3d_value(a, b, c, d) / (longest2 * std::sqrt(longest2)) - 1e-9);
+  return std::min(
+      0.0, orient3d_value(a, b, c, d) / (longest2 * std::sqrt(longest2)) - tolerance::inverted_quality);
 }
 
 }  // namespace tetwright

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <optional>
 
+#include "common/tolerances.h"
+
 namespace tetwright {
 
 namespace {
@@ -146,7 +148,7 @@ Vec3 shortest_of_hull(const std::array<Vec3, max_active>& gradients, std::size_t
     const double a2 = across.squaredNorm();
     if (!(a2 > 0)) break;
     const double t = -v.dot(across) / a2;
-    if (!(t > 1e-6)) break;
+    if (!(t > tolerance::hull_step)) break;
     v += std::min(1.0, t) * across;
   }
   return v;
@@ -304,8 +306,8 @@ class PlacementSearch {
       if (active == 0) break;
       const Vec3 uphill = shortest_of_hull(gradients, active);
       const double steep = uphill.norm();
-      // The worst value would rise by less than a thousandth of itself over a whole edge: a maximum.
-      if (!(steep * shortest_ > 1e-3 * std::fabs(worst_) + 1e-9)) break;
+      if (!(steep * shortest_ > tolerance::ascent_share * std::fabs(worst_) + tolerance::ascent_rounding))
+        break;
       bool better = false;
       for (int back = 0; back < max_backsteps; ++back, length *= 0.5) {
         const auto to = placed(at_ + uphill * (length / steep));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/portable_math.h"
+#include "common/tolerances.h"
 #include "simplify/operations/collapse.h"
 #include "simplify/operations/edge_removal.h"
 #include "simplify/operations/face_removal.h"
@@ -116,7 +117,8 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
   BlockRules& rules = engine.rules;
   const std::size_t target_tets = std::min(options.target_tets, mesh.live_tets());
   const auto target = static_cast<double>(target_tets);
-  const double log_first = portable_log(std::max(static_cast<double>(mesh.live_tets()) / target, 1 + 1e-9));
+  const double log_first =
+      portable_log(std::max(static_cast<double>(mesh.live_tets()) / target, 1 + tolerance::at_target));
   const double max_interpolation_error = max_useful_error * std::max(1.0, options.gamma / 10);
   rules.objective.kind = Objective::Kind::paper;
   rules.max_error = rules.objective.quality.ideal_edge;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/portable_math.h"
+#include "common/tolerances.h"
 #include "simplify/operations/collapse.h"
 #include "simplify/operations/edge_removal.h"
 #include "simplify/operations/face_removal.h"
@@ -76,7 +77,8 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options) {
   BlockRules& rules = engine.rules;
   const auto target = static_cast<double>(options.target_tets);
   const std::size_t loop_target = options.target_tets;
-  const double log_first = portable_log(std::max(static_cast<double>(mesh.live_tets()) / target, 1 + 1e-9));
+  const double log_first =
+      portable_log(std::max(static_cast<double>(mesh.live_tets()) / target, 1 + tolerance::at_target));
   const double max_error = max_useful_error * std::max(1.0, options.gamma / 10);
   rules.objective.kind = Objective::Kind::paper;
   rules.objective.quality.needle_angle = needle_angle;

@@ -128,7 +128,7 @@ TEST_F(Volumes, GridsOfOpenVdb) {
   other->setName("others");
   write({grid, other});
   expect_refused(path("organs.vdb"), 3, {"2 grids", "'segments', 'others'"});
-  write({openvdb::Vec3SGrid::create()});
+  write({openvdb::GridBase::createGrid("Tree_vec3s_5_4_3")});
   expect_refused(path("organs.vdb"), 3, {"no level set", "no grid of whole numbers", "vec3s"});
 }
 

@@ -187,10 +187,10 @@ TEST_F(VdbFiles, SaysWhatIsWrong) {
   fog->setGridClass(openvdb::GRID_FOG_VOLUME);
   const auto labels = openvdb::Int32Grid::create();
   labels->setName("labels");
-  const auto doubles = openvdb::DoubleGrid::create();
+  const auto doubles = openvdb::GridBase::createGrid("Tree_double_5_4_3");
   doubles->setName("precise");
   doubles->setGridClass(openvdb::GRID_LEVEL_SET);
-  const auto velocity = openvdb::Vec3SGrid::create();
+  const auto velocity = openvdb::GridBase::createGrid("Tree_vec3s_5_4_3");
   velocity->setName("v");
   const auto one_sided = openvdb::FloatGrid::create(1);
   one_sided->setName("mask");
@@ -227,7 +227,7 @@ TEST_F(VdbFiles, DamagedFiles) {
     const std::size_t reach = k % 2 ? bytes.size() : std::min<std::size_t>(bytes.size(), 1500);
     for (int n = 0; n <= k % 3; ++n)
       bytes[static_cast<std::size_t>(random.uniform() * static_cast<double>(reach))] =
-          static_cast<char>(random.uniform() * 256);
+          static_cast<char>(static_cast<unsigned char>(random.uniform() * 256));
     put(file, bytes);
     try {
       read_level_sets(file);
@@ -377,7 +377,7 @@ TEST_F(VdbFiles, DamagedLabels) {
       const std::size_t reach = k % 2 ? bytes.size() : std::min<std::size_t>(bytes.size(), 1500);
       for (int n = 0; n <= k % 3; ++n)
         bytes[static_cast<std::size_t>(random.uniform() * static_cast<double>(reach))] =
-            static_cast<char>(random.uniform() * 256);
+            static_cast<char>(static_cast<unsigned char>(random.uniform() * 256));
       put(file, bytes);
       try {
         read_label_grid(file, max_voxels);
