@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "common/error.h"
-#include "common/short_number.h"
+#include "common/message_text.h"
 
 namespace tetwright {
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "common/error.h"
-#include "common/formats/text_scanner.h"
+#include "common/message_text.h"
 #include "common/random.h"
 
 namespace tetwright {

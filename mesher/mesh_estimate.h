@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "common/short_number.h"
+#include "common/message_text.h"
 #include "mesher/input/label_input.h"
 #include "mesher/labels/label_thickness.h"
 #include "mesher/mesher.h"

@@ -19,6 +19,13 @@
 #include "tools/interruption.h"
 #include "tools/report.h"
 
+namespace {
+
+constexpr const char* report_this =
+    "; this is a bug in tetwright: please report it with this line, the version, the command and its input";
+
+}  // namespace
+
 int main(int argc, char** argv) {
   tetwright::handle_interruptions();
   using tetwright::ExitStatus;
@@ -32,10 +39,16 @@ int main(int argc, char** argv) {
   // A full disk or a closed pipe must end in an error message, not in a signal.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
-  // If the system cannot start a thread, the exception ends in std::terminate before any handler here sees
-  // it.
+  // An exception that no handler below sees: nearly always because the system cannot start a thread.
   std::set_terminate([] {
     (void)tetwright::abandon_output_files();
+    try {
+      if (const std::exception_ptr current = std::current_exception()) std::rethrow_exception(current);
+    } catch (const tetwright::InternalError& e) {
+      tetwright::print_line(std::string(e.what()) + report_this);
+      _exit(static_cast<int>(ExitStatus::internal_error));
+    } catch (...) {
+    }
     constexpr char message[] = "tetwright: out of memory or threads; give fewer --threads\n";
     [[maybe_unused]] const auto written = write(STDERR_FILENO, message, sizeof message - 1);
     _exit(static_cast<int>(ExitStatus::output_failed));
@@ -55,10 +68,7 @@ int main(int argc, char** argv) {
     return fail(ExitStatus::output_failed,
                 "not enough memory; free some, or ask for less (of surfaces: a smaller --resolution)");
   } catch (const tetwright::InternalError& e) {
-    return fail(ExitStatus::internal_error,
-                std::string(e.what()) +
-                    "; this is a bug in tetwright: please report it with this line, the "
-                    "version, the command and its input");
+    return fail(ExitStatus::internal_error, std::string(e.what()) + report_this);
   } catch (const std::exception& e) {
     return fail(tetwright::exit_status(e), e.what());
   }

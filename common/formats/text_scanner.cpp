@@ -23,13 +23,6 @@ std::string_view without_plus(std::string_view token) {
 
 }  // namespace
 
-std::string in_quotes(std::string_view value) {
-  constexpr std::size_t longest = 40;
-  std::string out = "\"";
-  for (char c : value.substr(0, longest)) out += c >= ' ' && c <= '~' ? c : '?';
-  return out + (value.size() > longest ? "...\"" : "\"");
-}
-
 bool parse_number(std::string_view token, double& value) {
   token = without_plus(token);
   const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);

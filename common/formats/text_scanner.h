@@ -4,13 +4,10 @@
 #include <string>
 #include <string_view>
 
+#include "common/message_text.h"
 #include "common/types.h"
 
 namespace tetwright {
-
-/// A value from a file in the form in which messages show it: quoted, cut after 40 characters, with '?' for
-/// everything but printable ASCII.
-std::string in_quotes(std::string_view value);
 
 /// Parses a whole token. Returns false if it is not a number. "nan" and "inf" are numbers; overflow gives an
 /// infinity, underflow 0 or a subnormal number.

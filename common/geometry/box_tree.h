@@ -65,7 +65,7 @@ class BoxTree {
   };
 
   BoxTree() = default;
-  /// `box_at(position)` returns an item's box. Fewer than 2^32 items.
+  /// `box_at(position)` returns an item's box. Fewer than 2^31 items.
   BoxTree(std::size_t count, std::size_t leaf_size, const std::function<Box3(std::size_t)>& box_at);
 
   bool empty() const { return nodes_.empty(); }

@@ -72,7 +72,7 @@ struct Link {
     return set;
   }
 
-  /// True if the points of the mask are some and hang together.
+  /// True if the mask is not empty and its points are connected.
   bool one_piece(Mask mask) const {
     if (mask == 0) return false;
     Mask reached = mask & (~mask + 1), frontier = reached;
@@ -86,7 +86,7 @@ struct Link {
     return reached == mask;
   }
 
-  /// True if the points of the mask with the edges and triangles between them are one disc.
+  /// True if the points of the mask, with the edges and triangles between them, form one disc.
   bool one_disc(Mask mask) {
     if (!one_piece(mask)) return false;
     int twice_edges = 0, triangles = 0;
@@ -99,9 +99,9 @@ struct Link {
     return std::popcount(mask) - twice_edges / 2 + triangles == 1;
   }
 
-  /// True if no region shows twice around the edge from the centre to neighbour i: the points of its link are
-  /// a cycle, in which each region must have one stretch (points on interfaces between do not part it).
-  /// Otherwise two regions could touch along the edge alone, with a third one on either side.
+  /// True if no region appears twice around the edge from the centre to neighbour i: the points of its link
+  /// are a cycle, in which each region must have one stretch (points on interfaces between them do not
+  /// separate it). Otherwise two regions could touch along the edge alone, with a third one on either side.
   bool one_stretch_each(int i) {
     // The two neighbours of each point of the cycle.
     std::array<std::array<int, 2>, capacity> beside;
@@ -134,7 +134,8 @@ struct Link {
     return std::adjacent_find(stretches.begin(), stretches.begin() + count) == stretches.begin() + count;
   }
 
-  /// Every region of the set shows in the points of the mask as it must around a point on an interface.
+  /// True if every region of the set appears among the points of the mask as it must around a point on an
+  /// interface.
   bool regular(const RegionSet& regions, Mask keep) {
     for (RegionIndex r : regions) {
       const Mask part = of_region(r) & keep;
@@ -181,7 +182,7 @@ std::optional<RegionSet> regions_if_moved(const LabelledLattice& lattice, Index 
     }
     // Two regions cannot alternate around an edge where both ends see each as one piece.
     if (regions->size() > 2 && !link.one_stretch_each(i)) return std::nullopt;
-    // What meets at u is what shows around it now, the point itself among it.
+    // The regions that meet at u are those around it now, including the point itself.
     Link around_u(lattice, u);
     const std::optional<RegionSet> at_u = around_u.pure();
     if (around_u.overflow || !at_u) return std::nullopt;

@@ -15,10 +15,10 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t grain = 1 << 13;  // tets to a task, some ten nanoseconds each
+constexpr std::size_t grain = 1 << 13;  // tets per parallel chunk; each takes some ten nanoseconds
 
-/// Cuts stay this share of the edge off its ends, for the sake of the shape of the pieces. Only points that
-/// could not be moved have cuts that near.
+/// Cuts keep at least this share of the edge away from its ends, so that the pieces are well shaped. Only
+/// edges of points that could not be moved would be cut nearer.
 constexpr double smallest_share = 0.25;
 /// The same for the point of a face and of a tet, as barycentric coordinates.
 constexpr double min_face_share = 0.15;
@@ -42,7 +42,7 @@ RegionSet pure_regions(const LabelledLattice& lattice, const Tet& t) {
   return set;
 }
 
-/// What becomes of a tet: cut, or kept whole, or left out.
+/// Whether a tet is cut, kept whole or left out.
 enum class Fate { cut, whole, dropped };
 Fate fate(const LabelledLattice& lattice, const Tet& t, RegionIndex& region) {
   region = on_interface;
@@ -73,12 +73,13 @@ Vec3 edge_cut(const LabelledLattice& lattice, Index a, Index b) {
   return lattice.positions[a] + share * (lattice.positions[b] - lattice.positions[a]);
 }
 
-/// Barycentric coordinates that are at least `smallest` and as they were if they are already.
+/// Raises barycentric coordinates to at least `smallest`; those that are large enough already are returned
+/// unchanged.
 template <int N>
 Eigen::Matrix<double, N, 1> kept_off_the_ends(const Eigen::Matrix<double, N, 1>& shares, double smallest) {
   Eigen::Matrix<double, N, 1> excess = (shares.array() - smallest).max(0.0);
   const double sum = excess.sum();
-  // Also where they are not numbers.
+  // Equal ones, too, where these are not numbers.
   if (!(sum > 0) || !std::isfinite(sum))
     excess.setConstant(1), excess /= N;
   else
@@ -86,8 +87,8 @@ Eigen::Matrix<double, N, 1> kept_off_the_ends(const Eigen::Matrix<double, N, 1>&
   return (excess.array() * (1 - N * smallest) + smallest).matrix();
 }
 
-/// The point of the simplex of N corners, each of a region of its own, where all regions are equally near by
-/// linear interpolation.
+/// The point of a simplex of N corners, each of another region, where all regions are equally near by linear
+/// interpolation.
 template <int N>
 Vec3 meeting_point(const LabelledLattice& lattice, const std::array<Index, N>& corners, double smallest) {
   Eigen::Matrix<double, N, N> equations;
@@ -148,7 +149,7 @@ CutCase cut_case(const LabelledLattice& lattice, const Tet& t) {
   }
   for (int k = 0; k < 4; ++k) {
     cut.ranks[k] = 0;
-    // Farthest from the interface first: the longest edge is the one to be cut short.
+    // The corner farthest from the interface comes first.
     for (int l = 0; l < 4; ++l)
       cut.ranks[k] += margins[l] > margins[k] || (margins[l] == margins[k] && t[l] < t[k]);
   }
@@ -225,7 +226,7 @@ struct Cuts {
   }
 
  private:
-  /// What `body(tet, out)` adds for each tet that is cut, sorted, each once.
+  /// Collects what `body(tet, out)` appends for each tet that is cut; sorted, without repetitions.
   template <class Key, class Body>
   static std::vector<Key> collect(const LabelledLattice& lattice, Body&& body) {
     std::vector<Key> keys = parallel_collect<Key>(
@@ -233,7 +234,7 @@ struct Cuts {
           RegionIndex unused;
           for (std::size_t i = begin; i < end; ++i)
             if (fate(lattice, lattice.tets[i], unused) == Fate::cut) body(lattice.tets[i], out);
-          // Most tets that share an edge are near each other: a few of its keys are left.
+          // Most tets that share an edge are in the same chunk, so this removes most repetitions.
           std::sort(out.begin(), out.end());
           out.erase(std::unique(out.begin(), out.end()), out.end());
         });
@@ -254,7 +255,7 @@ int corners_of(PieceVertex vertex, std::array<int, 4>& corners) {
   return n;
 }
 
-/// Numbers the points in the order of their first use and drops the rest.
+/// Numbers the points in the order of their first use and drops unused ones.
 void compact(const LabelledLattice& lattice, const std::vector<Vec3>& cuts, CutMesh& mesh) {
   const std::vector<Vec3>& positions = lattice.positions;
   std::vector<Index> number(positions.size() + cuts.size(), no_index);
@@ -279,7 +280,7 @@ void compact(const LabelledLattice& lattice, const std::vector<Vec3>& cuts, CutM
 }  // namespace
 
 double worst_piece_tangent(const LabelledLattice& lattice, const Tet& t) {
-  constexpr double none = 1;  // no tet has a smallest angle near pi / 2
+  constexpr double none = 1;  // the min solid angle of a tet is never as large as pi / 2
   const auto angle = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     return min_solid_angle_tangent(a, b, c, d);
   };
@@ -293,7 +294,7 @@ double worst_piece_tangent(const LabelledLattice& lattice, const Tet& t) {
     case Fate::cut:
       break;
   }
-  // Every vertex that pieces have, computed when first asked for.
+  // Positions of the pieces' vertices, computed when first asked for.
   std::array<Vec3, 16> places;
   unsigned known = 0;
   const auto place = [&](PieceVertex vertex) -> const Vec3& {
@@ -329,7 +330,7 @@ CutMesh cut_lattice(LabelledLattice lattice) {
     Tet tet;
     RegionIndex region;
   };
-  // What each part of the lattice becomes takes its place.
+  // The pieces cut from each part of the lattice replace it in memory.
   std::vector<std::vector<CutTet>> parts(lattice.tets.piece_count());
   parallel_for(0, parts.size(), 1, [&](std::size_t first_part, std::size_t last_part) {
     for (std::size_t part = first_part; part < last_part; ++part) {

@@ -4,11 +4,14 @@
 // whatever includes OpenVDB's headers takes long to compile.
 #include <openvdb/openvdb.h>
 
+#include <utility>
+
 #include "mesher/distance/openvdb_grids.h"
 
 namespace tetwright {
 
 struct DistanceGrid::Impl {
+  explicit Impl(openvdb::FloatGrid::Ptr made) : grid(std::move(made)) {}
   openvdb::FloatGrid::Ptr grid;
 };
 

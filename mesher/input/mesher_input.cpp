@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/error.h"
-#include "common/short_number.h"
+#include "common/message_text.h"
 
 namespace tetwright {
 

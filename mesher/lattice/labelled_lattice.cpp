@@ -12,7 +12,8 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t lattice_grain = 1 << 14;  // tets or points to a task, some nanoseconds each
+constexpr std::size_t lattice_grain =
+    1 << 14;  // tets or points per parallel chunk; each takes some nanoseconds
 
 bool mixed(const std::vector<RegionIndex>& regions, const Tet& t) {
   const RegionIndex r = regions[t[0]];

@@ -9,12 +9,12 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t leaf_grain = 1024;  // leaves to a task, some microseconds each
+constexpr std::size_t leaf_grain = 1024;  // leaves per parallel chunk; each takes some microseconds
 
-/// A place of the lattice in half finest cells.
+/// A position on the lattice in half finest cells.
 using HalfCells = std::array<int, 3>;
 
-/// What is needed of a leaf, in half finest cells.
+/// A leaf as a box, in half finest cells.
 struct LeafBox {
   HalfCells low;
   int side;
@@ -162,7 +162,7 @@ LatticePoints lattice_points(const Octree& octree) {
               if (on_box(octree, box, axis, upper))
                 out.push_back(morton_encode(face_centre(box, axis, upper)) << 1);
         }
-        // Most of what repeats does so within a part: a quarter is left.
+        // Most repetitions are within a chunk: a quarter of the keys is left.
         std::sort(out.begin(), out.end());
         out.erase(std::unique(out.begin(), out.end()), out.end());
       });

@@ -9,7 +9,7 @@ namespace tetwright {
 
 namespace {
 
-/// Cells per task where a cell takes about a microsecond.
+/// Cells per parallel chunk where a cell takes about a microsecond.
 constexpr std::size_t cell_grain = 2048;
 
 /// Appends the parents (level l + 1) that must be split because the cell `key` of level l is split: its own
@@ -155,7 +155,7 @@ Octree build_octree(const MaterialField& field, const OctreeOptions& options,
                         [](int, const std::vector<MortonKey>&) { return std::vector<MortonKey>(); });
 
   const int voxel_level = field.refinement();
-  // Cells of the level at hand that hold an interface.
+  // Cells of the current level that contain an interface.
   std::vector<MortonKey> holding = std::move(interface_voxels);
   return build_octree(frame.cells, frame.root_level, [&](int level, const std::vector<MortonKey>& already) {
     if (progress) {

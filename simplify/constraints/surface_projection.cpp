@@ -34,7 +34,7 @@ class PointCopies {
 
 }  // namespace
 
-NearestTree::NearestTree(std::vector<Vec3> points, std::vector<Item> items)
+ProjectionTree::ProjectionTree(std::vector<Vec3> points, std::vector<Item> items)
     : points_(std::move(points)), items_(std::move(items)) {
   if (items_.empty()) return;
   Vec3 low = points_.front(), high = low;
@@ -69,8 +69,8 @@ NearestTree::NearestTree(std::vector<Vec3> points, std::vector<Item> items)
   });
 }
 
-std::optional<Vec3> NearestTree::nearest(const Vec3& p, RegionId first, RegionId second,
-                                         double max_distance) const {
+std::optional<Vec3> ProjectionTree::nearest(const Vec3& p, RegionId first, RegionId second,
+                                            double max_distance) const {
   if (first > second) std::swap(first, second);
   std::optional<Vec3> found;
   tree_.nearest(p, max_distance * max_distance, tree_.all(), [&](std::size_t i, double best) {
@@ -91,13 +91,13 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const ReferenceSu
   const std::vector<InterfaceFace> faces = mesh.interface_faces();
   if (!given) {
     PointCopies points(mesh);
-    std::vector<NearestTree::Item> triangles;
+    std::vector<ProjectionTree::Item> triangles;
     triangles.reserve(faces.size());
     for (const InterfaceFace& f : faces)
       triangles.push_back({{points.number(f.ids[0]), points.number(f.ids[1]), points.number(f.ids[2])},
                            std::min(f.inside, f.across),
                            std::max(f.inside, f.across)});
-    surfaces_ = NearestTree(std::move(points.points), std::move(triangles));
+    surfaces_ = ProjectionTree(std::move(points.points), std::move(triangles));
   }
   // The edges with other than two of the triangles: junction curves, and where the input is not manifold.
   std::vector<std::uint64_t> edges(3 * faces.size());
@@ -110,7 +110,7 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const ReferenceSu
   });
   parallel_sort(edges);
   PointCopies points(mesh);
-  std::vector<NearestTree::Item> segments;
+  std::vector<ProjectionTree::Item> segments;
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t j = i + 1;
     while (j < edges.size() && edges[j] == edges[i]) ++j;
@@ -123,13 +123,13 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const ReferenceSu
   }
   // Where other than two segments meet, curves end or branch.
   std::vector<std::uint32_t> degrees(points.points.size(), 0);
-  for (const NearestTree::Item& s : segments)
+  for (const ProjectionTree::Item& s : segments)
     for (Index p : {s.corners[0], s.corners[1]}) ++degrees[p];
-  std::vector<NearestTree::Item> corners;
+  std::vector<ProjectionTree::Item> corners;
   for (Index p = 0; p < degrees.size(); ++p)
     if (degrees[p] != 2) corners.push_back({{p, p, p}, 0, 0});
-  corners_ = NearestTree(points.points, std::move(corners));
-  curves_ = NearestTree(std::move(points.points), std::move(segments));
+  corners_ = ProjectionTree(points.points, std::move(corners));
+  curves_ = ProjectionTree(std::move(points.points), std::move(segments));
 }
 
 std::optional<Vec3> SurfaceProjection::onto_surface(const Vec3& p, RegionId first, RegionId second,

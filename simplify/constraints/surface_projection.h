@@ -12,14 +12,14 @@ namespace tetwright {
 
 /// Triangles, segments and points (triangles with equal corners) for nearest-point queries: a tree of boxes
 /// over them in Morton order, four to a leaf.
-class NearestTree {
+class ProjectionTree {
  public:
   struct Item {
     Triangle corners;        ///< indices into the points given
     RegionId first, second;  ///< what it separates, first < second; equal for all to count as one kind
   };
-  NearestTree() = default;
-  NearestTree(std::vector<Vec3> points, std::vector<Item> items);
+  ProjectionTree() = default;
+  ProjectionTree(std::vector<Vec3> points, std::vector<Item> items);
 
   bool empty() const { return items_.empty(); }
   /// The nearest point on the items of a kind, if it is nearer than `max_distance`. Safe to call
@@ -54,7 +54,7 @@ class SurfaceProjection {
   }
 
  private:
-  NearestTree surfaces_, curves_, corners_;
+  ProjectionTree surfaces_, curves_, corners_;
   const ReferenceSurface* given_ = nullptr;
   const EditableMesh* mesh_ = nullptr;
 };

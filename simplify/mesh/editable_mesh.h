@@ -8,8 +8,8 @@
 
 #include "common/tet_mesh.h"
 #include "common/types.h"
+#include "simplify/mesh/free_slots.h"
 #include "simplify/mesh/locks.h"
-#include "simplify/mesh/slot_stock.h"
 #include "simplify/mesh/tet_record.h"
 #include "simplify/mesh/working_space.h"
 
@@ -103,8 +103,8 @@ class EditableMesh {
   TryLocks& locks() { return locks_; }
 
   /// Free slots for operations that add.
-  SlotReserve& free_tets() { return free_tets_; }
-  SlotReserve& free_points() { return free_points_; }
+  FreeSlotReserve& free_tets() { return free_tets_; }
+  FreeSlotReserve& free_points() { return free_points_; }
 
   /// Changes the number of living tets unless it would leave [min_tets, max_tets] or get farther away from
   /// it: then false, and nothing changed.
@@ -149,7 +149,7 @@ class EditableMesh {
   std::uint32_t round_ = 1;
   TryLocks locks_;
   std::atomic<std::int64_t> live_{0};
-  SlotReserve free_tets_, free_points_;
+  FreeSlotReserve free_tets_, free_points_;
   std::vector<std::uint8_t> pinned_;  ///< by point; empty if none is
   std::vector<Index> originals_;      ///< by point; empty if none is pinned
   std::vector<MaterialTag> tags_;     ///< of each region

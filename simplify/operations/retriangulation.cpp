@@ -7,7 +7,7 @@
 
 namespace tetwright {
 
-void Retriangulation::carry_out(EditableMesh& mesh, SlotStock& free_tets, const Cavity& cavity) {
+void Retriangulation::carry_out(EditableMesh& mesh, FreeSlots& free_tets, const Cavity& cavity) {
   sides_.clear();
   slots_.clear();
   collect_hull(mesh, cavity);
@@ -45,7 +45,7 @@ void Retriangulation::collect_hull(const EditableMesh& mesh, const Cavity& cavit
   }
 }
 
-void Retriangulation::write_tets(EditableMesh& mesh, SlotStock& free_tets, const Cavity& cavity) {
+void Retriangulation::write_tets(EditableMesh& mesh, FreeSlots& free_tets, const Cavity& cavity) {
   for (std::size_t i = 0; i < cavity.added.size(); ++i) {
     const NewTet& n = cavity.added[i];
     const Index slot = i < cavity.removed.size() ? cavity.removed[i] : free_tets.take();

@@ -4,7 +4,7 @@
 
 #include "simplify/mesh/cavity.h"
 #include "simplify/mesh/editable_mesh.h"
-#include "simplify/mesh/slot_stock.h"
+#include "simplify/mesh/free_slots.h"
 
 namespace tetwright {
 
@@ -16,7 +16,7 @@ class Retriangulation {
   /// incident tet. Faces of the cavity's hull that no new tet has must have been on the boundary of the mesh.
   /// The caller has locked every point of the old and new tets, has reserved slots for as many tets as are
   /// added beyond the removed ones, and has changed the count.
-  void carry_out(EditableMesh& mesh, SlotStock& free_tets, const Cavity& cavity);
+  void carry_out(EditableMesh& mesh, FreeSlots& free_tets, const Cavity& cavity);
 
  private:
   /// A face of a new tet, or of the cavity's hull as seen from outside.
@@ -27,7 +27,7 @@ class Retriangulation {
     bool outer;
   };
   void collect_hull(const EditableMesh& mesh, const Cavity& cavity);
-  void write_tets(EditableMesh& mesh, SlotStock& free_tets, const Cavity& cavity);
+  void write_tets(EditableMesh& mesh, FreeSlots& free_tets, const Cavity& cavity);
   void link_sides(EditableMesh& mesh);
 
   std::vector<Side> sides_;

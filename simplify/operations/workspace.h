@@ -11,9 +11,9 @@
 #include "simplify/mesh/cavity.h"
 #include "simplify/mesh/edge_ring.h"
 #include "simplify/mesh/editable_mesh.h"
+#include "simplify/mesh/free_slots.h"
 #include "simplify/mesh/locks.h"
 #include "simplify/mesh/outcome.h"
-#include "simplify/mesh/slot_stock.h"
 #include "simplify/mesh/star.h"
 #include "simplify/mesh/star_walk.h"
 #include "simplify/operations/block_rules.h"
@@ -59,7 +59,7 @@ struct Workspace {
   VolumeLedger& ledger;
   HeldLocks points;  ///< of the mesh's points
   HeldLocks cells;   ///< of the grid's cells
-  SlotStock free_tets, free_points;
+  FreeSlots free_tets, free_points;
   Random random{0};
   OperationCounts counts;
   std::uint64_t lock_conflicts = 0;

@@ -56,8 +56,9 @@ inline TetMesh grid_mesh(int n) {
 /// Moves every point a little, less than would turn a tet of grid_mesh over.
 inline void jitter(TetMesh& mesh, std::uint64_t seed, double amount = 0.1) {
   Random random(seed);
+  // One after another: the order in which arguments are evaluated depends on the compiler.
   for (Vec3& p : mesh.points)
-    p += amount * Vec3(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
+    for (int a = 2; a >= 0; --a) p[a] += amount * (random.uniform() - 0.5);
 }
 
 }  // namespace tetwright

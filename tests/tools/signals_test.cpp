@@ -206,7 +206,8 @@ TEST_F(Signals, WhileAFileIsWritten) {
       // The program may have finished its file before it is stopped: then it is run again.
       for (int attempt = 0; attempt < 50 && caught == 0; ++attempt) {
         put(out, "old");
-        Process process = start({"mesh", in("s.off"), "-o", out, "--resolution", "60"});
+        // One thread, so that the test has a processor to watch it from.
+        Process process = start({"mesh", in("s.off"), "-o", out, "--resolution", "60", "--threads", "1"});
         while (temporary_files(in("")) == 0 && !process.ended()) std::this_thread::yield();
         if (process.stop()) {
           const bool writing = temporary_files(in("")) == 1;

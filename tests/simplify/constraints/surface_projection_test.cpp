@@ -6,17 +6,17 @@
 namespace tetwright::slide_test {
 namespace {
 
-TEST(NearestTree, FindsWhatASearchOfAllFinds) {
+TEST(ProjectionTree, FindsWhatASearchOfAllFinds) {
   Random random(4);
   const auto number = [&] { return 2 * random.uniform() - 1; };
   std::vector<Vec3> points;
-  std::vector<NearestTree::Item> items;
+  std::vector<ProjectionTree::Item> items;
   for (Index i = 0; i < 500; ++i) {
     const Vec3 c(number(), number(), number());
     for (int k = 0; k < 3; ++k) points.push_back(c + 0.1 * Vec3(number(), number(), number()));
     items.push_back({{3 * i, 3 * i + 1, i % 7 ? 3 * i + 2 : 3 * i + 1}, i % 3, 9});
   }
-  const NearestTree tree(points, items);
+  const ProjectionTree tree(points, items);
   for (int i = 0; i < 300; ++i) {
     const Vec3 p = 1.2 * Vec3(number(), number(), number());
     const RegionId kind = static_cast<RegionId>(i % 3);
@@ -32,7 +32,7 @@ TEST(NearestTree, FindsWhatASearchOfAllFinds) {
     }
     EXPECT_FALSE(tree.nearest(p, 5, 6, 10));
   }
-  EXPECT_FALSE(NearestTree().nearest({0, 0, 0}, 0, 0, 10));
+  EXPECT_FALSE(ProjectionTree().nearest({0, 0, 0}, 0, 0, 10));
 }
 
 TEST(SurfaceProjection, KnowsSurfacesByTheirMaterialsAndJunctionCurves) {

@@ -9,7 +9,7 @@
 namespace tetwright {
 
 /// Free slots at the end of an array, which workers take in lots.
-class SlotReserve {
+class FreeSlotReserve {
  public:
   /// The slots [first, end) are free. Only while no task runs.
   void reset(std::size_t first, std::size_t end);
@@ -23,9 +23,9 @@ class SlotReserve {
 };
 
 /// A worker's own stock of free slots, refilled from the reserve, so that workers share no list.
-class SlotStock {
+class FreeSlots {
  public:
-  explicit SlotStock(SlotReserve& reserve) : reserve_(&reserve) {}
+  explicit FreeSlots(FreeSlotReserve& reserve) : reserve_(&reserve) {}
   /// False if fewer than `count` slots can be had.
   bool reserve(std::size_t count) {
     while (free_.size() < count)
@@ -42,7 +42,7 @@ class SlotStock {
   void give_back(Index slot) { free_.push_back(slot); }
 
  private:
-  SlotReserve* reserve_;
+  FreeSlotReserve* reserve_;
   std::vector<Index> free_;
 };
 

@@ -1,4 +1,4 @@
-#include "simplify/mesh/slot_stock.h"
+#include "simplify/mesh/free_slots.h"
 
 #include <algorithm>
 
@@ -11,12 +11,12 @@ constexpr std::size_t lot = 64;
 
 }  // namespace
 
-void SlotReserve::reset(std::size_t first, std::size_t end) {
+void FreeSlotReserve::reset(std::size_t first, std::size_t end) {
   next_ = first;
   end_ = end;
 }
 
-bool SlotReserve::take_lot(std::vector<Index>& free) {
+bool FreeSlotReserve::take_lot(std::vector<Index>& free) {
   // Relaxed: the number carries no other data.
   const std::size_t first = next_.fetch_add(lot, std::memory_order_relaxed);
   if (first >= end_) {

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace tetwright {
+
+/// A number with at most six significant digits ("%.6g"), for messages that people read. Files get the
+/// shortest text that is read back as the same bits, see number_text.h.
+inline std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+/// A value from a file or the command line in the form in which messages show it: quoted, cut after 40
+/// characters, with
+/// '?' for everything but printable ASCII.
+inline std::string in_quotes(std::string_view value) {
+  constexpr std::size_t longest = 40;
+  std::string out = "\"";
+  for (char c : value.substr(0, longest)) out += c >= ' ' && c <= '~' ? c : '?';
+  return out + (value.size() > longest ? "...\"" : "\"");
+}
+
+}  // namespace tetwright
