@@ -14,9 +14,8 @@ inline std::string short_number(double value) {
   return text;
 }
 
-/// A value from a file or the command line in the form in which messages show it: quoted, cut after 40
-/// characters, with
-/// '?' for everything but printable ASCII.
+/// A value from a file or the command line as messages show it: quoted, cut after 40 characters, with '?' for
+/// everything but printable ASCII.
 inline std::string in_quotes(std::string_view value) {
   constexpr std::size_t longest = 40;
   std::string out = "\"";

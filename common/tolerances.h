@@ -1,8 +1,8 @@
 #pragma once
 
-/// Every number that allows for rounding, or below which something counts as zero. What can be decided
-/// exactly has none: orientations and intersections are exact predicates (common/geometry/predicates.h).
-/// Parameters of the method, such as the sizes of steps and shares of edges, are where they are used.
+/// Numbers that allow for rounding, or below which something counts as zero. What can be decided exactly has
+/// none: orientations and intersections are exact predicates (common/geometry/predicates.h). Parameters of a
+/// method, such as the sizes of steps and shares of edges, are where they are used.
 namespace tetwright::tolerance {
 
 // Files.
@@ -11,7 +11,8 @@ namespace tetwright::tolerance {
 /// volume: far flatter than the gantry tilt of any scanner makes it, far above the rounding of directions
 /// stored as floats.
 inline constexpr double coplanar_directions = 1e-5;
-/// The squared length of a NIfTI quaternion's vector part may exceed 1 by the rounding of three floats.
+/// A NIfTI quaternion whose vector part has a squared length above 1 minus this (the rounding of three
+/// floats) is a half turn: its real part is 0, and the vector is normalised.
 inline constexpr double unit_quaternion = 1e-7;
 /// Distances written to .vdb are cut off at the band in floats; within this share of it they count as cut
 /// off.
@@ -19,48 +20,50 @@ inline constexpr float band_share = 1e-5F;
 
 // Shapes.
 
-/// Twice the area of a triangle, squared and relative to the squares of two edges, above which it is surely
-/// no line: rounding leaves less than 1e-28. Below it an exact predicate decides.
+/// Twice the area of a triangle, squared and relative to the product of two edges' squares, above which its
+/// corners are surely not on one line: rounding leaves less than 1e-28. Below it an exact predicate decides.
 inline constexpr double collinear_squared = 1e-24;
-/// Volume or area, squared and relative to the edges' product, below which a tet or triangle counts as flat
-/// in the transfer of fields: the rounding of orient3d_value is about 1e-15, and below it weights would be
-/// noise.
+/// Volume or area, squared and relative to the edges' product, squared too, below which a tet or triangle
+/// counts as flat in the transfer of fields: the rounding of orient3d_value is about 1e-15, and below it
+/// weights would be noise.
 inline constexpr double flat_squared = 1e-28;
-/// By so much the quality of an inverted or flat tet lies below 0, as a share of its longest edge cubed: a
-/// tet that is exactly flat must count as worse than any that is not.
+/// Subtracted from the quality of a tet that is flat or inverted (its volume over its longest edge cubed), so
+/// that a tet that is exactly flat is below 0, worse than any positive one.
 inline constexpr double inverted_quality = 1e-9;
 
-// Distances, in finest cells (voxels).
+// Distances, in voxels of the grid unless another unit is given.
 
-/// Surfaces smaller than this are not looked at: nothing of them could be meshed.
+/// Surfaces whose longest side is below this many cells are refused at once: a lattice for them could not be
+/// laid out in exact numbers.
 inline constexpr double min_surface_size = 1e-6;
 /// Distances of grid points from a surface are at least this, so that every grid point has a sign.
 inline constexpr double smallest_distance = 1e-6;
-/// By so much a point's own distance leads where two are equal, so that its region is the nearest by value
-/// too.
+/// In lattice units: the distance of a point's own region is at least this much below all others, so that the
+/// region is the nearest by value too.
 inline constexpr float smallest_lead = 1e-6F;
-/// A grid point on a surface counts as if it lay this much aside, when solid angles are summed: the rounding
-/// of several could add up to anything. Three different numbers, so that the point does not move along a face
-/// or an edge of the grid.
+/// Grid points count as if they lay this much to one side, all the same way, when solid angles are summed: on
+/// a surface the rounding of several could add up to anything. Three different numbers, so that no point
+/// stays on a plane along the axes or their diagonals.
 inline constexpr double aside[3] = {1.1e-5, 1.9e-5, 2.7e-5};
 /// Grid points farther than this from the projection of a triangle are surely not covered by it: the
 /// coordinates of its crossings are rounded.
 inline constexpr double projected_triangle = 1e-3;
-/// Distances of boxes' middles are rounded by less than this; a box is ruled out only by more.
+/// The radius of the search for the distance of a box's middle is lengthened by this, so that rounding does
+/// not cut off a distance that is needed.
 inline constexpr double box_distance = 1e-6;
-/// Two cells and voxels coincide, or only touch, if they do within this.
+/// Cells and voxels that differ by less than this coincide, or only touch.
 inline constexpr double coinciding_cells = 1e-6;
 
-// Where an iteration ends.
+// Steps and iterations.
 
-/// A point is on an interface if it is this near, finest cells: far below the accuracy of the distances.
+/// A point is on an interface if it is this near, in voxels: far below the accuracy of the distances.
 inline constexpr double on_interface = 1e-3;
 /// Below this squared slope of a distance (1 far from ridges) steps along it are not scaled up further.
 inline constexpr double min_squared_slope = 1e-3;
 /// The shortest vector of a convex hull is found if the next step is less than this share of the way.
 inline constexpr double hull_step = 1e-6;
-/// A position is optimal if the worst quality would rise by less than this share of itself over a whole edge,
-/// or by less than rounding makes of it.
+/// A position is optimal if, over its shortest edge, the worst quality would rise by no more than this share
+/// of itself plus ascent_rounding.
 inline constexpr double ascent_share = 1e-3;
 inline constexpr double ascent_rounding = 1e-9;
 /// A mesh that is at its target counts as larger by this share, so that the schedule's logarithm is not 0.

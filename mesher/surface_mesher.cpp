@@ -1,10 +1,10 @@
-#include "common/tolerances.h"
 #include "mesher/mesher.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "common/error.h"
+#include "common/tolerances.h"
 #include "mesher/distance/body_field.h"
 #include "mesher/distance/field_thickness.h"
 #include "mesher/distance/material_field.h"

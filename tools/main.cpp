@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <stdexcept>
 #include <string>
 
 #ifdef __GLIBC__
@@ -39,12 +40,13 @@ int main(int argc, char** argv) {
   // A full disk or a closed pipe must end in an error message, not in a signal.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
-  // An exception that no handler below sees: nearly always because the system cannot start a thread.
+  // For exceptions that the handlers below cannot catch: nearly always the system could not start a thread,
+  // which oneTBB reports as a std::runtime_error.
   std::set_terminate([] {
     (void)tetwright::abandon_output_files();
     try {
       if (const std::exception_ptr current = std::current_exception()) std::rethrow_exception(current);
-    } catch (const tetwright::InternalError& e) {
+    } catch (const std::logic_error& e) {
       tetwright::print_line(std::string(e.what()) + report_this);
       _exit(static_cast<int>(ExitStatus::internal_error));
     } catch (...) {

@@ -73,13 +73,13 @@ Vec3 edge_cut(const LabelledLattice& lattice, Index a, Index b) {
   return lattice.positions[a] + share * (lattice.positions[b] - lattice.positions[a]);
 }
 
-/// Raises barycentric coordinates to at least `smallest`; those that are large enough already are returned
-/// unchanged.
+/// Coordinates that are all at least `smallest` are returned unchanged; otherwise the smaller ones are raised
+/// to it and the others lowered, so that the sum stays 1.
 template <int N>
 Eigen::Matrix<double, N, 1> kept_off_the_ends(const Eigen::Matrix<double, N, 1>& shares, double smallest) {
   Eigen::Matrix<double, N, 1> excess = (shares.array() - smallest).max(0.0);
   const double sum = excess.sum();
-  // Equal ones, too, where these are not numbers.
+  // All equal if nothing is left to share out, or if they are not numbers.
   if (!(sum > 0) || !std::isfinite(sum))
     excess.setConstant(1), excess /= N;
   else

@@ -95,7 +95,7 @@ void DistanceGrid::fill_tiles_outside_band(double band) {
   openvdb::tools::signedFloodFillWithValues(impl_->grid->tree(), value, -value, true, 1, level_above_leaves);
 }
 
-TriangleMesh DistanceGrid::zero_surface() const {
+TriangleMesh DistanceGrid::zero_surface() const try {
   // In index coordinates, because OpenVDB's points are floats; shares the tree.
   const openvdb::FloatGrid::Ptr local = impl_->grid->copy();
   local->setGridClass(openvdb::GRID_LEVEL_SET);
@@ -107,20 +107,18 @@ TriangleMesh DistanceGrid::zero_surface() const {
 
   TriangleMesh mesh;
   if (quads.empty() && triangles.empty()) return mesh;
-  try {
-    const IndexToWorld to_world(*impl_->grid);
-    mesh.points.resize(points.size());
-    parallel_for(0, points.size(), 4096, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) mesh.points[i] = to_world.at(openvdb::Vec3d(points[i]));
-    });
-    mesh.triangles = split_quads(mesh.points, triangles, quads);
-    // OpenVDB winds them with the outside on the back.
-    if (!to_world.mirrors())
-      for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  } catch (const openvdb::Exception& e) {
-    throw std::domain_error(e.what());
-  }
+  const IndexToWorld to_world(*impl_->grid);
+  mesh.points.resize(points.size());
+  parallel_for(0, points.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) mesh.points[i] = to_world.at(openvdb::Vec3d(points[i]));
+  });
+  mesh.triangles = split_quads(mesh.points, triangles, quads);
+  // OpenVDB winds them with the outside on the back.
+  if (!to_world.mirrors())
+    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   return mesh;
+} catch (const openvdb::Exception& e) {
+  throw std::domain_error(e.what());
 }
 
 }  // namespace tetwright

@@ -5,6 +5,7 @@
 #include <openvdb/tools/Prune.h>
 
 #include <mutex>
+#include <new>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "common/error.h"
 #include "common/formats/voxel_data.h"
 #include "mesher/distance/openvdb_types.h"
+#include "mesher/distance/vdb_structure.h"
 
 namespace tetwright {
 
@@ -23,7 +25,7 @@ using Leaf = Tree::LeafNodeType;
 /// more.
 using Accessor = openvdb::tree::ValueAccessor<const Tree, false>;
 
-static_assert(leaf_side == Leaf::DIM && leaf_points == Leaf::SIZE);
+static_assert(leaf_side == Leaf::DIM && leaf_points == Leaf::SIZE && leaf_points % 64 == 0);
 
 GridLeaf<float> view_of(Leaf& leaf) {
   const openvdb::Coord& o = leaf.origin();
@@ -41,6 +43,8 @@ typename Grid::Ptr read_grid(VdbGrid& stored, const std::string& file) {
     stream.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
     const auto grids = openvdb::io::Stream(stream, false).getGrids();
     grid = openvdb::gridPtrCast<Grid>(grids->at(0));
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception&) {  // of OpenVDB or the stream
   }
   if (!grid) throw InputError(file, 0, "the grid '" + stored.name + "' is damaged; write it again");

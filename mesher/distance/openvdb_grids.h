@@ -14,10 +14,11 @@
 #include "common/triangle_mesh.h"
 #include "common/types.h"
 #include "mesher/distance/narrow_band.h"
-#include "mesher/distance/vdb_structure.h"
 #include "mesher/domain/grid_frame.h"
 
 namespace tetwright {
+
+struct VdbGrid;
 
 // All that the project uses of OpenVDB, without its headers.
 
@@ -28,7 +29,7 @@ struct GridLeaf {
   using Word = std::conditional_t<std::is_const_v<Value>, const std::uint64_t, std::uint64_t>;
   LeafOrigin origin;
   Value* values;
-  Word* active_bits;  ///< leaf_side words; grid point k is bit k % 64 of word k / 64
+  Word* active_bits;  ///< leaf_points / 64 words; grid point k is bit k % 64 of word k / 64
 
   bool active(int k) const { return active_bits[k / 64] >> (k % 64) & 1; }
   void activate(int k, float value) const {
@@ -83,11 +84,11 @@ class DistanceGrid {
   void fill_tiles_outside_band(double band);
 
   /// The zero level in world coordinates, where the grid's own transform puts it, with the negative side
-  /// inside; without triangles if the values do not pass 0. Throws std::domain_error if the transform can't
-  /// be inverted.
+  /// inside; without triangles if the values do not pass 0. Throws std::domain_error if OpenVDB can't
+  /// place it.
   TriangleMesh zero_surface() const;
 
-  /// OpenVDB's view of the grid, for the two files that have its headers.
+  /// The OpenVDB grid; defined in openvdb_types.h.
   struct Impl;
   const Impl& impl() const { return *impl_; }
 

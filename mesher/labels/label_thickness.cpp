@@ -187,8 +187,8 @@ class ThinLabelFinder {
         to_grid_(frame.axes.transpose() * labels.directions / frame.cell_size),
         first_(frame.to_grid(labels.origin)) {}
 
-  /// The level of the largest cells that may contain an interface: half a voxel, or the promises for finer
-  /// cells would be broken.
+  /// The highest level, up to `coarsest`, of cells that may contain an interface: those of at most half a
+  /// voxel. Larger ones would break the promises for finer cells.
   int coarsest_interface_level(int coarsest) const {
     constexpr double max_cell = 0.5 + tolerance::coinciding_cells;  // voxels
     while (coarsest > 0 && std::ldexp(frame_.cell_size, coarsest) > max_cell * spacing_.minCoeff())
@@ -196,8 +196,8 @@ class ThinLabelFinder {
     return coarsest;
   }
 
-  /// Whether cells halved `depth` times are to be tried, after all larger ones; voxels() are then those that
-  /// are too thin for them.
+  /// Finds the voxels that are too thin for cells halved `depth` times, to be called for depth 0, 1, ...
+  /// False if there are none, or if smaller cells are not worth trying.
   bool find_voxels(int depth) {
     const Sides sides = sides_at(depth);
     if (sides != Sides{1, 1, 1}) {
@@ -258,7 +258,7 @@ class ThinLabelFinder {
   }
 
  private:
-  /// Voxels that two cells halved `depth` times span along each axis.
+  /// The number of voxels along each axis that two cells, halved `depth` times, span.
   Sides sides_at(int depth) const {
     constexpr double cells_enough = 2;
     constexpr int longest_box = 200;

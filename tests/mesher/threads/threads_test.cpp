@@ -8,14 +8,17 @@
 #include "mesher/distance/level_set_field.h"
 #include "mesher/labels/label_field.h"
 #include "mesher/labels/label_thickness.h"
+#include "tests/mesher/test_surfaces.h"
 
 namespace tetwright::threads_test {
 namespace {
 
 RepairedSurface ball(const Vec3& centre, double radius) {
+  const TriangleMesh mesh = make_sphere(radius, centre, 4);
   RepairedSurface s;
-  s.low = centre - Vec3::Constant(radius);
-  s.high = centre + Vec3::Constant(radius);
+  s.points = mesh.points;
+  s.triangles = mesh.triangles;
+  s.closed = s.triangles.size();
   return s;
 }
 
