@@ -73,7 +73,8 @@ TEST(Block, WhatStaysLockedIsSkippedAndCounted) {
   EXPECT_EQ(done, tets.size() - touching);
   const BlockRunner::Totals totals = b.runner.take_totals();
   EXPECT_EQ(totals.skipped, touching);
-  EXPECT_EQ(totals.lock_conflicts, 9 * touching);  // once, and eight times again
+  // Once, and eight times again; tasks may meet one another, too.
+  EXPECT_GE(totals.lock_conflicts, 9 * touching);
   other.release();
   EXPECT_TRUE(b.mesh.locks().all_free());
 }
