@@ -211,6 +211,16 @@ TEST_F(VdbFiles, SaysWhatIsWrong) {
   EXPECT_THROW(read_level_sets(path("missing.vdb")), InputError);
 }
 
+/// The file with one to three bytes changed; for even k at the start, where names, counts and the transform
+/// are.
+std::string damaged(std::string bytes, int k, Random& random) {
+  const std::size_t reach = k % 2 ? bytes.size() : std::min<std::size_t>(bytes.size(), 1500);
+  for (int n = 0; n <= k % 3; ++n)
+    bytes[static_cast<std::size_t>(random.uniform() * static_cast<double>(reach))] =
+        static_cast<char>(static_cast<unsigned char>(random.uniform() * 256));
+  return bytes;
+}
+
 // Cut short anywhere and with bytes changed at random: an error or a surface, no crash.
 TEST_F(VdbFiles, DamagedFiles) {
   write_grids(path("a.vdb"), {ball("b")});
@@ -222,13 +232,7 @@ TEST_F(VdbFiles, DamagedFiles) {
   }
   Random random(5);
   for (int k = 0; k < 300; ++k) {
-    std::string bytes = whole;
-    // Half of them at the start, where names, counts and the transform are.
-    const std::size_t reach = k % 2 ? bytes.size() : std::min<std::size_t>(bytes.size(), 1500);
-    for (int n = 0; n <= k % 3; ++n)
-      bytes[static_cast<std::size_t>(random.uniform() * static_cast<double>(reach))] =
-          static_cast<char>(static_cast<unsigned char>(random.uniform() * 256));
-    put(file, bytes);
+    put(file, damaged(whole, k, random));
     try {
       read_level_sets(file);
     } catch (const InputError&) {
@@ -373,12 +377,7 @@ TEST_F(VdbFiles, DamagedLabels) {
     }
     Random random(compression);
     for (int k = 0; k < 200; ++k) {
-      std::string bytes = whole;
-      const std::size_t reach = k % 2 ? bytes.size() : std::min<std::size_t>(bytes.size(), 1500);
-      for (int n = 0; n <= k % 3; ++n)
-        bytes[static_cast<std::size_t>(random.uniform() * static_cast<double>(reach))] =
-            static_cast<char>(static_cast<unsigned char>(random.uniform() * 256));
-      put(file, bytes);
+      put(file, damaged(whole, k, random));
       try {
         read_label_grid(file, max_voxels);
       } catch (const InputError&) {
