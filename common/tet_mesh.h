@@ -19,6 +19,8 @@ struct InterfaceTriangle {
   Triangle ids;                      ///< indices into points; the normal points out of `material`
   MaterialTag material;              ///< on the side of the normal's tail
   std::optional<MaterialTag> other;  ///< on the side of its tip: a larger tag, or nothing for outside
+  /// The part of the interface that it belongs to: where patches meet, points stay on the line between them.
+  std::uint16_t patch = 0;
 
   MaterialPair pair() const { return {material, other}; }
   bool operator==(const InterfaceTriangle&) const = default;

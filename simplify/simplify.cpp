@@ -41,8 +41,7 @@ constexpr double program_bytes = 40e6;
 constexpr double bytes_per_tet = 105;
 
 /// Checks what both calls share, before any work.
-void check(const TetMesh& mesh, std::size_t chunk_size, const std::string& name) {
-  if (chunk_size == 0) throw UsageError("a chunk must have at least one item");
+void check(const TetMesh& mesh, const std::string& name) {
   if (mesh.tets.empty()) throw InputError(name, 0, "no tets in it");
   require_memory(program_bytes + bytes_per_tet * static_cast<double>(mesh.tets.size()),
                  name + ": work on its " + std::to_string(mesh.tets.size()) + " tets",
@@ -55,13 +54,13 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
   if (options.target_tets == 0) throw UsageError("a target of 0 tets leaves nothing; give 1 or more");
   if (!(options.beta > 0) || !(options.gamma >= 0))
     throw UsageError("beta must be above 0 and gamma at least 0");
-  check(mesh, options.chunk_size, options.name);
+  check(mesh, options.name);
   const auto start = std::chrono::steady_clock::now();
   const std::size_t first_count = mesh.tets.size();
   Engine engine(
       std::move(mesh),
       {options.name, static_cast<double>(options.target_tets), options.beta, options.gamma, options.seed,
-       options.chunk_size, options.objective, options.reference, options.schedule == Schedule::tuned},
+       options.batch_size, options.objective, options.reference, options.schedule == Schedule::tuned},
       report, progress);
   engine.begin_stage("simplify");
   const double build = seconds_since(start);
@@ -85,7 +84,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
                              .fit_sweeps = closing_fit_sweeps});
   }
   if (report) {
-    report->pinned_points = engine.mesh().pinned_points();
+    report->touching_points = engine.mesh().touching_points();
     report->seconds_build = build;
     report->seconds_simplify = loop_end - build;
     report->seconds_close = seconds_since(start) - loop_end;
@@ -94,12 +93,12 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
 }
 
 TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* report, Progress* progress) {
-  check(mesh, options.chunk_size, options.name);
+  check(mesh, options.name);
   const auto start = std::chrono::steady_clock::now();
   const auto count = static_cast<double>(mesh.tets.size());
   const SimplifyOptions defaults;
   Engine engine(std::move(mesh),
-                {options.name, count, defaults.beta, defaults.gamma, options.seed, options.chunk_size,
+                {options.name, count, defaults.beta, defaults.gamma, options.seed, options.batch_size,
                  options.objective, options.reference},
                 report, progress);
   engine.begin_stage("improve");
@@ -126,7 +125,7 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
     if (limit >= below) break;
   }
   if (report) {
-    report->pinned_points = engine.mesh().pinned_points();
+    report->touching_points = engine.mesh().touching_points();
     report->seconds_build = build;
     report->seconds_close = seconds_since(start) - build;
   }

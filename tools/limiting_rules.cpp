@@ -15,7 +15,7 @@ constexpr double min_share = 0.05;
 constexpr const char* nothing_left = "nothing: no operation was left to try";
 
 bool is_rule(Outcome o) {
-  return o != Outcome::done && o != Outcome::lock_taken && o != Outcome::stale && o != Outcome::no_candidate;
+  return o != Outcome::done && o != Outcome::conflict && o != Outcome::stale && o != Outcome::no_candidate;
 }
 
 std::vector<Operation> all_operations() {

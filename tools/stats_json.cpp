@@ -24,10 +24,17 @@ nlohmann::json iteration_json(const IterationReport& it) {
         reasons[std::string(outcome_names[r])] = n;
     rejections[name] = reasons;
   }
-  return {{"kind", it.kind},          {"tets_before", it.tets_before}, {"tets_after", it.tets_after},
-          {"cutoff", it.cutoff},      {"percent", it.percent},         {"largest_error", it.max_error},
-          {"operations", operations}, {"rejections", rejections},      {"lock_conflicts", it.lock_conflicts},
-          {"skipped", it.skipped},    {"seconds", it.seconds}};
+  return {{"kind", it.kind},
+          {"tets_before", it.tets_before},
+          {"tets_after", it.tets_after},
+          {"cutoff", it.cutoff},
+          {"percent", it.percent},
+          {"largest_error", it.max_error},
+          {"operations", operations},
+          {"rejections", rejections},
+          {"lock_conflicts", it.conflicts},
+          {"skipped", 0},
+          {"seconds", it.seconds}};
 }
 
 nlohmann::json place_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }

@@ -6,23 +6,23 @@ namespace tetwright {
 
 namespace {
 
-/// Whether an edge with so many interface triangles lies on a junction curve.
-bool on_junction(std::uint16_t interfaces) { return interfaces != 0 && interfaces != 2; }
-
 bool has(const Star::StarTet& t, std::size_t point) {
   return t.link[0] == point || t.link[1] == point || t.link[2] == point;
 }
 
 }  // namespace
 
-bool LinkCondition::holds(const EditableMesh& mesh, const Star& star, std::size_t b) {
-  begin(mesh, star, b);
+bool LinkCondition::holds(const EditableMesh& mesh, const SurfaceGrid& grid, const Star& star,
+                          std::size_t b) {
+  begin(mesh, grid, star, b);
   read_interfaces_of_a();
   return walk_star_of_b() && vertices_agree() && interface_edges_agree();
 }
 
-void LinkCondition::begin(const EditableMesh& mesh, const Star& star, std::size_t b) {
+void LinkCondition::begin(const EditableMesh& mesh, const SurfaceGrid& grid, const Star& star,
+                          std::size_t b) {
   mesh_ = &mesh;
+  grid_ = &grid;
   star_ = &star;
   b_ = b;
   a_id_ = star.centre;
@@ -52,7 +52,7 @@ void LinkCondition::read_interfaces_of_a() {
     c.interface_with_ab = true;
     c.boundary_with_ab |= outside;
   }
-  for (std::uint16_t count : star_->interface_count) a_on_junction_ |= on_junction(count);
+  for (std::size_t p = 0; p < star_->points.size(); ++p) a_on_junction_ |= star_->edge_dimension(p) == 1;
 }
 
 bool LinkCondition::walk_star_of_b() {
@@ -76,7 +76,7 @@ bool LinkCondition::walk_star_of_b() {
 }
 
 LinkCondition::LinkTriangle LinkCondition::link_triangle(Index tet, int slot) {
-  const Tet& points = mesh_->tet(tet).points;
+  const Tet& points = mesh_->points(tet);
   LinkTriangle triangle;
   triangle.has_a = std::find(points.begin(), points.end(), a_id_) != points.end();
   std::size_t m = 0;
@@ -94,34 +94,35 @@ LinkCondition::LinkTriangle LinkCondition::link_triangle(Index tet, int slot) {
 }
 
 void LinkCondition::read_faces_at_b(Index tet, int slot) {
-  const TetRecord& r = mesh_->tet(tet);
+  const Tet& points = mesh_->points(tet);
   for (int k = 0; k < 4; ++k) {
     if (k == slot) continue;
-    const Index other = r.neighbours[k];
-    if (other != no_index) {
+    const FaceLink link = mesh_->link(tet, k);
+    const bool outside = link.is_outside();
+    if (!outside) {
       bool added;
-      tet_numbers_.number(other, added);
-      if (added) walk_.push_back(other);
-      if (mesh_->tet(other).region == r.region || other < tet) continue;
+      tet_numbers_.number(link.tet(), added);
+      if (added) walk_.push_back(link.tet());
+      if (!link.is_interface() || link.tet() < tet) continue;
     }
-    const bool outside = other == no_index;
     b_on_boundary_ |= outside;
+    const PatchId patch = outside ? link.patch() : grid_->patch(*mesh_, face_of(points, k));
     for (int j = 0; j < 4; ++j)
-      if (j != slot && j != k) count_interface(r.points[j], outside);
+      if (j != slot && j != k) count_interface(points[j], outside, patch);
   }
 }
 
-void LinkCondition::count_interface(Index point, bool outside) {
+void LinkCondition::count_interface(Index point, bool outside, PatchId patch) {
   if (point == a_id_) return;
   if (const std::uint32_t k = local_of_a_.find(point); k != no_index) {
-    ++common_[k].interfaces;
+    common_[k].interfaces.add(patch);
     common_[k].boundary += outside;
     return;
   }
   bool added;
   const std::uint32_t k = other_points_.number(point, added);
-  if (added) other_interfaces_.push_back(0);
-  ++other_interfaces_[k];
+  if (added) other_interfaces_.push_back({});
+  other_interfaces_[k].add(patch);
 }
 
 bool LinkCondition::shares_simplex(const LinkTriangle& triangle) const {
@@ -146,15 +147,15 @@ bool LinkCondition::shares_simplex(const LinkTriangle& triangle) const {
 
 bool LinkCondition::vertices_agree() const {
   const Star& star = *star_;
-  bool b_on_junction = on_junction(star.interface_count[b_]);
-  for (std::uint16_t count : other_interfaces_) b_on_junction |= on_junction(count);
+  const bool ab_on_junction = star.edge_dimension(b_) == 1;
+  bool b_on_junction = ab_on_junction;
+  for (const EdgeSheets& e : other_interfaces_) b_on_junction |= e.on_junction();
   for (std::size_t p = 0; p < common_.size(); ++p)
-    b_on_junction |= p != b_ && on_junction(common_[p].interfaces);
+    b_on_junction |= p != b_ && common_[p].interfaces.on_junction();
 
   // omega, and the edges of the links that end in it.
   if (a_on_boundary_ && b_on_boundary_ && boundary_at_a_[b_] == 0) return false;
   const bool ab_on_interface = star.interface_count[b_] != 0;
-  const bool ab_on_junction = on_junction(star.interface_count[b_]);
   if (ab_on_interface && a_on_junction_ && b_on_junction && !ab_on_junction) return false;
   for (std::size_t p = 0; p < common_.size(); ++p) {
     if (p == b_ || !common_[p].seen) continue;
@@ -162,8 +163,8 @@ bool LinkCondition::vertices_agree() const {
     if (!c.with_ab) return false;
     if (boundary_at_a_[p] != 0 && c.boundary != 0 && !c.boundary_with_ab) return false;
     if (!ab_on_interface) continue;
-    if (star.interface_count[p] != 0 && c.interfaces != 0 && !c.interface_with_ab) return false;
-    if (on_junction(star.interface_count[p]) && on_junction(c.interfaces)) return false;
+    if (star.interface_count[p] != 0 && c.interfaces.count != 0 && !c.interface_with_ab) return false;
+    if (star.edge_dimension(p) == 1 && c.interfaces.on_junction()) return false;
   }
   return true;
 }
@@ -174,7 +175,7 @@ bool LinkCondition::interface_edges_agree() const {
   for (const Star::InterfaceTriangle& s : star.interface_triangles) {
     if (s.first == b_ || s.second == b_) continue;
     if (!ab_on_interface && s.across != outside_id) continue;
-    if (common_[s.first].interfaces == 0 || common_[s.second].interfaces == 0) continue;
+    if (common_[s.first].interfaces.count == 0 || common_[s.second].interfaces.count == 0) continue;
     if (is_interface_of_b(star.points[s.first], star.points[s.second])) return false;
   }
   return true;
@@ -182,17 +183,17 @@ bool LinkCondition::interface_edges_agree() const {
 
 bool LinkCondition::is_interface_of_b(Index x, Index y) const {
   for (Index t : walk_) {
-    const TetRecord& r = mesh_->tet(t);
+    const Tet& corners = mesh_->points(t);
     int opposite = -1;
     int hits = 0;
     for (int k = 0; k < 4; ++k) {
-      const Index p = r.points[k];
+      const Index p = corners[k];
       if (p == b_id_ || p == x || p == y)
         ++hits;
       else
         opposite = k;
     }
-    if (hits == 3 && mesh_->region_across(t, opposite) != r.region) return true;
+    if (hits == 3 && mesh_->link(t, opposite).is_interface()) return true;
   }
   return false;
 }

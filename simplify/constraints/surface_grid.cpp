@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t triangle_grain = 4096;  ///< triangles a parallel loop hands out at a time
 
-/// Cells that the largest triangle may span along an axis: bounds what one operation has to lock.
+/// Cells that the largest triangle may span along an axis: bounds what one operation has to look at.
 constexpr double max_cells_across = 24;
 
 void sort_ids(MeshTriangle& t) {
@@ -56,11 +56,14 @@ void SurfaceGrid::for_cells(const MeshTriangle& t, const F& f) const {
       for (std::int32_t z = low.z; z <= high.z; ++z) f(Cell3{x, y, z});
 }
 
-void SurfaceGrid::build(const EditableMesh& mesh, double min_cell, std::size_t spare) {
+void SurfaceGrid::build(const EditableMesh& mesh, double min_cell) {
   mesh_ = &mesh;
+  patches_.clear();
   {
     const std::vector<InterfaceFace> faces = mesh.interface_faces();
     records_.resize(faces.size());
+    if (std::any_of(faces.begin(), faces.end(), [](const InterfaceFace& f) { return f.patch != 0; }))
+      patches_.resize(faces.size());
     parallel_for(0, faces.size(), triangle_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         MeshTriangle& triangle = records_[i];
@@ -70,6 +73,7 @@ void SurfaceGrid::build(const EditableMesh& mesh, double min_cell, std::size_t s
           triangle.ids[k] = mesh.original(triangle.ids[k]);
         }
         sort_ids(triangle);
+        if (!patches_.empty()) patches_[i] = faces[i].patch;
       }
     });
   }
@@ -94,37 +98,36 @@ void SurfaceGrid::build(const EditableMesh& mesh, double min_cell, std::size_t s
   mask_ = static_cast<std::uint32_t>(slots - 1);
   cells_.clear();
   cells_.resize(slots);
-  locks_.reset(slots);
+  free_records_.reset(records_.size(), records_.size());
   parallel_for(0, records_.size(), triangle_grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      for_cells(records_[i], [&](const Cell3& c) {
-        const std::uint32_t s = slot(c);
-        while (!locks_.try_lock(s)) {  // for the few instructions that another thread needs to append
-        }
-        auto& list = cells_[s];
-        const auto record = static_cast<std::uint32_t>(i);
-        if (std::find(list.begin(), list.end(), record) == list.end()) list.push_back(record);
-        locks_.unlock(s);
-      });
+    for (std::size_t i = begin; i < end; ++i) insert(static_cast<std::uint32_t>(i));
   });
-  next_spare_ = records_.size();
-  records_.resize(records_.size() + spare);
 }
 
-bool SurfaceGrid::hits_standing(const MeshTriangle& t, const Workspace& ws) const {
+void SurfaceGrid::insert(std::uint32_t record) {
+  for_cells(records_[record], [&](const Cell3& c) {
+    Cell& cell = cells_[slot(c)];
+    cell.lock();
+    auto& list = cell.records;
+    // Two cells of one triangle may share a slot.
+    if (std::find(list.begin(), list.end(), record) == list.end()) list.push_back(record);
+    cell.unlock();
+  });
+}
+
+bool SurfaceGrid::hits_standing(const MeshTriangle& t, std::span<const std::uint32_t> removed) const {
   const Vec3 low = low_corner(t), high = high_corner(t);
   bool hit = false;
   for_cells(t, [&](const Cell3& c) {
     if (hit) return;
-    for (std::uint32_t i : cells_[slot(c)]) {
+    for (std::uint32_t i : cells_[slot(c)].records) {
       const MeshTriangle& other = records_[i];
       const Vec3 common_low = low.cwiseMax(low_corner(other)),
                  common_high = high.cwiseMin(high_corner(other));
       if ((common_low.array() > common_high.array()).any()) continue;
       // A pair that shares several cells is tested in the one that holds the low corner of the common box.
       if (!(cell_at(common_low) == c)) continue;
-      if (std::find(ws.removed_records.begin(), ws.removed_records.end(), i) != ws.removed_records.end())
-        continue;
+      if (std::find(removed.begin(), removed.end(), i) != removed.end()) continue;
       if (triangles_intersect(t, other)) {
         hit = true;
         return;
@@ -134,69 +137,109 @@ bool SurfaceGrid::hits_standing(const MeshTriangle& t, const Workspace& ws) cons
   return hit;
 }
 
-Outcome SurfaceGrid::begin_edit(Edit& edit, Workspace& ws, HeldLocks& held) {
-  ws.cells.clear();
-  ws.removed_records.clear();
-  for (auto* list : {&edit.removed, &edit.added})
-    for (MeshTriangle& t : *list) {
-      for (Index& id : t.ids) id = mesh_->original(id);
-      sort_ids(t);
-      for_cells(t, [&](const Cell3& c) { ws.cells.push_back(slot(c)); });
-    }
-  std::sort(ws.cells.begin(), ws.cells.end());
-  ws.cells.erase(std::unique(ws.cells.begin(), ws.cells.end()), ws.cells.end());
-  for (std::uint32_t c : ws.cells)
-    if (!held.try_lock(c)) return Outcome::lock_taken;
-  for (const MeshTriangle& t : edit.removed) {
-    const auto& list = cells_[slot(cell_at(low_corner(t)))];
-    const auto it =
-        std::find_if(list.begin(), list.end(), [&](std::uint32_t i) { return records_[i].ids == t.ids; });
-    TETWRIGHT_CHECK(it != list.end());
-    ws.removed_records.push_back(*it);
-  }
-  for (const MeshTriangle& t : edit.added)
-    if (hits_standing(t, ws)) return Outcome::self_intersection;
-  for (std::size_t i = 0; i < edit.added.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (triangles_intersect(edit.added[i], edit.added[j])) return Outcome::self_intersection;
-  while (ws.free_records.size() + edit.removed.size() < edit.added.size()) {
-    const std::size_t record = next_spare_.fetch_add(1, std::memory_order_relaxed);
-    if (record >= records_.size()) {
-      next_spare_.store(records_.size(), std::memory_order_relaxed);
-      return Outcome::no_room;
-    }
-    ws.free_records.push_back(static_cast<std::uint32_t>(record));
-  }
-  return Outcome::done;
+std::uint32_t SurfaceGrid::record_of(const MeshTriangle& t) const {
+  const auto& list = cells_[slot(cell_at(low_corner(t)))].records;
+  const auto it =
+      std::find_if(list.begin(), list.end(), [&](std::uint32_t i) { return records_[i].ids == t.ids; });
+  TETWRIGHT_CHECK(it != list.end());
+  return *it;
 }
 
-void SurfaceGrid::commit(const Edit& edit, Workspace& ws) {
+bool SurfaceGrid::test(Edit& edit) const {
+  const auto prepare = [&](MeshTriangle& t) {
+    for (Index& id : t.ids) id = mesh_->original(id);
+    sort_ids(t);
+  };
+  edit.removed_records.clear();
+  for (MeshTriangle& t : edit.removed) {
+    prepare(t);
+    edit.removed_records.push_back(record_of(t));
+  }
+  for (Added& a : edit.added) {
+    prepare(a.triangle);
+    if (hits_standing(a.triangle, edit.removed_records)) return false;
+  }
+  for (std::size_t i = 0; i < edit.added.size(); ++i) {
+    const Vec3 low = low_corner(edit.added[i].triangle), high = high_corner(edit.added[i].triangle);
+    edit.low = i == 0 ? low : edit.low.cwiseMin(low);
+    edit.high = i == 0 ? high : edit.high.cwiseMax(high);
+    for (std::size_t j = 0; j < i; ++j)
+      if (triangles_intersect(edit.added[i].triangle, edit.added[j].triangle)) return false;
+  }
+  return true;
+}
+
+bool SurfaceGrid::apart(const Edit& first, const Edit& second) {
+  if ((first.low.array() > second.high.array()).any() || (second.low.array() > first.high.array()).any())
+    return true;
+  for (const Added& a : first.added)
+    for (const Added& b : second.added)
+      if (triangles_intersect(a.triangle, b.triangle)) return false;
+  return true;
+}
+
+void SurfaceGrid::take_records(Edit& edit) {
+  for (Added& a : edit.added) sort_ids(a.triangle);  // a new point has its number now
+  // New triangles reuse the records of those that go.
+  const std::size_t reused = std::min(edit.removed.size(), edit.added.size());
+  edit.added_records.assign(edit.removed_records.begin(),
+                            edit.removed_records.begin() + static_cast<std::ptrdiff_t>(reused));
+  for (std::size_t i = reused; i < edit.removed.size(); ++i) free_records_.give_back(edit.removed_records[i]);
+  while (edit.added_records.size() < edit.added.size()) {
+    if (free_records_.available() == 0) {
+      free_records_.grow(1);
+      records_.emplace_back();
+      if (!patches_.empty()) patches_.push_back(0);
+    }
+    edit.added_records.push_back(free_records_.take());
+  }
+}
+
+void SurfaceGrid::commit(const Edit& edit) {
   for (std::size_t k = 0; k < edit.removed.size(); ++k) {
-    const std::uint32_t record = ws.removed_records[k];
+    const std::uint32_t record = edit.removed_records[k];
     for_cells(edit.removed[k], [&](const Cell3& c) {
-      auto& list = cells_[slot(c)];
-      const auto it = std::find(list.begin(), list.end(), record);
-      if (it == list.end()) return;  // two cells of one triangle may share a slot
-      *it = list.back();
-      list.pop_back();
-    });
-    ws.free_records.push_back(record);
-  }
-  for (const MeshTriangle& t : edit.added) {
-    TETWRIGHT_CHECK(!ws.free_records.empty());  // begin_edit() saw to it
-    const std::uint32_t record = ws.free_records.back();
-    ws.free_records.pop_back();
-    records_[record] = t;
-    for_cells(t, [&](const Cell3& c) {
-      auto& list = cells_[slot(c)];
-      if (std::find(list.begin(), list.end(), record) == list.end()) list.push_back(record);
+      Cell& cell = cells_[slot(c)];
+      cell.lock();
+      auto& list = cell.records;
+      if (const auto it = std::find(list.begin(), list.end(), record); it != list.end()) {
+        *it = list.back();
+        list.pop_back();
+      }
+      cell.unlock();
     });
   }
+  for (std::size_t k = 0; k < edit.added.size(); ++k) {
+    const std::uint32_t record = edit.added_records[k];
+    records_[record] = edit.added[k].triangle;
+    if (!patches_.empty()) patches_[record] = edit.added[k].patch;
+    insert(record);
+  }
+}
+
+PatchId SurfaceGrid::patch(const EditableMesh& mesh, const Triangle& ids) const {
+  if (!mesh.interface_patches()) return 0;
+  MeshTriangle t;
+  for (int k = 0; k < 3; ++k) {
+    t.points[k] = mesh.position(ids[k]);
+    t.ids[k] = mesh.original(ids[k]);
+  }
+  sort_ids(t);
+  return patches_.empty() ? PatchId{0} : patches_[record_of(t)];
+}
+
+std::map<Triangle, PatchId> SurfaceGrid::patches() const {
+  std::map<Triangle, PatchId> out;
+  if (patches_.empty()) return out;
+  for (const Cell& cell : cells_)
+    for (std::uint32_t i : cell.records)
+      if (patches_[i] != 0) out.emplace(records_[i].ids, patches_[i]);
+  return out;
 }
 
 std::vector<MeshTriangle> SurfaceGrid::triangles() const {
   std::vector<std::uint32_t> seen;
-  for (const auto& list : cells_) seen.insert(seen.end(), list.begin(), list.end());
+  for (const Cell& cell : cells_) seen.insert(seen.end(), cell.records.begin(), cell.records.end());
   std::sort(seen.begin(), seen.end());
   seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
   std::vector<MeshTriangle> out;

@@ -2,54 +2,72 @@
 
 #include <atomic>
 #include <cstdint>
+#include <map>
+#include <span>
 #include <vector>
 
 #include "common/geometry/triangle_intersection.h"
 #include "simplify/mesh/editable_mesh.h"
-#include "simplify/mesh/locks.h"
-#include "simplify/mesh/outcome.h"
 
 namespace tetwright {
 
-/// The boundary and interface triangles of an EditableMesh with their coordinates, in a hashed spatial grid
-/// whose cells carry try-locks: the explicit test against self-intersection, which positive tets alone do not
-/// prevent (two parts of a surface may pass through each other from outside).
+/// The boundary and interface triangles of an EditableMesh with their coordinates, in a hashed spatial grid:
+/// the explicit test against self-intersection, which positive tets alone do not prevent (two parts of a
+/// surface may pass through each other from outside). It also holds the patches of the faces between
+/// materials.
 ///
-/// A cell's list is read and written while its lock is held; a triangle's record is written while all cells
-/// that its bounding box touches are held, read while one is. The coordinates stand in the record, so that no
-/// point's position is read without its lock.
+/// While operations are decided, it is read; while they are committed, each writes the records of its own
+/// triangles, and cells of the grid, which a lock guards for the moment: the order of a cell's records does
+/// not matter, since any hit decides.
 class SurfaceGrid {
  public:
-  /// What an operation takes away and puts in; kept by the task, so that its memory is reused.
+  /// A triangle that comes in.
+  struct Added {
+    MeshTriangle triangle;
+    PatchId patch;
+  };
+  /// What an operation takes away and puts in.
   struct Edit {
-    std::vector<MeshTriangle> removed, added;
+    std::vector<MeshTriangle> removed;
+    std::vector<Added> added;
+    // Of those that come in, and the records of those that go: filled by test().
+    Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+    std::vector<std::uint32_t> removed_records;
+    /// Records for those that come in: filled by take_records().
+    std::vector<std::uint32_t> added_records;
+
     void clear() {
       removed.clear();
       added.clear();
+      removed_records.clear();
+      added_records.clear();
     }
-  };
-
-  /// A task's free records, and its scratch.
-  struct Workspace {
-    std::vector<std::uint32_t> free_records;
-    std::vector<std::uint32_t> cells;            ///< that the edit touches, ascending
-    std::vector<std::uint32_t> removed_records;  ///< found by begin_edit()
+    bool empty() const { return removed.empty() && added.empty(); }
   };
 
   /// All interface triangles of the mesh; while no task runs. `min_cell` (working coordinates) is the
-  /// size that triangles are about to grow to; `spare`: how many triangles may be added beyond those taken
-  /// away.
-  void build(const EditableMesh& mesh, double min_cell, std::size_t spare = 0);
+  /// size that triangles are about to grow to.
+  void build(const EditableMesh& mesh, double min_cell);
 
-  /// Locks every cell that the edit touches and tests each added triangle against those that stand and
-  /// against the other added ones. done: the cells stay held, and commit() may follow. lock_taken,
-  /// self_intersection or no_room: nothing was changed; `held` has what was locked. The task must hold all
-  /// points of the edit's triangles.
-  Outcome begin_edit(Edit& edit, Workspace& ws, HeldLocks& held);
-  /// Carries out what begin_edit() allowed.
-  void commit(const Edit& edit, Workspace& ws);
+  /// Whether no added triangle meets one that stands and stays, or another added one. Fills the edit; the
+  /// points' ids become those of the places where they stand (EditableMesh::original). Safe concurrently.
+  bool test(Edit& edit) const;
+  /// Whether no triangle that comes in by one edit meets one of the other. Both were tested.
+  static bool apart(const Edit& first, const Edit& second);
+  /// Gives a tested edit the records that it needs, and takes those of removed triangles back. One thread at
+  /// a time, before commit().
+  void take_records(Edit& edit);
+  /// All that was given records is committed.
+  void end_batch() { free_records_.end_batch(); }
+  /// Carries an edit out. Safe concurrently for edits that share no triangle.
+  void commit(const Edit& edit);
 
-  TryLocks& locks() { return locks_; }
+  /// The patch of a standing triangle with these points, of any order; 0 unless the mesh has patches on faces
+  /// between materials. Safe while nothing is committed.
+  PatchId patch(const EditableMesh& mesh, const Triangle& ids) const;
+  /// The patches other than 0 of all faces, by the ascending originals of their points; while no task runs.
+  std::map<Triangle, PatchId> patches() const;
+
   /// All that stand, ids ascending within each; while no task runs, for tests.
   std::vector<MeshTriangle> triangles() const;
 
@@ -58,21 +76,34 @@ class SurfaceGrid {
     std::int32_t x, y, z;
     bool operator==(const Cell3&) const = default;
   };
+  /// Records of the triangles whose boxes touch the cell.
+  struct Cell {
+    std::vector<std::uint32_t> records;
+    void lock() {
+      while (std::atomic_ref<std::uint8_t>(locked).exchange(1, std::memory_order_acquire) != 0) {
+      }
+    }
+    void unlock() { std::atomic_ref<std::uint8_t>(locked).store(0, std::memory_order_release); }
+    std::uint8_t locked = 0;
+  };
   Cell3 cell_at(const Vec3& p) const;
   std::uint32_t slot(const Cell3& c) const;
   /// Calls f(cell) for each cell that the triangle's box touches.
   template <class F>
   void for_cells(const MeshTriangle& t, const F& f) const;
-  bool hits_standing(const MeshTriangle& t, const Workspace& ws) const;
+  void insert(std::uint32_t record);
+  bool hits_standing(const MeshTriangle& t, std::span<const std::uint32_t> removed) const;
+  /// The record of a standing triangle, ids ascending.
+  std::uint32_t record_of(const MeshTriangle& t) const;
 
   const EditableMesh* mesh_ = nullptr;  ///< tells which points are one and the same
   Vec3 origin_ = Vec3::Zero();
   double to_cell_ = 1;
   std::uint32_t mask_ = 0;
-  std::vector<std::vector<std::uint32_t>> cells_;  ///< records, by slot
-  std::vector<MeshTriangle> records_;              ///< ids ascending, points in the same order
-  TryLocks locks_;
-  std::atomic<std::size_t> next_spare_{0};  ///< the first record that nobody took
+  std::vector<Cell> cells_;            ///< by slot
+  std::vector<MeshTriangle> records_;  ///< ids ascending, points in the same order
+  std::vector<PatchId> patches_;       ///< by record; empty if all are 0
+  FreeSlots free_records_;
 };
 
 }  // namespace tetwright

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "common/geometry/morton.h"
+#include "common/mesh/interfaces.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 
@@ -46,16 +47,26 @@ void MeshCompaction::move_points(const std::vector<Index>& order, const std::vec
   std::vector<Vec3> positions(order.size() + spare, Vec3::Zero());
   for (std::size_t i = 0; i < order.size(); ++i) positions[i] = mesh_.positions_[order[i]];
   mesh_.positions_ = std::move(positions);
-  if (!mesh_.any_pinned()) return;
-  std::vector<std::uint8_t> pinned(mesh_.positions_.size(), 0);
-  std::vector<Index> originals(mesh_.positions_.size());
-  std::iota(originals.begin(), originals.end(), Index{0});
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    pinned[i] = mesh_.pinned_[order[i]];
-    originals[i] = new_point[mesh_.originals_[order[i]]];  // pinned points are never removed
+  if (mesh_.any_frozen()) {
+    std::vector<std::uint8_t> frozen(mesh_.positions_.size(), 0);
+    for (std::size_t i = 0; i < order.size(); ++i) frozen[i] = mesh_.frozen_[order[i]];
+    mesh_.frozen_ = std::move(frozen);
   }
-  mesh_.pinned_ = std::move(pinned);
-  mesh_.originals_ = std::move(originals);
+  if (!mesh_.originals_.empty()) {
+    std::vector<Index> originals(mesh_.positions_.size());
+    std::iota(originals.begin(), originals.end(), Index{0});
+    for (std::size_t i = 0; i < order.size(); ++i)
+      originals[i] = new_point[mesh_.originals_[order[i]]];  // such points are frozen, never removed
+    mesh_.originals_ = std::move(originals);
+  }
+  std::map<Triangle, PatchId> patches;
+  for (const auto& [points, patch] : mesh_.interface_patches_) {
+    Triangle key = points;
+    for (Index& p : key) p = new_point[p];
+    std::sort(key.begin(), key.end());
+    patches.emplace(key, patch);
+  }
+  mesh_.interface_patches_ = std::move(patches);
 }
 
 std::vector<Index> MeshCompaction::number_tets(const std::vector<Index>& new_point, std::size_t points,
@@ -81,19 +92,24 @@ std::vector<Index> MeshCompaction::number_tets(const std::vector<Index>& new_poi
 
 void MeshCompaction::move_tets(const std::vector<Index>& new_point, const std::vector<Index>& new_tet,
                                std::size_t live, std::size_t spare) {
-  std::vector<TetRecord> tets(live + spare);
+  std::vector<TetRecord> tets(live + spare, {dead_tet, {}});
+  std::vector<RegionId> regions(live + spare, 0);
+  std::vector<float> qualities(live + spare, 0);
   parallel_for(0, mesh_.tets_.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       if (new_tet[t] == no_index) continue;
       TetRecord r = mesh_.tets_[t];
       for (Index& p : r.points) p = new_point[p];
-      for (Index& n : r.neighbours)
-        if (n != no_index) n = new_tet[n];
+      for (FaceLink& n : r.links)
+        if (!n.is_outside()) n = FaceLink::to(new_tet[n.tet()], n.is_interface());
       tets[new_tet[t]] = r;
+      regions[new_tet[t]] = mesh_.regions_[t];
+      qualities[new_tet[t]] = mesh_.qualities_[t];
     }
   });
-  for (std::size_t t = live; t < tets.size(); ++t) tets[t] = {dead_tet, dead_tet, 0, 0};
   mesh_.tets_ = std::move(tets);
+  mesh_.regions_ = std::move(regions);
+  mesh_.qualities_ = std::move(qualities);
 }
 
 void MeshCompaction::run(std::size_t spare_tets, std::size_t spare_points) {
@@ -110,12 +126,23 @@ void MeshCompaction::run(std::size_t spare_tets, std::size_t spare_points) {
     const std::vector<Index> new_tet = number_tets(new_point, points, live);
     move_tets(new_point, new_tet, live, spare_tets);
   }
-  mesh_.live_ = static_cast<std::int64_t>(live);
+  mesh_.live_ = live;
   mesh_.free_tets_.reset(live, mesh_.tets_.size());
   mesh_.free_points_.reset(points, mesh_.positions_.size());
-  mesh_.locks_.reset(mesh_.positions_.size());
+  mesh_.reservations_.reset(mesh_.positions_.size());
   mesh_.touched_.assign(mesh_.positions_.size(), 0);
   mesh_.set_incident_tets();
+}
+
+std::map<Triangle, PatchId> MeshCompaction::patches(const std::vector<Index>& number) const {
+  std::map<Triangle, PatchId> patches;
+  for (const InterfaceFace& f : mesh_.interface_faces()) {
+    if (f.patch == 0) continue;
+    Triangle key{number[f.ids[0]], number[f.ids[1]], number[f.ids[2]]};
+    std::sort(key.begin(), key.end());
+    patches.emplace(key, f.patch);
+  }
+  return patches;
 }
 
 TetMesh MeshCompaction::to_mesh() {
@@ -133,13 +160,24 @@ TetMesh MeshCompaction::to_mesh() {
   mesh.points.resize(next);
   mesh.tets.reserve(mesh_.tets_.size());
   mesh.materials.reserve(mesh_.tets_.size());
-  for (const TetRecord& t : mesh_.tets_) {
-    mesh.tets.push_back({number[t.points[0]], number[t.points[1]], number[t.points[2]], number[t.points[3]]});
-    mesh.materials.push_back(mesh_.tags_[t.region]);
+  for (std::size_t i = 0; i < mesh_.tets_.size(); ++i) {
+    const Tet& t = mesh_.tets_[i].points;
+    mesh.tets.push_back({number[t[0]], number[t[1]], number[t[2]], number[t[3]]});
+    mesh.materials.push_back(mesh_.tags_[mesh_.regions_[i]]);
   }
+  std::map<Triangle, PatchId> patches = this->patches(number);
   mesh.material_names = std::move(mesh_.names_);
   mesh_.tets_ = {};
+  mesh_.regions_ = {};
+  mesh_.qualities_ = {};
   mesh_.incident_tets_ = {};
+  mesh.interfaces = find_interfaces(mesh);
+  if (!patches.empty())
+    for (InterfaceTriangle& t : mesh.interfaces) {
+      Triangle key = t.ids;
+      std::sort(key.begin(), key.end());
+      if (const auto known = patches.find(key); known != patches.end()) t.patch = known->second;
+    }
   return mesh;
 }
 

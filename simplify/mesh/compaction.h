@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <vector>
 
 #include "common/tet_mesh.h"
@@ -26,6 +27,9 @@ class MeshCompaction {
                                  std::size_t& live) const;
   void move_tets(const std::vector<Index>& new_point, const std::vector<Index>& new_tet, std::size_t live,
                  std::size_t spare);
+
+  /// The patches other than 0, by ascending points; `number`: of each point in the result.
+  std::map<Triangle, PatchId> patches(const std::vector<Index>& number) const;
 
   EditableMesh& mesh_;
 };

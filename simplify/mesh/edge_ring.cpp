@@ -4,33 +4,32 @@
 
 namespace tetwright {
 
-Outcome EdgeRing::gather(const EditableMesh& mesh, Index tet, int edge, HeldLocks& held) {
+Outcome EdgeRing::gather(const EditableMesh& mesh, Index tet, int edge) {
   points.clear();
   tets.clear();
   regions.clear();
   worst = 1;
   interface_triangles = 0;
   closed = false;
-  const TetRecord& first = mesh.tet(tet);
+  const Tet& first = mesh.points(tet);
   const int i0 = tet_edges[edge][0], i1 = tet_edges[edge][1];
   const int j0 = tet_edges[5 - edge][0], j1 = tet_edges[5 - edge][1];
-  a = first.points[i0];
-  b = first.points[i1];
+  a = first[i0];
+  b = first[i1];
   // (i0, i1, j0, j1) of tet_edges is an even permutation but for the edges 02 and 13.
   const bool even = edge != 1 && edge != 4;
-  const Index start = first.points[even ? j0 : j1], second = first.points[even ? j1 : j0];
+  const Index start = first[even ? j0 : j1], second = first[even ? j1 : j0];
 
   const auto add = [&](Index t) {
-    const TetRecord& r = mesh.tet(t);
     tets.push_back(t);
-    regions.push_back(r.region);
-    worst = std::min(worst, r.quality);
+    regions.push_back(mesh.region(t));
+    worst = std::min(worst, mesh.quality(t));
   };
   /// The tet beyond the face (a, b, keep) of t, whose fourth point is `leave`.
   const auto beyond = [&](Index t, Index leave) { return mesh.neighbour(t, mesh.slot_of(t, leave)); };
   /// The point of t that is none of a, b, known.
   const auto fourth = [&](Index t, Index known) {
-    for (Index p : mesh.tet(t).points)
+    for (Index p : mesh.points(t))
       if (p != a && p != b && p != known) return p;
     return no_index;
   };
@@ -48,8 +47,7 @@ Outcome EdgeRing::gather(const EditableMesh& mesh, Index tet, int edge, HeldLock
     if (tets.size() == max_tets) return Outcome::too_large;
     const Index p = fourth(next, points.back());
     if (p == no_index) return Outcome::too_large;  // a tet that the input repeats: no ring to speak of
-    if (!held.holds(p) && !held.try_lock(p)) return Outcome::lock_taken;
-    leave = points.back();  // on across (a, b, p)
+    leave = points.back();                         // on across (a, b, p)
     add(next);
     points.push_back(p);
     at = next;
@@ -62,12 +60,10 @@ Outcome EdgeRing::gather(const EditableMesh& mesh, Index tet, int edge, HeldLock
       if (tets.size() == max_tets) return Outcome::too_large;
       const Index p = fourth(next, points.front());
       if (p == no_index) return Outcome::too_large;
-      if (!held.holds(p) && !held.try_lock(p)) return Outcome::lock_taken;
       leave = points.front();
-      const TetRecord& r = mesh.tet(next);
       tets.insert(tets.begin(), next);
-      regions.insert(regions.begin(), r.region);
-      worst = std::min(worst, r.quality);
+      regions.insert(regions.begin(), mesh.region(next));
+      worst = std::min(worst, mesh.quality(next));
       points.insert(points.begin(), p);
       at = next;
     }

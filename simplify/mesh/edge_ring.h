@@ -22,9 +22,8 @@ struct EdgeRing {
   float worst = 1;                ///< quality of the tets
   int interface_triangles = 0;    ///< interface triangles at the edge
 
-  /// Walks around the edge `edge` of tet_edges of a tet whose four points are held, and locks what it meets:
-  /// done, lock_taken, or too_large.
-  Outcome gather(const EditableMesh& mesh, Index tet, int edge, HeldLocks& held);
+  /// Walks around the edge `edge` of tet_edges of a tet: done or too_large.
+  Outcome gather(const EditableMesh& mesh, Index tet, int edge);
 
   /// Of the edge: 3 within a material, 2 on an interface, 1 on a junction curve.
   int dimension() const { return interface_triangles == 0 ? 3 : interface_triangles == 2 ? 2 : 1; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/error.h"
 #include "common/geometry/predicates.h"
 #include "common/mesh/face_buckets.h"
 #include "common/parallel/parallel.h"
@@ -34,10 +35,55 @@ void EditableMesh::set_incident_tets() {
       for (Index p : tets_[t].points) incident_tets_[p] = static_cast<Index>(t);
 }
 
-std::size_t EditableMesh::pinned_points() const {
-  std::size_t count = 0;
-  for (Index p = 0; p < pinned_.size(); ++p) count += pinned_[p] && originals_[p] == p;
-  return count;
+void EditableMesh::freeze(const std::vector<std::uint8_t>& mask) {
+  frozen_.resize(positions_.size(), 0);
+  for (std::size_t p = 0; p < positions_.size(); ++p) {
+    const Index came_as = original(static_cast<Index>(p));
+    if (came_as < mask.size() && mask[came_as] != 0) frozen_[p] |= with_tets;
+  }
+}
+
+void EditableMesh::freeze_interfaces() {
+  frozen_.resize(positions_.size(), 0);
+  for (const InterfaceFace& f : interface_faces())
+    for (Index p : f.ids) frozen_[p] |= alone;
+}
+
+std::size_t EditableMesh::touching_points() const {
+  std::vector<std::uint8_t> is_original(originals_.size(), 0);
+  for (Index p = 0; p < originals_.size(); ++p)
+    if (originals_[p] != p) is_original[originals_[p]] = 1;
+  return static_cast<std::size_t>(std::count(is_original.begin(), is_original.end(), 1));
+}
+
+void EditableMesh::make_room(std::size_t tets, std::size_t points) {
+  constexpr std::size_t grow_share = 16;  // of what there is: few copies of the arrays, little memory idle
+  if (const std::size_t have = free_tets_.available(); have < tets) {
+    const std::size_t more = std::max(tets - have, tets_.size() / grow_share);
+    if (tets_.size() + more >= FaceLink::max_tets) throw OutputError("more than the 2^30 tets possible");
+    tets_.resize(tets_.size() + more, {dead_tet, {}});
+    regions_.resize(tets_.size(), 0);
+    qualities_.resize(tets_.size(), 0);
+    free_tets_.grow(more);
+  }
+  if (const std::size_t have = free_points_.available(); have < points) {
+    const std::size_t more = std::max(points - have, positions_.size() / grow_share);
+    const std::size_t size = positions_.size() + more;
+    if (size >= no_index) throw OutputError("more than the 2^32 points possible");
+    if (!originals_.empty())
+      for (std::size_t p = positions_.size(); p < size; ++p) originals_.push_back(static_cast<Index>(p));
+    positions_.resize(size, Vec3::Zero());
+    incident_tets_.resize(size, no_index);
+    touched_.resize(size, 0);
+    if (any_frozen()) frozen_.resize(size, 0);
+    reservations_.grow(size);
+    free_points_.grow(more);
+  }
+}
+
+double EditableMesh::dead_share() const {
+  const auto used = static_cast<double>(tets_.size() - free_tets_.unused());
+  return used > 0 ? 1 - static_cast<double>(live_) / used : 0;
 }
 
 std::vector<InterfaceFace> EditableMesh::interface_faces() const {
@@ -48,10 +94,20 @@ std::vector<InterfaceFace> EditableMesh::interface_faces() const {
           const TetRecord& r = tets_[t];
           if (r.points[0] == no_index) continue;
           for (int f = 0; f < 4; ++f) {
-            const Index other = r.neighbours[f];
-            if (other != no_index && (other < t || tets_[other].region == r.region)) continue;
+            const FaceLink link = r.links[f];
+            if (!link.is_interface() || (!link.is_outside() && link.tet() < t)) continue;
             const auto& c = tet_faces[f];
-            out.push_back({{r.points[c[0]], r.points[c[1]], r.points[c[2]]}, r.region, region_across(t, f)});
+            const Triangle ids{r.points[c[0]], r.points[c[1]], r.points[c[2]]};
+            PatchId patch = 0;
+            if (link.is_outside()) {
+              patch = link.patch();
+            } else if (interface_patches()) {
+              Triangle key{original(ids[0]), original(ids[1]), original(ids[2])};
+              std::sort(key.begin(), key.end());
+              const auto known = interface_patches_.find(key);
+              if (known != interface_patches_.end()) patch = known->second;
+            }
+            out.push_back({ids, regions_[t], region_across(t, f), patch});
           }
         }
       });
@@ -65,11 +121,8 @@ double EditableMesh::signed_volume(Index t) const {
 double EditableMesh::total_volume() const {
   return parallel_sum(0, tets_.size(), grain, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Tet& t = tets_[i].points;
-      if (t[0] != no_index)
-        sum += orient3d_value(positions_[t[0]], positions_[t[1]], positions_[t[2]], positions_[t[3]]) / 6;
-    }
+    for (std::size_t t = begin; t < end; ++t)
+      if (tets_[t].points[0] != no_index) sum += signed_volume(static_cast<Index>(t));
     return sum;
   });
 }
@@ -85,12 +138,13 @@ bool EditableMesh::links_consistent() const {
     ++live;
     for (int f = 0; f < 4; ++f) {
       if (incident_tets_[r.points[f]] == no_index) return false;
-      const Index n = r.neighbours[f];
-      if (n == no_index) continue;
+      if (r.links[f].is_outside()) continue;
+      const Index n = r.links[f].tet();
       const TetRecord& o = tets_[n];
       if (o.points[0] == no_index) return false;
+      if (r.links[f].is_interface() != (regions_[n] != regions_[t])) return false;
       const int back = face_towards(n, static_cast<Index>(t));
-      if (o.neighbours[back] != t ||
+      if (o.links[back].tet() != t ||
           sorted_face(o.points, back).vertices != sorted_face(r.points, f).vertices)
         return false;
       if (sorted_face(o.points, back).even == sorted_face(r.points, f).even) return false;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <vector>
 
@@ -8,42 +7,40 @@
 
 namespace tetwright {
 
-/// Free slots at the end of an array, which workers take in lots.
-class FreeSlotReserve {
- public:
-  /// The slots [first, end) are free. Only while no task runs.
-  void reset(std::size_t first, std::size_t end);
-  /// Appends the next lot to `free`, in descending order, so that slots are taken from its end in ascending
-  /// order; false if none is left. May be called concurrently.
-  bool take_lot(std::vector<Index>& free);
-
- private:
-  std::atomic<std::size_t> next_{0};  ///< the first slot that nobody took
-  std::size_t end_ = 0;
-};
-
-/// A worker's own stock of free slots, refilled from the reserve, so that workers share no list.
+/// The free slots of an array: those that operations gave back, the last first, then those at its end that
+/// nobody had yet. What is given back in a batch is free only when the batch has been committed: until then
+/// two operations would write it. One thread at a time.
 class FreeSlots {
  public:
-  explicit FreeSlots(FreeSlotReserve& reserve) : reserve_(&reserve) {}
-  /// False if fewer than `count` slots can be had.
-  bool reserve(std::size_t count) {
-    while (free_.size() < count)
-      if (!reserve_->take_lot(free_)) return false;
-    return true;
+  /// The slots [first, end) are free.
+  void reset(std::size_t first, std::size_t end) {
+    free_.clear();
+    given_back_.clear();
+    first_ = first;
+    end_ = end;
   }
-  /// A slot that was reserved. Another worker may briefly lock a point slot that its list still names; it
-  /// then finds the point dead.
+  /// As many more behind the end.
+  void grow(std::size_t count) { end_ += count; }
+  std::size_t available() const { return free_.size() + unused(); }
+  /// Slots at the end that nobody had yet.
+  std::size_t unused() const { return end_ - first_; }
+  /// One of the available ones.
   Index take() {
+    if (free_.empty()) return static_cast<Index>(first_++);
     const Index slot = free_.back();
     free_.pop_back();
     return slot;
   }
-  void give_back(Index slot) { free_.push_back(slot); }
+  void give_back(Index slot) { given_back_.push_back(slot); }
+  /// Nobody writes what was given back any more.
+  void end_batch() {
+    free_.insert(free_.end(), given_back_.begin(), given_back_.end());
+    given_back_.clear();
+  }
 
  private:
-  FreeSlotReserve* reserve_;
-  std::vector<Index> free_;
+  std::vector<Index> free_, given_back_;
+  std::size_t first_ = 0, end_ = 0;
 };
 
 }  // namespace tetwright

@@ -1,6 +1,8 @@
 #include "simplify/mesh/mesh_builder.h"
 
 #include <algorithm>
+#include <atomic>
+#include <map>
 #include <numeric>
 
 #include "common/error.h"
@@ -29,19 +31,21 @@ std::string place(const Vec3& p) {
 
 void MeshBuilder::build(TetMesh&& input) {
   // Faces are numbered 4 * tet + face in 32 bits.
-  if (input.tets.size() >= no_index / 4)
+  if (input.tets.size() >= FaceLink::max_tets)
     throw InputError(name_, 0, std::to_string(input.tets.size()) + " tets are more than the 2^30 possible");
   mesh_.names_ = std::move(input.material_names);
   take_points(std::move(input.points));
   take_tets(input);
+  const std::vector<InterfaceTriangle> interfaces = std::move(input.interfaces);
   input = TetMesh();
-  mesh_.live_ = static_cast<std::int64_t>(mesh_.tets_.size());
+  mesh_.live_ = mesh_.tets_.size();
   mesh_.free_tets_.reset(mesh_.tets_.size(), mesh_.tets_.size());
-  mesh_.locks_.reset(mesh_.positions_.size());
+  mesh_.reservations_.reset(mesh_.positions_.size());
   mesh_.free_points_.reset(mesh_.positions_.size(), mesh_.positions_.size());
   mesh_.touched_.assign(mesh_.positions_.size(), 0);
   link_faces();
   mesh_.set_incident_tets();
+  take_patches(interfaces);
   split_stars();
 }
 
@@ -60,12 +64,15 @@ void MeshBuilder::take_tets(const TetMesh& input) {
   std::sort(tags.begin(), tags.end());
   tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
   mesh_.tets_.resize(input.tets.size());
+  mesh_.regions_.resize(input.tets.size());
+  mesh_.qualities_.resize(input.tets.size(), 0);
   std::atomic<Index> first_bad{no_index};
   parallel_for(0, input.tets.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Tet& t = input.tets[i];
       const auto region = std::lower_bound(tags.begin(), tags.end(), input.materials[i]) - tags.begin();
-      mesh_.tets_[i] = {t, dead_tet, static_cast<RegionId>(region), 0};
+      mesh_.tets_[i] = {t, {}};
+      mesh_.regions_[i] = static_cast<RegionId>(region);
       for (std::size_t k = 0; k < 4; ++k)
         for (std::size_t l = 0; l < k; ++l)
           if (t[k] == t[l]) lower(first_bad, static_cast<Index>(i));
@@ -94,8 +101,9 @@ void MeshBuilder::link_faces() {
                       // Two positive tets on opposite sides of a face list it in opposite senses.
                       if (uses.size() > 2 || s.even == u.even) lower(bad, 4 * s.tet + s.face);
                       if (uses.size() > 2) return;
-                      tets[s.tet].neighbours[s.face] = u.tet;
-                      tets[u.tet].neighbours[u.face] = s.tet;
+                      const bool interface = mesh_.regions_[s.tet] != mesh_.regions_[u.tet];
+                      tets[s.tet].links[s.face] = FaceLink::to(u.tet, interface);
+                      tets[u.tet].links[u.face] = FaceLink::to(s.tet, interface);
                     });
   });
   if (const Index face = bad.load(); face != no_index) {
@@ -106,6 +114,39 @@ void MeshBuilder::link_faces() {
                          place(mesh_.space_.to_input(mesh_.positions_[s[0]])) +
                          " has more than two tets, or two on one side; `tetwright check` lists all of them");
   }
+}
+
+void MeshBuilder::take_patches(const std::vector<InterfaceTriangle>& interfaces) {
+  if (std::all_of(interfaces.begin(), interfaces.end(),
+                  [](const InterfaceTriangle& t) { return t.patch == 0; }))
+    return;
+  std::map<Triangle, PatchId> patches;
+  for (const InterfaceTriangle& t : interfaces) {
+    Triangle key = t.ids;
+    std::sort(key.begin(), key.end());
+    patches.emplace(key, t.patch);
+  }
+  std::map<Triangle, PatchId> inner;
+  std::size_t known = 0;
+  for (Index t = 0; t < mesh_.tets_.size(); ++t)
+    for (int f = 0; f < 4; ++f) {
+      const FaceLink link = mesh_.tets_[t].links[f];
+      if (!link.is_interface() || (!link.is_outside() && link.tet() < t)) continue;
+      const Triangle key = sorted_face(mesh_.tets_[t].points, f).vertices;
+      const auto patch = patches.find(key);
+      if (patch == patches.end()) continue;
+      ++known;
+      if (link.is_outside()) {
+        mesh_.tets_[t].links[f] = FaceLink::outside(patch->second);
+      } else if (patch->second != 0) {
+        inner.emplace(key, patch->second);
+      }
+    }
+  if (known != patches.size())
+    throw InputError(name_, 0,
+                     std::to_string(patches.size() - known) +
+                         " of its triangles with patches are no faces of boundary or interfaces");
+  mesh_.interface_patches_ = std::move(inner);
 }
 
 std::vector<Index> MeshBuilder::points_with_split_stars() const {
@@ -129,13 +170,13 @@ std::vector<Index> MeshBuilder::points_of_glued_tets() const {
   for (const TetRecord& t : mesh_.tets_)
     for (std::size_t k = 0; k < 4; ++k)
       for (std::size_t l = 0; l < k; ++l)
-        if (t.neighbours[k] != no_index && t.neighbours[k] == t.neighbours[l])
+        if (!t.links[k].is_outside() && t.links[k].tet() == t.links[l].tet())
           points.insert(points.end(), t.points.begin(), t.points.end());
   return points;
 }
 
 std::vector<std::array<Index, 2>> MeshBuilder::split_points(const std::vector<Index>& split,
-                                                            std::vector<Index>& pins) {
+                                                            std::vector<Index>& frozen) {
   std::vector<std::vector<Index>> stars(split.size());
   for (std::size_t t = 0; t < mesh_.tets_.size(); ++t)
     for (Index p : mesh_.tets_[t].points) {
@@ -155,7 +196,7 @@ std::vector<std::array<Index, 2>> MeshBuilder::split_points(const std::vector<In
       std::set_difference(left.begin(), left.end(), part.begin(), part.end(), std::back_inserter(others));
       if (id != split[i]) {
         copies.push_back({id, split[i]});
-        pins.push_back(id);
+        frozen.push_back(id);
         mesh_.positions_.push_back(mesh_.positions_[split[i]]);
         mesh_.incident_tets_.push_back(no_index);
         for (Index t : part) mesh_.tets_[t].points[mesh_.slot_of(t, split[i])] = id;
@@ -170,21 +211,25 @@ std::vector<std::array<Index, 2>> MeshBuilder::split_points(const std::vector<In
 
 void MeshBuilder::split_stars() {
   const std::vector<Index> split = points_with_split_stars();
-  const std::vector<Index> glued = points_of_glued_tets();
-  if (split.empty() && glued.empty()) return;
-  std::vector<Index> pins = split;
-  pins.insert(pins.end(), glued.begin(), glued.end());
-  const std::vector<std::array<Index, 2>> copies = split_points(split, pins);
+  std::vector<Index> frozen = points_of_glued_tets();
+  if (split.empty() && frozen.empty()) return;
+  frozen.insert(frozen.end(), split.begin(), split.end());
+  const std::vector<std::array<Index, 2>> copies = split_points(split, frozen);
   const std::size_t points = mesh_.positions_.size();
   mesh_.touched_.assign(points, 0);
-  mesh_.pinned_.assign(points, 0);
-  for (Index p : pins) mesh_.pinned_[p] = 1;
-  // Copies that took the place of a glued tet's point are pinned with the others.
   mesh_.originals_.resize(points);
   std::iota(mesh_.originals_.begin(), mesh_.originals_.end(), Index{0});
   for (const auto& [copy, original] : copies) mesh_.originals_[copy] = original;
-  mesh_.locks_.reset(points);
+  mesh_.reservations_.reset(points);
   mesh_.free_points_.reset(points, points);
+  mesh_.frozen_.assign(points, 0);
+  for (Index p : frozen) mesh_.frozen_[p] = EditableMesh::with_tets;
+  // With all their tets: what is changed beside them might come to touch them anew.
+  std::vector<std::uint8_t> around(points, 0);
+  for (const TetRecord& t : mesh_.tets_)
+    if (std::any_of(t.points.begin(), t.points.end(), [&](Index p) { return mesh_.frozen_[p] != 0; }))
+      for (Index p : t.points) around[p] = EditableMesh::with_tets;
+  mesh_.frozen_ = std::move(around);
 }
 
 void MeshBuilder::part_of_star(Index point, Index first, LocalNumbers& seen, std::vector<Index>& part) const {
@@ -195,9 +240,9 @@ void MeshBuilder::part_of_star(Index point, Index first, LocalNumbers& seen, std
   for (std::size_t i = 0; i < part.size(); ++i)
     for (std::size_t k = 0; k < 4; ++k) {
       const TetRecord& t = mesh_.tets_[part[i]];
-      if (t.points[k] == point || t.neighbours[k] == no_index) continue;
-      seen.number(t.neighbours[k], added);
-      if (added) part.push_back(t.neighbours[k]);
+      if (t.points[k] == point || t.links[k].is_outside()) continue;
+      seen.number(t.links[k].tet(), added);
+      if (added) part.push_back(t.links[k].tet());
     }
 }
 

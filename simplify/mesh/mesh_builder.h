@@ -20,15 +20,17 @@ class MeshBuilder {
   void take_points(std::vector<Vec3>&& points);
   void take_tets(const TetMesh& input);
   void link_faces();
-  /// Splits points whose star falls into parts that no face joins, and pins them; pins all points of tets
-  /// that share more than one face.
+  /// Gives the faces the patches of the interfaces that the mesh came with.
+  void take_patches(const std::vector<InterfaceTriangle>& interfaces);
+  /// Splits points whose star falls into parts that no face joins. They are frozen with all their tets, as
+  /// are tets that share more than one face.
   void split_stars();
   std::vector<Index> points_with_split_stars() const;
   /// The points of tets that share more than one face with another one: no complex to operate on.
   std::vector<Index> points_of_glued_tets() const;
-  /// Adds a copy of each listed point for each further part of its star. Appends the copies to `pins` and
-  /// returns them with the points they were split off from.
-  std::vector<std::array<Index, 2>> split_points(const std::vector<Index>& split, std::vector<Index>& pins);
+  /// Adds a copy of each listed point for each further part of its star. Appends the copies to
+  /// `frozen` and returns them with the points they were split off from.
+  std::vector<std::array<Index, 2>> split_points(const std::vector<Index>& split, std::vector<Index>& frozen);
   /// The tets at `point` that faces join with the tet `first`.
   void part_of_star(Index point, Index first, LocalNumbers& seen, std::vector<Index>& part) const;
 

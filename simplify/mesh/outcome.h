@@ -7,11 +7,10 @@
 
 namespace tetwright {
 
-/// What an attempted operation answers. Every one but `done` leaves the mesh as it was; the statistics count
-/// them.
+/// What an attempted operation answers. Every one but `done` changes nothing; the statistics count them.
 enum class Outcome : std::uint8_t {
   done,
-  lock_taken,         ///< another task holds a point or a grid cell that is needed
+  conflict,           ///< an earlier one of the batch changes what it needs: it comes again
   stale,              ///< the element changed since it was listed
   no_candidate,       ///< the element has no such operation
   material_rule,      ///< the dimensions of point and edge forbid it (interfaces, junction curves, spanning
@@ -21,13 +20,14 @@ enum class Outcome : std::uint8_t {
   quality,            ///< the worst tet would become worse, and annealing did not let it pass
   link_condition,     ///< the topology would change
   self_intersection,  ///< a boundary or interface triangle would meet another
-  no_room,            ///< the reserve of tets, points or surface triangles is used up
+  no_room,            ///< the arrays of tets or points have reached their largest size
   count,              ///< fewer tets than wanted would be left, or more
-  too_large,          ///< the star holds more points than a task handles
+  too_large,          ///< the star holds more points than are worth the time
   volume,             ///< a material's volume would leave its bounds (VolumeLedger)
 };
 inline constexpr std::size_t outcome_count = 14;
 
+/// As the statistics call them: their keys are fixed.
 inline constexpr std::array<std::string_view, outcome_count> outcome_names{
     "done",          "lock_taken", "stale",     "no_candidate",   "material_rule",
     "surface_error", "inverts",    "quality",   "link_condition", "self_intersection",

@@ -7,58 +7,56 @@
 
 namespace tetwright {
 
-Outcome Star::gather(const EditableMesh& mesh, Index centre_point, HeldLocks& held) {
+Outcome Star::gather(const EditableMesh& mesh, Index centre_point) {
+  const Index first = mesh.incident_tet(centre_point);
+  if (first == no_index) return Outcome::stale;
   begin(centre_point, mesh.position(centre_point));
   tet_numbers_.clear();
-  pinned = mesh.pinned(centre);
+  frozen = mesh.frozen(centre);
 
-  const Index first = mesh.incident_tet(centre);
-  if (first == no_index) return Outcome::stale;
   bool added;
   tet_numbers_.number(first, added);
-  tets.push_back({first, {}, 0, 0, 0});
+  tets.push_back({first, {}, 0, mesh.region(first), 0});
   for (std::size_t i = 0; i < tets.size(); ++i) {
-    StarTet& s = tets[i];
-    const TetRecord& t = mesh.tet(s.tet);
-    const int slot = mesh.slot_of(s.tet, centre);
-    s.slot = static_cast<std::uint8_t>(slot);
-    s.region = t.region;
-    s.quality = t.quality;
-    worst = std::min(worst, t.quality);
+    const Index tet = tets[i].tet;
+    const RegionId region = tets[i].region;
+    const Tet& corners = mesh.points(tet);
+    const int slot = mesh.slot_of(tet, centre);
     // (centre, face opposite it as seen from outside) is positive.
     const auto& face = tet_faces[slot];
+    std::array<std::uint16_t, 3> link;
     for (int k = 0; k < 3; ++k) {
-      const Index p = t.points[face[k]];
+      const Index p = corners[face[k]];
       const std::uint32_t n = point_numbers_.number(p, added);
       if (added) {
         if (n >= max_points) return Outcome::too_large;
-        if (!held.holds(p) && !held.try_lock(p)) return Outcome::lock_taken;
         points.push_back(p);
         positions.push_back(mesh.position(p));
         interface_count.push_back(0);
-        near_pinned |= mesh.pinned(p);
       }
-      s.link[k] = static_cast<std::uint16_t>(n);
+      link[k] = static_cast<std::uint16_t>(n);
     }
-    const std::array<std::uint16_t, 3> link = s.link;
-    const RegionId region = s.region;
-    const Index tet = s.tet;
+    tets[i].link = link;
+    tets[i].slot = static_cast<std::uint8_t>(slot);
+    tets[i].quality = mesh.quality(tet);
+    worst = std::min(worst, tets[i].quality);
     for (int k = 0; k < 3; ++k) {
-      const Index other = t.neighbours[face[k]];  // across the face opposite link[k]
+      const FaceLink across = mesh.link(tet, face[k]);  // the face opposite link[k]
       const std::uint16_t a = link[(k + 1) % 3], b = link[(k + 2) % 3];
-      if (other != no_index) {
-        tet_numbers_.number(other, added);
-        if (added) tets.push_back({other, {}, 0, 0, 0});  // s is no longer valid
-        const RegionId across = mesh.tet(other).region;
-        if (across == region || other < tet) continue;  // an inner interface is met twice
-        interface_triangles.push_back({a, b, region, across});
+      if (across.is_outside()) {
+        interface_triangles.push_back({a, b, region, outside_id, across.patch()});
       } else {
-        interface_triangles.push_back({a, b, region, outside_id});
+        const Index other = across.tet();
+        tet_numbers_.number(other, added);
+        if (added) tets.push_back({other, {}, 0, across.is_interface() ? mesh.region(other) : region, 0});
+        if (!across.is_interface() || other < tet) continue;  // an inner interface is met twice
+        interface_triangles.push_back({a, b, region, mesh.region(other), 0});
       }
       ++interface_count[a];
       ++interface_count[b];
     }
   }
+  find_creases();
   return Outcome::done;
 }
 
@@ -73,8 +71,29 @@ void Star::begin(Index centre_point, const Vec3& position) {
   gradients.clear();
   point_numbers_.clear();
   worst = 1;
-  pinned = false;
-  near_pinned = false;
+  frozen = false;
+  creases = false;
+}
+
+void Star::find_creases() {
+  creases = false;
+  if (interface_triangles.empty()) return;
+  // Only where faces of one star differ at all is there something to look for.
+  const InterfaceTriangle& first = interface_triangles.front();
+  if (std::all_of(interface_triangles.begin(), interface_triangles.end(),
+                  [&](const InterfaceTriangle& t) { return t.patch == first.patch; }))
+    return;
+  crease_.assign(points.size(), 0);
+  for (std::size_t i = 0; i < interface_triangles.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const InterfaceTriangle &s = interface_triangles[i], &t = interface_triangles[j];
+      if (s.continues(t)) continue;
+      for (std::uint16_t p : {s.first, s.second})
+        if (p == t.first || p == t.second) {
+          crease_[p] = 1;
+          creases = true;
+        }
+    }
 }
 
 std::uint16_t Star::add_point(Index p, const Vec3& position) {
@@ -88,31 +107,31 @@ std::uint16_t Star::add_point(Index p, const Vec3& position) {
   return static_cast<std::uint16_t>(n);
 }
 
-void Star::add_interface_triangle(Index first, Index second, RegionId inside, RegionId across) {
+void Star::add_interface_triangle(Index first, Index second, RegionId inside, RegionId across,
+                                  PatchId patch) {
   const auto a = static_cast<std::uint16_t>(point_numbers_.find(first)),
              b = static_cast<std::uint16_t>(point_numbers_.find(second));
-  interface_triangles.push_back({a, b, inside, across});
+  interface_triangles.push_back({a, b, inside, across, patch});
   ++interface_count[a];
   ++interface_count[b];
 }
 
 int Star::dimension() const {
-  if (pinned) return 0;
   if (interface_triangles.empty()) return 3;
   // The interface triangles at the centre are the edges of a graph on the link's points; a dimension-2 edge
-  // of the centre is a node of degree 2. Walk from interface triangle to interface triangle across such
-  // nodes.
+  // of the centre is a node that two of them continue across. Walk from interface triangle to interface
+  // triangle across such nodes.
   std::size_t ends[2] = {0, 0};
   std::size_t end_count = 0;
   for (std::size_t p = 0; p < points.size(); ++p)
-    if (interface_count[p] != 0 && interface_count[p] != 2) {
+    if (edge_dimension(p) == 1) {
       if (end_count == 2) return 0;
       ends[end_count++] = p;
     }
   if (end_count == 1) return 0;
   visited_.assign(interface_triangles.size(), 0);
   const auto walk = [&](std::size_t interface_triangle, std::size_t from) {
-    // Follows the path of interface triangles to the next node that is not of degree 2, or round to where it
+    // Follows the path of interface triangles to the next end of its curve, or round to where it
     // began.
     std::size_t at = from;
     for (;;) {
@@ -120,7 +139,7 @@ int Star::dimension() const {
       at = interface_triangles[interface_triangle].first == at
                ? interface_triangles[interface_triangle].second
                : interface_triangles[interface_triangle].first;
-      if (at == from || interface_count[at] != 2) return at;
+      if (at == from || edge_dimension(at) != 2) return at;
       std::size_t next = interface_triangles.size();
       for (std::size_t k = 0; k < interface_triangles.size(); ++k)
         if (!visited_[k] && (interface_triangles[k].first == at || interface_triangles[k].second == at))

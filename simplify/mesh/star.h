@@ -15,8 +15,8 @@ struct VolumeChange {
   double volume;
 };
 
-/// The closed star of a point, all of whose points are held by the task: a local copy, so that the operations
-/// work on memory that is near, and the interface triangles at the point.
+/// The closed star of a point: a local copy, so that the operations work on memory that is near, and the
+/// interface triangles at the point.
 struct Star {
   /// Triangle of the star's surface: the tet is (centre, link[0], link[1], link[2]), positive.
   struct StarTet {
@@ -30,8 +30,14 @@ struct Star {
   struct InterfaceTriangle {
     std::uint16_t first, second;  ///< local numbers
     RegionId inside, across;
+    PatchId patch;
+    /// Whether it is a part of one and the same smooth surface as another one at their common edge.
+    bool continues(const InterfaceTriangle& other) const {
+      return patch == other.patch && ((inside == other.inside && across == other.across) ||
+                                      (inside == other.across && across == other.inside));
+    }
   };
-  /// Points a star may have: more is not worth a task's time.
+  /// Points a star may have: more is not worth the time.
   static constexpr std::size_t max_points = 500;
 
   Index centre;
@@ -41,14 +47,14 @@ struct Star {
   std::vector<Vec3> positions;                         ///< of the link's points
   std::vector<InterfaceTriangle> interface_triangles;  ///< each once
   std::vector<std::uint16_t>
-      interface_count;       ///< for each link point: interface triangles at the edge from the centre to it
-  float worst = 1;           ///< smallest quality of the tets
-  bool pinned = false;       ///< the centre may not move or go (EditableMesh::pinned)
-  bool near_pinned = false;  ///< a point of the link is pinned
+      interface_count;   ///< for each link point: interface triangles at the edge from the centre to it
+  float worst = 1;       ///< smallest quality of the tets
+  bool frozen = false;   ///< the centre may not move or go (EditableMesh::frozen)
+  bool creases = false;  ///< two interface triangles that do not continue each other meet in an edge
 
-  /// Locks the whole closed star of `centre`, which the task holds already, and copies it. done, lock_taken,
-  /// or too_large; `held` has all that was locked in any case.
-  Outcome gather(const EditableMesh& mesh, Index centre, HeldLocks& held);
+  /// Copies the closed star of `centre`: done, stale, or too_large. Faces between materials get patch 0: who
+  /// knows better says so and calls find_creases().
+  Outcome gather(const EditableMesh& mesh, Index centre);
 
   // For the star that a point would have if it were inserted.
 
@@ -57,13 +63,15 @@ struct Star {
   /// The local number of a point of the link, which is added unless it is there.
   std::uint16_t add_point(Index p, const Vec3& position);
   /// An interface triangle (centre, first, second), both added before.
-  void add_interface_triangle(Index first, Index second, RegionId inside, RegionId across);
+  void add_interface_triangle(Index first, Index second, RegionId inside, RegionId across, PatchId patch);
+  /// To be called when all have been added, or their patches changed.
+  void find_creases();
 
   /// Dimension of the edge from the centre to a link point: 3 within a material, 2 on an interface, 1 on a
-  /// junction curve.
+  /// junction curve or between two patches.
   int edge_dimension(std::size_t link_point) const {
     const unsigned n = interface_count[link_point];
-    return n == 0 ? 3 : n == 2 ? 2 : 1;
+    return n == 0 ? 3 : n == 2 && !(creases && crease_[link_point]) ? 2 : 1;
   }
   /// Dimension of the centre (README.md, Topology): 3, 2, 1, or 0 for all else.
   int dimension() const;
@@ -88,6 +96,7 @@ struct Star {
 
  private:
   LocalNumbers point_numbers_, tet_numbers_;
+  std::vector<std::uint8_t> crease_;           // by link point, where there are creases
   mutable std::vector<std::uint8_t> visited_;  // scratch of dimension()
   std::vector<Vec3> areas_;                    // a third of each interface triangle's area vector
   std::vector<VolumeChange> changes_;

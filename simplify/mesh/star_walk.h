@@ -10,8 +10,7 @@ namespace tetwright {
 
 inline bool contains(const Tet& t, Index p) { return t[0] == p || t[1] == p || t[2] == p || t[3] == p; }
 
-/// Walks the star of a locked point from tet to tet by ids alone, without locking its other points. Keeps its
-/// memory from walk to walk.
+/// Walks the star of a point from tet to tet by ids alone. Keeps its memory from walk to walk.
 class StarWalk {
  public:
   /// Whether `test(points of the tet)` is true for one tet at `point`.
@@ -23,18 +22,20 @@ class StarWalk {
     tets_.push_back(mesh.incident_tet(point));
     numbers_.number(tets_[0], added);
     for (std::size_t i = 0; i < tets_.size(); ++i) {
-      const TetRecord& r = mesh.tet(tets_[i]);
-      if (test(r.points)) return true;
+      const Index t = tets_[i];
+      const Tet& corners = mesh.points(t);
+      if (test(corners)) return true;
       for (int k = 0; k < 4; ++k) {
-        if (r.points[k] == point || r.neighbours[k] == no_index) continue;
-        numbers_.number(r.neighbours[k], added);
-        if (added) tets_.push_back(r.neighbours[k]);
+        const Index other = mesh.neighbour(t, k);
+        if (corners[k] == point || other == no_index) continue;
+        numbers_.number(other, added);
+        if (added) tets_.push_back(other);
       }
     }
     return false;
   }
 
-  /// Whether an edge of the mesh joins the locked point p to q.
+  /// Whether an edge of the mesh joins p to q.
   bool joined(const EditableMesh& mesh, Index p, Index q) {
     return any(mesh, p, [q](const Tet& t) { return contains(t, q); });
   }

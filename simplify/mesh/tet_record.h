@@ -12,14 +12,52 @@ namespace tetwright {
 using RegionId = std::uint32_t;
 inline constexpr RegionId outside_id = 0xffffffffu;
 
-/// A tet of an EditableMesh. 40 bytes.
-struct TetRecord {
-  Tet points;                       ///< no_index four times: dead
-  std::array<Index, 4> neighbours;  ///< across the face opposite each point; no_index: outside
-  RegionId region;
-  float quality;  ///< by the objective of the schedule, rounded
+/// Number of a patch: a part of the boundary or of an interface that keeps its identity. Faces between the
+/// same two regions that differ in their patch meet in a junction curve.
+using PatchId = std::uint16_t;
+
+/// What a tet stores for one of its faces: the tet across it, and whether that one is of another region; or
+/// that outside is there, and the patch of the boundary face. 4 bytes.
+class FaceLink {
+ public:
+  constexpr FaceLink() = default;
+  /// To a tet below max_tets.
+  static constexpr FaceLink to(Index tet, bool interface) { return FaceLink(interface ? tet | flag : tet); }
+  static constexpr FaceLink outside(PatchId patch) { return FaceLink(~std::uint32_t{patch}); }
+
+  constexpr bool is_outside() const { return word_ >= first_outside; }
+  /// Whether the regions on both sides differ; outside is one.
+  constexpr bool is_interface() const { return (word_ & flag) != 0; }
+  /// The tet across; no_index: outside.
+  constexpr Index tet() const { return is_outside() ? no_index : word_ & ~flag; }
+  /// Of a boundary face.
+  constexpr PatchId patch() const { return static_cast<PatchId>(~word_); }
+  constexpr bool operator==(const FaceLink&) const = default;
+
+  /// Tets that fit beside the flag and the codes of outside.
+  static constexpr std::size_t max_tets = std::size_t{1} << 30;
+
+ private:
+  static constexpr std::uint32_t flag = 0x80000000u, first_outside = 0xffff0000u;
+  explicit constexpr FaceLink(std::uint32_t word) : word_(word) {}
+  std::uint32_t word_ = ~std::uint32_t{0};
 };
-static_assert(sizeof(TetRecord) <= 48);
+
+/// The connectivity of a tet of an EditableMesh: half a cache line, which is what walking a mesh reads.
+struct alignas(32) TetRecord {
+  Tet points;                     ///< no_index four times: dead
+  std::array<FaceLink, 4> links;  ///< across the face opposite each point
+};
+static_assert(sizeof(TetRecord) == 32);
+
+/// The points of a face, as seen from outside of a positive tet.
+inline Triangle face_of(const Tet& points, int face) {
+  const auto& c = tet_faces[face];
+  return {points[c[0]], points[c[1]], points[c[2]]};
+}
+
+/// The point that an operation is about to add, as long as it has no number of its own.
+inline constexpr Index unnumbered_point = no_index - 1;
 
 inline constexpr Tet dead_tet{no_index, no_index, no_index, no_index};
 
@@ -27,6 +65,7 @@ inline constexpr Tet dead_tet{no_index, no_index, no_index, no_index};
 struct InterfaceFace {
   Triangle ids;  ///< the normal points out of `inside`
   RegionId inside, across;
+  PatchId patch;
 };
 
 }  // namespace tetwright

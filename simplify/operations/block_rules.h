@@ -11,13 +11,23 @@
 
 namespace tetwright {
 
+/// No operation may take the number of tets below the minimum; none that adds tets may take it above the
+/// maximum.
+struct CountBounds {
+  std::size_t min = 0, max = std::numeric_limits<std::int64_t>::max();
+  bool allow(std::size_t live, std::int64_t change) const {
+    const std::int64_t after = static_cast<std::int64_t>(live) + change;
+    if (change < 0) return after >= static_cast<std::int64_t>(min);
+    return change == 0 || after <= static_cast<std::int64_t>(max);
+  }
+};
+
 /// The bounds within which all operations of a block stay. Lengths in working coordinates.
 struct BlockRules {
   Objective objective;
   double max_error = 0;  ///< E of Cutler, Dorsey & McMillan 2004, section 3
   double gamma = 10;     ///< weight of the volume error
-  /// No operation may take the count below the minimum; none that adds tets may take it above the maximum.
-  std::size_t min_tets = 0, max_tets = std::numeric_limits<std::int64_t>::max();
+  CountBounds count;
   /// Error(op) takes the net change of each volume, as the paper has it; otherwise the volumes that the
   /// interface triangles sweep are added up.
   bool losses_cancel = false;
@@ -45,7 +55,7 @@ struct BlockRules {
 /// `across` are the regions that it separates.
 bool near_reference(const BlockRules& rules, const MeshTriangle& t, RegionId inside, RegionId across);
 
-/// The objective's value for a tet of locked points.
+/// The objective's value for a tet.
 float quality_of(const EditableMesh& mesh, const BlockRules& rules, const Tet& t);
 
 }  // namespace tetwright

@@ -47,62 +47,73 @@ double distance_left(const Star& star, std::size_t b) {
   return std::sqrt(nearest);
 }
 
-/// Fills ws.edit with the interface triangles before and after; false if one is too far from the reference.
+/// Fills the proposal's edit with the interface triangles before and after; false if one is too far from the
+/// reference.
 bool surface_edit(Workspace& ws, const BlockRules& rules, std::size_t b) {
   const Star& star = ws.star;
-  ws.edit.clear();
+  SurfaceGrid::Edit& edit = ws.proposal.edit;
+  edit.clear();
   for (const Star::InterfaceTriangle& s : star.interface_triangles) {
     const Triangle ids{star.centre, star.points[s.first], star.points[s.second]};
     const Vec3 &p = star.positions[s.first], &q = star.positions[s.second];
-    ws.edit.removed.push_back({ids, {star.centre_position, p, q}});
+    edit.removed.push_back({ids, {star.centre_position, p, q}});
     if (s.first == b || s.second == b) continue;
-    ws.edit.added.push_back({{star.points[b], ids[1], ids[2]}, {star.positions[b], p, q}});
-    if (!near_reference(rules, ws.edit.added.back(), s.inside, s.across)) return false;
+    edit.added.push_back({{{star.points[b], ids[1], ids[2]}, {star.positions[b], p, q}}, s.patch});
+    if (!near_reference(rules, edit.added.back().triangle, s.inside, s.across)) return false;
   }
   return true;
 }
 
-/// Joins the two outer neighbours of a tet that vanishes, across its faces opposite the ends of the collapsed
-/// edge.
-void close_gap(EditableMesh& mesh, const TetRecord& gone, Index tet, Index a, Index b) {
-  const int slot_a = mesh.slot_of(tet, a), slot_b = mesh.slot_of(tet, b);
-  const Index across_a = gone.neighbours[slot_a], across_b = gone.neighbours[slot_b];
-  if (across_a != no_index) mesh.set_neighbour(across_a, mesh.face_towards(across_a, tet), across_b);
-  if (across_b != no_index) mesh.set_neighbour(across_b, mesh.face_towards(across_b, tet), across_a);
+/// A tet with both ends of the edge goes: its two outer neighbours are joined, across its faces opposite
+/// these ends, and its points' incident tets become others.
+void close_gap(const EditableMesh& mesh, Proposal& proposal, Index tet) {
+  const int slot_a = mesh.slot_of(tet, proposal.centre), slot_b = mesh.slot_of(tet, proposal.target);
+  const FaceLink across_a = mesh.link(tet, slot_a), across_b = mesh.link(tet, slot_b);
+  /// What a tet on one side finds where it found this one.
+  const auto joined = [&](Index side, FaceLink other) {
+    return other.is_outside() ? other
+                              : FaceLink::to(other.tet(), mesh.region(side) != mesh.region(other.tet()));
+  };
+  for (const auto& [side, other] : {std::array{across_a, across_b}, std::array{across_b, across_a}})
+    if (!side.is_outside())
+      proposal.relinks.push_back({side.tet(), static_cast<std::uint8_t>(mesh.face_towards(side.tet(), tet)),
+                                  joined(side.tet(), other)});
   // Both keep the tet's two other points, and after the collapse both have b.
-  const Index keeper = across_b != no_index ? across_b : across_a;
-  for (int k = 0; k < 4; ++k)
-    if (k != slot_a) mesh.set_incident_tet(gone.points[k], keeper);
+  const Index keeper = across_b.is_outside() ? across_a.tet() : across_b.tet();
+  for (int k = 0; k < 4; ++k) {
+    const Index p = mesh.points(tet)[k];
+    if (k != slot_a && mesh.incident_tet(p) == tet) proposal.incidents.push_back({p, keeper});
+  }
 }
 
-void carry_out(Workspace& ws, std::size_t b, const std::vector<float>& qualities) {
-  EditableMesh& mesh = ws.mesh;
+void propose(Workspace& ws, std::size_t b) {
+  const EditableMesh& mesh = ws.mesh;
   const Star& star = ws.star;
-  const Index b_id = star.points[b];
-  for (const Star::StarTet& t : star.tets) {
-    if (!has(t, b)) continue;
-    close_gap(mesh, mesh.tet(t.tet), t.tet, star.centre, b_id);
-  }
+  Proposal& proposal = ws.proposal;
+  proposal.change = Proposal::Change::collapse;
+  proposal.centre = star.centre;
+  proposal.target = star.points[b];
+  proposal.mark_star(star);
+  // The target's star was read, too.
+  std::swap(proposal.marks[1], proposal.marks[1 + b]);
+  proposal.needs = 2;
+  proposal.rated.clear();
+  proposal.removed.clear();
+  proposal.relinks.clear();
+  proposal.incidents.clear();
   for (std::size_t i = 0; i < star.tets.size(); ++i) {
     const Star::StarTet& t = star.tets[i];
-    if (has(t, b)) continue;
-    mesh.store_point(t.tet, t.slot, b_id);
-    mesh.set_quality(t.tet, qualities[i]);
-    // Every point of the star keeps a tet: incident_tets to vanished ones are replaced by ones that stay.
-    for (Index p : mesh.tet(t.tet).points) mesh.set_incident_tet(p, t.tet);
+    if (has(t, b)) {
+      proposal.removed.push_back(t.tet);
+      close_gap(mesh, proposal, t.tet);
+    } else {
+      proposal.rated.push_back({t.tet, t.slot, ws.qualities[i]});
+    }
   }
-  for (const Star::StarTet& t : star.tets) {
-    if (!has(t, b)) continue;
-    mesh.store_points(t.tet, dead_tet);
-    ws.free_tets.give_back(t.tet);
-  }
-  for (Index p : star.points) mesh.touch(p);
-  mesh.set_incident_tet(star.centre, no_index);
-  ws.free_points.give_back(star.centre);
 }
 
-/// Everything but the weight, for the target with local number b; on trial nothing is changed.
-Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b, bool trial = false) {
+/// Everything but the weight, for the target with local number b.
+Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
   Star& star = ws.star;
   std::vector<float>& qualities = ws.qualities;
   const Vec3& to = star.positions[b];
@@ -118,8 +129,10 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b, bool t
   if (left == 0)
     for (const Star::StarTet& t : star.tets)
       if (const Index below = ws.mesh.neighbour(t.tet, t.slot);
-          below == no_index || contains(ws.mesh.tet(below).points, star.centre))
+          below == no_index || contains(ws.mesh.points(below), star.centre))
         return Outcome::link_condition;
+  ws.proposal.volumes = star.volume_changes(to - star.centre_position);
+  if (!ws.ledger.allows(ws.proposal.volumes)) return Outcome::volume;
   const float limit = ws.acceptance_limit(rules, star.worst);
   qualities.resize(star.tets.size());
   for (std::size_t k = 0; k < star.tets.size(); ++k) {
@@ -133,41 +146,18 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b, bool t
   if (!star.interface_triangles.empty() && rules.distance_weight > 0 &&
       rules.distance_weight * distance_left(star, b) > rules.max_error)
     return Outcome::surface_error;
-  if (!ws.link_condition.holds(ws.mesh, star, b)) return Outcome::link_condition;
+  if (!ws.link_condition.holds(ws.mesh, ws.grid, star, b)) return Outcome::link_condition;
+  ws.proposal.edit.clear();
   if (!star.interface_triangles.empty()) {
     if (!surface_edit(ws, rules, b)) return Outcome::surface_error;
-    const Outcome o = ws.grid.begin_edit(ws.edit, ws.grid_workspace, ws.cells);
-    if (o != Outcome::done) {
-      ws.cells.release();
-      return o;
-    }
+    if (!ws.grid.test(ws.proposal.edit)) return Outcome::self_intersection;
   }
-  if (trial) {
-    ws.cells.release();
-    return Outcome::done;
-  }
-  const auto& volumes = star.volume_changes(to - star.centre_position);
-  if (!ws.ledger.book(volumes)) {
-    ws.cells.release();
-    return Outcome::volume;
-  }
-  // Last of all, since what is taken off the count here is not put back.
-  const auto change = static_cast<std::int64_t>(left) - static_cast<std::int64_t>(star.tets.size());
-  if (!ws.mesh.change_count(change, rules.min_tets, rules.max_tets)) {
-    ws.ledger.take_back(volumes);
-    ws.cells.release();
-    return Outcome::count;
-  }
-  carry_out(ws, b, qualities);
-  if (!star.interface_triangles.empty()) {
-    ws.grid.commit(ws.edit, ws.grid_workspace);
-    ws.cells.release();
-  }
-  return Outcome::done;
+  propose(ws, b);
+  return ws.within_bounds(rules,
+                          static_cast<std::int64_t>(left) - static_cast<std::int64_t>(star.tets.size()));
 }
 
-/// What touches in a point only stays as it is.
-bool may_go(const Star& star, int dimension) { return dimension > 0 && !star.near_pinned; }
+bool may_go(const Star& star, int dimension) { return dimension > 0 && !star.frozen; }
 
 }  // namespace
 
@@ -177,13 +167,13 @@ double collapse_weight(Star& star, std::size_t b, const BlockRules& rules) {
          (star.interface_triangles.empty() ? 0 : star.surface_error(step, rules.gamma, rules.losses_cancel));
 }
 
-Outcome collapse_onto(Workspace& ws, const BlockRules& rules, std::size_t b, bool trial) {
+Outcome collapse_onto(Workspace& ws, const BlockRules& rules, std::size_t b) {
   Star& star = ws.star;
   const int dimension = star.dimension();
   if (!may_go(star, dimension) || star.edge_dimension(b) != dimension) return Outcome::material_rule;
   star.compute_gradients();
   if (collapse_weight(star, b, rules) > rules.max_error) return Outcome::surface_error;
-  return try_target(ws, rules, b, trial);
+  return try_target(ws, rules, b);
 }
 
 Outcome collapse(Workspace& ws, const BlockRules& rules) {
@@ -211,7 +201,7 @@ Outcome collapse(Workspace& ws, const BlockRules& rules) {
                     });
   for (std::size_t i = 0; i < count; ++i) {
     const Outcome o = try_target(ws, rules, targets[i].point);
-    if (o == Outcome::done || o == Outcome::lock_taken) return o;
+    if (o == Outcome::done) return o;
     if (depth(o) > depth(refusal)) refusal = o;
   }
   return refusal;

@@ -9,16 +9,15 @@ namespace tetwright {
 /// Of the allowed targets (the edge has the dimension of the centre: an interior point goes anywhere, a point
 /// of an interface stays on it, one of a junction curve too; spanning edges never collapse) the
 /// BlockRules::max_targets of least Weight = length + Error (Cutler, Dorsey & McMillan 2004, section 4) are
-/// tried and the first that passes every test is carried out. Tests come in the order of their cost: E,
+/// tried and the first that passes every test is proposed. Tests come in the order of their cost: E,
 /// signs, quality, link condition, self-intersection.
 ///
-/// The task holds the closed star that `ws.star` was gathered from, and nothing of the grid. done: the mesh
-/// was changed. Otherwise the mesh is as it was, and the outcome is that of the target that got farthest.
+/// Of the star that `ws.gather()` left in `ws.star`. done: `ws.proposal` says what is to be done. Otherwise
+/// the outcome is that of the target that got farthest.
 Outcome collapse(Workspace& ws, const BlockRules& rules);
 
-/// The same for one target alone, the link point with local number b. `trial`: nothing is changed, and done
-/// says that it would be, but for the count.
-Outcome collapse_onto(Workspace& ws, const BlockRules& rules, std::size_t b, bool trial = false);
+/// The same for one target alone, the link point with local number b.
+Outcome collapse_onto(Workspace& ws, const BlockRules& rules, std::size_t b);
 
 /// Weight(e) of the half-edge from the centre to link point b: length plus Error(collapse). The star's
 /// gradients must be computed.

@@ -14,8 +14,8 @@ namespace {
 Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
 
 /// The interface triangles of an edge (a, b) with interface triangles to s and t, turned to the edge (s, t).
-Outcome begin_surface_edit(Workspace& ws, const BlockRules& rules, Index s, Index t, RegionId inside,
-                           RegionId across) {
+Outcome surface_edit(Workspace& ws, const BlockRules& rules, Index s, Index t, RegionId inside,
+                     RegionId across, PatchId patch) {
   const EditableMesh& mesh = ws.mesh;
   const EdgeRing& ring = ws.ring;
   const Vec3 &a = mesh.position(ring.a), &b = mesh.position(ring.b), &ps = mesh.position(s),
@@ -29,12 +29,13 @@ Outcome begin_surface_edit(Workspace& ws, const BlockRules& rules, Index s, Inde
   for (const Vec3& n : after)
     for (const Vec3& m : before)
       if (!(n.dot(m) > 0)) return Outcome::surface_error;
-  ws.edit.clear();
-  ws.edit.removed = {{{ring.a, ring.b, s}, {a, b, ps}}, {{ring.a, ring.b, t}, {a, b, pt}}};
-  ws.edit.added = {{{ring.a, s, t}, {a, ps, pt}}, {{ring.b, s, t}, {b, ps, pt}}};
-  for (const MeshTriangle& n : ws.edit.added)
-    if (!near_reference(rules, n, inside, across)) return Outcome::surface_error;
-  return ws.grid.begin_edit(ws.edit, ws.grid_workspace, ws.cells);
+  SurfaceGrid::Edit& edit = ws.proposal.edit;
+  edit.clear();
+  edit.removed = {{{ring.a, ring.b, s}, {a, b, ps}}, {{ring.a, ring.b, t}, {a, b, pt}}};
+  edit.added = {{{{ring.a, s, t}, {a, ps, pt}}, patch}, {{{ring.b, s, t}, {b, ps, pt}}, patch}};
+  for (const SurfaceGrid::Added& n : edit.added)
+    if (!near_reference(rules, n.triangle, inside, across)) return Outcome::surface_error;
+  return ws.grid.test(edit) ? Outcome::done : Outcome::self_intersection;
 }
 
 /// The removal of an edge whose ring is gathered in the workspace.
@@ -47,6 +48,10 @@ class EdgeRemoval {
   Outcome run(const FlipReach& reach, Operation& kind) {
     if (dimension_ == 1) return Outcome::material_rule;
     make_chains();
+    if (dimension_ == 2) {
+      find_patches();
+      if (patches_[0] != patches_[1]) return Outcome::material_rule;  // a crease
+    }
     kind = kind_of_flip();
     if (reach.basic() && kind == Operation::edge_removal) return Outcome::no_candidate;
     if (const Outcome o = check_chains(reach); o != Outcome::done) return o;
@@ -56,9 +61,7 @@ class EdgeRemoval {
       if (!ws_.triangulations[c].find(ws_.mesh, rules_, ring.a, ring.b, ws_.chains[c], limit))
         return Outcome::quality;
     if (!fill_cavity()) return Outcome::link_condition;
-    const std::size_t added = ws_.cavity.added.size(), removed = ring.tets.size();
-    if (added > removed && !ws_.free_tets.reserve(added - removed)) return Outcome::no_room;
-    return carry_out();
+    return propose();
   }
 
  private:
@@ -84,6 +87,22 @@ class EdgeRemoval {
     chains[1].push_back(ring.points[0]);
   }
 
+  /// The patches of the two interface triangles at the edge.
+  void find_patches() {
+    const EdgeRing& ring = ws_.ring;
+    const EditableMesh& mesh = ws_.mesh;
+    if (ring.closed) {
+      patches_ = {ws_.grid.patch(mesh, {ring.a, ring.b, ws_.chains[0].front()}),
+                  ws_.grid.patch(mesh, {ring.a, ring.b, ws_.chains[0].back()})};
+      return;
+    }
+    // Of the first and the last tet the face of a, b and the end of the chain is the boundary face: it lies
+    // opposite the chain's next point.
+    const std::size_t n = ring.points.size();
+    patches_ = {mesh.link(ring.tets.front(), mesh.slot_of(ring.tets.front(), ring.points[1])).patch(),
+                mesh.link(ring.tets.back(), mesh.slot_of(ring.tets.back(), ring.points[n - 2])).patch()};
+  }
+
   Operation kind_of_flip() const {
     const std::size_t n = ws_.ring.tets.size();
     if (chain_count_ == 2)
@@ -101,28 +120,35 @@ class EdgeRemoval {
           (dimension_ == 3 && ring.tets.size() > reach.max_ring))
         return Outcome::too_large;
     }
-    if (mesh.any_pinned() &&
-        (mesh.pinned(ring.a) || mesh.pinned(ring.b) ||
-         std::any_of(ring.points.begin(), ring.points.end(), [&](Index p) { return mesh.pinned(p); })))
-      return Outcome::material_rule;
+    if (mesh.any_frozen() && frozen()) return Outcome::material_rule;
     if (!ring.closed && !ws_.walk.is_whole(mesh, ring)) return Outcome::material_rule;
     return Outcome::done;
+  }
+
+  /// Whether a tet or an interface triangle of the ring stays as it is.
+  bool frozen() const {
+    const EdgeRing& ring = ws_.ring;
+    const EditableMesh& mesh = ws_.mesh;
+    if (std::any_of(ring.tets.begin(), ring.tets.end(), [&](Index t) { return mesh.frozen_tet(t); }))
+      return true;
+    return dimension_ == 2 && mesh.frozen(ring.a) && mesh.frozen(ring.b) &&
+           (mesh.frozen(ws_.chains[0].front()) || mesh.frozen(ws_.chains[0].back()));
   }
 
   /// False if an edge or triangle of the triangulation is in the mesh already.
   bool fill_cavity() {
     const EdgeRing& ring = ws_.ring;
     const EditableMesh& mesh = ws_.mesh;
-    Cavity& cavity = ws_.cavity;
-    cavity.clear();
-    cavity.removed = ring.tets;
+    Proposal& proposal = ws_.proposal;
+    proposal.added.clear();
+    proposal.removed = ring.tets;
     const bool single_triangle = dimension_ == 3 && ring.tets.size() == 3;
     bool present = false;
     for (std::size_t c = 0; c < chain_count_; ++c) {
       const std::vector<Index>& p = ws_.chains[c];
       ws_.triangulations[c].triangles([&](std::size_t i, std::size_t k, std::size_t j) {
         for (const Tet& t : {Tet{p[i], p[k], p[j], ring.b}, Tet{p[i], p[j], p[k], ring.a}})
-          cavity.added.push_back({t, regions_[c], quality_of(mesh, rules_, t)});
+          proposal.added.push_back({t, regions_[c], quality_of(mesh, rules_, t)});
         // Diagonals must be new; of a ring of three the triangle must be.
         if (single_triangle) {
           present |=
@@ -140,7 +166,7 @@ class EdgeRemoval {
     const EdgeRing& ring = ws_.ring;
     const EditableMesh& mesh = ws_.mesh;
     double gained = 0;
-    for (const NewTet& t : ws_.cavity.added)
+    for (const NewTet& t : ws_.proposal.added)
       if (t.region == regions_[0])
         gained += orient3d_value(mesh.position(t.points[0]), mesh.position(t.points[1]),
                                  mesh.position(t.points[2]), mesh.position(t.points[3])) /
@@ -152,33 +178,24 @@ class EdgeRemoval {
     return changes;
   }
 
-  Outcome carry_out() {
-    EditableMesh& mesh = ws_.mesh;
-    const auto change =
-        static_cast<std::int64_t>(ws_.cavity.added.size()) - static_cast<std::int64_t>(ws_.ring.tets.size());
-    if (dimension_ == 3) {
-      if (!mesh.change_count(change, rules_.min_tets, rules_.max_tets)) return Outcome::count;
-      ws_.retriangulation.carry_out(mesh, ws_.free_tets, ws_.cavity);
-      return Outcome::done;
+  Outcome propose() {
+    Proposal& proposal = ws_.proposal;
+    proposal.edit.clear();
+    proposal.volumes.clear();
+    if (dimension_ == 2) {
+      const EdgeRing& ring = ws_.ring;
+      if (const Outcome o = surface_edit(ws_, rules_, ws_.chains[0].front(), ws_.chains[0].back(),
+                                         regions_[0], ring.closed ? regions_[1] : outside_id, patches_[0]);
+          o != Outcome::done)
+        return o;
+      const std::array<VolumeChange, 2> volumes = volume_changes();
+      proposal.volumes.assign(volumes.begin(), volumes.end());
     }
-    const auto refuse = [&](Outcome o) {
-      ws_.cells.release();
-      return o;
-    };
-    if (const Outcome o = begin_surface_edit(ws_, rules_, ws_.chains[0].front(), ws_.chains[0].back(),
-                                             regions_[0], ws_.ring.closed ? regions_[1] : outside_id);
-        o != Outcome::done)
-      return refuse(o);
-    const std::array<VolumeChange, 2> volumes = volume_changes();
-    if (!ws_.ledger.book(volumes)) return refuse(Outcome::volume);
-    if (!mesh.change_count(change, rules_.min_tets, rules_.max_tets)) {
-      ws_.ledger.take_back(volumes);
-      return refuse(Outcome::count);
-    }
-    ws_.retriangulation.carry_out(mesh, ws_.free_tets, ws_.cavity);
-    ws_.grid.commit(ws_.edit, ws_.grid_workspace);
-    ws_.cells.release();
-    return Outcome::done;
+    proposal.change = Proposal::Change::replace;
+    proposal.has_new_point = false;
+    proposal.mark_cavity(ws_.mesh);
+    return ws_.within_bounds(rules_, static_cast<std::int64_t>(proposal.added.size()) -
+                                         static_cast<std::int64_t>(proposal.removed.size()));
   }
 
   Workspace& ws_;
@@ -186,18 +203,18 @@ class EdgeRemoval {
   int dimension_;
   std::size_t chain_count_ = 1;
   std::array<RegionId, 2> regions_{};
+  std::array<PatchId, 2> patches_{};  ///< of an edge of dimension 2
 };
 
 }  // namespace
 
 Outcome remove_edge(Workspace& ws, const BlockRules& rules, Index tet, int edge, const FlipReach& reach) {
   Operation kind = Operation::edge_removal;
-  Outcome o = ws.ring.gather(ws.mesh, tet, edge, ws.points);
+  Outcome o = ws.ring.gather(ws.mesh, tet, edge);
   if (o == Outcome::done) o = EdgeRemoval(ws, rules).run(reach, kind);
   if (reach.basic() && kind == Operation::edge_removal)
     return o;  // none of the three flips: nothing was tried
-  ws.counts.add(kind, o);
-  return o;
+  return ws.count(kind, o);
 }
 
 }  // namespace tetwright

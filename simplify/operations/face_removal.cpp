@@ -10,9 +10,8 @@ namespace {
 class FaceTree {
  public:
   FaceTree(Workspace& ws, const BlockRules& rules, Index a, Index b, RegionId region, std::size_t max_faces)
-      : added(ws.cavity.added),
-        removed(ws.cavity.removed),
-        ws_(ws),
+      : added(ws.proposal.added),
+        removed(ws.proposal.removed),
         mesh_(ws.mesh),
         rules_(rules),
         a_(a),
@@ -28,16 +27,11 @@ class FaceTree {
     // The tets beyond the edge, on both sides, and their common point.
     const Index next_a = across(tet_a, x, y, a_), next_b = across(tet_b, x, y, b_);
     if (next_a == no_index || next_b == no_index || next_a == next_b) return keep(plain);
-    const TetRecord &ra = mesh_.tet(next_a), &rb = mesh_.tet(next_b);
-    if (ra.region != region_ || rb.region != region_) return keep(plain);
-    const Index w = fourth(ra.points, a_, x, y);
-    if (w == no_index || w != fourth(rb.points, b_, x, y)) return keep(plain);
+    if (mesh_.region(next_a) != region_ || mesh_.region(next_b) != region_) return keep(plain);
+    const Index w = fourth(mesh_.points(next_a), a_, x, y);
+    if (w == no_index || w != fourth(mesh_.points(next_b), b_, x, y)) return keep(plain);
     // Only where they are poor themselves, or stand in the way.
     if (std::find(removed.begin(), removed.end(), next_a) != removed.end()) return keep(plain);
-    if (!ws_.lock(w)) {
-      lock_taken = true;
-      return 0;
-    }
     const std::size_t added_before = added.size(), removed_before = removed.size(), faces_before = faces_;
     removed.push_back(next_a);
     removed.push_back(next_b);
@@ -53,7 +47,6 @@ class FaceTree {
 
   std::vector<NewTet>& added;
   std::vector<Index>& removed;
-  bool lock_taken = false;
 
  private:
   float keep(const NewTet& t) {
@@ -62,9 +55,9 @@ class FaceTree {
   }
   /// The neighbour of t across its face with x, y and apex.
   Index across(Index t, Index x, Index y, Index apex) const {
-    const TetRecord& r = mesh_.tet(t);
+    const Tet& p = mesh_.points(t);
     for (int k = 0; k < 4; ++k)
-      if (r.points[k] != x && r.points[k] != y && r.points[k] != apex) return r.neighbours[k];
+      if (p[k] != x && p[k] != y && p[k] != apex) return mesh_.neighbour(t, k);
     return no_index;
   }
   static Index fourth(const Tet& t, Index p, Index q, Index r) {
@@ -73,7 +66,6 @@ class FaceTree {
     return no_index;
   }
 
-  Workspace& ws_;
   const EditableMesh& mesh_;
   const BlockRules& rules_;
   Index a_, b_;
@@ -84,47 +76,43 @@ class FaceTree {
 
 Outcome try_remove(Workspace& ws, const BlockRules& rules, Index tet, int face, const FlipReach& reach,
                    Operation& kind) {
-  EditableMesh& mesh = ws.mesh;
-  const TetRecord& first = mesh.tet(tet);
-  const Index other = first.neighbours[face];
-  if (other == no_index) return Outcome::no_candidate;
-  const TetRecord& second = mesh.tet(other);
-  if (second.region != first.region) return Outcome::material_rule;
-  const Index a = first.points[face], b = second.points[mesh.face_towards(other, tet)];
+  const EditableMesh& mesh = ws.mesh;
+  const FaceLink link = mesh.link(tet, face);
+  if (link.is_outside()) return Outcome::no_candidate;
+  if (link.is_interface()) return Outcome::material_rule;
+  const Index other = link.tet();
+  const Tet& first = mesh.points(tet);
+  const Index a = first[face], b = mesh.points(other)[mesh.face_towards(other, tet)];
   if (a == b) return Outcome::link_condition;
-  if (!ws.lock(b)) return Outcome::lock_taken;
 
   // The face is listed outward from `tet`, towards b: (a, b, ring[i], ring[i + 1]) are positive where they
   // can be.
-  const auto& c = tet_faces[face];
-  const Triangle ring{first.points[c[0]], first.points[c[1]], first.points[c[2]]};
-  ws.cavity.clear();
-  FaceTree tree(ws, rules, a, b, first.region, reach.basic() ? 1 : reach.max_faces);
+  const Triangle ring = face_of(first, face);
+  Proposal& proposal = ws.proposal;
+  proposal.added.clear();
+  FaceTree tree(ws, rules, a, b, mesh.region(tet), reach.basic() ? 1 : reach.max_faces);
   tree.removed = {tet, other};
   float worst = 1;
-  const float worst_before = std::min(first.quality, second.quality);
+  const float worst_before = std::min(mesh.quality(tet), mesh.quality(other));
   for (int i = 0; i < 3; ++i) {
     worst = std::min(worst, tree.grow(ring[i], ring[(i + 1) % 3], tet, other));
-    if (tree.lock_taken) return Outcome::lock_taken;
     if (worst <= 0 || (worst <= worst_before && rules.accept_worse == 0)) return Outcome::quality;
   }
-  const std::vector<Index>& removed = ws.cavity.removed;
+  const std::vector<Index>& removed = proposal.removed;
   if (removed.size() > 2) kind = Operation::face_removal;
   float before = 1;
-  for (Index t : removed) before = std::min(before, mesh.tet(t).quality);
+  for (Index t : removed) before = std::min(before, mesh.quality(t));
   if (!(worst > ws.acceptance_limit(rules, before))) return Outcome::quality;
-  if (mesh.any_pinned())
-    for (const NewTet& t : ws.cavity.added)
-      for (Index p : t.points)
-        if (mesh.pinned(p)) return Outcome::material_rule;
-  if (ws.walk.joined(ws.mesh, b, a)) return Outcome::link_condition;
-  const std::size_t added = ws.cavity.added.size();
-  if (added > removed.size() && !ws.free_tets.reserve(added - removed.size())) return Outcome::no_room;
-  if (!mesh.change_count(static_cast<std::int64_t>(added) - static_cast<std::int64_t>(removed.size()),
-                         rules.min_tets, rules.max_tets))
-    return Outcome::count;
-  ws.retriangulation.carry_out(mesh, ws.free_tets, ws.cavity);
-  return Outcome::done;
+  if (std::any_of(removed.begin(), removed.end(), [&](Index t) { return mesh.frozen_tet(t); }))
+    return Outcome::material_rule;
+  if (ws.walk.joined(mesh, b, a)) return Outcome::link_condition;
+  proposal.change = Proposal::Change::replace;
+  proposal.has_new_point = false;
+  proposal.edit.clear();
+  proposal.volumes.clear();
+  proposal.mark_cavity(mesh);
+  return ws.within_bounds(
+      rules, static_cast<std::int64_t>(proposal.added.size()) - static_cast<std::int64_t>(removed.size()));
 }
 
 }  // namespace
@@ -132,8 +120,7 @@ Outcome try_remove(Workspace& ws, const BlockRules& rules, Index tet, int face, 
 Outcome remove_face(Workspace& ws, const BlockRules& rules, Index tet, int face, const FlipReach& reach) {
   Operation kind = Operation::flip23;
   const Outcome o = try_remove(ws, rules, tet, face, reach, kind);
-  ws.counts.add(kind, o);
-  return o;
+  return ws.count(kind, o);
 }
 
 }  // namespace tetwright

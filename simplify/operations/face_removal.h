@@ -8,10 +8,10 @@ namespace tetwright {
 /// Takes out a face within one material, and with it such neighbouring faces that stand between the same two
 /// points, and puts tets around the edge between these points: multi-face removal, the inverse of edge
 /// removal (Shewchuk 2002, as in remove_edge; the faces are chosen by his recursion over the tree of
-/// neighbouring faces). One face makes the flip 2-3. The tet's points are held; `face` is opposite its vertex
-/// of that number.
+/// neighbouring faces). One face makes the flip 2-3. `face` is opposite the tet's vertex of
+/// that number.
 ///
-/// Counts itself as flip23 or face_removal. Answers done, lock_taken, no_candidate (boundary), material_rule,
+/// Counts itself as flip23 or face_removal. Answers done (proposed), no_candidate (boundary), material_rule,
 /// quality (also: would invert), link_condition (the edge is there already), no_room, count.
 Outcome remove_face(Workspace& ws, const BlockRules& rules, Index tet, int face, const FlipReach& reach);
 

@@ -12,10 +12,10 @@ enum class InsertionPlace {
   best
 };
 
-/// Adds a point in a tet whose points are held, at its centre: one tet becomes four. What comes out decides:
+/// Adds a point in a tet, at its centre: one tet becomes four. What comes out decides:
 /// the worst new tet must be better than the old one (or pass the annealing). Counted as insert_in_tet.
 ///
-/// These three answer done, lock_taken, no_candidate, too_large, material_rule, quality (also: would invert),
+/// These three answer done (proposed), no_candidate, too_large, material_rule, quality (also: would invert),
 /// surface_error, link_condition, self_intersection, volume, no_room, count.
 Outcome insert_in_tet(Workspace& ws, const BlockRules& rules, Index tet, InsertionPlace place);
 

@@ -17,7 +17,7 @@ class RingTriangulation {
   static constexpr std::size_t max_points = 8;  ///< a chain of seven tets has eight
 
   /// False if no triangulation has only tets better than `limit`. The polygon must live until triangles() was
-  /// called; its points and the edge's ends are locked.
+  /// called.
   bool find(const EditableMesh& mesh, const BlockRules& rules, Index a, Index b,
             const std::vector<Index>& polygon, float limit);
 

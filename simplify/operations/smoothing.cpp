@@ -54,19 +54,20 @@ Vec3 keep_volumes(const Star& star, Vec3 step) {
   return step;
 }
 
-/// Fills ws.edit with the interface triangles before and after; false if one is too far from the reference.
-/// At junctions that points may leave, find_place() has tested the point itself: where three regions meet in
-/// a loop smaller than a tet, the triangles' centres may have no interface of their two regions nearby.
+/// Fills the proposal's edit with the interface triangles before and after; false if one is too far from the
+/// reference. At junctions that points may leave, find_place() has tested the point itself: where three
+/// regions meet in a loop smaller than a tet, the triangles' centres may have no interface of their two
+/// regions nearby.
 bool surface_edit(Workspace& ws, const BlockRules& rules, const Vec3& to) {
   const Star& star = ws.star;
   const bool by_point = rules.leave_surface && star.dimension() < 2;
-  ws.edit.clear();
+  SurfaceGrid::Edit& edit = ws.proposal.edit;
   for (const Star::InterfaceTriangle& s : star.interface_triangles) {
     const Triangle ids{star.centre, star.points[s.first], star.points[s.second]};
     const Vec3 &p = star.positions[s.first], &q = star.positions[s.second];
-    ws.edit.removed.push_back({ids, {star.centre_position, p, q}});
-    ws.edit.added.push_back({ids, {to, p, q}});
-    if (!by_point && !near_reference(rules, ws.edit.added.back(), s.inside, s.across)) return false;
+    edit.removed.push_back({ids, {star.centre_position, p, q}});
+    edit.added.push_back({{ids, {to, p, q}}, s.patch});
+    if (!by_point && !near_reference(rules, edit.added.back().triangle, s.inside, s.across)) return false;
   }
   return true;
 }
@@ -89,30 +90,24 @@ Outcome rate(Star& star, const BlockRules& rules, const Vec3& to, float limit, s
   return Outcome::done;
 }
 
-/// Carries the move out where the surface allows it; `qualities` are those at `to`.
+/// Proposes the move where the surface allows it; `qualities` are those at `to`.
 Outcome move_to(Workspace& ws, const BlockRules& rules, const Vec3& to, const std::vector<float>& qualities) {
-  const Star& star = ws.star;
+  Star& star = ws.star;
+  Proposal& proposal = ws.proposal;
+  proposal.edit.clear();
   if (!star.interface_triangles.empty()) {
     if (!surface_edit(ws, rules, to)) return Outcome::surface_error;
-    const Outcome o = ws.grid.begin_edit(ws.edit, ws.grid_workspace, ws.cells);
-    if (o != Outcome::done) {
-      ws.cells.release();
-      return o;
-    }
+    if (!ws.grid.test(proposal.edit)) return Outcome::self_intersection;
   }
-  if (!ws.ledger.book(ws.star.volume_changes(to - star.centre_position))) {
-    ws.cells.release();
-    return Outcome::volume;
-  }
-  ws.mesh.set_position(star.centre, to);
-  ws.mesh.touch(star.centre);
-  for (Index p : star.points) ws.mesh.touch(p);
-  for (std::size_t k = 0; k < star.tets.size(); ++k) ws.mesh.set_quality(star.tets[k].tet, qualities[k]);
-  if (!star.interface_triangles.empty()) {
-    ws.grid.commit(ws.edit, ws.grid_workspace);
-    ws.cells.release();
-  }
-  return Outcome::done;
+  proposal.volumes = star.volume_changes(to - star.centre_position);
+  proposal.change = Proposal::Change::move;
+  proposal.centre = star.centre;
+  proposal.position = to;
+  proposal.mark_star(star);
+  proposal.rated.clear();
+  for (std::size_t k = 0; k < star.tets.size(); ++k)
+    proposal.rated.push_back({star.tets[k].tet, star.tets[k].slot, qualities[k]});
+  return ws.within_bounds(rules, 0);
 }
 
 /// Directions that a point of the given dimension may be moved in without leaving its surface or curve.
@@ -351,7 +346,7 @@ bool find_place(Workspace& ws, const BlockRules& rules, int dimension, float lim
 Outcome smooth(Workspace& ws, const BlockRules& rules) {
   Star& star = ws.star;
   const int dimension = star.dimension();
-  if (dimension == 0) return Outcome::material_rule;
+  if (dimension == 0 || star.frozen) return Outcome::material_rule;
   star.compute_gradients();
   Vec3 step = centroid(star, dimension) - star.centre_position;
   if (dimension == 2) step = keep_volumes(star, step);
@@ -367,7 +362,7 @@ Outcome smooth(Workspace& ws, const BlockRules& rules) {
     refusal = rate(star, rules, to, limit, qualities, worst);
     if (refusal != Outcome::done) continue;
     refusal = move_to(ws, rules, to, qualities);
-    if (refusal == Outcome::done || refusal == Outcome::lock_taken) return refusal;
+    if (refusal == Outcome::done) return refusal;
   }
   return refusal;
 }
@@ -375,7 +370,7 @@ Outcome smooth(Workspace& ws, const BlockRules& rules) {
 Outcome optimise(Workspace& ws, const BlockRules& rules) {
   Star& star = ws.star;
   const int dimension = star.dimension();
-  if (star.pinned || (dimension == 0 && !(rules.leave_surface && rules.projection)))
+  if (star.frozen || (dimension == 0 && !(rules.leave_surface && rules.projection)))
     return Outcome::material_rule;
   star.compute_gradients();
   Placement& place = ws.placement;
@@ -385,7 +380,7 @@ Outcome optimise(Workspace& ws, const BlockRules& rules) {
 
 Outcome fit_to_surface(Workspace& ws, const BlockRules& rules, float floor) {
   Star& star = ws.star;
-  if (!rules.projection || star.dimension() != 2) return Outcome::no_candidate;
+  if (!rules.projection || star.frozen || star.dimension() != 2) return Outcome::no_candidate;
   star.compute_gradients();
   const Vec3 normal = star.gradients.front().change.normalized();
   double weights = 0, pull = 0;

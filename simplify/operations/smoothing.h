@@ -16,8 +16,8 @@ bool find_place(Workspace& ws, const BlockRules& rules, int dimension, float lim
 
 /// Moves the centre of the gathered star towards the centroid of its neighbours (section 4 of the paper): of
 /// all of them within a material, of those on the same interface, of the two on a junction curve; whole, half
-/// or quarter way. Answers done, lock_taken, material_rule (a corner), quality, surface_error,
-/// self_intersection. The star is used up.
+/// or quarter way. Answers done (proposed), material_rule (a corner, or frozen), quality, surface_error,
+/// self_intersection, volume. The star is used up.
 Outcome smooth(Workspace& ws, const BlockRules& rules);
 
 /// Moves the centre of the gathered star where find_place() says; corners only with leave_surface. Same

@@ -4,9 +4,29 @@
 
 namespace tetwright {
 
+Outcome Workspace::gather(Index point) {
+  const Outcome o = star.gather(mesh, point);
+  if (o != Outcome::done || !mesh.interface_patches()) return o;
+  bool inner = false;
+  for (Star::InterfaceTriangle& t : star.interface_triangles)
+    if (t.across != outside_id) {
+      t.patch = grid.patch(mesh, {star.centre, star.points[t.first], star.points[t.second]});
+      inner = true;
+    }
+  if (inner) star.find_creases();
+  return o;
+}
+
 float Workspace::acceptance_limit(const BlockRules& rules, float worst) {
   const bool may_worsen = rules.accept_worse > 0 && random.uniform() < rules.accept_worse;
   return std::min(rules.good_enough, may_worsen ? rules.annealing_floor * worst : worst);
+}
+
+Outcome Workspace::within_bounds(const BlockRules& rules, std::int64_t count_change) {
+  if (!ledger.allows(proposal.volumes)) return Outcome::volume;
+  proposal.count_change = count_change;
+  proposal.count_bounds = rules.count;
+  return rules.count.allow(mesh.live_tets(), count_change) ? Outcome::done : Outcome::count;
 }
 
 }  // namespace tetwright

@@ -8,16 +8,13 @@
 #include "simplify/constraints/link_condition.h"
 #include "simplify/constraints/surface_grid.h"
 #include "simplify/constraints/volume_ledger.h"
-#include "simplify/mesh/cavity.h"
 #include "simplify/mesh/edge_ring.h"
 #include "simplify/mesh/editable_mesh.h"
-#include "simplify/mesh/free_slots.h"
-#include "simplify/mesh/locks.h"
 #include "simplify/mesh/outcome.h"
 #include "simplify/mesh/star.h"
 #include "simplify/mesh/star_walk.h"
 #include "simplify/operations/block_rules.h"
-#include "simplify/operations/retriangulation.h"
+#include "simplify/operations/proposal.h"
 #include "simplify/operations/ring_triangulation.h"
 
 namespace tetwright {
@@ -42,38 +39,28 @@ struct Cone {
   float quality;
 };
 
-/// What one worker of a block uses: the locks it has taken, its free slots, its counts, and the memory that
-/// operations reuse, so that none of them allocates.
+/// What one worker decides with: the mesh, which it only reads, the proposal that it fills, and the memory
+/// that operations reuse, so that none of them allocates.
+///
+/// An operation that answers `done` has left in `proposal` all that its commit will write. Whether it is
+/// carried out is not its affair: an earlier one of the batch may come before it. Any other answer leaves a
+/// proposal of no meaning.
 struct Workspace {
-  Workspace(EditableMesh& m, SurfaceGrid& g, VolumeLedger& l)
-      : mesh(m),
-        grid(g),
-        ledger(l),
-        points(m.locks()),
-        cells(g.locks()),
-        free_tets(m.free_tets()),
-        free_points(m.free_points()) {}
+  Workspace(const EditableMesh& m, const SurfaceGrid& g, const VolumeLedger& l)
+      : mesh(m), grid(g), ledger(l) {}
 
-  EditableMesh& mesh;
-  SurfaceGrid& grid;
-  VolumeLedger& ledger;
-  HeldLocks points;  ///< of the mesh's points
-  HeldLocks cells;   ///< of the grid's cells
-  FreeSlots free_tets, free_points;
+  const EditableMesh& mesh;
+  const SurfaceGrid& grid;
+  const VolumeLedger& ledger;
+  Proposal proposal;
   Random random{0};
   OperationCounts counts;
-  std::uint64_t lock_conflicts = 0;
-  std::uint64_t skipped = 0;  ///< items given up after too many conflicts
 
   // What operations read and change.
   Star star;
   EdgeRing ring;
-  Cavity cavity;
-  SurfaceGrid::Edit edit;
-  SurfaceGrid::Workspace grid_workspace;
   StarWalk walk;
   LinkCondition link_condition;
-  Retriangulation retriangulation;
 
   // Memory of single operations.
   std::vector<float> qualities;                     ///< smoothing and collapse: of the star's tets
@@ -87,15 +74,23 @@ struct Workspace {
   std::vector<Index> plain_cavity;                  ///< insertion
   std::vector<std::uint32_t> hull_edges;            ///< insertion
 
-  void release() {
-    cells.release();
-    points.release();
-  }
-  /// Locks a point unless this worker holds it; false if another one does.
-  bool lock(Index point) { return points.holds(point) || points.try_lock(point); }
+  /// Star::gather() with the patches of all faces.
+  Outcome gather(Index point);
   /// The quality that the worst new tet must exceed: that of the worst old one, or less if annealing accepts
   /// a worse result. Draws one random number when annealing.
   float acceptance_limit(const BlockRules& rules, float worst);
+  /// Counts a refusal; what is done is counted when it has won (Proposal::operation).
+  Outcome count(Operation operation, Outcome outcome) {
+    if (outcome == Outcome::done) {
+      proposal.operation = operation;
+    } else {
+      counts.add(operation, outcome);
+    }
+    return outcome;
+  }
+  /// What all operations end with: whether the count may change by that much, and the volumes as the proposal
+  /// says; then done.
+  Outcome within_bounds(const BlockRules& rules, std::int64_t count_change);
 };
 
 }  // namespace tetwright

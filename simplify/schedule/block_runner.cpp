@@ -1,6 +1,11 @@
 #include "simplify/schedule/block_runner.h"
 
-#include <numeric>
+#include <algorithm>
+#include <array>
+
+#ifdef TETWRIGHT_INJECT_YIELDS
+#include <thread>
+#endif
 
 #include "common/parallel/parallel.h"
 
@@ -8,99 +13,229 @@ namespace tetwright {
 
 namespace {
 
-/// How often an item that met a taken lock is tried again before it is counted as skipped.
-constexpr int max_retries = 8;
+/// M: of that many items near each other, one is in a batch. More of them make fewer conflicts, but the
+/// batches of a block then reach over more memory: 24 times a batch still fits into a core's cache.
+constexpr std::size_t spacing = 24;
+/// Items of a batch: enough to keep several threads busy, few enough for the cache, and more of them where
+/// there are so many items that none of these fits it anyway.
+constexpr std::size_t min_batch = 256, max_batch = 1024, batches_of_large_blocks = 1024;
+/// The same in the order given, where each item takes ten times as long and what failed before comes again.
+constexpr std::size_t min_ordered_batch = 16, max_ordered_batch = 128, ordered_batches = 16;
+/// Items that a thread decides at a time, and winners that it commits.
+constexpr std::size_t chunk_in_order = 2, chunk_shuffled = 16, commit_chunk = 16;
+/// Batches with fewer chunks than this are not worth waking other threads.
+constexpr std::size_t min_parallel_chunks = 3;
 
-/// Items of a chunk of an ordered block: few, so that all workers stay near the front of the list.
-constexpr std::size_t ordered_chunk = 64;
+/// The batches of a shuffled block, one after the other. Item i has the key i / step + random(spacing), and a
+/// batch is what has one key.
+class ShuffledBatches {
+ public:
+  ShuffledBatches(std::size_t items, std::size_t step, Random random)
+      : items_(items), step_(step), random_(random) {}
+  /// Appends the next batch; false if there is none.
+  bool next(std::vector<std::uint32_t>& batch) {
+    if (key_ >= (items_ + step_ - 1) / step_ + spacing - 1) return false;
+    const std::size_t end = std::min(items_, (key_ + 1) * step_);
+    for (std::size_t i = key_ * step_; i < end; ++i)
+      waiting_[(key_ + random_.below(spacing)) % spacing].push_back(static_cast<std::uint32_t>(i));
+    std::vector<std::uint32_t>& due = waiting_[key_ % spacing];
+    batch.insert(batch.end(), due.begin(), due.end());
+    due.clear();
+    ++key_;
+    return true;
+  }
 
-/// Gives all locks back, also when an attempt throws.
-struct ReleaseAtEnd {
-  Workspace& ws;
-  ~ReleaseAtEnd() { ws.release(); }
+ private:
+  std::size_t items_, step_, key_ = 0;
+  Random random_;
+  std::array<std::vector<std::uint32_t>, spacing> waiting_;
 };
+
+/// In the test build that looks for what depends on time: lets another thread run now and then.
+void maybe_yield() {
+#ifdef TETWRIGHT_INJECT_YIELDS
+  static thread_local Random random(reinterpret_cast<std::uintptr_t>(&random));
+  if (random.below(4) == 0) std::this_thread::sleep_for(std::chrono::microseconds(random.below(50)));
+#endif
+}
+
+/// Over chunks, or in this thread where there are few.
+void for_chunks(std::size_t count, std::size_t chunk,
+                const std::function<void(std::size_t begin, std::size_t end, unsigned worker)>& body) {
+  const std::size_t chunks = (count + chunk - 1) / chunk;
+  if (chunks < min_parallel_chunks) {
+    body(0, count, 0);
+    return;
+  }
+  parallel_chunks(chunks, [&](std::size_t k, unsigned worker) {
+    body(k * chunk, std::min(count, (k + 1) * chunk), worker);
+  });
+}
 
 }  // namespace
 
-void BlockRunner::reset_workspaces() {
-  workspaces_.clear();
-  for (unsigned i = 0; i < thread_count(); ++i)
-    workspaces_.push_back(std::make_unique<Workspace>(mesh_, grid_, ledger_));
+struct BlockRunner::Worker {
+  Worker(const EditableMesh& mesh, const SurfaceGrid& grid, const VolumeLedger& ledger)
+      : workspace(mesh, grid, ledger) {}
+  Workspace workspace;
+  CommitWorkspace commit_workspace;
+  std::uint64_t decided = 0;
+};
+
+BlockRunner::BlockRunner(EditableMesh& mesh, SurfaceGrid& grid, VolumeLedger& ledger, std::uint64_t seed,
+                         std::size_t batch_size, Progress* progress)
+    : mesh_(mesh), grid_(grid), ledger_(ledger), seed_(seed), batch_size_(batch_size), progress_(progress) {}
+
+BlockRunner::~BlockRunner() = default;
+
+void BlockRunner::make_workers() {
+  while (workers_.size() < thread_count())
+    workers_.push_back(std::make_unique<Worker>(mesh_, grid_, ledger_));
+}
+
+void BlockRunner::decide(const std::function<Outcome(Workspace&, const Entry&)>& decide_entry,
+                         std::size_t chunk) {
+  outcomes_.assign(batch_.size(), Outcome::stale);
+  if (proposals_.size() < batch_.size()) proposals_.resize(batch_.size());
+  for_chunks(batch_.size(), chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
+    const WriteRule::Deciding rule;
+    Workspace& ws = workers_[worker]->workspace;
+    workers_[worker]->decided += end - begin;
+    for (std::size_t i = begin; i < end; ++i) {
+      maybe_yield();
+      ws.proposal.clear();
+      outcomes_[i] = decide_entry(ws, batch_[i]);
+      if (outcomes_[i] == Outcome::done) std::swap(ws.proposal, proposals_[i]);
+    }
+  });
+}
+
+Outcome BlockRunner::admit(Proposal& p) {
+  Reservations& reservations = mesh_.reservations();
+  if (!reservations.free(p.needed())) return Outcome::conflict;
+  if (!p.edit.empty())
+    for (std::uint32_t w : surface_winners_)
+      if (!SurfaceGrid::apart(proposals_[w].edit, p.edit)) return Outcome::conflict;
+  if (!ledger_.allows(p.volumes)) return Outcome::volume;
+  if (!p.count_bounds.allow(mesh_.live_tets(), p.count_change)) return Outcome::count;
+  ledger_.book(p.volumes);
+  take_slots(mesh_, grid_, p);
+  reservations.mark(p.marks);
+  return Outcome::done;
+}
+
+bool BlockRunner::select(const Stop& stop) {
+  winners_.clear();
+  surface_winners_.clear();
+  again_.clear();
+  std::size_t tets = 0, points = 0;
+  for (std::size_t i = 0; i < batch_.size(); ++i) {
+    if (outcomes_[i] != Outcome::done) continue;
+    const Proposal& p = proposals_[i];
+    if (p.added.size() > p.removed.size()) tets += p.added.size() - p.removed.size();
+    points += p.has_new_point;
+  }
+  mesh_.make_room(tets, points);
+  mesh_.reservations().begin_batch();
+  for (std::uint32_t i = 0; i < batch_.size(); ++i) {
+    if (outcomes_[i] != Outcome::done) continue;
+    if (stop()) return false;
+    Proposal& p = proposals_[i];
+    const Outcome o = admit(p);
+    if (o == Outcome::conflict) {
+      ++totals_.conflicts;
+      again_.push_back(batch_[i]);
+    }
+    totals_.counts.add(p.operation, o);
+    if (o != Outcome::done) continue;
+    winners_.push_back(i);
+    if (!p.edit.empty()) surface_winners_.push_back(i);
+    if (p.next_stage >= 0) again_.push_back({batch_[i].item, static_cast<std::int8_t>(p.next_stage)});
+  }
+  return true;
+}
+
+void BlockRunner::commit_winners() {
+  for_chunks(winners_.size(), commit_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
+    for (std::size_t i = begin; i < end; ++i) {
+      maybe_yield();
+      commit(mesh_, grid_, proposals_[winners_[i]], workers_[worker]->commit_workspace);
+    }
+  });
+  mesh_.free_tets().end_batch();
+  mesh_.free_points().end_batch();
+  grid_.end_batch();
 }
 
 template <class Item, class Attempt>
-void BlockRunner::run(const std::vector<Item>& items, std::size_t chunk_size, bool shuffled,
-                      const Attempt& attempt, const std::function<bool()>& stop) {
+void BlockRunner::run(const std::vector<Item>& items, bool in_order, const Attempt& attempt,
+                      const Stop& stop) {
+  make_workers();
   const std::uint64_t block = block_++;
-  const std::size_t chunks = (items.size() + chunk_size - 1) / chunk_size;
-  std::vector<std::uint32_t> order(chunks);
-  std::iota(order.begin(), order.end(), 0u);
-  if (shuffled) Random(seed_, block, ~std::uint64_t{0}).shuffle(std::span(order));
-  parallel_chunks(chunks, [&](std::size_t k, unsigned worker) {
-    const std::uint32_t chunk = order[k];
-    Workspace& ws = *workspaces_[worker];
-    ws.random = Random(seed_, block, chunk);
-    const std::size_t begin = chunk * chunk_size, end = std::min(items.size(), begin + chunk_size);
-    std::vector<Item> left(items.begin() + static_cast<std::ptrdiff_t>(begin),
-                           items.begin() + static_cast<std::ptrdiff_t>(end));
-    if (shuffled) ws.random.shuffle(std::span(left));
-    for (int round = 0; !left.empty(); ++round) {
-      std::size_t again = 0;
-      for (const Item& item : left) {
-        if (stop() || (progress_ && progress_->cancelled())) return;
-        const Outcome o = [&] {
-          const ReleaseAtEnd release{ws};
-          return attempt(ws, item);
-        }();
-        if (o != Outcome::lock_taken) continue;
-        ++ws.lock_conflicts;
-        left[again++] = item;  // `again` never overtakes the item being read
-      }
-      left.resize(again);
-      if (round == max_retries) {
-        ws.skipped += left.size();
-        return;
-      }
+  const std::size_t n = items.size();
+  std::size_t step = batch_size_;
+  if (step == 0)
+    step = in_order ? std::clamp(n / ordered_batches, min_ordered_batch, max_ordered_batch)
+                    : std::clamp(n / batches_of_large_blocks, min_batch, max_batch);
+  ShuffledBatches shuffled(n, step, Random(seed_, block, ~std::uint64_t{0}));
+  std::vector<std::uint32_t> fresh;
+  std::size_t listed = 0;  // of those in order
+  const auto decide_entry = [&](Workspace& ws, const Entry& entry) {
+    ws.random = Random(seed_, block, entry.item);
+    return attempt(ws, items[entry.item], static_cast<int>(entry.stage));
+  };
+  again_.clear();
+  for (;;) {
+    if (progress_) progress_->throw_if_cancelled();
+    fresh.clear();
+    bool more;
+    if (in_order) {
+      for (const std::size_t end = std::min(n, listed + step); listed < end; ++listed)
+        fresh.push_back(static_cast<std::uint32_t>(listed));
+      more = !fresh.empty();
+    } else {
+      more = shuffled.next(fresh);
     }
-  });
-  if (progress_) progress_->throw_if_cancelled();
+    // Those that lost come first, so that each is done some time.
+    totals_.repeats += static_cast<std::uint64_t>(
+        std::count_if(again_.begin(), again_.end(), [](const Entry& e) { return e.stage == 0; }));
+    batch_ = again_;
+    for (std::uint32_t i : fresh) batch_.push_back({i, 0});
+    if (batch_.empty()) {
+      if (!more) return;
+      continue;
+    }
+    ++totals_.batches;
+    decide(decide_entry, in_order ? chunk_in_order : chunk_shuffled);
+    const bool goes_on = select(stop);
+    commit_winners();
+    if (!goes_on) return;
+  }
 }
 
-void BlockRunner::points(const std::vector<Index>& items,
-                         const std::function<Outcome(Workspace&, Index)>& attempt,
-                         const std::function<bool()>& stop) {
-  run(items, chunk_size_, true, attempt, stop);
+void BlockRunner::points(const std::vector<Index>& items, const PointAttempt& attempt, const Stop& stop) {
+  run(
+      items, false, [&](Workspace& ws, Index p, int) { return attempt(ws, p); }, stop);
 }
 
-void BlockRunner::tets(const std::vector<ListedTet>& items,
-                       const std::function<Outcome(Workspace&, const ListedTet&)>& attempt,
-                       const std::function<bool()>& stop) {
-  run(items, chunk_size_, true, attempt, stop);
+void BlockRunner::tets(const std::vector<ListedTet>& items, const TetAttempt& attempt, const Stop& stop) {
+  run(items, false, attempt, stop);
 }
 
-void BlockRunner::tets_in_order(const std::vector<ListedTet>& items,
-                                const std::function<Outcome(Workspace&, const ListedTet&)>& attempt) {
-  run(items, std::min(chunk_size_, ordered_chunk), false, attempt, [] { return false; });
+void BlockRunner::tets_in_order(const std::vector<ListedTet>& items, const TetAttempt& attempt) {
+  run(items, true, attempt, [] { return false; });
 }
 
 BlockRunner::Totals BlockRunner::take_totals() {
-  Totals totals;
-  for (const auto& ws : workspaces_) {
-    totals.counts.add(ws->counts);
-    totals.lock_conflicts += ws->lock_conflicts;
-    totals.skipped += ws->skipped;
-    ws->counts = {};
-    ws->lock_conflicts = 0;
-    ws->skipped = 0;
+  Totals totals = std::move(totals_);
+  totals_ = {};
+  totals.decided.assign(workers_.size(), 0);
+  for (std::size_t w = 0; w < workers_.size(); ++w) {
+    totals.counts.add(workers_[w]->workspace.counts);
+    workers_[w]->workspace.counts = {};
+    totals.decided[w] = std::exchange(workers_[w]->decided, 0);
   }
   return totals;
-}
-
-Outcome validate(Workspace& ws, const ListedTet& item) {
-  for (Index p : item.points)
-    if (!ws.points.try_lock(p)) return Outcome::lock_taken;
-  // Only now do the ids mean anything: equal, and all four points of the tet are held, so it stays as it is.
-  return ws.mesh.load_points(item.tet) == item.points ? Outcome::done : Outcome::stale;
 }
 
 }  // namespace tetwright

@@ -9,70 +9,89 @@
 
 namespace tetwright {
 
-/// A tet and its four points at the time it was listed. A worker locks these points and compares: equal means
-/// that the tet still exists.
+/// A tet and its four points at the time it was listed: equal points mean that the tet still exists.
 struct ListedTet {
   Index tet;
   Tet points;
 };
 
-/// Runs a block of items as tasks (Cutler, Dorsey & McMillan 2004, section 3, made parallel). The items come
-/// in the order of the mesh's curve, are cut into chunks of fixed size, and shuffled within and between the
-/// chunks, so that the order is random and memory near. Each chunk has its own random stream, from (seed,
-/// block, chunk).
+/// Runs a block of items (Cutler, Dorsey & McMillan 2004, section 3) in batches of three steps, so that the
+/// result is the same for any number of threads (deterministic reservations: Blelloch, Fineman, Gibbons &
+/// Shun 2012):
+///
+/// - decide, in parallel: each item's operation reads the mesh, which nobody changes, and leaves a Proposal;
+/// - select, in the batch's order: a proposal wins if no earlier winner marked what it needs. Winners book
+///   their volumes, their count and their slots. What lost comes again in the next batch, before the others;
+/// - commit, in parallel: winners write what they marked.
+///
+/// Random numbers come from (seed, block, item). Nothing depends on which thread does what, or when.
 class BlockRunner {
  public:
+  /// `batch_size` 0: from the number of items.
   BlockRunner(EditableMesh& mesh, SurfaceGrid& grid, VolumeLedger& ledger, std::uint64_t seed,
-              std::size_t chunk_size, Progress* progress)
-      : mesh_(mesh),
-        grid_(grid),
-        ledger_(ledger),
-        seed_(seed),
-        chunk_size_(chunk_size),
-        progress_(progress) {}
+              std::size_t batch_size, Progress* progress);
+  ~BlockRunner();
 
-  /// New workspaces for thread_count() workers; to be called after every EditableMesh::compact, which takes
-  /// back the slots that the old ones hoarded.
-  void reset_workspaces();
+  /// An operation or several on an item: done with a proposal, or a refusal. `stage` is 0, or what the
+  /// proposal that was committed for this item asked for (Proposal::next_stage).
+  using PointAttempt = std::function<Outcome(Workspace&, Index)>;
+  using TetAttempt = std::function<Outcome(Workspace&, const ListedTet&, int stage)>;
+  /// Asked before each winner is chosen; true ends the block.
+  using Stop = std::function<bool()>;
 
-  /// Calls `attempt` with a workspace that has no locks and one item; all locks that it takes are released
-  /// afterwards. Items that answer lock_taken are retried after the rest of the chunk, at most eight times,
-  /// then counted as skipped. `stop` is called before each item; true ends the block. Throws Interrupted when
+  /// In random order: of M items near each other one is in a batch, while a batch slides along the list,
+  /// which is in the order of the mesh's curve; so that few meet and memory is near. Throws Interrupted when
   /// cancelled.
-  void points(const std::vector<Index>& items, const std::function<Outcome(Workspace&, Index)>& attempt,
-              const std::function<bool()>& stop);
-  void tets(const std::vector<ListedTet>& items,
-            const std::function<Outcome(Workspace&, const ListedTet&)>& attempt,
-            const std::function<bool()>& stop);
+  void points(const std::vector<Index>& items, const PointAttempt& attempt, const Stop& stop);
+  void tets(const std::vector<ListedTet>& items, const TetAttempt& attempt, const Stop& stop);
+  /// In the order given.
+  void tets_in_order(const std::vector<ListedTet>& items, const TetAttempt& attempt);
 
-  /// The same in the order given, without shuffling, in small chunks: what comes first is begun first.
-  void tets_in_order(const std::vector<ListedTet>& items,
-                     const std::function<Outcome(Workspace&, const ListedTet&)>& attempt);
-
-  /// What the tasks counted since the last call.
+  /// What was counted since the last call.
   struct Totals {
     OperationCounts counts;
-    std::uint64_t lock_conflicts = 0;
-    std::uint64_t skipped = 0;
+    std::uint64_t conflicts = 0;  ///< proposals that lost
+    std::uint64_t repeats = 0;    ///< items that were decided again for that reason
+    std::uint64_t batches = 0;
+    std::vector<std::uint64_t> decided;  ///< items, by worker
   };
   Totals take_totals();
 
  private:
+  struct Entry {
+    std::uint32_t item;
+    std::int8_t stage;
+  };
+  struct Worker;
   template <class Item, class Attempt>
-  void run(const std::vector<Item>& items, std::size_t chunk_size, bool shuffled, const Attempt& attempt,
-           const std::function<bool()>& stop);
+  void run(const std::vector<Item>& items, bool in_order, const Attempt& attempt, const Stop& stop);
+  /// Decides the entries of batch_ with decide(workspace, entry); fills outcomes_ and proposals_.
+  void decide(const std::function<Outcome(Workspace&, const Entry&)>& decide_entry, std::size_t chunk);
+  /// Fills winners_ and again_; false if `stop` ended the block.
+  bool select(const Stop& stop);
+  Outcome admit(Proposal& proposal);
+  void commit_winners();
+  void make_workers();
 
   EditableMesh& mesh_;
   SurfaceGrid& grid_;
   VolumeLedger& ledger_;
   std::uint64_t seed_;
-  std::size_t chunk_size_;
+  std::size_t batch_size_;
   std::uint64_t block_ = 0;
   Progress* progress_;
-  std::vector<std::unique_ptr<Workspace>> workspaces_;
+
+  std::vector<std::unique_ptr<Worker>> workers_;
+  std::vector<Entry> batch_, again_;
+  std::vector<Outcome> outcomes_;                         ///< of batch_
+  std::vector<Proposal> proposals_;                       ///< of those whose outcome is done
+  std::vector<std::uint32_t> winners_, surface_winners_;  ///< places in batch_
+  Totals totals_;
 };
 
-/// Locks the item's four points and compares: done, lock_taken, or stale.
-Outcome validate(Workspace& ws, const ListedTet& item);
+/// Whether a listed tet is still there.
+inline bool exists(const EditableMesh& mesh, const ListedTet& item) {
+  return mesh.points(item.tet) == item.points;
+}
 
 }  // namespace tetwright

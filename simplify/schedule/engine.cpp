@@ -6,7 +6,6 @@
 #include <bit>
 
 #include "common/error.h"
-#include "common/mesh/interfaces.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "simplify/operations/smoothing.h"
@@ -16,10 +15,9 @@ namespace tetwright {
 namespace {
 
 constexpr std::size_t slot_grain = 8192;  ///< tets or points a parallel loop hands out at a time
-/// The mesh is compacted and renumbered when fewer than this share of its slots are alive.
-constexpr double compact_below = 0.7;
-/// Free slots left for operations that add, as shares of what is alive; flips 2-3 add tets where collapses
-/// take away more, so that this is never used up before the next compact.
+/// The mesh is compacted and renumbered when more than this share of the slots in use are dead.
+constexpr double compact_above = 0.3;
+/// Free slots left for operations that add, as shares of what is alive: with more of them the arrays grow.
 constexpr std::size_t spare_share = 16;
 constexpr std::size_t min_spare = 4096;
 
@@ -37,7 +35,7 @@ Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, P
       progress_(progress),
       mesh_(std::move(mesh), options.name),
       projection_(mesh_, options.reference),
-      runner_(mesh_, grid_, ledger_, options.seed, options.chunk_size, progress) {
+      runner_(mesh_, grid_, ledger_, options.seed, options.batch_size, progress) {
   const double volume = mesh_.total_volume();
   if (!(volume > 0))
     throw InputError(
@@ -50,9 +48,8 @@ Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, P
 }
 
 TetMesh Engine::take() && {
-  TetMesh mesh = std::move(mesh_).to_mesh();
-  mesh.interfaces = find_interfaces(mesh);
-  return mesh;
+  keep_patches();
+  return std::move(mesh_).to_mesh();
 }
 
 void Engine::begin_stage(const char* name) {
@@ -61,24 +58,27 @@ void Engine::begin_stage(const char* name) {
   progress_->begin_stage(name);
 }
 
+void Engine::keep_patches() {
+  if (mesh_.interface_patches()) mesh_.set_interface_patches(grid_.patches());
+}
+
 void Engine::compact() {
+  if (compacted_) keep_patches();
+  compacted_ = true;
   const std::size_t spare = mesh_.live_tets() / spare_share + min_spare;
   mesh_.compact(spare, spare / 2);
-  grid_.build(mesh_, rules.objective.quality.ideal_edge / 2, spare / 2);
-  runner_.reset_workspaces();
-  rate_all();
+  grid_.build(mesh_, rules.objective.quality.ideal_edge / 2);
 }
 
 void Engine::compact_if_sparse() {
-  if (static_cast<double>(mesh_.live_tets()) < compact_below * static_cast<double>(mesh_.tet_slots()))
-    compact();
+  if (mesh_.dead_share() > compact_above) compact();
 }
 
 void Engine::rate_all() {
   parallel_for(0, mesh_.tet_slots(), slot_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto t = static_cast<Index>(i);
-      const Tet& p = mesh_.tet(t).points;
+      const Tet& p = mesh_.points(t);
       if (p[0] == no_index) continue;
       mesh_.set_quality(t, rules.objective(mesh_.position(p[0]), mesh_.position(p[1]), mesh_.position(p[2]),
                                            mesh_.position(p[3])));
@@ -97,9 +97,8 @@ float Engine::cutoff(double percent) const {
     std::vector<std::uint32_t> counts(bins, 0);
     std::size_t count = 0;
     for (std::size_t t = begin; t < end; ++t) {
-      const TetRecord& r = mesh_.tet(static_cast<Index>(t));
-      if (r.points[0] == no_index) continue;
-      ++counts[bin(r.quality)];
+      if (mesh_.dead(static_cast<Index>(t))) continue;
+      ++counts[bin(mesh_.quality(static_cast<Index>(t)))];
       ++count;
     }
     for (std::size_t b = 0; b < bins; ++b)
@@ -114,8 +113,8 @@ float Engine::cutoff(double percent) const {
   std::vector<float> in_bin = parallel_collect<float>(
       0, mesh_.tet_slots(), slot_grain, [&](std::size_t begin, std::size_t end, std::vector<float>& out) {
         for (std::size_t t = begin; t < end; ++t) {
-          const TetRecord& r = mesh_.tet(static_cast<Index>(t));
-          if (r.points[0] != no_index && bin(r.quality) == b) out.push_back(r.quality);
+          const float quality = mesh_.quality(static_cast<Index>(t));
+          if (!mesh_.dead(static_cast<Index>(t)) && bin(quality) == b) out.push_back(quality);
         }
       });
   std::nth_element(in_bin.begin(), in_bin.begin() + static_cast<std::ptrdiff_t>(wanted), in_bin.end());
@@ -126,29 +125,28 @@ template <class Test>
 std::vector<ListedTet> Engine::tets_where(const Test& test) const {
   return parallel_collect<ListedTet>(0, mesh_.tet_slots(), slot_grain,
                                      [&](std::size_t begin, std::size_t end, std::vector<ListedTet>& out) {
-                                       for (std::size_t t = begin; t < end; ++t) {
-                                         const TetRecord& r = mesh_.tet(static_cast<Index>(t));
-                                         if (r.points[0] != no_index && test(r))
-                                           out.push_back({static_cast<Index>(t), r.points});
+                                       for (std::size_t i = begin; i < end; ++i) {
+                                         const auto t = static_cast<Index>(i);
+                                         if (!mesh_.dead(t) && test(t)) out.push_back({t, mesh_.points(t)});
                                        }
                                      });
 }
 
 std::vector<ListedTet> Engine::poor_tets(float limit) const {
-  return tets_where([&](const TetRecord& r) { return r.quality <= limit; });
+  return tets_where([&](Index t) { return mesh_.quality(t) <= limit; });
 }
 
 template <class Mark>
 std::vector<Index> Engine::marked_points(const Mark& mark) const {
   std::vector<std::uint8_t> marks(mesh_.point_slots(), 0);
   parallel_for(0, mesh_.tet_slots(), slot_grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
-      const TetRecord& r = mesh_.tet(static_cast<Index>(t));
-      if (r.points[0] == no_index) continue;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto t = static_cast<Index>(i);
+      if (mesh_.dead(t)) continue;
       // Relaxed: the same value whoever writes it, and read after the loop.
       for (int k = 0; k < 4; ++k)
-        if (mark(static_cast<Index>(t), r, k))
-          std::atomic_ref<std::uint8_t>(marks[r.points[k]]).store(1, std::memory_order_relaxed);
+        if (mark(t, k))
+          std::atomic_ref<std::uint8_t>(marks[mesh_.points(t)[k]]).store(1, std::memory_order_relaxed);
     }
   });
   return parallel_collect<Index>(0, marks.size(), slot_grain,
@@ -159,7 +157,7 @@ std::vector<Index> Engine::marked_points(const Mark& mark) const {
 }
 
 std::vector<Index> Engine::poor_points(float limit) const {
-  return marked_points([&](Index, const TetRecord& r, int) { return r.quality <= limit; });
+  return marked_points([&](Index t, int) { return mesh_.quality(t) <= limit; });
 }
 
 std::vector<std::uint8_t> Engine::points_of(const std::vector<ListedTet>& tets) const {
@@ -171,22 +169,24 @@ std::vector<std::uint8_t> Engine::points_of(const std::vector<ListedTet>& tets) 
 
 std::vector<ListedTet> Engine::tets_around(const std::vector<ListedTet>& tets) const {
   const std::vector<std::uint8_t> listed = points_of(tets);
-  return tets_where([&](const TetRecord& r) {
-    return std::any_of(r.points.begin(), r.points.end(), [&](Index p) { return listed[p] != 0; });
+  return tets_where([&](Index t) {
+    const Tet& points = mesh_.points(t);
+    return std::any_of(points.begin(), points.end(), [&](Index p) { return listed[p] != 0; });
   });
 }
 
 std::vector<Index> Engine::points_around(const std::vector<ListedTet>& tets) const {
   const std::vector<std::uint8_t> listed = points_of(tets);
-  return marked_points([&](Index, const TetRecord& r, int) {
-    return std::any_of(r.points.begin(), r.points.end(), [&](Index p) { return listed[p] != 0; });
+  return marked_points([&](Index t, int) {
+    const Tet& points = mesh_.points(t);
+    return std::any_of(points.begin(), points.end(), [&](Index p) { return listed[p] != 0; });
   });
 }
 
 std::vector<Index> Engine::interface_points() const {
-  return marked_points([&](Index t, const TetRecord& r, int k) {
+  return marked_points([&](Index t, int k) {
     for (int f = 0; f < 4; ++f)
-      if (f != k && mesh_.region_across(t, f) != r.region) return true;
+      if (f != k && mesh_.link(t, f).is_interface()) return true;
     return false;
   });
 }
@@ -197,11 +197,9 @@ void Engine::each_star(const std::vector<Index>& points, Operation kind,
   runner_.points(
       points,
       [&](Workspace& ws, Index p) {
-        if (!ws.points.try_lock(p)) return Outcome::lock_taken;
-        Outcome o = ws.star.gather(mesh_, p, ws.points);
+        Outcome o = ws.gather(p);
         if (o == Outcome::done) o = operation(ws);
-        ws.counts.add(kind, o);
-        return o;
+        return ws.count(kind, o);
       },
       stop);
 }
@@ -222,8 +220,9 @@ Engine::Round::Round(Engine& engine, const char* kind) : engine_(engine) {
 void Engine::Round::finish() {
   const BlockRunner::Totals totals = engine_.runner_.take_totals();
   report_.counts = totals.counts;
-  report_.lock_conflicts = totals.lock_conflicts;
-  report_.skipped = totals.skipped;
+  report_.conflicts = totals.conflicts;
+  report_.repeats = totals.repeats;
+  report_.batches = totals.batches;
   report_.tets_after = engine_.mesh_.live_tets();
   report_.seconds = seconds_since(start_);
   if (engine_.report_) engine_.report_->iterations.push_back(report_);

@@ -19,7 +19,7 @@ class Engine {
     double target_tets;  ///< for the ideal sizes of Quality(t)
     double beta, gamma;
     std::uint64_t seed;
-    std::size_t chunk_size;
+    std::size_t batch_size;
     ShapeObjective objective;
     const ReferenceSurface* reference;
     bool keep_volumes = true;  ///< by a VolumeLedger
@@ -39,8 +39,8 @@ class Engine {
   BlockRules rules;
 
   void begin_stage(const char* name);
-  /// Compacts the mesh, then rebuilds the grid, the workspaces and all qualities. Leaves free slots for
-  /// operations that add tets. Every schedule calls it first, after setting its objective.
+  /// Compacts the mesh and rebuilds the grid. Leaves free slots for operations that add tets. Every schedule
+  /// calls it first, and rate_all() after setting its objective.
   void compact();
   /// compact() where so many slots are dead that it pays.
   void compact_if_sparse();
@@ -84,10 +84,12 @@ class Engine {
   };
 
  private:
-  /// The points for which mark(tet, its record, place in it) holds for some tet.
+  /// Patches of faces between materials go from the grid, which knows them, to the mesh.
+  void keep_patches();
+  /// The points for which mark(tet, place in it) holds for some tet.
   template <class Mark>
   std::vector<Index> marked_points(const Mark& mark) const;
-  /// The living tets whose record passes the test, in the order of the curve.
+  /// The living tets that pass the test, in the order of the curve.
   template <class Test>
   std::vector<ListedTet> tets_where(const Test& test) const;
   /// 1 for the points of the listed tets.
@@ -95,6 +97,7 @@ class Engine {
 
   SimplifyReport* report_;
   Progress* progress_;
+  bool compacted_ = false;  ///< the grid is built
   EditableMesh mesh_;
   SurfaceGrid grid_;
   VolumeLedger ledger_;

@@ -41,42 +41,39 @@ struct Bounds {
 /// One tet's turn: the first action that makes the worst tet around better ends it.
 Outcome improve_tet(Workspace& ws, const BlockRules& rules, const BlockRules& surgery, bool last_resort,
                     const ListedTet& item, const Bounds& bounds) {
-  EditableMesh& mesh = ws.mesh;
-  if (const Outcome o = validate(ws, item); o != Outcome::done) return o;
-  const float quality = mesh.tet(item.tet).quality;
+  const EditableMesh& mesh = ws.mesh;
+  if (!exists(mesh, item)) return Outcome::stale;
+  const float quality = mesh.quality(item.tet);
   if (quality > bounds.poor) return Outcome::stale;
   const BlockRules& moving = last_resort && quality < bounds.leave_surface ? surgery : rules;
-  const auto ends = [](Outcome o) { return o == Outcome::done || o == Outcome::lock_taken; };
   for (Index p : item.points) {
-    Outcome o = ws.star.gather(mesh, p, ws.points);
+    Outcome o = ws.gather(p);
     if (o == Outcome::done) o = optimise(ws, moving);
-    ws.counts.add(Operation::optimise, o);
-    if (ends(o)) return o;
+    if (ws.count(Operation::optimise, o) == Outcome::done) return o;
   }
   for (int e = 0; e < 6; ++e)
-    if (const Outcome o = remove_edge(ws, surgery, item.tet, e, full_reach); ends(o)) return o;
+    if (remove_edge(ws, surgery, item.tet, e, full_reach) == Outcome::done) return Outcome::done;
   for (int f = 0; f < 4; ++f)
-    if (const Outcome o = remove_face(ws, rules, item.tet, f, full_reach); ends(o)) return o;
+    if (remove_face(ws, rules, item.tet, f, full_reach) == Outcome::done) return Outcome::done;
   for (Index p : item.points) {
-    if (mesh.live_tets() <= rules.min_tets) break;
-    Outcome o = ws.star.gather(mesh, p, ws.points);
+    if (mesh.live_tets() <= rules.count.min) break;
+    Outcome o = ws.gather(p);
     if (o == Outcome::done) o = collapse(ws, surgery);
-    ws.counts.add(Operation::collapse, o);
-    if (ends(o)) return o;
+    if (ws.count(Operation::collapse, o) == Outcome::done) return o;
   }
-  if (mesh.live_tets() >= rules.max_tets) return Outcome::no_candidate;
+  if (mesh.live_tets() >= rules.count.max) return Outcome::no_candidate;
   for (int e = 0; e < 6; ++e)
-    if (const Outcome o = insert_in_edge(ws, rules, item.tet, e, InsertionPlace::best, true); ends(o))
-      return o;
+    if (insert_in_edge(ws, rules, item.tet, e, InsertionPlace::best, true) == Outcome::done)
+      return Outcome::done;
   for (int f = 0; f < 4; ++f)
-    if (const Outcome o = insert_in_face(ws, rules, item.tet, f, InsertionPlace::best); ends(o)) return o;
+    if (insert_in_face(ws, rules, item.tet, f, InsertionPlace::best) == Outcome::done) return Outcome::done;
   return insert_in_tet(ws, rules, item.tet, InsertionPlace::best);
 }
 
 /// A flip of the tet, chosen at random, that leaves only good tets or an improvement: it changes the
 /// connectivity near tets that no operation improves.
 Outcome perturb_tet(Workspace& ws, const BlockRules& perturbation, const ListedTet& item) {
-  if (const Outcome o = validate(ws, item); o != Outcome::done) return o;
+  if (!exists(ws.mesh, item)) return Outcome::stale;
   const auto pick = static_cast<int>(ws.random.below(10));
   return pick < 6 ? remove_edge(ws, perturbation, item.tet, pick, full_reach)
                   : remove_face(ws, perturbation, item.tet, pick - 6, full_reach);
@@ -93,14 +90,14 @@ class ImprovementLoop {
     BlockRules& rules = engine_.rules;
     rules.objective.kind = Objective::Kind::shape;
     rules.accept_worse = 0;
-    rules.min_tets = plan_.min_tets;
-    rules.max_tets = plan_.max_tets;
+    rules.count = {plan_.min_tets, plan_.max_tets};
     rules.projection = &engine_.projection();
   }
 
   /// The number of rounds.
   int run() {
     engine_.compact();
+    engine_.rate_all();
     for (int sweep = 0; sweep < plan_.fit_sweeps; ++sweep) {
       Engine::Round round(engine_, plan_.kind);
       engine_.fit_interfaces(bounds_.poor);
@@ -138,7 +135,7 @@ class ImprovementLoop {
   /// the next one also moves the points around the poor tets, and whether it resorts to perturbation.
   bool worth_a_round(const std::vector<ListedTet>& poor) {
     const bool bad = std::any_of(poor.begin(), poor.end(), [&](const ListedTet& t) {
-      return mesh_.tet(t.tet).quality < bounds_.leave_surface;
+      return mesh_.quality(t.tet) < bounds_.leave_surface;
     });
     stuck_ = static_cast<double>(poor.size()) > stuck_above * static_cast<double>(min_poor_);
     const double gain = 1 - static_cast<double>(poor.size()) / static_cast<double>(min_poor_);
@@ -163,10 +160,10 @@ class ImprovementLoop {
     tried_ = std::move(poor);
     mesh_.begin_round();
     std::sort(tries.begin(), tries.end(), [&](const ListedTet& a, const ListedTet& b) {
-      const float qa = mesh_.tet(a.tet).quality, qb = mesh_.tet(b.tet).quality;
+      const float qa = mesh_.quality(a.tet), qb = mesh_.quality(b.tet);
       return qa != qb ? qa < qb : a.tet < b.tet;
     });
-    engine_.runner().tets_in_order(tries, [&](Workspace& ws, const ListedTet& item) {
+    engine_.runner().tets_in_order(tries, [&](Workspace& ws, const ListedTet& item, int) {
       return improve_tet(ws, engine_.rules, surgery_, last_resort_, item, bounds_);
     });
     round.finish();
@@ -176,7 +173,7 @@ class ImprovementLoop {
   void make_room(const std::vector<ListedTet>& poor) {
     BlockRules thinning = engine_.rules;
     thinning.good_enough = bounds_.poor * thinning_margin;
-    thinning.min_tets = plan_.target_tets;
+    thinning.count.min = plan_.target_tets;
     engine_.each_star(
         plan_.local ? engine_.points_around(poor) : engine_.poor_points(1), Operation::collapse,
         [&](Workspace& ws) { return collapse(ws, thinning); },
@@ -188,7 +185,7 @@ class ImprovementLoop {
     perturbation.good_enough = bounds_.poor;
     engine_.runner().tets(
         engine_.tets_around(poor),
-        [&](Workspace& ws, const ListedTet& item) { return perturb_tet(ws, perturbation, item); },
+        [&](Workspace& ws, const ListedTet& item, int) { return perturb_tet(ws, perturbation, item); },
         [] { return false; });
   }
 

@@ -28,10 +28,9 @@ struct SimplifyOptions {
   /// Must outlive the call.
   const ReferenceSurface* reference = nullptr;
   std::uint64_t seed = 1;
-  /// Points or tets that one task takes at a time: large enough to be random within, small enough to stay in
-  /// a core's cache (a star takes about 1.5 KB). Results depend on it, not on the number of threads; small
-  /// ones provoke conflicts.
-  std::size_t chunk_size = 2000;
+  /// Points or tets of a batch (BlockRunner); 0: from the number of items. Results depend on it, never on the
+  /// number of threads.
+  std::size_t batch_size = 0;
   std::string name = "mesh";  ///< what messages call the mesh
 };
 
@@ -45,7 +44,7 @@ struct ImproveOptions {
   ShapeObjective objective = ShapeObjective::both;
   int max_iterations = 100;  ///< rounds
   std::uint64_t seed = 1;
-  std::size_t chunk_size = 2000;  ///< as in SimplifyOptions
+  std::size_t batch_size = 0;  ///< as in SimplifyOptions
   const ReferenceSurface* reference = nullptr;
   std::string name = "mesh";
 };
@@ -59,13 +58,15 @@ struct IterationReport {
   double percent = 0;    ///< of the tets that were taken up
   double max_error = 0;  ///< E, input units
   OperationCounts counts;
-  std::uint64_t lock_conflicts = 0, skipped = 0;
+  std::uint64_t conflicts = 0;  ///< proposals that lost to an earlier one of their batch, and came again
+  std::uint64_t repeats = 0;    ///< items that were decided again
+  std::uint64_t batches = 0;
   double seconds = 0;
 };
 
 struct SimplifyReport {
   std::vector<IterationReport> iterations;
-  std::size_t pinned_points = 0;  ///< where parts touch without a common face: they stay as they are
+  std::size_t touching_points = 0;  ///< where parts touch without a common face: they stay as they are
   double seconds_build = 0, seconds_simplify = 0, seconds_close = 0;
 };
 

@@ -21,7 +21,6 @@ constexpr double count_slack = 0.005;
 
 /// The tet's half-edge of least weight that passes every test.
 Outcome collapse_tet(Workspace& ws, const BlockRules& rules, const ListedTet& item) {
-  EditableMesh& mesh = ws.mesh;
   struct HalfEdge {
     double weight;
     Index from, to;
@@ -31,9 +30,9 @@ Outcome collapse_tet(Workspace& ws, const BlockRules& rules, const ListedTet& it
   Outcome refusal = Outcome::material_rule;
   for (Index from : item.points) {
     Star& star = ws.star;
-    if (const Outcome o = star.gather(mesh, from, ws.points); o != Outcome::done) return o;
+    if (const Outcome o = ws.gather(from); o != Outcome::done) return o;
     const int dimension = star.dimension();
-    if (dimension == 0) continue;
+    if (dimension == 0 || star.frozen) continue;
     star.compute_gradients();
     for (std::size_t p = 0; p < star.points.size(); ++p) {
       if (std::find(item.points.begin(), item.points.end(), star.points[p]) == item.points.end()) continue;
@@ -53,56 +52,56 @@ Outcome collapse_tet(Workspace& ws, const BlockRules& rules, const ListedTet& it
             });
   for (std::size_t i = 0; i < count; ++i) {
     Star& star = ws.star;
-    if (const Outcome o = star.gather(mesh, edges[i].from, ws.points); o != Outcome::done) return o;
+    if (const Outcome o = ws.gather(edges[i].from); o != Outcome::done) return o;
     const auto b = std::find(star.points.begin(), star.points.end(), edges[i].to) - star.points.begin();
     refusal = collapse_onto(ws, rules, static_cast<std::size_t>(b));
-    if (refusal == Outcome::done || refusal == Outcome::lock_taken) break;
+    if (refusal == Outcome::done) break;
   }
   return refusal;
 }
 
-/// One tet's turn: the actions of section 4 in their order; the first that succeeds ends it.
-Outcome paper_turn(Workspace& ws, const BlockRules& rules, const ListedTet& item, float limit) {
-  EditableMesh& mesh = ws.mesh;
-  if (const Outcome o = validate(ws, item); o != Outcome::done) return o;
-  if (mesh.tet(item.tet).quality > limit) return Outcome::stale;
-  const auto ends = [](Outcome o) { return o == Outcome::done || o == Outcome::lock_taken; };
-  for (int f = 0; f < 4; ++f)
-    if (const Outcome o = remove_face(ws, rules, item.tet, f, basic_reach); ends(o)) return o;
-  for (int e = 0; e < 6; ++e)
-    if (const Outcome o = remove_edge(ws, rules, item.tet, e, basic_reach); ends(o)) return o;
-  {
-    const Outcome o = collapse_tet(ws, rules, item);
-    ws.counts.add(Operation::collapse, o);
-    if (ends(o)) return o;
-  }
-  // "move each vertex of the element": all four, whatever becomes of the others.
-  bool moved = false;
-  for (Index p : item.points) {
-    Outcome o = ws.star.gather(mesh, p, ws.points);
+/// "move each vertex of the element": the first from `first` on that moves; the turn goes on with the next.
+Outcome smooth_points(Workspace& ws, const BlockRules& rules, const ListedTet& item, int first) {
+  for (int k = first; k < 4; ++k) {
+    Outcome o = ws.gather(item.points[k]);
     if (o == Outcome::done) o = smooth(ws, rules);
-    ws.counts.add(Operation::smooth, o);
-    ws.cells.release();
-    if (o == Outcome::lock_taken && !moved) return o;
-    moved |= o == Outcome::done;
+    if (ws.count(Operation::smooth, o) != Outcome::done) continue;
+    ws.proposal.next_stage = k + 1 < 4 ? k + 1 : -1;
+    return o;
   }
-  if (moved) return Outcome::done;
+  return Outcome::no_candidate;
+}
+
+/// One tet's turn: the actions of section 4 in their order; the first that succeeds ends it. Stages above 0
+/// are the points still to be moved.
+Outcome paper_turn(Workspace& ws, const BlockRules& rules, const ListedTet& item, int stage, float limit) {
+  const EditableMesh& mesh = ws.mesh;
+  if (!exists(mesh, item)) return Outcome::stale;
+  if (stage > 0) return smooth_points(ws, rules, item, stage);
+  if (mesh.quality(item.tet) > limit) return Outcome::stale;
+  for (int f = 0; f < 4; ++f)
+    if (remove_face(ws, rules, item.tet, f, basic_reach) == Outcome::done) return Outcome::done;
+  for (int e = 0; e < 6; ++e)
+    if (remove_edge(ws, rules, item.tet, e, basic_reach) == Outcome::done) return Outcome::done;
+  if (ws.count(Operation::collapse, collapse_tet(ws, rules, item)) == Outcome::done) return Outcome::done;
+  if (smooth_points(ws, rules, item, 0) == Outcome::done) return Outcome::done;
   // New points must better the tets they go into: what annealing lets pass would be split for ever.
   BlockRules strict = rules;
   strict.accept_worse = 0;
-  if (const Outcome o = insert_in_tet(ws, strict, item.tet, InsertionPlace::centre); ends(o)) return o;
+  if (insert_in_tet(ws, strict, item.tet, InsertionPlace::centre) == Outcome::done) return Outcome::done;
   for (int f = 0; f < 4; ++f)
-    if (const Outcome o = insert_in_face(ws, strict, item.tet, f, InsertionPlace::centre); ends(o)) return o;
+    if (insert_in_face(ws, strict, item.tet, f, InsertionPlace::centre) == Outcome::done)
+      return Outcome::done;
   for (int e = 0; e < 6; ++e)
-    if (const Outcome o = insert_in_edge(ws, strict, item.tet, e, InsertionPlace::centre, false); ends(o))
-      return o;
+    if (insert_in_edge(ws, strict, item.tet, e, InsertionPlace::centre, false) == Outcome::done)
+      return Outcome::done;
   return Outcome::no_candidate;
 }
 
 std::size_t below_angle(const EditableMesh& mesh, double angle) {
   std::size_t count = 0;
   for (Index t = 0; t < mesh.tet_slots(); ++t) {
-    const Tet& p = mesh.tet(t).points;
+    const Tet& p = mesh.points(t);
     if (p[0] == no_index) continue;
     count += min_solid_angle(mesh.position(p[0]), mesh.position(p[1]), mesh.position(p[2]),
                              mesh.position(p[3])) < angle;
@@ -124,8 +123,9 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
   rules.max_error = rules.objective.quality.ideal_edge;
   rules.annealing_floor = 0;
   rules.losses_cancel = true;
-  rules.min_tets = static_cast<std::size_t>(std::ceil(target * (1 - count_slack)));
+  rules.count.min = static_cast<std::size_t>(std::ceil(target * (1 - count_slack)));
   engine.compact();
+  engine.rate_all();
   double percent = percent_step;
   int idle = 0;
   bool reached = false;
@@ -147,12 +147,14 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
     const double log_now = portable_log(std::max(before / target, 1.0));
     rules.accept_worse = reached ? 0 : first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
     // Before, whatever does not undo the iterations before it; then only what keeps or restores the count.
-    rules.max_tets = reached ? static_cast<std::size_t>(target * (1 + count_slack)) : it.tets_before;
+    rules.count.max = reached ? static_cast<std::size_t>(target * (1 + count_slack)) : it.tets_before;
     const float limit = engine.cutoff(percent);
     it.cutoff = portable_cbrt(limit);
     engine.runner().tets(
         engine.poor_tets(limit),
-        [&](Workspace& ws, const ListedTet& item) { return paper_turn(ws, rules, item, limit); },
+        [&](Workspace& ws, const ListedTet& item, int stage) {
+          return paper_turn(ws, rules, item, stage, limit);
+        },
         [&] { return !reached && mesh.live_tets() <= target_tets; });
     round.finish();
     if (!reached) {

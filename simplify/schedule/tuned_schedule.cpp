@@ -44,26 +44,20 @@ void collapse_block(Engine& engine, float limit, std::size_t target) {
 
 /// Flips and smoothing of what is still poor.
 void flip_and_smooth_block(Engine& engine, float limit) {
-  EditableMesh& mesh = engine.mesh();
+  const EditableMesh& mesh = engine.mesh();
   engine.runner().tets(
       engine.poor_tets(limit),
-      [&](Workspace& ws, const ListedTet& item) {
-        if (const Outcome o = validate(ws, item); o != Outcome::done) return o;
+      [&](Workspace& ws, const ListedTet& item, int) {
         // The tet may have been improved by a neighbour's operation since it was listed.
-        if (mesh.tet(item.tet).quality > limit) return Outcome::stale;
-        for (int f = 0; f < 4; ++f) {
-          const Outcome o = remove_face(ws, engine.rules, item.tet, f, basic_reach);
-          if (o == Outcome::done || o == Outcome::lock_taken) return o;
-        }
-        for (int e = 0; e < 6; ++e) {
-          const Outcome o = remove_edge(ws, engine.rules, item.tet, e, basic_reach);
-          if (o == Outcome::done || o == Outcome::lock_taken) return o;
-        }
+        if (!exists(mesh, item) || mesh.quality(item.tet) > limit) return Outcome::stale;
+        for (int f = 0; f < 4; ++f)
+          if (remove_face(ws, engine.rules, item.tet, f, basic_reach) == Outcome::done) return Outcome::done;
+        for (int e = 0; e < 6; ++e)
+          if (remove_edge(ws, engine.rules, item.tet, e, basic_reach) == Outcome::done) return Outcome::done;
         for (Index p : item.points) {
-          Outcome o = ws.star.gather(mesh, p, ws.points);
+          Outcome o = ws.gather(p);
           if (o == Outcome::done) o = smooth(ws, engine.rules);
-          ws.counts.add(Operation::smooth, o);
-          if (o == Outcome::done || o == Outcome::lock_taken) return o;
+          if (ws.count(Operation::smooth, o) == Outcome::done) return o;
         }
         return Outcome::no_candidate;
       },
@@ -86,8 +80,9 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options) {
   rules.annealing_floor = annealing_floor;
   rules.distance_weight = distance_weight;
   // Rounded up: for small targets the slack is less than one tet.
-  rules.min_tets = static_cast<std::size_t>(std::ceil(target * (1 - closing_slack)));
+  rules.count.min = static_cast<std::size_t>(std::ceil(target * (1 - closing_slack)));
   engine.compact();
+  engine.rate_all();
   double percent = percent_step;
   int idle = 0;
   for (int i = 0; i < options.max_iterations && mesh.live_tets() > loop_target; ++i) {

@@ -48,11 +48,11 @@ void report_volumes(const TetMesh& mesh, const std::string& file, RunReport& rep
   }
 }
 
-void report_pinned_points(const std::string& file, RunReport& report) {
-  if (report.simplify->pinned_points > 0)
+void report_touching_points(const std::string& file, RunReport& report) {
+  if (report.simplify->touching_points > 0)
     report.findings.push_back({file,
                                {"points where parts touch without a common face",
-                                report.simplify->pinned_points,
+                                report.simplify->touching_points,
                                 {},
                                 "kept as they are with all their tets"}});
 }
@@ -127,7 +127,7 @@ ExitStatus finish(const TetMesh& mesh, const MaterialField* field, CommandRun& r
   report.material_names = mesh.material_names;
   if (report.simplify) {
     report.result = mesh_statistics(mesh, run.line.min_solid_angle);
-    report_pinned_points(report.inputs.front(), report);
+    report_touching_points(report.inputs.front(), report);
     report_volumes(mesh, report.inputs.front(), report);
     find_count_and_shape_shortfall(run.line, report);
   } else {

@@ -1,0 +1,54 @@
+#include "simplify/mesh/reservations.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "common/error.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Winners that a batch may have.
+constexpr std::uint32_t max_winners = 1u << 24;
+
+}  // namespace
+
+void Reservations::begin_batch() {
+  if (next_ > std::numeric_limits<std::uint32_t>::max() - max_winners) {
+    std::fill(words_.begin(), words_.end(), 0);
+    next_ = 1;
+  }
+  first_ = next_;
+}
+
+#ifndef NDEBUG
+
+namespace {
+
+enum class Phase : std::uint8_t { serial, deciding, committing };
+thread_local Phase phase = Phase::serial;
+thread_local std::span<const Index> may_write;
+
+}  // namespace
+
+WriteRule::Deciding::Deciding() { phase = Phase::deciding; }
+WriteRule::Deciding::~Deciding() { phase = Phase::serial; }
+
+WriteRule::Committing::Committing(std::span<const Index> marked) {
+  phase = Phase::committing;
+  may_write = marked;
+}
+WriteRule::Committing::~Committing() { phase = Phase::serial; }
+
+void WriteRule::check(Index vertex) {
+  check();
+  TETWRIGHT_CHECK(phase == Phase::serial ||
+                  std::find(may_write.begin(), may_write.end(), vertex) != may_write.end());
+}
+
+void WriteRule::check() { TETWRIGHT_CHECK(phase != Phase::deciding); }
+
+#endif
+
+}  // namespace tetwright

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/types.h"
+
+namespace tetwright {
+
+/// One word for each vertex: which winner of which batch marked it (deterministic reservations: Blelloch,
+/// Fineman, Gibbons & Shun 2012, "Internally deterministic parallel algorithms can be fast"). Winners are
+/// numbered through, so that words of earlier batches need no clearing.
+class Reservations {
+ public:
+  /// All free. Only while no task runs.
+  void reset(std::size_t vertices) {
+    words_.assign(vertices, 0);
+    first_ = next_ = 1;
+  }
+  /// More vertices, free ones.
+  void grow(std::size_t vertices) { words_.resize(vertices, 0); }
+  /// What was marked before is free.
+  void begin_batch();
+
+  /// Whether no winner of this batch has marked one of these vertices.
+  bool free(std::span<const Index> needed) const {
+#ifndef TETWRIGHT_IGNORE_RESERVATIONS  // defined only in the test that shows that the others notice
+    for (Index v : needed)
+      if (words_[v] >= first_) return false;
+#else
+    (void)needed;
+#endif
+    return true;
+  }
+  /// Gives vertices to the next winner; those that others marked, too, which none of both needs.
+  void mark(std::span<const Index> marked) {
+    for (Index v : marked) words_[v] = next_;
+    ++next_;
+  }
+
+ private:
+  std::vector<std::uint32_t> words_;
+  std::uint32_t first_ = 1;  ///< the number of the batch's first winner
+  std::uint32_t next_ = 1;
+};
+
+/// The rule that makes results independent of threads, asserted in builds without NDEBUG: a thread that
+/// decides writes nothing, one that commits writes only what its operation marked. What breaks it throws
+/// InternalError at once. In release builds these do nothing.
+class WriteRule {
+ public:
+#ifndef NDEBUG
+  /// While it exists, this thread may write nothing.
+  class Deciding {
+   public:
+    Deciding();
+    ~Deciding();
+    Deciding(const Deciding&) = delete;
+    Deciding& operator=(const Deciding&) = delete;
+  };
+  /// While it exists, this thread may write at these vertices alone.
+  class Committing {
+   public:
+    explicit Committing(std::span<const Index> marked);
+    ~Committing();
+    Committing(const Committing&) = delete;
+    Committing& operator=(const Committing&) = delete;
+  };
+  static void check(Index vertex);
+  /// For what no vertex reserves.
+  static void check();
+#else
+  struct Deciding {
+    Deciding() {}
+    ~Deciding() {}
+  };
+  struct Committing {
+    explicit Committing(std::span<const Index>) {}
+    ~Committing() {}
+  };
+  static void check(Index) {}
+  static void check() {}
+#endif
+};
+
+}  // namespace tetwright

@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "simplify/constraints/surface_grid.h"
+#include "simplify/mesh/editable_mesh.h"
+#include "simplify/mesh/outcome.h"
+#include "simplify/mesh/star.h"
+#include "simplify/operations/block_rules.h"
+
+namespace tetwright {
+
+/// A tet that an operation puts into a cavity.
+struct NewTet {
+  Tet points;
+  RegionId region;
+  float quality;
+};
+
+/// What an operation has decided: everything that its commit will write. Kept and used again, so that
+/// deciding does not allocate.
+struct Proposal {
+  enum class Change : std::uint8_t {
+    none,
+    move,      ///< a point goes to another place
+    collapse,  ///< a point goes, and with it the tets that have its target
+    replace    ///< tets give way to others, which may have a new point
+  };
+
+  Change change = Change::none;
+  Operation operation = Operation::collapse;
+  /// The turn goes on with this stage of its list's attempt when this is committed; below 0: it ends.
+  int next_stage = -1;
+
+  /// The points of all tets that change; the first `needs` of them are those whose stars were read, among
+  /// them two points of each tet that goes.
+  std::vector<Index> marks;
+  std::size_t needs = 0;
+
+  Index centre = no_index;       ///< move, collapse: the point
+  Index target = no_index;       ///< collapse: what it is drawn onto
+  Vec3 position = Vec3::Zero();  ///< move: the new place; replace: that of the new point
+
+  /// Move and collapse: a tet that stays, the slot of the centre in it, and its new quality.
+  struct RatedTet {
+    Index tet;
+    std::uint8_t slot;
+    float quality;
+  };
+  std::vector<RatedTet> rated;
+
+  /// Collapse: a link that a tet gets in place of the one to a tet that goes.
+  struct Relink {
+    Index tet;
+    std::uint8_t face;
+    FaceLink link;
+  };
+  std::vector<Relink> relinks;
+  /// Collapse: points whose incident tet goes, and the one they get.
+  struct Incident {
+    Index point, tet;
+  };
+  std::vector<Incident> incidents;
+
+  std::vector<Index> removed;  ///< collapse and replace: tets that go
+  std::vector<NewTet> added;   ///< replace: tets that come
+  bool has_new_point = false;
+  /// Replace: a face of the cavity's hull, ids ascending; on the boundary `tet` is no_index.
+  struct HullFace {
+    Triangle key;
+    Index tet;          ///< outside the cavity
+    std::uint8_t face;  ///< of that tet
+    RegionId region;    ///< of that tet
+    PatchId patch;      ///< of a boundary face
+  };
+  std::vector<HullFace> hull;
+  std::vector<Index> orphans;  ///< replace: points whose incident tet goes
+
+  SurfaceGrid::Edit edit;
+  std::vector<VolumeChange> volumes;
+  std::int64_t count_change = 0;
+  CountBounds count_bounds;
+
+  /// Filled when the proposal has won: the slots of added tets beyond the removed ones, the new point.
+  std::vector<Index> new_tets;
+  Index new_point_id = no_index;
+
+  void clear();
+  std::span<const Index> needed() const { return std::span(marks).first(needs); }
+  /// Marks a star's points and its centre, which is needed.
+  void mark_star(const Star& star);
+  /// Marks all points of the removed tets, all of which are needed, and collects the hull and the orphans;
+  /// `removed` is filled.
+  void mark_cavity(const EditableMesh& mesh);
+};
+
+/// Gives a proposal that has won the slots that it needs, and takes those of what goes back. One thread at a
+/// time; there is room for it (EditableMesh::make_room).
+void take_slots(EditableMesh& mesh, SurfaceGrid& grid, Proposal& proposal);
+
+/// Memory of commit().
+struct CommitWorkspace {
+  struct Side {
+    Triangle key;
+    Index tet;  ///< no_index: a boundary face of the hull
+    std::uint8_t face;
+    RegionId region;
+    PatchId patch;
+    bool outer;  ///< of the hull, else of a new tet
+  };
+  std::vector<Side> sides;
+  std::vector<Index> slots;
+};
+
+/// Carries out a proposal that has won: writes what it marked. Safe concurrently with other winners of its
+/// batch.
+void commit(EditableMesh& mesh, SurfaceGrid& grid, const Proposal& proposal, CommitWorkspace& ws);
+
+}  // namespace tetwright
