@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "common/error.h"
 #include "common/parallel/parallel.h"
@@ -28,10 +29,25 @@ void sort_ids(MeshTriangle& t) {
   order(0, 1);
 }
 
+auto with_record(std::uint32_t record) {
+  return [record](const auto& entry) { return entry.record == record; };
+}
+
 Vec3 low_corner(const MeshTriangle& t) { return t.points[0].cwiseMin(t.points[1]).cwiseMin(t.points[2]); }
 Vec3 high_corner(const MeshTriangle& t) { return t.points[0].cwiseMax(t.points[1]).cwiseMax(t.points[2]); }
 
 }  // namespace
+
+SurfaceGrid::Box SurfaceGrid::box_of(const MeshTriangle& t) {
+  const Vec3 low = low_corner(t), high = high_corner(t);
+  Box box;
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    box.low[k] = std::nextafter(static_cast<float>(low[k]), -infinity);
+    box.high[k] = std::nextafter(static_cast<float>(high[k]), infinity);
+  }
+  return box;
+}
 
 SurfaceGrid::Cell3 SurfaceGrid::cell_at(const Vec3& p) const {
   const auto axis = [&](int i) {
@@ -105,29 +121,31 @@ void SurfaceGrid::build(const EditableMesh& mesh, double min_cell) {
 }
 
 void SurfaceGrid::insert(std::uint32_t record) {
+  const Entry entry{record, cell_at(low_corner(records_[record])), box_of(records_[record])};
   for_cells(records_[record], [&](const Cell3& c) {
     Cell& cell = cells_[slot(c)];
     cell.lock();
-    auto& list = cell.records;
     // Two cells of one triangle may share a slot.
-    if (std::find(list.begin(), list.end(), record) == list.end()) list.push_back(record);
+    if (std::none_of(cell.entries.begin(), cell.entries.end(), with_record(record)))
+      cell.entries.push_back(entry);
     cell.unlock();
   });
 }
 
 bool SurfaceGrid::hits_standing(const MeshTriangle& t, std::span<const std::uint32_t> removed) const {
-  const Vec3 low = low_corner(t), high = high_corner(t);
+  const Cell3 low = cell_at(low_corner(t));
+  const Box box = box_of(t);
   bool hit = false;
   for_cells(t, [&](const Cell3& c) {
     if (hit) return;
-    for (std::uint32_t i : cells_[slot(c)].records) {
-      const MeshTriangle& other = records_[i];
-      const Vec3 common_low = low.cwiseMax(low_corner(other)),
-                 common_high = high.cwiseMin(high_corner(other));
-      if ((common_low.array() > common_high.array()).any()) continue;
+    for (const Entry& e : cells_[slot(c)].entries) {
       // A pair that shares several cells is tested in the one that holds the low corner of the common box.
-      if (!(cell_at(common_low) == c)) continue;
-      if (std::find(removed.begin(), removed.end(), i) != removed.end()) continue;
+      if (std::max(low.x, e.low.x) != c.x || std::max(low.y, e.low.y) != c.y ||
+          std::max(low.z, e.low.z) != c.z)
+        continue;
+      if (!box.meets(e.box)) continue;
+      const MeshTriangle& other = records_[e.record];
+      if (std::find(removed.begin(), removed.end(), e.record) != removed.end()) continue;
       if (triangles_intersect(t, other)) {
         hit = true;
         return;
@@ -137,15 +155,26 @@ bool SurfaceGrid::hits_standing(const MeshTriangle& t, std::span<const std::uint
   return hit;
 }
 
-std::uint32_t SurfaceGrid::record_of(const MeshTriangle& t) const {
-  const auto& list = cells_[slot(cell_at(low_corner(t)))].records;
-  const auto it =
-      std::find_if(list.begin(), list.end(), [&](std::uint32_t i) { return records_[i].ids == t.ids; });
-  TETWRIGHT_CHECK(it != list.end());
-  return *it;
+bool SurfaceGrid::embedded() const {
+  std::atomic<bool> meet{false};
+  parallel_for(0, records_.size(), triangle_grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end && !meet.load(std::memory_order_relaxed); ++i) {
+      const auto self = static_cast<std::uint32_t>(i);
+      if (hits_standing(records_[i], {&self, 1})) meet.store(true, std::memory_order_relaxed);
+    }
+  });
+  return !meet;
 }
 
-bool SurfaceGrid::test(Edit& edit) const {
+std::uint32_t SurfaceGrid::record_of(const MeshTriangle& t) const {
+  const auto& list = cells_[slot(cell_at(low_corner(t)))].entries;
+  const auto it =
+      std::find_if(list.begin(), list.end(), [&](const Entry& e) { return records_[e.record].ids == t.ids; });
+  TETWRIGHT_CHECK(it != list.end());
+  return it->record;
+}
+
+void SurfaceGrid::find_records(Edit& edit) const {
   const auto prepare = [&](MeshTriangle& t) {
     for (Index& id : t.ids) id = mesh_->original(id);
     sort_ids(t);
@@ -155,10 +184,20 @@ bool SurfaceGrid::test(Edit& edit) const {
     prepare(t);
     edit.removed_records.push_back(record_of(t));
   }
-  for (Added& a : edit.added) {
-    prepare(a.triangle);
+  for (Added& a : edit.added) prepare(a.triangle);
+}
+
+void SurfaceGrid::replace(Edit& edit) {
+  find_records(edit);
+  take_records(edit);
+  commit(edit);
+  end_batch();
+}
+
+bool SurfaceGrid::test(Edit& edit) const {
+  find_records(edit);
+  for (const Added& a : edit.added)
     if (hits_standing(a.triangle, edit.removed_records)) return false;
-  }
   for (std::size_t i = 0; i < edit.added.size(); ++i) {
     const Vec3 low = low_corner(edit.added[i].triangle), high = high_corner(edit.added[i].triangle);
     edit.low = i == 0 ? low : edit.low.cwiseMin(low);
@@ -201,8 +240,8 @@ void SurfaceGrid::commit(const Edit& edit) {
     for_cells(edit.removed[k], [&](const Cell3& c) {
       Cell& cell = cells_[slot(c)];
       cell.lock();
-      auto& list = cell.records;
-      if (const auto it = std::find(list.begin(), list.end(), record); it != list.end()) {
+      auto& list = cell.entries;
+      if (const auto it = std::find_if(list.begin(), list.end(), with_record(record)); it != list.end()) {
         *it = list.back();
         list.pop_back();
       }
@@ -232,14 +271,15 @@ std::map<Triangle, PatchId> SurfaceGrid::patches() const {
   std::map<Triangle, PatchId> out;
   if (patches_.empty()) return out;
   for (const Cell& cell : cells_)
-    for (std::uint32_t i : cell.records)
-      if (patches_[i] != 0) out.emplace(records_[i].ids, patches_[i]);
+    for (const Entry& e : cell.entries)
+      if (patches_[e.record] != 0) out.emplace(records_[e.record].ids, patches_[e.record]);
   return out;
 }
 
 std::vector<MeshTriangle> SurfaceGrid::triangles() const {
   std::vector<std::uint32_t> seen;
-  for (const Cell& cell : cells_) seen.insert(seen.end(), cell.records.begin(), cell.records.end());
+  for (const Cell& cell : cells_)
+    for (const Entry& e : cell.entries) seen.push_back(e.record);
   std::sort(seen.begin(), seen.end());
   seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
   std::vector<MeshTriangle> out;

@@ -49,11 +49,19 @@ class SurfaceGrid {
   /// size that triangles are about to grow to.
   void build(const EditableMesh& mesh, double min_cell);
 
+  /// Whether no two triangles that stand meet elsewhere than in what they share; while no task runs, after
+  /// build().
+  bool embedded() const;
+
   /// Whether no added triangle meets one that stands and stays, or another added one. Fills the edit; the
   /// points' ids become those of the places where they stand (EditableMesh::original). Safe concurrently.
   bool test(Edit& edit) const;
   /// Whether no triangle that comes in by one edit meets one of the other. Both were tested.
   static bool apart(const Edit& first, const Edit& second);
+  /// Puts triangles into the place of others without any test, where points were moved from outside. While no
+  /// task runs.
+  void replace(Edit& edit);
+
   /// Gives a tested edit the records that it needs, and takes those of removed triangles back. One thread at
   /// a time, before commit().
   void take_records(Edit& edit);
@@ -76,9 +84,23 @@ class SurfaceGrid {
     std::int32_t x, y, z;
     bool operator==(const Cell3&) const = default;
   };
-  /// Records of the triangles whose boxes touch the cell.
+  /// A triangle's box, rounded outwards: most pairs are told apart by it, and the triangle need not be read.
+  struct Box {
+    std::array<float, 3> low, high;
+    bool meets(const Box& other) const {
+      for (int k = 0; k < 3; ++k)
+        if (low[k] > other.high[k] || other.low[k] > high[k]) return false;
+      return true;
+    }
+  };
+  struct Entry {
+    std::uint32_t record;
+    Cell3 low;  ///< the cell of the box's low corner
+    Box box;
+  };
+  /// The triangles whose boxes touch the cell.
   struct Cell {
-    std::vector<std::uint32_t> records;
+    std::vector<Entry> entries;
     void lock() {
       while (std::atomic_ref<std::uint8_t>(locked).exchange(1, std::memory_order_acquire) != 0) {
       }
@@ -86,6 +108,7 @@ class SurfaceGrid {
     void unlock() { std::atomic_ref<std::uint8_t>(locked).store(0, std::memory_order_release); }
     std::uint8_t locked = 0;
   };
+  static Box box_of(const MeshTriangle& t);
   Cell3 cell_at(const Vec3& p) const;
   std::uint32_t slot(const Cell3& c) const;
   /// Calls f(cell) for each cell that the triangle's box touches.
@@ -93,6 +116,8 @@ class SurfaceGrid {
   void for_cells(const MeshTriangle& t, const F& f) const;
   void insert(std::uint32_t record);
   bool hits_standing(const MeshTriangle& t, std::span<const std::uint32_t> removed) const;
+  /// Gives the triangles of an edit the ids that records have, and finds the records of those that go.
+  void find_records(Edit& edit) const;
   /// The record of a standing triangle, ids ascending.
   std::uint32_t record_of(const MeshTriangle& t) const;
 

@@ -6,6 +6,7 @@
 #include "common/geometry/point_triangle.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
+#include "simplify/mesh/local_numbers.h"
 
 namespace tetwright {
 
@@ -17,19 +18,18 @@ constexpr std::size_t projection_grain = 4096;
 /// Points of the mesh that are used, numbered anew.
 class PointCopies {
  public:
-  explicit PointCopies(const EditableMesh& mesh) : mesh_(mesh), numbers_(mesh.point_slots(), no_index) {}
+  explicit PointCopies(const EditableMesh& mesh) : mesh_(mesh) {}
   Index number(Index p) {
-    if (numbers_[p] == no_index) {
-      numbers_[p] = static_cast<Index>(points.size());
-      points.push_back(mesh_.position(p));
-    }
-    return numbers_[p];
+    bool added;
+    const std::uint32_t n = numbers_.number(p, added);
+    if (added) points.push_back(mesh_.position(p));
+    return n;
   }
   std::vector<Vec3> points;
 
  private:
   const EditableMesh& mesh_;
-  std::vector<Index> numbers_;
+  LocalNumbers numbers_;
 };
 
 }  // namespace
@@ -69,13 +69,13 @@ ProjectionTree::ProjectionTree(std::vector<Vec3> points, std::vector<Item> items
   });
 }
 
-std::optional<Vec3> ProjectionTree::nearest(const Vec3& p, RegionId first, RegionId second,
+std::optional<Vec3> ProjectionTree::nearest(const Vec3& p, RegionId first, RegionId second, PatchId patch,
                                             double max_distance) const {
   if (first > second) std::swap(first, second);
   std::optional<Vec3> found;
   tree_.nearest(p, max_distance * max_distance, tree_.all(), [&](std::size_t i, double best) {
     const Item& item = items_[i];
-    if (item.first != first || item.second != second) return best;
+    if (item.first != first || item.second != second || item.patch != patch) return best;
     const Vec3 q =
         closest_point(p, points_[item.corners[0]], points_[item.corners[1]], points_[item.corners[2]]);
     const double d = (q - p).squaredNorm();
@@ -86,9 +86,10 @@ std::optional<Vec3> ProjectionTree::nearest(const Vec3& p, RegionId first, Regio
   return found;
 }
 
-SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const ReferenceSurface* given)
+SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector<InterfaceFace>& faces,
+                                     const ReferenceSurface* given,
+                                     const std::function<bool(Index)>& complete)
     : given_(given), mesh_(&mesh) {
-  const std::vector<InterfaceFace> faces = mesh.interface_faces();
   if (!given) {
     PointCopies points(mesh);
     std::vector<ProjectionTree::Item> triangles;
@@ -96,28 +97,35 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const ReferenceSu
     for (const InterfaceFace& f : faces)
       triangles.push_back({{points.number(f.ids[0]), points.number(f.ids[1]), points.number(f.ids[2])},
                            std::min(f.inside, f.across),
-                           std::max(f.inside, f.across)});
+                           std::max(f.inside, f.across),
+                           f.patch});
     surfaces_ = ProjectionTree(std::move(points.points), std::move(triangles));
   }
-  // The edges with other than two of the triangles: junction curves, and where the input is not manifold.
-  std::vector<std::uint64_t> edges(3 * faces.size());
+  // The edges with other than two of the triangles, or with two of different patches: junction curves, and
+  // where the input is not manifold.
+  struct Edge {
+    std::uint64_t key;
+    PatchId patch;
+  };
+  std::vector<Edge> edges(3 * faces.size());
   parallel_for(0, faces.size(), projection_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       for (int k = 0; k < 3; ++k) {
         const Index p = faces[i].ids[k], q = faces[i].ids[(k + 1) % 3];
-        edges[3 * i + k] = std::uint64_t{std::min(p, q)} << 32 | std::max(p, q);
+        edges[3 * i + k] = {std::uint64_t{std::min(p, q)} << 32 | std::max(p, q), faces[i].patch};
       }
   });
-  parallel_sort(edges);
+  parallel_sort(
+      edges, [](const Edge& x, const Edge& y) { return x.key != y.key ? x.key < y.key : x.patch < y.patch; });
   PointCopies points(mesh);
   std::vector<ProjectionTree::Item> segments;
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t j = i + 1;
-    while (j < edges.size() && edges[j] == edges[i]) ++j;
-    if (j - i != 2) {
-      const Index a = points.number(static_cast<Index>(edges[i] >> 32)),
-                  b = points.number(static_cast<Index>(edges[i]));
-      segments.push_back({{a, b, b}, 0, 0});
+    while (j < edges.size() && edges[j].key == edges[i].key) ++j;
+    const auto p = static_cast<Index>(edges[i].key >> 32), q = static_cast<Index>(edges[i].key);
+    if ((j - i != 2 || edges[i].patch != edges[i + 1].patch) && complete(p) && complete(q)) {
+      const Index a = points.number(p), b = points.number(q);
+      segments.push_back({{a, b, b}, 0, 0, 0});
     }
     i = j;
   }
@@ -127,14 +135,14 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const ReferenceSu
     for (Index p : {s.corners[0], s.corners[1]}) ++degrees[p];
   std::vector<ProjectionTree::Item> corners;
   for (Index p = 0; p < degrees.size(); ++p)
-    if (degrees[p] != 2) corners.push_back({{p, p, p}, 0, 0});
+    if (degrees[p] != 2) corners.push_back({{p, p, p}, 0, 0, 0});
   corners_ = ProjectionTree(points.points, std::move(corners));
   curves_ = ProjectionTree(std::move(points.points), std::move(segments));
 }
 
 std::optional<Vec3> SurfaceProjection::onto_surface(const Vec3& p, RegionId first, RegionId second,
-                                                    double max_distance) const {
-  if (!given_) return surfaces_.nearest(p, first, second, max_distance);
+                                                    PatchId patch, double max_distance) const {
+  if (!given_) return surfaces_.nearest(p, first, second, patch, max_distance);
   const auto tag = [&](RegionId r) -> MaterialOrOutside {
     if (r == outside_id) return {};
     return mesh_->tag(r);

@@ -112,7 +112,7 @@ void MeshCompaction::move_tets(const std::vector<Index>& new_point, const std::v
   mesh_.qualities_ = std::move(qualities);
 }
 
-void MeshCompaction::run(std::size_t spare_tets, std::size_t spare_points) {
+void MeshCompaction::run(std::size_t spare_tets, std::size_t spare_points, SlotNumbers* numbers) {
   std::vector<Index> new_point(mesh_.positions_.size(), no_index);
   std::size_t points = 0;
   {
@@ -123,8 +123,9 @@ void MeshCompaction::run(std::size_t spare_tets, std::size_t spare_points) {
   }
   std::size_t live = 0;
   {
-    const std::vector<Index> new_tet = number_tets(new_point, points, live);
+    std::vector<Index> new_tet = number_tets(new_point, points, live);
     move_tets(new_point, new_tet, live, spare_tets);
+    if (numbers) *numbers = {std::move(new_point), std::move(new_tet)};
   }
   mesh_.live_ = live;
   mesh_.free_tets_.reset(live, mesh_.tets_.size());
@@ -146,7 +147,7 @@ std::map<Triangle, PatchId> MeshCompaction::patches(const std::vector<Index>& nu
 }
 
 TetMesh MeshCompaction::to_mesh() {
-  run(0, 0);
+  run(0, 0, nullptr);
   const auto is_original = [&](std::size_t p) { return mesh_.original(static_cast<Index>(p)) == p; };
   std::vector<Index> number(mesh_.positions_.size());
   Index next = 0;

@@ -14,7 +14,7 @@ class MeshCompaction {
  public:
   explicit MeshCompaction(EditableMesh& mesh) : mesh_(mesh) {}
   /// See EditableMesh::compact().
-  void run(std::size_t spare_tets, std::size_t spare_points);
+  void run(std::size_t spare_tets, std::size_t spare_points, SlotNumbers* numbers);
   /// See EditableMesh::to_mesh().
   TetMesh to_mesh();
 

@@ -22,8 +22,21 @@ EditableMesh::EditableMesh(TetMesh&& mesh, const std::string& name) {
   MeshBuilder(*this, name).build(std::move(mesh));
 }
 
-void EditableMesh::compact(std::size_t spare_tets, std::size_t spare_points) {
-  MeshCompaction(*this).run(spare_tets, spare_points);
+void EditableMesh::compact(std::size_t spare_tets, std::size_t spare_points, SlotNumbers* numbers) {
+  MeshCompaction(*this).run(spare_tets, spare_points, numbers);
+}
+
+void EditableMesh::reserve_twice() {
+  tets_.reserve(2 * tets_.size());
+  regions_.reserve(2 * tets_.size());
+  qualities_.reserve(2 * tets_.size());
+  const std::size_t points = 2 * positions_.size();
+  positions_.reserve(points);
+  incident_tets_.reserve(points);
+  touched_.reserve(points);
+  reservations_.reserve(points);
+  if (any_frozen()) frozen_.reserve(points);
+  if (!originals_.empty()) originals_.reserve(points);
 }
 
 TetMesh EditableMesh::to_mesh() && { return MeshCompaction(*this).to_mesh(); }
@@ -125,6 +138,21 @@ double EditableMesh::total_volume() const {
       if (tets_[t].points[0] != no_index) sum += signed_volume(static_cast<Index>(t));
     return sum;
   });
+}
+
+bool EditableMesh::all_positive() const {
+  std::atomic<bool> all{true};
+  parallel_for(0, tets_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const Tet& p = tets_[t].points;
+      if (p[0] == no_index) continue;
+      if (orient3d(positions_[p[0]], positions_[p[1]], positions_[p[2]], positions_[p[3]]) <= 0) {
+        all.store(false, std::memory_order_relaxed);
+        return;
+      }
+    }
+  });
+  return all;
 }
 
 bool EditableMesh::links_consistent() const {

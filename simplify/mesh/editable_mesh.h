@@ -15,6 +15,11 @@
 
 namespace tetwright {
 
+/// New numbers by old ones; no_index: nothing was there.
+struct SlotNumbers {
+  std::vector<Index> points, tets;
+};
+
 /// The mesh while it is simplified: a tet knows its neighbours across faces, a point knows one incident tet.
 /// No array is reallocated while workers run.
 ///
@@ -42,6 +47,7 @@ class EditableMesh {
   std::size_t point_slots() const { return positions_.size(); }
   std::size_t region_count() const { return tags_.size(); }
   MaterialTag tag(RegionId region) const { return tags_[region]; }
+  const std::map<MaterialTag, std::string>& names() const { return names_; }
   const WorkingSpace& space() const { return space_; }
   Vec3 snap(const Vec3& working) const { return space_.snap(working); }
 
@@ -152,7 +158,10 @@ class EditableMesh {
   void begin_round() { ++round_; }
   /// Removes dead tets and points and renumbers both along a space-filling curve, so that what is near
   /// in space is near in memory; leaves free slots at the end for operations that add tets and points.
-  void compact(std::size_t spare_tets, std::size_t spare_points);
+  /// `numbers`, unless it is null, gets the new numbers of all slots.
+  void compact(std::size_t spare_tets, std::size_t spare_points, SlotNumbers* numbers = nullptr);
+  /// Room for twice as many without copying what there is; memory is taken up only where it is written.
+  void reserve_twice();
   /// The share of the slots that were in use and are dead now.
   double dead_share() const;
   /// The faces between two regions, outside being one, each once. Parallel; the order does not depend on the
@@ -167,6 +176,8 @@ class EditableMesh {
   double signed_volume(Index t) const;
   /// In working coordinates cubed; flat and negative tets count as they are.
   double total_volume() const;
+  /// Whether all tets are positive, by exact sign.
+  bool all_positive() const;
   /// Every invariant of the links: neighbours mutual, incident_tets right, faces equal, live count right. For
   /// tests.
   bool links_consistent() const;

@@ -18,6 +18,7 @@ class Reservations {
     words_.assign(vertices, 0);
     first_ = next_ = 1;
   }
+  void reserve(std::size_t vertices) { words_.reserve(vertices); }
   /// More vertices, free ones.
   void grow(std::size_t vertices) { words_.resize(vertices, 0); }
   /// What was marked before is free.

@@ -15,40 +15,56 @@ Outcome Star::gather(const EditableMesh& mesh, Index centre_point) {
   frozen = mesh.frozen(centre);
 
   bool added;
-  tet_numbers_.number(first, added);
-  tets.push_back({first, {}, 0, mesh.region(first), 0});
+  const auto number_of = [&](Index p) {
+    const std::uint32_t n = point_numbers_.number(p, added);
+    if (added) {
+      points.push_back(p);
+      positions.push_back(mesh.position(p));
+      interface_count.push_back(0);
+    }
+    return static_cast<std::uint16_t>(n);
+  };
+  {
+    tet_numbers_.number(first, added);
+    // (centre, face opposite it as seen from outside) is positive.
+    const int slot = mesh.slot_of(first, centre);
+    const Triangle face = face_of(mesh.points(first), slot);
+    std::array<std::uint16_t, 3> link;
+    for (int k = 0; k < 3; ++k) link[k] = number_of(face[k]);
+    tets.push_back({first, link, static_cast<std::uint8_t>(slot), mesh.region(first), 0});
+  }
   for (std::size_t i = 0; i < tets.size(); ++i) {
     const Index tet = tets[i].tet;
     const RegionId region = tets[i].region;
     const Tet& corners = mesh.points(tet);
-    const int slot = mesh.slot_of(tet, centre);
-    // (centre, face opposite it as seen from outside) is positive.
-    const auto& face = tet_faces[slot];
-    std::array<std::uint16_t, 3> link;
-    for (int k = 0; k < 3; ++k) {
-      const Index p = corners[face[k]];
-      const std::uint32_t n = point_numbers_.number(p, added);
-      if (added) {
-        if (n >= max_points) return Outcome::too_large;
-        points.push_back(p);
-        positions.push_back(mesh.position(p));
-        interface_count.push_back(0);
-      }
-      link[k] = static_cast<std::uint16_t>(n);
-    }
+    std::array<std::uint16_t, 3> link = tets[i].link;
+    // Of all but the first the neighbour it was met from knows two points of the link.
+    const Index p = points[link[0]], q = points[link[1]];
+    std::array<int, 3> corner{};  // of the link's points
+    int slot = 0;
+    for (int k = 0; k < 4; ++k)
+      (corners[k] == centre ? slot
+       : corners[k] == p    ? corner[0]
+       : corners[k] == q    ? corner[1]
+                            : corner[2]) = k;
+    if (i > 0) link[2] = number_of(corners[corner[2]]);
+    if (points.size() > max_points) return Outcome::too_large;
     tets[i].link = link;
     tets[i].slot = static_cast<std::uint8_t>(slot);
     tets[i].quality = mesh.quality(tet);
     worst = std::min(worst, tets[i].quality);
     for (int k = 0; k < 3; ++k) {
-      const FaceLink across = mesh.link(tet, face[k]);  // the face opposite link[k]
+      const FaceLink across = mesh.link(tet, corner[k]);
       const std::uint16_t a = link[(k + 1) % 3], b = link[(k + 2) % 3];
       if (across.is_outside()) {
         interface_triangles.push_back({a, b, region, outside_id, across.patch()});
       } else {
         const Index other = across.tet();
-        tet_numbers_.number(other, added);
-        if (added) tets.push_back({other, {}, 0, across.is_interface() ? mesh.region(other) : region, 0});
+        if (k < 2 || i == 0) {  // across the third one is where it was met from
+          tet_numbers_.number(other, added);
+          if (added)
+            tets.push_back({other, {b, a, 0}, 0, across.is_interface() ? mesh.region(other) : region, 0});
+        }
         if (!across.is_interface() || other < tet) continue;  // an inner interface is met twice
         interface_triangles.push_back({a, b, region, mesh.region(other), 0});
       }

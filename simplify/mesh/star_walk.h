@@ -13,9 +13,9 @@ inline bool contains(const Tet& t, Index p) { return t[0] == p || t[1] == p || t
 /// Walks the star of a point from tet to tet by ids alone. Keeps its memory from walk to walk.
 class StarWalk {
  public:
-  /// Whether `test(points of the tet)` is true for one tet at `point`.
+  /// Whether `test(tet)` is true for one tet at `point`, which is there.
   template <class Test>
-  bool any(const EditableMesh& mesh, Index point, const Test& test) {
+  bool any_tet(const EditableMesh& mesh, Index point, const Test& test) {
     numbers_.clear();
     tets_.clear();
     bool added;
@@ -23,8 +23,8 @@ class StarWalk {
     numbers_.number(tets_[0], added);
     for (std::size_t i = 0; i < tets_.size(); ++i) {
       const Index t = tets_[i];
+      if (test(t)) return true;
       const Tet& corners = mesh.points(t);
-      if (test(corners)) return true;
       for (int k = 0; k < 4; ++k) {
         const Index other = mesh.neighbour(t, k);
         if (corners[k] == point || other == no_index) continue;
@@ -33,6 +33,12 @@ class StarWalk {
       }
     }
     return false;
+  }
+
+  /// The same for `test(points of the tet)`.
+  template <class Test>
+  bool any(const EditableMesh& mesh, Index point, const Test& test) {
+    return any_tet(mesh, point, [&](Index t) { return test(mesh.points(t)); });
   }
 
   /// Whether an edge of the mesh joins p to q.

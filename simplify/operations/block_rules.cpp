@@ -2,10 +2,11 @@
 
 namespace tetwright {
 
-bool near_reference(const BlockRules& rules, const MeshTriangle& t, RegionId inside, RegionId across) {
+bool near_reference(const BlockRules& rules, const SurfaceGrid::Added& t, RegionId inside, RegionId across) {
   if (!rules.projection || !(rules.max_distance > 0)) return true;
-  const Vec3 centre = (t.points[0] + t.points[1] + t.points[2]) / 3;
-  return rules.projection->onto_surface(centre, inside, across, rules.max_distance).has_value();
+  const auto& p = t.triangle.points;
+  const Vec3 centre = (p[0] + p[1] + p[2]) / 3;
+  return rules.projection->onto_surface(centre, inside, across, t.patch, rules.max_distance).has_value();
 }
 
 float quality_of(const EditableMesh& mesh, const BlockRules& rules, const Tet& t) {

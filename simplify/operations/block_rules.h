@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "common/geometry/triangle_intersection.h"
+#include "simplify/constraints/surface_grid.h"
 #include "simplify/constraints/surface_projection.h"
 #include "simplify/mesh/editable_mesh.h"
 #include "simplify/operations/objective.h"
@@ -40,12 +40,20 @@ struct BlockRules {
   /// Weight, against E, of the distance by which a collapse moves the surface at the removed point; 0: the
   /// volume alone decides, as in the paper.
   double distance_weight = 0;
+  /// Collapses take only edges up to the first length, and make none longer than the second.
+  double max_collapsed_edge = std::numeric_limits<double>::infinity(),
+         max_edge = std::numeric_limits<double>::infinity();
   /// How far the centre of a new interface triangle may be from the reference (needs `projection`); 0: not
   /// checked. Unlike E it does not add up over several operations.
   double max_distance = 0;
   /// Points of interfaces, junction curves and corners may leave them by up to max_distance (or as far as
   /// they are away already) where that improves the shapes (needs `projection`).
   bool leave_surface = false;
+  /// All tets are positive, and no boundary or interface triangles meet but in what they share: then the mesh
+  /// covers no place twice, and where the centre lies within a material, a collapse that leaves positive tets
+  /// satisfies the link condition. For an edge between the target and a point of the centre's link that were
+  /// joined elsewhere would have to lie inside the star.
+  bool embedded = false;
   /// What points of interfaces and junction curves are projected onto; null: they stay in planes of constant
   /// volume.
   const SurfaceProjection* projection = nullptr;
@@ -53,7 +61,7 @@ struct BlockRules {
 
 /// Whether an added interface triangle stays near the reference, as far as the rules ask for it. `inside` and
 /// `across` are the regions that it separates.
-bool near_reference(const BlockRules& rules, const MeshTriangle& t, RegionId inside, RegionId across);
+bool near_reference(const BlockRules& rules, const SurfaceGrid::Added& t, RegionId inside, RegionId across);
 
 /// The objective's value for a tet.
 float quality_of(const EditableMesh& mesh, const BlockRules& rules, const Tet& t);

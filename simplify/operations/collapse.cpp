@@ -59,7 +59,7 @@ bool surface_edit(Workspace& ws, const BlockRules& rules, std::size_t b) {
     edit.removed.push_back({ids, {star.centre_position, p, q}});
     if (s.first == b || s.second == b) continue;
     edit.added.push_back({{{star.points[b], ids[1], ids[2]}, {star.positions[b], p, q}}, s.patch});
-    if (!near_reference(rules, edit.added.back().triangle, s.inside, s.across)) return false;
+    if (!near_reference(rules, edit.added.back(), s.inside, s.across)) return false;
   }
   return true;
 }
@@ -119,11 +119,14 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
   const Vec3& to = star.positions[b];
   // Orientation first: the cheapest test, and the one that fails most often.
   std::size_t left = 0;
+  double least = std::numeric_limits<double>::infinity();
   for (const Star::StarTet& t : star.tets) {
     if (has(t, b)) continue;
     ++left;
     const Vec3 &x = star.positions[t.link[0]], &y = star.positions[t.link[1]], &z = star.positions[t.link[2]];
-    if (!((x - to).dot((y - x).cross(z - x)) > 0)) return Outcome::inverts;
+    const double det = (x - to).dot((y - x).cross(z - x));
+    if (!(det > 0)) return Outcome::inverts;
+    least = std::min(least, det);
   }
   // The whole star vanishes where each of its tets stands on another: an ear of the boundary is cut off.
   if (left == 0)
@@ -131,9 +134,14 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
       if (const Index below = ws.mesh.neighbour(t.tet, t.slot);
           below == no_index || contains(ws.mesh.points(below), star.centre))
         return Outcome::link_condition;
+  if (rules.max_edge < std::numeric_limits<double>::infinity() &&
+      std::any_of(star.positions.begin(), star.positions.end(),
+                  [&](const Vec3& p) { return (p - to).norm() > rules.max_edge; }))
+    return Outcome::quality;
   ws.proposal.volumes = star.volume_changes(to - star.centre_position);
   if (!ws.ledger.allows(ws.proposal.volumes)) return Outcome::volume;
   const float limit = ws.acceptance_limit(rules, star.worst);
+  if (!(rules.objective.most_for_volume(least) > limit)) return Outcome::quality;
   qualities.resize(star.tets.size());
   for (std::size_t k = 0; k < star.tets.size(); ++k) {
     const Star::StarTet& t = star.tets[k];
@@ -146,7 +154,9 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
   if (!star.interface_triangles.empty() && rules.distance_weight > 0 &&
       rules.distance_weight * distance_left(star, b) > rules.max_error)
     return Outcome::surface_error;
-  if (!ws.link_condition.holds(ws.mesh, ws.grid, star, b)) return Outcome::link_condition;
+  if (!(rules.embedded && star.interface_triangles.empty()) &&
+      !ws.link_condition.holds(ws.mesh, ws.grid, star, b))
+    return Outcome::link_condition;
   ws.proposal.edit.clear();
   if (!star.interface_triangles.empty()) {
     if (!surface_edit(ws, rules, b)) return Outcome::surface_error;
@@ -187,6 +197,7 @@ Outcome collapse(Workspace& ws, const BlockRules& rules) {
   Outcome refusal = Outcome::material_rule;
   for (std::size_t p = 0; p < star.points.size(); ++p) {
     if (star.edge_dimension(p) != dimension) continue;
+    if ((star.positions[p] - star.centre_position).norm() > rules.max_collapsed_edge) continue;
     const double weight = collapse_weight(star, p, rules);
     if (weight > rules.max_error) {
       refusal = Outcome::surface_error;

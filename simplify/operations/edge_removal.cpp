@@ -11,6 +11,9 @@ namespace tetwright {
 
 namespace {
 
+/// Tets around an edge of the largest basic flip, 4-4.
+constexpr std::size_t basic_ring = 4;
+
 Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
 
 /// The interface triangles of an edge (a, b) with interface triangles to s and t, turned to the edge (s, t).
@@ -34,7 +37,7 @@ Outcome surface_edit(Workspace& ws, const BlockRules& rules, Index s, Index t, R
   edit.removed = {{{ring.a, ring.b, s}, {a, b, ps}}, {{ring.a, ring.b, t}, {a, b, pt}}};
   edit.added = {{{{ring.a, s, t}, {a, ps, pt}}, patch}, {{{ring.b, s, t}, {b, ps, pt}}, patch}};
   for (const SurfaceGrid::Added& n : edit.added)
-    if (!near_reference(rules, n.triangle, inside, across)) return Outcome::surface_error;
+    if (!near_reference(rules, n, inside, across)) return Outcome::surface_error;
   return ws.grid.test(edit) ? Outcome::done : Outcome::self_intersection;
 }
 
@@ -210,7 +213,7 @@ class EdgeRemoval {
 
 Outcome remove_edge(Workspace& ws, const BlockRules& rules, Index tet, int edge, const FlipReach& reach) {
   Operation kind = Operation::edge_removal;
-  Outcome o = ws.ring.gather(ws.mesh, tet, edge);
+  Outcome o = ws.ring.gather(ws.mesh, tet, edge, reach.basic() ? basic_ring : EdgeRing::max_tets);
   if (o == Outcome::done) o = EdgeRemoval(ws, rules).run(reach, kind);
   if (reach.basic() && kind == Operation::edge_removal)
     return o;  // none of the three flips: nothing was tried

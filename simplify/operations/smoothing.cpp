@@ -67,7 +67,7 @@ bool surface_edit(Workspace& ws, const BlockRules& rules, const Vec3& to) {
     const Vec3 &p = star.positions[s.first], &q = star.positions[s.second];
     edit.removed.push_back({ids, {star.centre_position, p, q}});
     edit.added.push_back({{ids, {to, p, q}}, s.patch});
-    if (!by_point && !near_reference(rules, edit.added.back().triangle, s.inside, s.across)) return false;
+    if (!by_point && !near_reference(rules, edit.added.back(), s.inside, s.across)) return false;
   }
   return true;
 }
@@ -191,7 +191,7 @@ class PlacementSearch {
   /// The nearest place of the surface, the junction curve or the corners that the centre belongs to.
   std::optional<Vec3> nearest(const Vec3& to, double max_distance) const {
     const Star::InterfaceTriangle& s = star_.interface_triangles.front();
-    return dimension_ == 2   ? rules_.projection->onto_surface(to, s.inside, s.across, max_distance)
+    return dimension_ == 2   ? rules_.projection->onto_surface(to, s.inside, s.across, s.patch, max_distance)
            : dimension_ == 1 ? rules_.projection->onto_curve(to, max_distance)
                              : rules_.projection->onto_corner(to, max_distance);
   }
@@ -385,17 +385,24 @@ Outcome fit_to_surface(Workspace& ws, const BlockRules& rules, float floor) {
   const Vec3 normal = star.gradients.front().change.normalized();
   double weights = 0, pull = 0;
   const double reach = fit_reach * shortest_edge(star);
-  /// A place on the triangles that moves by `weight` of what the centre moves.
-  const auto sample = [&](const Vec3& at, double weight, const Star::InterfaceTriangle& s) {
-    const auto on = rules.projection->onto_surface(at, s.inside, s.across, reach);
-    if (!on) return;
+  /// A place on the triangles that moves by `weight` of what the centre moves; what it is nearest to.
+  /// `known`: a place of the same surface, which bounds the search.
+  const auto sample = [&](const Vec3& at, double weight, const Star::InterfaceTriangle& s,
+                          const std::optional<Vec3>& known) -> std::optional<Vec3> {
+    auto on = known;
+    const double limit = known ? std::min(reach, (*known - at).norm()) : reach;
+    if (const auto nearer = rules.projection->onto_surface(at, s.inside, s.across, s.patch, limit))
+      on = nearer;
+    if (!on || (*on - at).norm() > reach) return {};
     pull += weight * normal.dot(*on - at);
     weights += weight * weight;
+    return on;
   };
   const Vec3& c = star.centre_position;
-  sample(c, 1, star.interface_triangles.front());
+  const Star::InterfaceTriangle& first = star.interface_triangles.front();
+  const auto on = sample(c, 1, first, {});
   for (const Star::InterfaceTriangle& s : star.interface_triangles)
-    sample((c + star.positions[s.first] + star.positions[s.second]) / 3, 1.0 / 3, s);
+    sample((c + star.positions[s.first] + star.positions[s.second]) / 3, 1.0 / 3, s, on);
   if (!(weights > 0)) return Outcome::no_candidate;
   const Vec3 to = ws.mesh.snap(c + normal * (pull / weights));
   std::vector<float>& qualities = ws.qualities;

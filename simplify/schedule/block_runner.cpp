@@ -15,7 +15,7 @@ namespace {
 
 /// M: of that many items near each other, one is in a batch. More of them make fewer conflicts, but the
 /// batches of a block then reach over more memory: 24 times a batch still fits into a core's cache.
-constexpr std::size_t spacing = 24;
+constexpr std::uint32_t spacing = 24;
 /// Items of a batch: enough to keep several threads busy, few enough for the cache, and more of them where
 /// there are so many items that none of these fits it anyway.
 constexpr std::size_t min_batch = 256, max_batch = 1024, batches_of_large_blocks = 1024;
@@ -148,6 +148,7 @@ bool BlockRunner::select(const Stop& stop) {
     }
     totals_.counts.add(p.operation, o);
     if (o != Outcome::done) continue;
+    if (observer_) observer_(p);
     winners_.push_back(i);
     if (!p.edit.empty()) surface_winners_.push_back(i);
     if (p.next_stage >= 0) again_.push_back({batch_[i].item, static_cast<std::int8_t>(p.next_stage)});

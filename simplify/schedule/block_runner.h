@@ -47,6 +47,9 @@ class BlockRunner {
   /// In the order given.
   void tets_in_order(const std::vector<ListedTet>& items, const TetAttempt& attempt);
 
+  /// Is shown each winner before any of its batch is committed, in their order.
+  void set_observer(std::function<void(const Proposal&)> observer) { observer_ = std::move(observer); }
+
   /// What was counted since the last call.
   struct Totals {
     OperationCounts counts;
@@ -80,6 +83,7 @@ class BlockRunner {
   std::size_t batch_size_;
   std::uint64_t block_ = 0;
   Progress* progress_;
+  std::function<void(const Proposal&)> observer_;
 
   std::vector<std::unique_ptr<Worker>> workers_;
   std::vector<Entry> batch_, again_;

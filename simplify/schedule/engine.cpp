@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <utility>
 
 #include "common/error.h"
 #include "common/parallel/parallel.h"
@@ -63,11 +64,13 @@ void Engine::keep_patches() {
 }
 
 void Engine::compact() {
-  if (compacted_) keep_patches();
-  compacted_ = true;
+  const bool first = !std::exchange(compacted_, true);
+  if (!first) keep_patches();
   const std::size_t spare = mesh_.live_tets() / spare_share + min_spare;
   mesh_.compact(spare, spare / 2);
   grid_.build(mesh_, rules.objective.quality.ideal_edge / 2);
+  // What is embedded stays so: no operation undoes it.
+  if (first) rules.embedded = mesh_.all_positive() && grid_.embedded();
 }
 
 void Engine::compact_if_sparse() {

@@ -6,8 +6,8 @@
 #include "simplify/operations/collapse.h"
 #include "simplify/operations/edge_removal.h"
 #include "simplify/operations/face_removal.h"
-#include "simplify/operations/insertion.h"
 #include "simplify/operations/smoothing.h"
+#include "simplify/schedule/improve_turn.h"
 
 namespace tetwright {
 
@@ -18,11 +18,6 @@ namespace {
 constexpr double stuck_above = 0.8;
 /// What collapses that make room for insertions must leave, over the quality that is aimed at.
 constexpr float thinning_margin = 1.1f;
-/// Error bound E of collapses and edge removals, and the distance by which they may move the surface away
-/// from the reference; both in ideal edges.
-constexpr double surgery_error_edges = 12;
-constexpr double surgery_distance_edges = 0.3;
-constexpr std::size_t surgery_targets = 30;  ///< all neighbours of nearly every point
 /// Share of the poor tets that a round must get rid of to count as gain.
 constexpr double min_round_gain = 0.02;
 /// The same where more than this share of all tets is poor.
@@ -32,43 +27,6 @@ constexpr double min_gain_of_many = 0.05;
 /// else.
 constexpr int max_idle_rounds = 8;
 constexpr int max_idle_rounds_when_good = 2;
-
-/// Qualities (shape_quality()) below which a tet is worked on, and points may leave the surface for it.
-struct Bounds {
-  float poor, leave_surface;
-};
-
-/// One tet's turn: the first action that makes the worst tet around better ends it.
-Outcome improve_tet(Workspace& ws, const BlockRules& rules, const BlockRules& surgery, bool last_resort,
-                    const ListedTet& item, const Bounds& bounds) {
-  const EditableMesh& mesh = ws.mesh;
-  if (!exists(mesh, item)) return Outcome::stale;
-  const float quality = mesh.quality(item.tet);
-  if (quality > bounds.poor) return Outcome::stale;
-  const BlockRules& moving = last_resort && quality < bounds.leave_surface ? surgery : rules;
-  for (Index p : item.points) {
-    Outcome o = ws.gather(p);
-    if (o == Outcome::done) o = optimise(ws, moving);
-    if (ws.count(Operation::optimise, o) == Outcome::done) return o;
-  }
-  for (int e = 0; e < 6; ++e)
-    if (remove_edge(ws, surgery, item.tet, e, full_reach) == Outcome::done) return Outcome::done;
-  for (int f = 0; f < 4; ++f)
-    if (remove_face(ws, rules, item.tet, f, full_reach) == Outcome::done) return Outcome::done;
-  for (Index p : item.points) {
-    if (mesh.live_tets() <= rules.count.min) break;
-    Outcome o = ws.gather(p);
-    if (o == Outcome::done) o = collapse(ws, surgery);
-    if (ws.count(Operation::collapse, o) == Outcome::done) return o;
-  }
-  if (mesh.live_tets() >= rules.count.max) return Outcome::no_candidate;
-  for (int e = 0; e < 6; ++e)
-    if (insert_in_edge(ws, rules, item.tet, e, InsertionPlace::best, true) == Outcome::done)
-      return Outcome::done;
-  for (int f = 0; f < 4; ++f)
-    if (insert_in_face(ws, rules, item.tet, f, InsertionPlace::best) == Outcome::done) return Outcome::done;
-  return insert_in_tet(ws, rules, item.tet, InsertionPlace::best);
-}
 
 /// A flip of the tet, chosen at random, that leaves only good tets or an improvement: it changes the
 /// connectivity near tets that no operation improves.
@@ -103,7 +61,7 @@ class ImprovementLoop {
       engine_.fit_interfaces(bounds_.poor);
       round.finish();
     }
-    set_surgery_rules();
+    surgery_ = surgery_rules(engine_.rules, engine_.rules.objective.quality.ideal_edge);
     min_poor_ = 4 * mesh_.live_tets();
     int i = 0;
     for (; i < plan_.max_rounds; ++i) {
@@ -118,17 +76,6 @@ class ImprovementLoop {
  private:
   float quality(double angle) const {
     return static_cast<float>(std::min(0.99, shape_quality_bound(engine_.rules.objective.shape, angle)));
-  }
-
-  /// Rules of collapses that cut off an ear and of edge removal. They sweep much volume though the surface
-  /// hardly moves, so that the distance from the reference bounds them instead of E.
-  void set_surgery_rules() {
-    surgery_ = engine_.rules;
-    const double edge = engine_.rules.objective.quality.ideal_edge;
-    surgery_.max_error = std::max(engine_.rules.max_error, surgery_error_edges * edge);
-    surgery_.leave_surface = true;
-    surgery_.max_targets = surgery_targets;
-    surgery_.max_distance = surgery_distance_edges * edge;
   }
 
   /// Judges the round before by what it left: false where the last ones gained too little. Decides whether
@@ -214,7 +161,7 @@ class ImprovementLoop {
   Engine& engine_;
   EditableMesh& mesh_;
   const ImprovementPlan& plan_;
-  Bounds bounds_;
+  ImproveBounds bounds_;
   BlockRules surgery_;
   std::vector<ListedTet> tried_;  ///< in the last round, by number
   std::size_t min_poor_ = 0;      ///< the minimum of poor tets after a round

@@ -1,0 +1,218 @@
+#include "simplify/remesh/field_carrier.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/geometry/point_triangle.h"
+#include "common/geometry/predicates.h"
+#include "common/parallel/parallel.h"
+#include "simplify/remesh/tet_overlap.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::size_t leaf_tets = 4;
+constexpr std::size_t grain = 64;  ///< tets a parallel loop hands out at a time
+/// Passes that correct a sum: the first leaves rounding errors of the values, the second those of the sum.
+constexpr int correction_passes = 2;
+
+Box3 box_of(const std::array<Vec3, 4>& corners) {
+  Box3 box;
+  for (const Vec3& p : corners) box.add(p);
+  return box;
+}
+
+double volume_of(const std::array<Vec3, 4>& c) { return orient3d_value(c[0], c[1], c[2], c[3]) / 6; }
+
+/// Kahan's compensated sum: many small summands lose nothing.
+class Sum {
+ public:
+  void add(double x) {
+    const double y = x - lost_, t = sum_ + y;
+    lost_ = (t - sum_) - y;
+    sum_ = t;
+  }
+  double value() const { return sum_; }
+
+ private:
+  double sum_ = 0, lost_ = 0;
+};
+
+}  // namespace
+
+FieldCarrier::FieldCarrier(const EditableMesh& mesh, const ChangeJournal& journal)
+    : mesh_(mesh), journal_(journal) {
+  add_sources();
+  add_targets();
+  place_points();
+}
+
+void FieldCarrier::add_sources() {
+  std::vector<Source> sources;
+  std::vector<Box3> boxes;
+  for (const ChangeJournal::OldTet& t : journal_.tets()) {
+    if (t.points == dead_tet) continue;
+    Source s;
+    for (int k = 0; k < 4; ++k) s.corners[k] = journal_.point(t.points[k]).position;
+    s.points = t.points;
+    s.slot = t.slot;
+    s.region = t.region;
+    s.volume = volume_of(s.corners);
+    if (s.volume < 0) {
+      std::swap(s.corners[0], s.corners[1]);
+      std::swap(s.points[0], s.points[1]);
+      s.volume = -s.volume;
+    }
+    boxes.push_back(box_of(s.corners));
+    sources.push_back(s);
+  }
+  const std::vector<Index> order = morton_order(boxes);
+  sources_.reserve(sources.size());
+  for (Index i : order) sources_.push_back(sources[i]);
+  tree_ = BoxTree(sources_.size(), leaf_tets, [&](std::size_t i) { return boxes[order[i]]; });
+}
+
+template <class Visit>
+void FieldCarrier::for_sources_near(const Box3& box, const Visit& visit) const {
+  const auto nodes = tree_.nodes();
+  for (std::size_t k = 0; k < nodes.size();) {
+    if (!nodes[k].box.intersects(box)) {
+      k = nodes[k].next;
+      continue;
+    }
+    if (tree_.is_leaf(nodes[k]))
+      for (std::uint32_t i = nodes[k].begin; i < nodes[k].end; ++i) visit(i);
+    ++k;
+  }
+}
+
+void FieldCarrier::add_targets() {
+  for (const ChangeJournal::OldTet& t : journal_.tets())
+    if (!mesh_.dead(t.slot)) targets_.push_back({t.slot, mesh_.region(t.slot), 0, {}});
+  parallel_for(0, targets_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Target& target = targets_[i];
+      std::array<Vec3, 4> corners;
+      for (int k = 0; k < 4; ++k) corners[k] = mesh_.position(mesh_.points(target.slot)[k]);
+      target.volume = std::fabs(volume_of(corners));
+      for_sources_near(box_of(corners), [&](std::uint32_t s) {
+        if (sources_[s].region != target.region) return;
+        if (const double common = overlap_volume(corners, sources_[s].corners); common > 0)
+          target.shares.push_back({s, common});
+      });
+    }
+  });
+}
+
+FieldCarrier::Weights FieldCarrier::weights_at(const Vec3& p) const {
+  Weights best{};
+  double nearest = std::numeric_limits<double>::infinity();
+  tree_.nearest(p, nearest, tree_.all(), [&](std::size_t i, double limit) {
+    const Source& s = sources_[i];
+    const auto& c = s.corners;
+    std::array<double, 4> w{orient3d_value(p, c[1], c[2], c[3]), orient3d_value(c[0], p, c[2], c[3]),
+                            orient3d_value(c[0], c[1], p, c[3]), orient3d_value(c[0], c[1], c[2], p)};
+    Vec3 place = p;
+    if (!(s.volume > 0) || std::any_of(w.begin(), w.end(), [](double x) { return x < 0; })) {
+      // Outside: the nearest place of its faces, whose weights follow from the same volumes.
+      double least = std::numeric_limits<double>::infinity();
+      for (const auto& f : tet_faces) {
+        const Vec3 q = closest_point(p, c[f[0]], c[f[1]], c[f[2]]);
+        if ((q - p).squaredNorm() < least) {
+          least = (q - p).squaredNorm();
+          place = q;
+        }
+      }
+      if (least >= nearest) return limit;
+      w = {orient3d_value(place, c[1], c[2], c[3]), orient3d_value(c[0], place, c[2], c[3]),
+           orient3d_value(c[0], c[1], place, c[3]), orient3d_value(c[0], c[1], c[2], place)};
+    }
+    double sum = 0;
+    for (double& x : w) sum += x = std::max(x, 0.0);
+    if (!(sum > 0)) return limit;  // flat
+    for (double& x : w) x /= sum;
+    const double distance = (place - p).squaredNorm();
+    if (distance >= nearest) return limit;
+    nearest = distance;
+    best = {s.points, w};
+    return std::min(limit, distance);
+  });
+  return best;
+}
+
+void FieldCarrier::place_points() {
+  if (sources_.empty()) return;
+  for (const ChangeJournal::OldPoint& old : journal_.points()) {
+    if (mesh_.incident_tet(old.point) == no_index) continue;
+    const Vec3& now = mesh_.position(old.point);
+    if (!old.existed || now != old.position) placed_.push_back({old.point, weights_at(now)});
+  }
+}
+
+void FieldCarrier::carry_point_field(std::vector<double>& values, std::size_t components) const {
+  std::vector<double> carried(placed_.size() * components, 0);
+  for (std::size_t i = 0; i < placed_.size(); ++i)
+    for (int k = 0; k < 4; ++k)
+      // A corner without weight says nothing, whatever stands there.
+      if (const double w = placed_[i].from.weights[k]; w > 0)
+        for (std::size_t c = 0; c < components; ++c)
+          carried[i * components + c] += w * values[placed_[i].from.points[k] * components + c];
+  for (const ChangeJournal::OldPoint& old : journal_.points())
+    if (mesh_.incident_tet(old.point) == no_index)
+      std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(old.point * components), components, 0.0);
+  for (std::size_t i = 0; i < placed_.size(); ++i)
+    std::copy_n(carried.begin() + static_cast<std::ptrdiff_t>(i * components), components,
+                values.begin() + static_cast<std::ptrdiff_t>(placed_[i].point * components));
+}
+
+void FieldCarrier::carry_tet_field(std::vector<double>& values, std::size_t components) const {
+  std::vector<RegionId> regions;
+  for (const Source& s : sources_) regions.push_back(s.region);
+  std::sort(regions.begin(), regions.end());
+  regions.erase(std::unique(regions.begin(), regions.end()), regions.end());
+  std::vector<double> carried(targets_.size() * components, 0);
+  for (std::size_t c = 0; c < components; ++c) {
+    const auto old_value = [&](const Source& s) { return values[s.slot * components + c]; };
+    const auto new_value = [&](std::size_t i) -> double& { return carried[i * components + c]; };
+    for (RegionId region : regions) {
+      Sum before, volume;
+      for (const Source& s : sources_)
+        if (s.region == region) before.add(old_value(s) * s.volume);
+      for (const Target& t : targets_)
+        if (t.region == region) volume.add(t.volume);
+      if (!(volume.value() > 0)) continue;
+      Sum old_volume;
+      for (const Source& s : sources_)
+        if (s.region == region) old_volume.add(s.volume);
+      const double mean = old_volume.value() > 0 ? before.value() / old_volume.value() : 0;
+      for (std::size_t i = 0; i < targets_.size(); ++i) {
+        const Target& t = targets_[i];
+        if (t.region != region) continue;
+        double covered = 0, sum = 0;
+        for (const auto& [s, common] : t.shares) {
+          covered += common;
+          sum += common * old_value(sources_[s]);
+        }
+        new_value(i) = covered > 0 ? sum / covered : mean;
+      }
+      for (int pass = 0; pass < correction_passes; ++pass) {
+        Sum missing;
+        missing.add(before.value());
+        for (std::size_t i = 0; i < targets_.size(); ++i)
+          if (targets_[i].region == region) missing.add(-new_value(i) * targets_[i].volume);
+        const double summand = missing.value() / volume.value();
+        for (std::size_t i = 0; i < targets_.size(); ++i)
+          if (targets_[i].region == region) new_value(i) += summand;
+      }
+    }
+  }
+  for (const ChangeJournal::OldTet& t : journal_.tets())
+    if (mesh_.dead(t.slot))
+      std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(t.slot * components), components, 0.0);
+  for (std::size_t i = 0; i < targets_.size(); ++i)
+    std::copy_n(carried.begin() + static_cast<std::ptrdiff_t>(i * components), components,
+                values.begin() + static_cast<std::ptrdiff_t>(targets_[i].slot * components));
+}
+
+}  // namespace tetwright

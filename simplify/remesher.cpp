@@ -1,0 +1,419 @@
+#include "simplify/remesher.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "common/error.h"
+#include "common/mesh/interfaces.h"
+#include "common/parallel/parallel.h"
+#include "simplify/constraints/surface_projection.h"
+#include "simplify/remesh/change_journal.h"
+#include "simplify/remesh/field_carrier.h"
+#include "simplify/remesh/remesh_rounds.h"
+#include "simplify/remesh/tet_boxes.h"
+#include "simplify/schedule/block_runner.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::size_t slot_grain = 8192;  ///< tets a parallel loop hands out at a time
+/// Free slots at first, as a share of what there is: the arrays grow in place beyond them.
+constexpr std::size_t spare_share = 64, min_spare = 4096;
+/// Share by which the volume of a material may change over the life of a Remesher.
+constexpr double volume_share = 0.015;
+/// Over min_solid_angle: what is improved, and what may leave the surface a little for it, as in improve().
+constexpr double poor_margin = 1.27, leave_surface_margin = 1;
+/// Of the bound: what coarsening and refining must leave of shapes that were good.
+constexpr float floor_share = 0.3f;
+/// Rings of tets around a region whose surfaces are projected onto.
+constexpr int projection_rings = 2;
+
+struct Field {
+  std::size_t components;
+  std::vector<double> values;
+};
+
+void sort_unique(std::vector<Index>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+/// The values of a field by new numbers.
+std::vector<double> renumbered(const Field& field, const std::vector<Index>& numbers, std::size_t slots) {
+  std::vector<double> values(field.components * slots, 0);
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (numbers[i] != no_index)
+      std::copy_n(field.values.begin() + static_cast<std::ptrdiff_t>(i * field.components), field.components,
+                  values.begin() + static_cast<std::ptrdiff_t>(numbers[i] * field.components));
+  return values;
+}
+
+}  // namespace
+
+struct Remesher::Impl {
+  Impl(TetMesh&& input, const RemesherOptions& given, Renumbering* numbers)
+      : options(given),
+        mesh(std::move(input), given.name),
+        runner(mesh, grid, ledger, given.seed, 0, nullptr) {
+    if (!(mesh.total_volume() > 0))
+      throw InputError(
+          options.name, 0,
+          "the volumes of its tets add up to nothing or less; turn the tets so that they are positive");
+    if (!options.frozen.empty()) mesh.freeze(options.frozen);
+    if (options.fix_boundary) mesh.freeze_interfaces();
+    rules.objective.kind = Objective::Kind::shape;
+    rules.objective.shape = options.objective;
+    renumber(numbers);
+    ledger.open(mesh, volume_share);
+    for (Index p = 0; p < mesh.point_slots(); ++p)
+      if (mesh.original(p) != p) copies.push_back({p, mesh.original(p)});
+  }
+
+  /// Compacts, and builds anew what goes with the whole mesh.
+  void renumber(Renumbering* numbers) {
+    SlotNumbers slots;
+    const std::size_t spare = mesh.live_tets() / spare_share + min_spare;
+    mesh.compact(spare, spare, &slots);
+    mesh.reserve_twice();
+    if (numbers) *numbers = {std::move(slots.points), std::move(slots.tets)};
+    look_at_all();
+  }
+  void look_at_all() {
+    parallel_for(0, mesh.tet_slots(), slot_grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) rate(static_cast<Index>(t));
+    });
+    grid.build(mesh, 0);
+    boxes.build(mesh);
+  }
+  void rate(Index t) {
+    if (!mesh.dead(t)) mesh.set_quality(t, quality_of(mesh, rules, mesh.points(t)));
+  }
+
+  std::vector<Index> tets_of(const RemeshRegion& region);
+  std::vector<Index> with_rings(std::vector<Index> tets, int rings);
+  SurfaceProjection project_region(const std::vector<Index>& region);
+  template <class Work>
+  RemeshChanges call(const RemeshRegion& region, const Work& work);
+  RemeshChanges changes() const;
+  void carry_fields();
+  void move_points(std::span<const Index> points, std::span<const Vec3> positions);
+
+  RemesherOptions options;
+  EditableMesh mesh;
+  SurfaceGrid grid;
+  VolumeLedger ledger;
+  BlockRunner runner;
+  TetBoxes boxes;
+  ChangeJournal journal;
+  BlockRules rules;
+  StarWalk walk;
+  std::vector<Field> point_fields, tet_fields;
+  std::vector<std::array<Index, 2>> copies;  ///< points that were split off, and from which
+};
+
+std::vector<Index> Remesher::Impl::tets_of(const RemeshRegion& region) {
+  if (const auto* list = std::get_if<std::vector<Index>>(&region.value_)) {
+    std::vector<Index> tets = *list;
+    sort_unique(tets);
+    for (Index t : tets)
+      if (t >= mesh.tet_slots() || mesh.dead(t))
+        throw UsageError("the region lists tet " + std::to_string(t) + ", which is not there");
+    return tets;
+  }
+  if (const auto* box = std::get_if<RemeshRegion::Box>(&region.value_)) {
+    Box3 working;
+    working.low = mesh.space().to_working(box->low);
+    working.high = mesh.space().to_working(box->high);
+    return boxes.tets_in(mesh, working);
+  }
+  const auto& inside = std::get<std::function<bool(const Vec3&)>>(region.value_);
+  std::vector<std::uint8_t> chosen(mesh.point_slots(), 0);
+  for (Index p = 0; p < mesh.point_slots(); ++p)
+    if (mesh.incident_tet(p) != no_index) chosen[p] = inside(mesh.space().to_input(mesh.position(p)));
+  std::vector<Index> tets;
+  for (Index t = 0; t < mesh.tet_slots(); ++t)
+    if (!mesh.dead(t) &&
+        std::any_of(mesh.points(t).begin(), mesh.points(t).end(), [&](Index p) { return chosen[p] != 0; }))
+      tets.push_back(t);
+  return tets;
+}
+
+std::vector<Index> Remesher::Impl::with_rings(std::vector<Index> tets, int rings) {
+  for (int ring = 0; ring < rings; ++ring) {
+    std::vector<Index> points;
+    for (Index t : tets) points.insert(points.end(), mesh.points(t).begin(), mesh.points(t).end());
+    sort_unique(points);
+    for (Index p : points)
+      walk.any_tet(mesh, p, [&](Index t) {
+        tets.push_back(t);
+        return false;
+      });
+    sort_unique(tets);
+  }
+  return tets;
+}
+
+SurfaceProjection Remesher::Impl::project_region(const std::vector<Index>& region) {
+  const std::vector<Index> inner = with_rings(region, projection_rings - 1), outer = with_rings(inner, 1);
+  LocalNumbers complete;
+  bool added;
+  for (Index t : inner)
+    for (Index p : mesh.points(t)) complete.number(p, added);
+  std::vector<InterfaceFace> faces;
+  for (Index t : outer)
+    for (int f = 0; f < 4; ++f) {
+      const FaceLink link = mesh.link(t, f);
+      // An inner one once; its other tet may be beyond the outer ring.
+      if (!link.is_interface() || (!link.is_outside() && link.tet() < t &&
+                                   std::binary_search(outer.begin(), outer.end(), link.tet())))
+        continue;
+      const Triangle ids = face_of(mesh.points(t), f);
+      faces.push_back({ids, mesh.region(t), mesh.region_across(t, f),
+                       link.is_outside() ? link.patch() : grid.patch(mesh, ids)});
+    }
+  return SurfaceProjection(mesh, faces, nullptr, [&](Index p) { return complete.find(p) != no_index; });
+}
+
+template <class Work>
+RemeshChanges Remesher::Impl::call(const RemeshRegion& region, const Work& work) {
+  const std::vector<Index> tets = tets_of(region);
+  journal.clear();
+  if (tets.empty()) return {};
+  const SurfaceProjection projection = project_region(tets);
+  rules.projection = &projection;
+  double edges = 0;
+  for (Index t : tets) {
+    const Tet& p = mesh.points(t);
+    for (const auto& e : tet_edges) edges += (mesh.position(p[e[0]]) - mesh.position(p[e[1]])).norm();
+  }
+  rules.max_error = edges / static_cast<double>(tet_edges.size() * tets.size());
+  const auto bound = [&](double margin) {
+    return static_cast<float>(
+        std::min(0.99, shape_quality_bound(options.objective, margin * options.min_solid_angle)));
+  };
+  std::uint64_t operations = 0;
+  {
+    RemeshRounds rounds(mesh, runner, journal, rules,
+                        {bound(poor_margin), bound(leave_surface_margin), floor_share * bound(1)}, tets);
+    work(rounds);
+    rounds.improve();
+    operations = rounds.operations();
+  }
+  rules.projection = nullptr;
+  runner.take_totals();
+  carry_fields();
+  std::vector<Index> slots;
+  for (const ChangeJournal::OldTet& t : journal.tets()) slots.push_back(t.slot);
+  boxes.repair(mesh, slots);
+  RemeshChanges result = changes();
+  result.operations = operations;
+  return result;
+}
+
+RemeshChanges Remesher::Impl::changes() const {
+  RemeshChanges c;
+  for (const ChangeJournal::OldTet& t : journal.tets()) {
+    const bool was = t.points != dead_tet, is = !mesh.dead(t.slot);
+    if (was && is && t.points == mesh.points(t.slot) && t.region == mesh.region(t.slot)) continue;
+    if (was) c.removed_tets.push_back(t.slot);
+    if (is) c.added_tets.push_back(t.slot);
+  }
+  for (const ChangeJournal::OldPoint& p : journal.points()) {
+    const bool is = mesh.incident_tet(p.point) != no_index;
+    if (p.existed && !is) c.removed_points.push_back(p.point);
+    if (!p.existed && is) c.added_points.push_back(p.point);
+    if (p.existed && is && mesh.position(p.point) != p.position) c.moved_points.push_back(p.point);
+  }
+  for (auto* list : {&c.removed_tets, &c.added_tets, &c.removed_points, &c.added_points, &c.moved_points})
+    std::sort(list->begin(), list->end());
+  return c;
+}
+
+void Remesher::Impl::carry_fields() {
+  for (Field& f : point_fields) f.values.resize(f.components * mesh.point_slots(), 0);
+  for (Field& f : tet_fields) f.values.resize(f.components * mesh.tet_slots(), 0);
+  if (journal.tets().empty() || (point_fields.empty() && tet_fields.empty())) return;
+  const FieldCarrier carrier(mesh, journal);
+  for (Field& f : point_fields) carrier.carry_point_field(f.values, f.components);
+  for (Field& f : tet_fields) carrier.carry_tet_field(f.values, f.components);
+}
+
+void Remesher::Impl::move_points(std::span<const Index> points, std::span<const Vec3> positions) {
+  std::vector<Index> moved(points.begin(), points.end());
+  for (const auto& [copy, original] : copies)
+    if (std::find(points.begin(), points.end(), original) != points.end()) moved.push_back(copy);
+  std::vector<Index> tets;
+  for (Index p : moved)
+    walk.any_tet(mesh, p, [&](Index t) {
+      tets.push_back(t);
+      return false;
+    });
+  sort_unique(tets);
+  SurfaceGrid::Edit edit;
+  std::vector<std::pair<Triangle, PatchId>> faces;
+  const auto triangle = [&](const Triangle& ids) {
+    return MeshTriangle{ids, {mesh.position(ids[0]), mesh.position(ids[1]), mesh.position(ids[2])}};
+  };
+  for (Index t : tets)
+    for (int f = 0; f < 4; ++f) {
+      const FaceLink link = mesh.link(t, f);
+      if (!link.is_interface() ||
+          (!link.is_outside() && link.tet() < t && std::binary_search(tets.begin(), tets.end(), link.tet())))
+        continue;
+      const Triangle ids = face_of(mesh.points(t), f);
+      faces.push_back({ids, link.is_outside() ? link.patch() : grid.patch(mesh, ids)});
+      edit.removed.push_back(triangle(ids));
+    }
+  for (std::size_t i = 0; i < points.size(); ++i)
+    mesh.set_position(points[i], mesh.space().to_working(positions[i]));
+  for (const auto& [copy, original] : copies) mesh.set_position(copy, mesh.position(original));
+  for (const auto& [ids, patch] : faces) edit.added.push_back({triangle(ids), patch});
+  grid.replace(edit);
+  for (Index t : tets) rate(t);
+  boxes.repair(mesh, tets);
+}
+
+Remesher::Remesher(TetMesh mesh, const RemesherOptions& options, Renumbering* numbers)
+    : impl_(std::make_unique<Impl>(std::move(mesh), options, numbers)) {}
+Remesher::~Remesher() = default;
+Remesher::Remesher(Remesher&&) noexcept = default;
+Remesher& Remesher::operator=(Remesher&&) noexcept = default;
+
+std::size_t Remesher::tet_count() const { return impl_->mesh.live_tets(); }
+std::size_t Remesher::tet_slots() const { return impl_->mesh.tet_slots(); }
+std::size_t Remesher::point_slots() const { return impl_->mesh.point_slots(); }
+bool Remesher::has_tet(Index tet) const { return tet < tet_slots() && !impl_->mesh.dead(tet); }
+bool Remesher::has_point(Index point) const {
+  return point < point_slots() && impl_->mesh.incident_tet(point) != no_index;
+}
+const Tet& Remesher::tet(Index tet) const { return impl_->mesh.points(tet); }
+MaterialTag Remesher::material(Index tet) const { return impl_->mesh.tag(impl_->mesh.region(tet)); }
+Vec3 Remesher::position(Index point) const {
+  return impl_->mesh.space().to_input(impl_->mesh.position(point));
+}
+float Remesher::quality(Index tet) const { return impl_->mesh.quality(tet); }
+
+std::size_t Remesher::add_point_field(std::size_t components, std::vector<double> values) {
+  if (components == 0 || values.size() != components * point_slots())
+    throw UsageError("a field of points needs its components for each of " + std::to_string(point_slots()) +
+                     " slots, not " + std::to_string(values.size()) + " numbers");
+  impl_->point_fields.push_back({components, std::move(values)});
+  return impl_->point_fields.size() - 1;
+}
+std::size_t Remesher::add_tet_field(std::size_t components, std::vector<double> values) {
+  if (components == 0 || values.size() != components * tet_slots())
+    throw UsageError("a field of tets needs its components for each of " + std::to_string(tet_slots()) +
+                     " slots, not " + std::to_string(values.size()) + " numbers");
+  impl_->tet_fields.push_back({components, std::move(values)});
+  return impl_->tet_fields.size() - 1;
+}
+std::vector<double>& Remesher::point_field(std::size_t field) { return impl_->point_fields.at(field).values; }
+std::vector<double>& Remesher::tet_field(std::size_t field) { return impl_->tet_fields.at(field).values; }
+
+void Remesher::set_positions(std::span<const Vec3> positions) {
+  EditableMesh& mesh = impl_->mesh;
+  if (positions.size() != mesh.point_slots())
+    throw UsageError("positions for all points need " + std::to_string(mesh.point_slots()) +
+                     " of them, not " + std::to_string(positions.size()));
+  for (Index p = 0; p < mesh.point_slots(); ++p)
+    if (mesh.incident_tet(p) != no_index && !positions[p].allFinite())
+      throw InputError(impl_->options.name, 0,
+                       "the new position of point " + std::to_string(p) + " is not finite");
+  for (Index p = 0; p < mesh.point_slots(); ++p)
+    if (mesh.incident_tet(p) != no_index)
+      mesh.set_position(p, mesh.space().to_working(positions[mesh.original(p)]));
+  impl_->look_at_all();
+}
+
+void Remesher::set_positions(std::span<const Index> points, std::span<const Vec3> positions) {
+  if (points.size() != positions.size())
+    throw UsageError(std::to_string(points.size()) + " points, but " + std::to_string(positions.size()) +
+                     " positions");
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!has_point(points[i])) throw UsageError("point " + std::to_string(points[i]) + " is not there");
+    if (!positions[i].allFinite())
+      throw InputError(impl_->options.name, 0,
+                       "the new position of point " + std::to_string(points[i]) + " is not finite");
+  }
+  impl_->move_points(points, positions);
+}
+
+RemeshChanges Remesher::improve(const RemeshRegion& region) {
+  return impl_->call(region, [](RemeshRounds&) {});
+}
+
+RemeshChanges Remesher::coarsen(const RemeshRegion& region, double size) {
+  if (!(size > 0)) throw UsageError("the size of edges must be above 0");
+  return impl_->call(region, [&](RemeshRounds& r) { r.coarsen(size * impl_->mesh.space().scale()); });
+}
+
+RemeshChanges Remesher::refine(const RemeshRegion& region, double size) {
+  if (!(size > 0)) throw UsageError("the size of edges must be above 0");
+  return impl_->call(region, [&](RemeshRounds& r) { r.refine(size * impl_->mesh.space().scale()); });
+}
+
+Renumbering Remesher::compact() {
+  Renumbering numbers;
+  if (impl_->mesh.interface_patches()) impl_->mesh.set_interface_patches(impl_->grid.patches());
+  impl_->renumber(&numbers);
+  for (Field& f : impl_->point_fields) f.values = renumbered(f, numbers.points, point_slots());
+  for (Field& f : impl_->tet_fields) f.values = renumbered(f, numbers.tets, tet_slots());
+  for (auto& copy : impl_->copies)
+    for (Index& p : copy) p = numbers.points[p];
+  return numbers;
+}
+
+TetMesh Remesher::mesh() const {
+  const EditableMesh& mesh = impl_->mesh;
+  TetMesh out;
+  std::vector<Index> number(mesh.point_slots(), no_index), points, tets;
+  for (Index p = 0; p < mesh.point_slots(); ++p)
+    if (mesh.incident_tet(p) != no_index && mesh.original(p) == p) {
+      number[p] = static_cast<Index>(points.size());
+      points.push_back(p);
+      out.points.push_back(position(p));
+    }
+  for (Index t = 0; t < mesh.tet_slots(); ++t) {
+    if (mesh.dead(t)) continue;
+    Tet corners = mesh.points(t);
+    for (Index& p : corners) p = number[mesh.original(p)];
+    tets.push_back(t);
+    out.tets.push_back(corners);
+    out.materials.push_back(material(t));
+  }
+  out.material_names = mesh.names();
+  const auto add_fields = [](const std::vector<Field>& fields, const char* name,
+                             const std::vector<Index>& slots, std::vector<MeshField>& to) {
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      const Field& f = fields[i];
+      MeshField field{name + std::to_string(i), static_cast<int>(f.components), false, {}};
+      field.values.reserve(slots.size() * f.components);
+      for (Index s : slots)
+        field.values.insert(field.values.end(),
+                            f.values.begin() + static_cast<std::ptrdiff_t>(s * f.components),
+                            f.values.begin() + static_cast<std::ptrdiff_t>((s + 1) * f.components));
+      to.push_back(std::move(field));
+    }
+  };
+  add_fields(impl_->point_fields, "point_field_", points, out.point_fields);
+  add_fields(impl_->tet_fields, "tet_field_", tets, out.cell_fields);
+  out.interfaces = find_interfaces(out);
+  std::map<Triangle, PatchId> patches;
+  for (const auto& [ids, patch] : impl_->grid.patches()) {
+    Triangle key = ids;
+    for (Index& p : key) p = number[p];
+    std::sort(key.begin(), key.end());
+    patches.emplace(key, patch);
+  }
+  if (!patches.empty())
+    for (InterfaceTriangle& t : out.interfaces) {
+      Triangle key = t.ids;
+      std::sort(key.begin(), key.end());
+      if (const auto known = patches.find(key); known != patches.end()) t.patch = known->second;
+    }
+  return out;
+}
+
+}  // namespace tetwright

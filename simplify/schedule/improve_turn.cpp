@@ -1,0 +1,63 @@
+#include "simplify/schedule/improve_turn.h"
+
+#include <algorithm>
+
+#include "simplify/operations/collapse.h"
+#include "simplify/operations/edge_removal.h"
+#include "simplify/operations/face_removal.h"
+#include "simplify/operations/insertion.h"
+#include "simplify/operations/smoothing.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Error bound E of collapses and edge removals, and the distance by which they may move the surface away
+/// from the reference; both in usual edges.
+constexpr double surgery_error_edges = 12;
+constexpr double surgery_distance_edges = 0.3;
+constexpr std::size_t surgery_targets = 30;  ///< all neighbours of nearly every point
+
+}  // namespace
+
+Outcome improve_tet(Workspace& ws, const BlockRules& rules, const BlockRules& surgery, bool last_resort,
+                    const ListedTet& item, const ImproveBounds& bounds) {
+  const EditableMesh& mesh = ws.mesh;
+  if (!exists(mesh, item)) return Outcome::stale;
+  const float quality = mesh.quality(item.tet);
+  if (quality > bounds.poor) return Outcome::stale;
+  const BlockRules& moving = last_resort && quality < bounds.leave_surface ? surgery : rules;
+  for (Index p : item.points) {
+    Outcome o = ws.gather(p);
+    if (o == Outcome::done) o = optimise(ws, moving);
+    if (ws.count(Operation::optimise, o) == Outcome::done) return o;
+  }
+  for (int e = 0; e < 6; ++e)
+    if (remove_edge(ws, surgery, item.tet, e, full_reach) == Outcome::done) return Outcome::done;
+  for (int f = 0; f < 4; ++f)
+    if (remove_face(ws, rules, item.tet, f, full_reach) == Outcome::done) return Outcome::done;
+  for (Index p : item.points) {
+    if (mesh.live_tets() <= rules.count.min) break;
+    Outcome o = ws.gather(p);
+    if (o == Outcome::done) o = collapse(ws, surgery);
+    if (ws.count(Operation::collapse, o) == Outcome::done) return o;
+  }
+  if (mesh.live_tets() >= rules.count.max) return Outcome::no_candidate;
+  for (int e = 0; e < 6; ++e)
+    if (insert_in_edge(ws, rules, item.tet, e, InsertionPlace::best, true) == Outcome::done)
+      return Outcome::done;
+  for (int f = 0; f < 4; ++f)
+    if (insert_in_face(ws, rules, item.tet, f, InsertionPlace::best) == Outcome::done) return Outcome::done;
+  return insert_in_tet(ws, rules, item.tet, InsertionPlace::best);
+}
+
+BlockRules surgery_rules(const BlockRules& rules, double edge) {
+  BlockRules surgery = rules;
+  surgery.max_error = std::max(rules.max_error, surgery_error_edges * edge);
+  surgery.leave_surface = true;
+  surgery.max_targets = surgery_targets;
+  surgery.max_distance = surgery_distance_edges * edge;
+  return surgery;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "simplify/schedule/block_runner.h"
+
+namespace tetwright {
+
+/// Qualities (shape_quality()) below which a tet is worked on, and points may leave the surface for it.
+struct ImproveBounds {
+  float poor, leave_surface;
+};
+
+/// One tet's turn: the first action that makes the worst tet around better ends it. `surgery`: rules of edge
+/// removals and collapses. `last_resort`: points of tets worse than bounds.leave_surface move by them, too.
+Outcome improve_tet(Workspace& ws, const BlockRules& rules, const BlockRules& surgery, bool last_resort,
+                    const ListedTet& item, const ImproveBounds& bounds);
+
+/// Rules of collapses that cut off an ear and of edge removal. They sweep much volume though the surface
+/// hardly moves, so that the distance from the reference bounds them instead of E. `edge`: a usual one,
+/// working coordinates.
+BlockRules surgery_rules(const BlockRules& rules, double edge);
+
+}  // namespace tetwright
