@@ -106,14 +106,14 @@ TEST(EditableMesh, SplitsWhatTouchesWithoutAFaceAndPutsItTogetherAgain) {
   EXPECT_TRUE(editable.links_consistent());
   EXPECT_EQ(editable.point_slots(), touching.points.size() + 2);
   editable.compact(10, 10);
-  std::size_t pinned = 0, copies = 0;
+  std::size_t frozen = 0, copies = 0;
   for (Index p = 0; p < editable.point_slots(); ++p) {
-    pinned += editable.pinned(p);
+    frozen += editable.frozen(p);
     if (editable.original(p) == p) continue;
     ++copies;
     EXPECT_EQ(editable.position(p), editable.position(editable.original(p)));
   }
-  EXPECT_EQ(pinned, 4u);
+  EXPECT_EQ(frozen, 4u);
   EXPECT_EQ(copies, 2u);
   const TetMesh after = std::move(editable).to_mesh();
   EXPECT_EQ(after.points.size(), touching.points.size());
