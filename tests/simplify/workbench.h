@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -14,7 +15,11 @@ namespace tetwright {
 
 /// One worker on one mesh, for tests of single operations.
 struct Workbench {
-  explicit Workbench(const TetMesh& input) : mesh(TetMesh(input), "mesh") {
+  /// `prepare`: what is to be done before the points get other numbers.
+  explicit Workbench(
+      const TetMesh& input, const std::function<void(EditableMesh&)>& prepare = [](EditableMesh&) {})
+      : mesh(TetMesh(input), "mesh") {
+    prepare(mesh);
     mesh.compact(64, 32);
     rules.objective.quality = TetQuality::for_target(mesh.total_volume(), 1);
     rules.max_error = 1e9;
