@@ -99,24 +99,31 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const ReferenceSu
                            std::max(f.inside, f.across)});
     surfaces_ = ProjectionTree(std::move(points.points), std::move(triangles));
   }
-  // The edges with other than two of the triangles: junction curves, and where the input is not manifold.
-  std::vector<std::uint64_t> edges(3 * faces.size());
+  // The edges with other than two of the triangles, or two of different patches: junction curves, and where
+  // the input is not manifold.
+  struct Side {
+    std::uint64_t edge;
+    PatchId patch;
+  };
+  std::vector<Side> edges(3 * faces.size());
   parallel_for(0, faces.size(), projection_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       for (int k = 0; k < 3; ++k) {
         const Index p = faces[i].ids[k], q = faces[i].ids[(k + 1) % 3];
-        edges[3 * i + k] = std::uint64_t{std::min(p, q)} << 32 | std::max(p, q);
+        edges[3 * i + k] = {std::uint64_t{std::min(p, q)} << 32 | std::max(p, q), faces[i].patch};
       }
   });
-  parallel_sort(edges);
+  parallel_sort(edges, [](const Side& a, const Side& b) {
+    return a.edge != b.edge ? a.edge < b.edge : a.patch < b.patch;
+  });
   PointCopies points(mesh);
   std::vector<ProjectionTree::Item> segments;
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t j = i + 1;
-    while (j < edges.size() && edges[j] == edges[i]) ++j;
-    if (j - i != 2) {
-      const Index a = points.number(static_cast<Index>(edges[i] >> 32)),
-                  b = points.number(static_cast<Index>(edges[i]));
+    while (j < edges.size() && edges[j].edge == edges[i].edge) ++j;
+    if (j - i != 2 || edges[i].patch != edges[i + 1].patch) {
+      const Index a = points.number(static_cast<Index>(edges[i].edge >> 32)),
+                  b = points.number(static_cast<Index>(edges[i].edge));
       segments.push_back({{a, b, b}, 0, 0});
     }
     i = j;
