@@ -44,7 +44,8 @@ struct BlockRules {
   /// checked. Unlike E it does not add up over several operations.
   double max_distance = 0;
   /// Points of interfaces, junction curves and corners may leave them by up to max_distance (or as far as
-  /// they are away already) where that improves the shapes (needs `projection`).
+  /// they are away already) where that improves the shapes (needs `projection`); those where patches meet
+  /// stay.
   bool leave_surface = false;
   /// What points of interfaces and junction curves are projected onto; null: they stay in planes of constant
   /// volume.
