@@ -74,7 +74,7 @@ std::map<Operation, std::uint64_t> run_all(Workbench& w, const SurfaceProjection
     w.expect_sound();
     const Kept now = kept(w.mesh);
     EXPECT_TRUE(now.points == before.points) << operation_names[static_cast<std::size_t>(operation)];
-    EXPECT_TRUE(now.tets == before.tets) << operation_names[static_cast<std::size_t>(operation)];
+    EXPECT_TRUE(includes(now.tets, before.tets)) << operation_names[static_cast<std::size_t>(operation)];
     EXPECT_TRUE(includes(now.faces, before.faces)) << operation_names[static_cast<std::size_t>(operation)];
   };
   const auto stars = [&](Operation operation, const std::function<Outcome(Workspace&)>& act) {
@@ -90,6 +90,7 @@ std::map<Operation, std::uint64_t> run_all(Workbench& w, const SurfaceProjection
   };
   const auto tets = [&](Operation operation, int count,
                         const std::function<Outcome(Workspace&, Index, int)>& act) {
+    w.rules.count.max = w.mesh.live_tets() + 300;  // more would take their time
     std::vector<ListedTet> items;
     for (Index t = 0; t < w.mesh.tet_slots(); ++t)
       if (!w.mesh.dead(t)) items.push_back({t, w.mesh.points(t)});

@@ -31,7 +31,8 @@ double from_side(const Vec3& p, int side) {
   return std::abs(p[axis] - ((side - 1) % 2) * n);
 }
 
-void expect_sides(const TetMesh& before, const TetMesh& after) {
+/// `leave`: how far points within a side may leave it.
+void expect_sides(const TetMesh& before, const TetMesh& after, double leave) {
   for (const MeshFinding& f : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(f);
   for (const std::string& d : topology_differences(topology(before), topology(after))) ADD_FAILURE() << d;
   std::array<double, 7> area{};
@@ -40,12 +41,14 @@ void expect_sides(const TetMesh& before, const TetMesh& after) {
     ASSERT_LE(t.patch, 6);
     const Vec3 &a = after.points[t.ids[0]], &b = after.points[t.ids[1]], &c = after.points[t.ids[2]];
     area[t.patch] += (b - a).cross(c - a).norm() / 2;
-    for (const Vec3& p : {a, b, c}) EXPECT_LT(from_side(p, t.patch), rounding) << p.transpose();
+    for (const Vec3& p : {a, b, c}) EXPECT_LT(from_side(p, t.patch), leave) << p.transpose();
   }
-  for (int side = 1; side <= 6; ++side) EXPECT_NEAR(area[side], n * n, 1e-6) << side;
+  for (int side = 1; side <= 6; ++side) EXPECT_NEAR(area[side], n * n, leave * n * n) << side;
   std::size_t corners = 0, on_edges = 0;
   for (const auto& [p, patches] : patches_at_points(after)) {
     on_edges += patches.size() == 2;
+    if (patches.size() > 1)
+      for (int side : patches) EXPECT_LT(from_side(after.points[p], side), rounding);
     if (patches.size() < 3) continue;
     ++corners;
     for (int a = 0; a < 3; ++a)
@@ -76,12 +79,13 @@ TEST_P(Patches, SidesOfACubeKeepTheirEdgesAndCorners) {
   options.schedule = GetParam().schedule;
   const TetMesh after = simplify(mesh, options);
   EXPECT_LT(after.tets.size(), mesh.tets.size() / 5);
-  expect_sides(mesh, after);
+  // The closing lets points at poor tets leave a surface by a third of an ideal edge.
+  expect_sides(mesh, after, GetParam().schedule == Schedule::paper ? rounding : 0.6);
 }
 
 TEST(Patches, SidesStayThroughImprovement) {
-  const TetMesh mesh = cube_with_sides(n, 2, 0.6);
-  expect_sides(mesh, improve(mesh, ImproveOptions()));
+  const TetMesh mesh = cube_with_sides(n, 2, 0.9);
+  expect_sides(mesh, improve(mesh, ImproveOptions()), 0.3);
 }
 
 TEST_P(Patches, ACreaseInAnInterfaceStays) {
@@ -114,6 +118,19 @@ TEST_P(Patches, ACreaseInAnInterfaceStays) {
   EXPECT_EQ(low, 0);
   EXPECT_EQ(high, n);
   EXPECT_LT(on_crease, static_cast<std::size_t>(n + 1));
+}
+
+// Points at poor tets may leave a surface a little, but not where patches meet.
+TEST(Patches, ImprovementKeepsACrease) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    TetMesh mesh = two_halves(n, seed, 0.9);
+    const TetMesh after = improve(mesh, ImproveOptions());
+    for (const auto& [p, patches] : patches_at_points(after))
+      if (patches.count(1) && patches.count(2)) {
+        EXPECT_NEAR(after.points[p].x(), n / 2, rounding);
+        EXPECT_NEAR(after.points[p].y(), n / 2, rounding);
+      }
+  }
 }
 
 // Without patches the same cube's edges are cut.
