@@ -47,8 +47,9 @@ void expect_sides(const TetMesh& before, const TetMesh& after, double leave) {
   std::size_t corners = 0, on_edges = 0;
   for (const auto& [p, patches] : patches_at_points(after)) {
     on_edges += patches.size() == 2;
-    if (patches.size() > 1)
+    if (patches.size() > 1) {
       for (int side : patches) EXPECT_LT(from_side(after.points[p], side), rounding);
+    }
     if (patches.size() < 3) continue;
     ++corners;
     for (int a = 0; a < 3; ++a)

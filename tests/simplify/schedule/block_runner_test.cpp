@@ -12,6 +12,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "common/error.h"
 #include "common/parallel/parallel.h"
@@ -304,23 +305,23 @@ TEST(BlockRunner, ATurnGoesOnWithTheNextStage) {
   b.expect_sound();
 }
 
-// Each item waits until another worker decides one, too: what others show of threads is not shown by one.
+// The first item waits until another worker decides one, too: what others show of threads is not shown by
+// one.
 TEST(BlockRunner, WorkersDecideSideBySide) {
   const ThreadLimit four(4);
-  Block b(grid_mesh(6), 256);
+  Block b(grid_mesh(4), 64);
   std::mutex mutex;
   std::condition_variable another;
   std::set<const Workspace*> seen;
-  b.runner.points(
-      b.live_points(),
-      [&](Workspace& ws, Index) {
-        std::unique_lock lock(mutex);
-        seen.insert(&ws);
-        another.notify_all();
-        another.wait_for(lock, std::chrono::seconds(20), [&] { return seen.size() > 1; });
-        return Outcome::no_candidate;
-      },
-      [] { return false; });
+  bool waited = false;
+  b.in_order(b.live_points(), [&](Workspace& ws, const ListedTet&, int) {
+    std::unique_lock lock(mutex);
+    seen.insert(&ws);
+    another.notify_all();
+    if (!std::exchange(waited, true))
+      another.wait_for(lock, std::chrono::seconds(60), [&] { return seen.size() > 1; });
+    return Outcome::no_candidate;
+  });
   EXPECT_GT(seen.size(), 1u);
   const std::vector<std::uint64_t> decided = b.runner.take_totals().decided;
   EXPECT_EQ(decided.size(), 4u);
