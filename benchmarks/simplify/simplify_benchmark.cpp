@@ -31,7 +31,7 @@ void simplify_fortieth(benchmark::State& state) {
   state.counters["below_0.1sr_%"] = m.below_percent;
   state.counters["min_sr"] = m.min_solid_angle;
   double conflicts = 0;
-  for (const auto& it : report.iterations) conflicts += static_cast<double>(it.lock_conflicts);
+  for (const auto& it : report.iterations) conflicts += static_cast<double>(it.conflicts);
   state.counters["lock_conflicts"] = conflicts;
 }
 BENCHMARK(simplify_fortieth)

@@ -16,7 +16,7 @@ constexpr int max_idle = 5;  ///< iterations in a row that remove next to nothin
 float cutoff(const EditableMesh& mesh, double percent) {
   std::vector<float> qualities;
   for (Index t = 0; t < mesh.tet_slots(); ++t)
-    if (mesh.tet(t).points[0] != no_index) qualities.push_back(mesh.tet(t).quality);
+    if (!mesh.dead(t)) qualities.push_back(mesh.quality(t));
   const auto k = static_cast<std::size_t>(percent / 100 * static_cast<double>(qualities.size()));
   if (k >= qualities.size()) return 1;
   std::nth_element(qualities.begin(), qualities.begin() + static_cast<std::ptrdiff_t>(k), qualities.end());
@@ -26,8 +26,7 @@ float cutoff(const EditableMesh& mesh, double percent) {
 std::vector<ListedTet> poor_tets(const EditableMesh& mesh, float limit) {
   std::vector<ListedTet> list;
   for (Index t = 0; t < mesh.tet_slots(); ++t) {
-    const TetRecord& r = mesh.tet(t);
-    if (r.points[0] != no_index && r.quality <= limit) list.push_back({t, r.points});
+    if (!mesh.dead(t) && mesh.quality(t) <= limit) list.push_back({t, mesh.points(t)});
   }
   return list;
 }
@@ -59,16 +58,14 @@ void iterate(Workpiece& piece, const Block& block, const Grow& grow) {
 
 void block_of_tets(Workpiece& piece, std::uint64_t seed) {
   VolumeLedger ledger;
-  BlockRunner runner(piece.mesh, piece.grid, ledger, seed, 2000, nullptr);
-  runner.reset_workspaces();
+  BlockRunner runner(piece.mesh, piece.grid, ledger, seed, 0, nullptr);
   piece.rules.max_error = piece.rules.objective.quality.ideal_edge;
   std::vector<WeighedCollapse> candidates;
   const auto block = [&](float limit) {
     runner.tets(
         poor_tets(piece.mesh, limit),
-        [&](Workspace& ws, const ListedTet& item) {
-          if (const Outcome o = validate(ws, item); o != Outcome::done) return o;
-          if (piece.mesh.tet(item.tet).quality > limit) return Outcome::stale;
+        [&](Workspace& ws, const ListedTet& item, int) {
+          if (!exists(piece.mesh, item) || piece.mesh.quality(item.tet) > limit) return Outcome::stale;
           candidates.clear();
           const auto of_the_tet = [&](Index p) {
             return std::find(item.points.begin(), item.points.end(), p) != item.points.end();
@@ -78,11 +75,12 @@ void block_of_tets(Workpiece& piece, std::uint64_t seed) {
           sort_by_weight(candidates);
           for (const WeighedCollapse& c : candidates) {
             if (c.weight > piece.rules.max_error) break;
-            if (piece.gather(ws, c.origin) && piece.collapse(ws, c.target)) return Outcome::done;
+            if (piece.gather(ws, c.origin) && piece.propose(ws, c.target)) return Outcome::done;
           }
           return Outcome::no_candidate;
         },
         [&] { return piece.reached(); });
+    piece.counts.collapses += runner.take_totals().counts.of(Operation::collapse, Outcome::done);
   };
   iterate(piece, block, [&](double) {
     piece.rules.max_error *=
@@ -93,8 +91,7 @@ void block_of_tets(Workpiece& piece, std::uint64_t seed) {
 void block_of_points(Workpiece& piece, std::uint64_t seed) {
   constexpr std::size_t max_targets = 4;
   VolumeLedger ledger;
-  BlockRunner runner(piece.mesh, piece.grid, ledger, seed, 2000, nullptr);
-  runner.reset_workspaces();
+  BlockRunner runner(piece.mesh, piece.grid, ledger, seed, 0, nullptr);
   piece.rules.max_error = 4 * piece.rules.objective.quality.ideal_edge;
   std::vector<WeighedCollapse> candidates;
   const auto block = [&](float limit) {
@@ -112,11 +109,12 @@ void block_of_points(Workpiece& piece, std::uint64_t seed) {
           sort_by_weight(candidates);
           for (std::size_t i = 0; i < std::min(max_targets, candidates.size()); ++i) {
             if (candidates[i].weight > piece.rules.max_error) break;
-            if (piece.collapse(ws, candidates[i].target)) return Outcome::done;
+            if (piece.propose(ws, candidates[i].target)) return Outcome::done;
           }
           return Outcome::no_candidate;
         },
         [&] { return piece.reached(); });
+    piece.counts.collapses += runner.take_totals().counts.of(Operation::collapse, Outcome::done);
   };
   iterate(piece, block, [&](double removed) {
     if (removed < 0.15) piece.rules.max_error *= 1.3;

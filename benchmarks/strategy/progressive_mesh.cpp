@@ -55,19 +55,15 @@ class ProgressiveMesh {
     if (piece_.gather(task_, p)) {
       piece_.weigh(task_, weighed_);
       for (const WeighedCollapse& c : weighed_)
-        if (!eager_ || piece_.collapse(task_, c.target, true)) fresh_.push_back({c, versions_[p]});
+        if (!eager_ || piece_.propose(task_, c.target)) fresh_.push_back({c, versions_[p]});
     }
-    task_.release();
   }
 
   void take(const WeighedCollapse& c) {
-    bool done = false;
-    if (piece_.gather(task_, c.origin)) {
-      link_ = task_.star.points;
-      done = piece_.collapse(task_, c.target);
-    }
-    task_.release();
-    if (!done) return;  // until its star changes
+    if (!piece_.gather(task_, c.origin) || !piece_.propose(task_, c.target))
+      return;  // until its star changes
+    link_ = task_.star.points;
+    piece_.carry_out(task_);
     for (const Index p : link_) weigh(p);
     for (const Queued& q : fresh_) {
       heap_.push_back(q);

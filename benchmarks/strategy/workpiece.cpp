@@ -11,7 +11,7 @@ Workpiece::Workpiece(TetMesh input, std::size_t target_tets)
     : mesh(std::move(input), "mesh"), target(target_tets) {
   rules.objective.quality = TetQuality::for_target(mesh.total_volume(), static_cast<double>(target));
   rules.max_error = std::numeric_limits<double>::infinity();
-  rules.min_tets = 0;
+  rules.count.min = 0;
   // Shape refuses only what falls far behind what stands there, in both orderings alike: none could reach the
   // target if nothing might become worse.
   rules.accept_worse = 1;
@@ -22,7 +22,7 @@ Workpiece::Workpiece(TetMesh input, std::size_t target_tets)
 
 void Workpiece::rate_all() {
   for (Index t = 0; t < mesh.tet_slots(); ++t) {
-    const Tet& p = mesh.tet(t).points;
+    const Tet& p = mesh.points(t);
     if (p[0] != no_index)
       mesh.set_quality(t, rules.objective(mesh.position(p[0]), mesh.position(p[1]), mesh.position(p[2]),
                                           mesh.position(p[3])));
@@ -31,8 +31,7 @@ void Workpiece::rate_all() {
 
 bool Workpiece::gather(Workspace& ws, Index point) {
   ++counts.stars;
-  return (ws.points.holds(point) || ws.points.try_lock(point)) && alive(point) &&
-         ws.star.gather(mesh, point, ws.points) == Outcome::done;
+  return alive(point) && ws.star.gather(mesh, point) == Outcome::done;
 }
 
 void Workpiece::weigh(Workspace& ws, std::vector<WeighedCollapse>& out,
@@ -48,14 +47,22 @@ void Workpiece::weigh(Workspace& ws, std::vector<WeighedCollapse>& out,
   }
 }
 
-bool Workpiece::collapse(Workspace& ws, Index onto, bool trial) {
+bool Workpiece::propose(Workspace& ws, Index onto) {
   ++counts.tests;
   const std::vector<Index>& link = ws.star.points;
   const auto b = static_cast<std::size_t>(std::find(link.begin(), link.end(), onto) - link.begin());
-  const bool done = b < link.size() && collapse_onto(ws, rules, b, trial) == Outcome::done;
-  ws.cells.release();
-  if (done && !trial) ++counts.collapses;
-  return done;
+  return b < link.size() && ws.count(Operation::collapse, collapse_onto(ws, rules, b)) == Outcome::done;
+}
+
+void Workpiece::carry_out(Workspace& ws) {
+  mesh.reservations().begin_batch();
+  take_slots(mesh, grid, ws.proposal);
+  mesh.reservations().mark(ws.proposal.marks);
+  commit(mesh, grid, ws.proposal, commit_workspace_);
+  mesh.free_tets().end_batch();
+  mesh.free_points().end_batch();
+  grid.end_batch();
+  ++counts.collapses;
 }
 
 }  // namespace tetwright

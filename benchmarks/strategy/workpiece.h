@@ -33,16 +33,17 @@ class Workpiece {
   /// Quality(t)^3 of every tet.
   void rate_all();
 
-  /// The task holds and has gathered the star of a living point; false where it is too large for an
-  /// operation.
+  /// Gathers the star of a living point; false where it is too large for an operation.
   bool gather(Workspace& ws, Index point);
   /// Appends the weights of all half-edges that begin at the gathered star's centre and that dimensions and
   /// materials allow; only those to a point for which `wanted` is true.
   void weigh(
       Workspace& ws, std::vector<WeighedCollapse>& out,
       const std::function<bool(Index)>& wanted = [](Index) { return true; });
-  /// Carries a collapse of the gathered star's centre out if it is legal; on trial only says whether.
-  bool collapse(Workspace& ws, Index onto, bool trial = false);
+  /// Whether a collapse of the gathered star's centre is legal; then it is proposed.
+  bool propose(Workspace& ws, Index onto);
+  /// Carries out what was proposed.
+  void carry_out(Workspace& ws);
 
   TetMesh result() && { return std::move(mesh).to_mesh(); }
 
@@ -51,6 +52,9 @@ class Workpiece {
   BlockRules rules;
   StrategyCounts counts;
   std::size_t target;
+
+ private:
+  CommitWorkspace commit_workspace_;
 };
 
 }  // namespace tetwright

@@ -36,7 +36,7 @@ nlohmann::json operations_json(const SimplifyReport& report) {
   std::uint64_t tried = 0, done = 0, conflicts = 0;
   for (const IterationReport& it : report.iterations) {
     counts.add(it.counts);
-    conflicts += it.lock_conflicts;
+    conflicts += it.conflicts;
   }
   nlohmann::json each = nlohmann::json::object();
   for (std::size_t o = 0; o < operation_count; ++o) {

@@ -13,10 +13,10 @@ namespace tetwright {
 /// numbered through, so that words of earlier batches need no clearing.
 class Reservations {
  public:
-  /// All free. Only while no task runs.
-  void reset(std::size_t vertices) {
+  /// All free. Only while no task runs. `first` is the number of the first winner, for tests.
+  void reset(std::size_t vertices, std::uint32_t first = 1) {
     words_.assign(vertices, 0);
-    first_ = next_ = 1;
+    first_ = next_ = first;
   }
   void reserve(std::size_t vertices) { words_.reserve(vertices); }
   /// More vertices, free ones.

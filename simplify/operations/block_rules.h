@@ -47,7 +47,8 @@ struct BlockRules {
   /// checked. Unlike E it does not add up over several operations.
   double max_distance = 0;
   /// Points of interfaces, junction curves and corners may leave them by up to max_distance (or as far as
-  /// they are away already) where that improves the shapes (needs `projection`).
+  /// they are away already) where that improves the shapes (needs `projection`); those where patches meet
+  /// stay.
   bool leave_surface = false;
   /// All tets are positive, and no boundary or interface triangles meet but in what they share: then the mesh
   /// covers no place twice, and where the centre lies within a material, a collapse that leaves positive tets

@@ -163,6 +163,11 @@ void sort_by_quality(Star& star) {
   });
 }
 
+/// Whether the centre may leave its surface or curve a little; points where patches meet never do.
+bool may_leave(const Star& star, const BlockRules& rules) {
+  return rules.leave_surface && rules.projection && !star.creases;
+}
+
 /// The search for a better position of a star's centre.
 class PlacementSearch {
  public:
@@ -171,7 +176,7 @@ class PlacementSearch {
         star_(ws.star),
         rules_(rules),
         dimension_(dimension),
-        leave_surface_(rules.leave_surface && rules.projection && dimension < 3) {}
+        leave_surface_(may_leave(ws.star, rules) && dimension < 3) {}
 
   bool run(float limit, Placement& found) {
     sort_by_quality(star_);
@@ -370,8 +375,7 @@ Outcome smooth(Workspace& ws, const BlockRules& rules) {
 Outcome optimise(Workspace& ws, const BlockRules& rules) {
   Star& star = ws.star;
   const int dimension = star.dimension();
-  if (star.frozen || (dimension == 0 && !(rules.leave_surface && rules.projection)))
-    return Outcome::material_rule;
+  if (star.frozen || (dimension == 0 && !may_leave(star, rules))) return Outcome::material_rule;
   star.compute_gradients();
   Placement& place = ws.placement;
   if (!find_place(ws, rules, dimension, min_smoothing_gain * star.worst, place)) return Outcome::quality;

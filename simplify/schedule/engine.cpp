@@ -228,7 +228,11 @@ void Engine::Round::finish() {
   report_.batches = totals.batches;
   report_.tets_after = engine_.mesh_.live_tets();
   report_.seconds = seconds_since(start_);
-  if (engine_.report_) engine_.report_->iterations.push_back(report_);
+  if (!engine_.report_) return;
+  engine_.report_->iterations.push_back(report_);
+  std::vector<std::uint64_t>& decided = engine_.report_->decided_by_worker;
+  decided.resize(std::max(decided.size(), totals.decided.size()), 0);
+  for (std::size_t w = 0; w < totals.decided.size(); ++w) decided[w] += totals.decided[w];
 }
 
 }  // namespace tetwright

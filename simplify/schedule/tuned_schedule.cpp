@@ -20,9 +20,7 @@ constexpr double first_error_edges = 4;  ///< E at first, in ideal edges
 constexpr double error_growth = 1.3;     ///< E's factor after an iteration that removed too little
 constexpr double min_removed = 0.15;     ///< of the tets: less than that is too little
 constexpr double flip_percent = 40;      ///< of the tets, at most, that flips and smoothing take up
-const double swaps_below = getenv("TS")
-                               ? atof(getenv("TS"))
-                               : 3;  ///< times the target: above it flips and smoothing are wasted work
+constexpr double swaps_below = 2;        ///< times the target: above it flips and smoothing are wasted work
 /// What annealing must leave of the worst Quality^3. Below it (0: anything positive) the loop ends with
 /// 5-10 % of tets under 0.1 sr instead of 2-3 %; larger ones need a larger E to reach the target, which costs
 /// surface and volume.

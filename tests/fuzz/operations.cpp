@@ -53,7 +53,7 @@ TetMesh snapshot(const EditableMesh& mesh) {
   std::vector<Index> number(mesh.point_slots(), no_index);
   for (Index t = 0; t < mesh.tet_slots(); ++t) {
     if (mesh.dead(t)) continue;
-    Tet ids = mesh.tet(t).points;
+    Tet ids = mesh.points(t);
     for (Index& p : ids) {
       if (number[p] == no_index) {
         number[p] = static_cast<Index>(out.points.size());
@@ -62,7 +62,7 @@ TetMesh snapshot(const EditableMesh& mesh) {
       p = number[p];
     }
     out.tets.push_back(ids);
-    out.materials.push_back(mesh.tag(mesh.tet(t).region));
+    out.materials.push_back(mesh.tag(mesh.region(t)));
   }
   return out;
 }
@@ -71,11 +71,8 @@ Outcome operate(Workspace& ws, BlockRules rules, Bytes& bytes, Index t) {
   rules.accept_worse = bytes.below(2);
   const FlipReach reach = bytes.below(2) ? full_reach : basic_reach;
   const auto place = bytes.below(2) ? InsertionPlace::best : InsertionPlace::centre;
-  const Tet points = ws.mesh.tet(t).points;
-  for (Index p : points) TETWRIGHT_CHECK(ws.points.try_lock(p));
-  const auto gather = [&] {
-    return ws.star.gather(ws.mesh, points[bytes.below(4)], ws.points) == Outcome::done;
-  };
+  const Tet points = ws.mesh.points(t);
+  const auto gather = [&] { return ws.gather(points[bytes.below(4)]) == Outcome::done; };
   switch (bytes.below(8)) {
     case 0:
       return remove_edge(ws, rules, t, static_cast<int>(bytes.below(6)), reach);
@@ -96,6 +93,18 @@ Outcome operate(Workspace& ws, BlockRules rules, Bytes& bytes, Index t) {
   }
 }
 
+/// A batch of one.
+void carry_out(EditableMesh& mesh, SurfaceGrid& grid, Proposal& proposal, CommitWorkspace& ws) {
+  mesh.make_room(proposal.added.size(), 1);
+  mesh.reservations().begin_batch();
+  take_slots(mesh, grid, proposal);
+  mesh.reservations().mark(proposal.marks);
+  commit(mesh, grid, proposal, ws);
+  mesh.free_tets().end_batch();
+  mesh.free_points().end_batch();
+  grid.end_batch();
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -106,23 +115,23 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   EditableMesh mesh(std::move(input), "fuzz");
   mesh.compact(2048, 512);
   SurfaceGrid grid;
-  grid.build(mesh, 0, 512);
+  grid.build(mesh, 0);
   VolumeLedger ledger;
   BlockRules rules;
   rules.objective.quality = TetQuality::for_target(mesh.total_volume(), 1);
   rules.objective.kind = bytes.below(2) ? Objective::Kind::shape : Objective::Kind::paper;
   rules.max_error = 1e9;
-  rules.max_tets = 2 * mesh.live_tets();
+  rules.count.max = 2 * mesh.live_tets();
   for (Index t = 0; t < mesh.tet_slots(); ++t)
-    if (!mesh.dead(t)) mesh.set_quality(t, quality_of(mesh, rules, mesh.tet(t).points));
+    if (!mesh.dead(t)) mesh.set_quality(t, quality_of(mesh, rules, mesh.points(t)));
   Workspace ws(mesh, grid, ledger);
+  CommitWorkspace commit_workspace;
   for (int i = 0; i < max_operations && !bytes.empty(); ++i) {
     const Index t = (bytes.below(256) << 8 | bytes.below(256)) % static_cast<Index>(mesh.tet_slots());
     if (mesh.dead(t)) continue;
-    const Outcome o = operate(ws, rules, bytes, t);
-    TETWRIGHT_CHECK(ws.cells.count() == 0);
-    ws.release();
-    if (o != Outcome::done) continue;
+    ws.proposal.clear();
+    if (operate(ws, rules, bytes, t) != Outcome::done) continue;
+    carry_out(mesh, grid, ws.proposal, commit_workspace);
     TETWRIGHT_CHECK(mesh.links_consistent());
     const TetMesh now = snapshot(mesh);
     TETWRIGHT_CHECK(check_mesh(now).empty());

@@ -1,6 +1,5 @@
-// What the thread sanitizer watches: eight threads on one mesh, in small chunks. How often their stars meet
-// is the machine's affair; block_test.cpp has what happens then. Built a second time with the locks taken out
-// (test_without_locks), it must fail.
+// What the thread sanitizer watches: eight threads on one mesh, in batches so large that many of their
+// proposals meet. Built a second time with reservations ignored (test_without_reservations), it must fail.
 #include <gtest/gtest.h>
 
 #include "common/mesh/mesh_check.h"
@@ -32,7 +31,7 @@ TEST(Concurrency, EightThreadsLeaveASoundMesh) {
     SimplifyOptions options;
     options.target_tets = 1500;
     options.seed = seed;
-    options.chunk_size = 16;
+    options.batch_size = 1024;
     options.schedule = seed == 2 ? Schedule::paper : Schedule::tuned;
     const TetMesh after = simplify(mesh, options);
     EXPECT_NEAR(static_cast<double>(after.tets.size()), 1500, 15);
@@ -44,7 +43,7 @@ TEST(Concurrency, EightThreadsImprove) {
   const ThreadLimit eight(8);
   const TetMesh mesh = three_materials(4);
   ImproveOptions options;
-  options.chunk_size = 16;
+  options.batch_size = 1024;
   options.max_iterations = 12;
   expect_kept(mesh, improve(mesh, options));
 }

@@ -121,7 +121,7 @@ TEST_P(Degeneracy, SurvivesImprovement) {
   for (const std::string& d : topology_differences(topology(mesh), topology(after))) ADD_FAILURE() << d;
 }
 
-// The smallest ones there are: what has no operation left comes back as it was.
+// The smallest ones there are: nothing can be collapsed.
 TEST(Degeneracy, SingleTetsAndPairs) {
   TetMesh one;
   one.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -134,7 +134,10 @@ TEST(Degeneracy, SingleTetsAndPairs) {
   pair.points.emplace_back(1, 1, 1);
   pair.tets.push_back({1, 2, 3, 4});
   pair.materials.push_back(1);
-  EXPECT_EQ(simplify(pair, options).tets.size(), 2u);
+  const TetMesh after = simplify(pair, options);  // two tets, or three around the long diagonal
+  EXPECT_EQ(after.points.size(), 5u);
+  EXPECT_LE(after.tets.size(), 3u);
+  EXPECT_TRUE(check_mesh(after).empty());
   pair.materials[1] = 2;
   EXPECT_EQ(simplify(pair, options).tets.size(), 2u);
 }

@@ -18,18 +18,17 @@ TetMesh snapshot(const EditableMesh& mesh) {
   TetMesh out;
   std::vector<Index> number(mesh.point_slots(), no_index);
   for (Index t = 0; t < mesh.tet_slots(); ++t) {
-    const TetRecord& r = mesh.tet(t);
-    if (r.points[0] == no_index) continue;
+    if (mesh.dead(t)) continue;
     Tet ids;
     for (int k = 0; k < 4; ++k) {
-      if (number[r.points[k]] == no_index) {
-        number[r.points[k]] = static_cast<Index>(out.points.size());
-        out.points.push_back(mesh.space().to_input(mesh.position(r.points[k])));
+      if (number[mesh.points(t)[k]] == no_index) {
+        number[mesh.points(t)[k]] = static_cast<Index>(out.points.size());
+        out.points.push_back(mesh.space().to_input(mesh.position(mesh.points(t)[k])));
       }
-      ids[k] = number[r.points[k]];
+      ids[k] = number[mesh.points(t)[k]];
     }
     out.tets.push_back(ids);
-    out.materials.push_back(mesh.tag(r.region));
+    out.materials.push_back(mesh.tag(mesh.region(t)));
   }
   return out;
 }
@@ -56,9 +55,8 @@ Outcome random_operation(Workbench& w, Index t, const SurfaceProjection& project
   }
   const auto place = random.below(2) ? InsertionPlace::best : InsertionPlace::centre;
   const FlipReach reach = random.below(2) ? FlipReach{7, 5} : FlipReach{3, 1};
-  const Tet points = w.mesh.tet(t).points;
-  for (Index p : points) EXPECT_TRUE(ws.points.try_lock(p));
-  const auto star = [&] { return ws.star.gather(w.mesh, points[random.below(4)], ws.points); };
+  const Tet points = w.mesh.points(t);
+  const auto star = [&] { return ws.gather(points[random.below(4)]); };
   switch (random.below(9)) {
     case 0:
       return remove_edge(ws, rules, t, static_cast<int>(random.below(6)), reach);
@@ -92,20 +90,18 @@ TEST(RandomOperations, TenThousandLeaveEveryMeshSoundAndItsTopologyAsItWas) {
       const Topology before = topology(mesh);
       Workbench w(mesh);
       w.mesh.compact(4096, 1024);
-      w.grid.build(w.mesh, 0, 1024);
+      w.grid.build(w.mesh, 0);
       w.ws = std::make_unique<Workspace>(w.mesh, w.grid, w.ledger);
       w.ws->random = Random(seed);
       w.rules.objective.kind = seed % 2 ? Objective::Kind::shape : Objective::Kind::paper;
-      w.rules.max_tets = 2 * mesh.tets.size();
+      w.rules.count.max = 2 * mesh.tets.size();
       const SurfaceProjection projection(w.mesh, nullptr);
       for (int i = 0; i < operations_per_mesh; ++i) {
         Index t;
         do {
           t = w.ws->random.below(static_cast<std::uint32_t>(w.mesh.tet_slots()));
         } while (w.mesh.dead(t));
-        const Outcome o = random_operation(w, t, projection);
-        ASSERT_EQ(w.ws->cells.count(), 0u);
-        w.ws->release();
+        const Outcome o = w.carry_out(random_operation(w, t, projection));
         ++tried;
         if (o != Outcome::done) continue;
         ++done;

@@ -91,7 +91,7 @@ TEST(Simplify, AnyNumberOfThreadsGivesTheSameGuarantees) {
   const TetMesh mesh = ring();
   SimplifyOptions options;
   options.target_tets = 1500;
-  options.chunk_size = 50;
+  options.batch_size = 50;
   for (unsigned threads : {2u, 5u}) {
     const ThreadLimit limit(threads);
     expect_guarantees(mesh, simplify(mesh, options), 1500);

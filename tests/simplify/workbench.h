@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -12,19 +13,23 @@
 
 namespace tetwright {
 
-/// One task on one mesh, for tests of single operations.
+/// One worker on one mesh, for tests of single operations.
 struct Workbench {
-  explicit Workbench(const TetMesh& input) : mesh(TetMesh(input), "mesh") {
+  /// `prepare`: what is to be done before the points get other numbers.
+  explicit Workbench(
+      const TetMesh& input, const std::function<void(EditableMesh&)>& prepare = [](EditableMesh&) {})
+      : mesh(TetMesh(input), "mesh") {
+    prepare(mesh);
     mesh.compact(64, 32);
     rules.objective.quality = TetQuality::for_target(mesh.total_volume(), 1);
     rules.max_error = 1e9;
     for (Index t = 0; t < mesh.tet_slots(); ++t) {
-      const Tet& p = mesh.tet(t).points;
+      const Tet& p = mesh.points(t);
       if (p[0] != no_index)
         mesh.set_quality(t, rules.objective(mesh.position(p[0]), mesh.position(p[1]), mesh.position(p[2]),
                                             mesh.position(p[3])));
     }
-    grid.build(mesh, 0, 64);
+    grid.build(mesh, 0);
     ws = std::make_unique<Workspace>(mesh, grid, ledger);
   }
 
@@ -44,34 +49,75 @@ struct Workbench {
     return out;
   }
 
-  /// The star of a point, held.
+  /// The star of a point, with a proposal that is empty.
   Star& star(Index p) {
-    ws->release();
-    EXPECT_TRUE(ws->points.try_lock(p));
-    EXPECT_EQ(ws->star.gather(mesh, p, ws->points), Outcome::done);
+    ws->proposal.clear();
+    EXPECT_EQ(ws->gather(p), Outcome::done);
     return ws->star;
   }
 
-  /// Everything given back, links sound, all tets positive, as many triangles in the grid as faces between
-  /// regions.
+  /// What BlockRunner does with an operation's answer, in a batch of one: carries out what was proposed.
+  Outcome carry_out(Outcome answer) {
+    last = {};
+    std::swap(last, ws->proposal);
+    if (answer != Outcome::done) return answer;
+    EXPECT_TRUE(ledger.allows(last.volumes));
+    EXPECT_TRUE(last.count_bounds.allow(mesh.live_tets(), last.count_change));
+    EXPECT_EQ(mesh.live_tets(), count_live());  // nothing was written by who decided
+    begin_batch({&last});
+    EXPECT_TRUE(admit(last));
+    commit(mesh, grid, last, commit_workspace);
+    end_batch();
+    ws->counts.add(last.operation, Outcome::done);
+    return answer;
+  }
+
+  // The steps of a batch, for several proposals.
+
+  void begin_batch(const std::vector<Proposal*>& proposals) {
+    std::size_t tets = 0, points = 0;
+    for (const Proposal* p : proposals) {
+      tets += p->added.size();
+      points += p->has_new_point;
+    }
+    mesh.make_room(tets, points);
+    mesh.reservations().begin_batch();
+  }
+  /// Whether a proposal has won; it has then marked what it changes and taken its slots.
+  bool admit(Proposal& p) {
+    if (!mesh.reservations().free(p.needed())) return false;
+    ledger.book(p.volumes);
+    take_slots(mesh, grid, p);
+    mesh.reservations().mark(p.marks);
+    return true;
+  }
+  void end_batch() {
+    mesh.free_tets().end_batch();
+    mesh.free_points().end_batch();
+    grid.end_batch();
+  }
+
+  std::size_t count_live() const {
+    std::size_t count = 0;
+    for (Index t = 0; t < mesh.tet_slots(); ++t) count += !mesh.dead(t);
+    return count;
+  }
+
+  /// Links and counts sound, all tets positive, as many triangles in the grid as faces between regions, no
+  /// slot both free and in use.
   void expect_sound() {
-    EXPECT_EQ(ws->cells.count(), 0u);  // no operation leaves a cell of the grid held
-    ws->release();
-    EXPECT_TRUE(mesh.locks().all_free());
-    EXPECT_TRUE(grid.locks().all_free());
     EXPECT_TRUE(mesh.links_consistent());
     std::vector<Triangle> interfaces;
     for (Index t = 0; t < mesh.tet_slots(); ++t) {
-      const TetRecord& r = mesh.tet(t);
-      if (r.points[0] == no_index) continue;
-      EXPECT_EQ(orient3d(mesh.position(r.points[0]), mesh.position(r.points[1]), mesh.position(r.points[2]),
-                         mesh.position(r.points[3])),
+      if (mesh.dead(t)) continue;
+      const Tet& p = mesh.points(t);
+      EXPECT_EQ(orient3d(mesh.position(p[0]), mesh.position(p[1]), mesh.position(p[2]), mesh.position(p[3])),
                 1);
       for (int f = 0; f < 4; ++f) {
-        const Index other = r.neighbours[f];
-        if (other != no_index && (other < t || mesh.tet(other).region == r.region)) continue;
+        const Index other = mesh.neighbour(t, f);
+        if (other != no_index && (other < t || mesh.region(other) == mesh.region(t))) continue;
         Triangle ids;
-        for (int k = 0; k < 3; ++k) ids[k] = mesh.original(r.points[tet_faces[f][k]]);
+        for (int k = 0; k < 3; ++k) ids[k] = mesh.original(p[tet_faces[f][k]]);
         std::sort(ids.begin(), ids.end());
         interfaces.push_back(ids);
       }
@@ -84,6 +130,8 @@ struct Workbench {
     std::sort(interfaces.begin(), interfaces.end());
     std::sort(listed.begin(), listed.end());
     EXPECT_EQ(listed, interfaces);
+    EXPECT_EQ(mesh.free_tets().available(), mesh.tet_slots() - mesh.live_tets());
+    EXPECT_EQ(mesh.free_points().available(), mesh.point_slots() - live_points().size());
   }
 
   EditableMesh mesh;
@@ -91,17 +139,14 @@ struct Workbench {
   VolumeLedger ledger;  ///< no bounds unless opened
   BlockRules rules;
   std::unique_ptr<Workspace> ws;
+  Proposal last;  ///< what was carried out last
+  CommitWorkspace commit_workspace;
 };
 
 /// As if every tet were as poor as can be: any positive ones are better.
 inline void make_poor(Workbench& w) {
   for (Index t = 0; t < w.mesh.tet_slots(); ++t)
     if (!w.mesh.dead(t)) w.mesh.set_quality(t, 0);
-}
-
-/// Locks the four points of a tet.
-inline void lock_tet(Workbench& w, Index t) {
-  for (Index p : w.mesh.tet(t).points) ASSERT_TRUE(w.ws->points.try_lock(p));
 }
 
 }  // namespace tetwright

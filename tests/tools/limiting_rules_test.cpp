@@ -17,7 +17,7 @@ TEST(LimitingRules, NamesTheMainRulesWithTheirShares) {
   put(c, Operation::collapse, Outcome::quality, 4);
   // Outcomes that are no refusals, and another operation.
   put(c, Operation::collapse, Outcome::done, 500);
-  put(c, Operation::collapse, Outcome::lock_taken, 500);
+  put(c, Operation::collapse, Outcome::conflict, 500);
   put(c, Operation::collapse, Outcome::stale, 500);
   put(c, Operation::flip23, Outcome::no_candidate, 500);
   put(c, Operation::flip23, Outcome::quality, 900);

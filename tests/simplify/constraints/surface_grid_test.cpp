@@ -20,7 +20,7 @@ MeshTriangle boundary_triangle(const Workbench& w) {
       if (w.mesh.neighbour(t, f) == no_index) {
         MeshTriangle out;
         for (int k = 0; k < 3; ++k) {
-          out.ids[k] = w.mesh.tet(t).points[tet_faces[f][k]];
+          out.ids[k] = w.mesh.points(t)[tet_faces[f][k]];
           out.points[k] = w.mesh.position(out.ids[k]);
         }
         return out;
@@ -37,11 +37,8 @@ TEST(SurfaceGrid, ATriangleThatWouldCrossAnotherIsRefused) {
   // In its stead one that pierces the whole cube.
   const double s = w.mesh.space().scale();
   edit.added = {
-      {edit.removed[0].ids, {Vec3(-1, 2.1, 2.2) * s, Vec3(5, 2.1, 2.2) * s, Vec3(5, 2.6, 2.4) * s}}};
-  HeldLocks held(w.grid.locks());
-  SurfaceGrid::Workspace ws;
-  EXPECT_EQ(w.grid.begin_edit(edit, ws, held), Outcome::self_intersection);
-  held.release();
+      {{edit.removed[0].ids, {Vec3(-1, 2.1, 2.2) * s, Vec3(5, 2.1, 2.2) * s, Vec3(5, 2.6, 2.4) * s}}, 0}};
+  EXPECT_FALSE(w.grid.test(edit));
   w.expect_sound();
 }
 
@@ -52,24 +49,21 @@ TEST(SurfaceGrid, AHarmlessTriangleReplacesAnother) {
   edit.removed = {before};
   const double s = w.mesh.space().scale();
   MeshTriangle after{before.ids, {Vec3(9, 9, 9) * s, Vec3(10, 9, 9) * s, Vec3(9, 10, 9) * s}};
-  edit.added = {after};
-  HeldLocks held(w.grid.locks());
-  SurfaceGrid::Workspace ws;
-  ASSERT_EQ(w.grid.begin_edit(edit, ws, held), Outcome::done);
-  w.grid.commit(edit, ws);
-  held.release();
-  EXPECT_TRUE(w.grid.locks().all_free());
+  edit.added = {{after, 0}};
+  ASSERT_TRUE(w.grid.test(edit));
+  w.grid.take_records(edit);
+  w.grid.commit(edit);
+  w.grid.end_batch();
   EXPECT_EQ(w.grid.triangles().size(), 2u * 16 * 6);
   // The new one stands now: it can be found and taken away again, and one through it is refused.
   SurfaceGrid::Edit back;
   back.removed = {after};
-  back.added = {before};
-  ASSERT_EQ(w.grid.begin_edit(back, ws, held), Outcome::done);
-  held.release();
+  back.added = {{before, 0}};
+  ASSERT_TRUE(w.grid.test(back));
   SurfaceGrid::Edit through;
   through.added = {
-      {{1000, 1001, 1002}, {Vec3(9.2, 9.2, 8) * s, Vec3(9.2, 9.2, 10) * s, Vec3(9.3, 9.2, 10) * s}}};
-  EXPECT_EQ(w.grid.begin_edit(through, ws, held), Outcome::self_intersection);
+      {{{1000, 1001, 1002}, {Vec3(9.2, 9.2, 8) * s, Vec3(9.2, 9.2, 10) * s, Vec3(9.3, 9.2, 10) * s}}, 0}};
+  EXPECT_FALSE(w.grid.test(through));
 }
 
 TEST(SurfaceGrid, AddedTrianglesAreTestedAgainstEachOther) {
@@ -77,11 +71,49 @@ TEST(SurfaceGrid, AddedTrianglesAreTestedAgainstEachOther) {
   const double s = w.mesh.space().scale();
   SurfaceGrid::Edit edit;
   edit.added = {
-      {{1000, 1001, 1002}, {Vec3(9, 9, 9) * s, Vec3(10, 9, 9) * s, Vec3(9, 10, 9) * s}},
-      {{1003, 1004, 1005}, {Vec3(9.2, 9.2, 8) * s, Vec3(9.2, 9.2, 10) * s, Vec3(9.3, 9.2, 10) * s}}};
-  HeldLocks held(w.grid.locks());
-  SurfaceGrid::Workspace ws;
-  EXPECT_EQ(w.grid.begin_edit(edit, ws, held), Outcome::self_intersection);
+      {{{1000, 1001, 1002}, {Vec3(9, 9, 9) * s, Vec3(10, 9, 9) * s, Vec3(9, 10, 9) * s}}, 0},
+      {{{1003, 1004, 1005}, {Vec3(9.2, 9.2, 8) * s, Vec3(9.2, 9.2, 10) * s, Vec3(9.3, 9.2, 10) * s}}, 0}};
+  EXPECT_FALSE(w.grid.test(edit));
+}
+
+// Of two edits of one batch neither stands when the other is tested.
+TEST(SurfaceGrid, EditsOfOneBatchAreTestedAgainstEachOther) {
+  Workbench w(grid_mesh(4));
+  const double s = w.mesh.space().scale();
+  SurfaceGrid::Edit flat, through, beside, none;
+  flat.added = {{{{1000, 1001, 1002}, {Vec3(9, 9, 9) * s, Vec3(10, 9, 9) * s, Vec3(9, 10, 9) * s}}, 0}};
+  through.added = {
+      {{{1003, 1004, 1005}, {Vec3(9.2, 9.2, 8) * s, Vec3(9.2, 9.2, 10) * s, Vec3(9.3, 9.2, 10) * s}}, 0}};
+  // The boxes meet, the triangles do not.
+  beside.added = {
+      {{{1006, 1007, 1008}, {Vec3(9.8, 9.8, 8) * s, Vec3(9.8, 9.8, 10) * s, Vec3(9.9, 9.8, 10) * s}}, 0}};
+  none.removed = {boundary_triangle(w)};
+  for (SurfaceGrid::Edit* e : {&flat, &through, &beside, &none}) ASSERT_TRUE(w.grid.test(*e));
+  EXPECT_FALSE(SurfaceGrid::apart(flat, through));
+  EXPECT_FALSE(SurfaceGrid::apart(through, flat));
+  EXPECT_TRUE(SurfaceGrid::apart(flat, beside));
+  EXPECT_TRUE(SurfaceGrid::apart(flat, none));
+}
+
+// A record that is given back is not written by another edit of the same batch.
+TEST(SurfaceGrid, RecordsGivenBackAreFreeAfterTheBatch) {
+  Workbench w(grid_mesh(4));
+  const double s = w.mesh.space().scale();
+  SurfaceGrid::Edit goes, comes, later;
+  goes.removed = {boundary_triangle(w)};
+  comes.added = {{{{1000, 1001, 1002}, {Vec3(9, 9, 9) * s, Vec3(10, 9, 9) * s, Vec3(9, 10, 9) * s}}, 0}};
+  later.added = {{{{1003, 1004, 1005}, {Vec3(9, 9, 12) * s, Vec3(10, 9, 12) * s, Vec3(9, 10, 12) * s}}, 0}};
+  ASSERT_TRUE(w.grid.test(goes));
+  ASSERT_TRUE(w.grid.test(comes));
+  w.grid.take_records(goes);
+  w.grid.take_records(comes);
+  EXPECT_NE(comes.added_records.at(0), goes.removed_records.at(0));
+  w.grid.commit(comes);
+  w.grid.commit(goes);
+  w.grid.end_batch();
+  ASSERT_TRUE(w.grid.test(later));
+  w.grid.take_records(later);
+  EXPECT_EQ(later.added_records.at(0), goes.removed_records.at(0));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace {
 
 /// Place in tet_edges of the axis in tet t.
 int axis_of(const Workbench& w, Index t, Index low, Index high) {
-  const Tet& p = w.mesh.tet(t).points;
+  const Tet& p = w.mesh.points(t);
   for (int e = 0; e < 6; ++e) {
     const Index a = p[tet_edges[e][0]], b = p[tet_edges[e][1]];
     if ((a == low && b == high) || (a == high && b == low)) return e;
@@ -18,10 +18,8 @@ int axis_of(const Workbench& w, Index t, Index low, Index high) {
 }
 
 void gather(Workbench& w, Index t, double height) {
-  for (Index p : w.mesh.tet(t).points) ASSERT_TRUE(w.ws->points.try_lock(p));
-  ASSERT_EQ(
-      w.ws->ring.gather(w.mesh, t, axis_of(w, t, w.at(0, 0, -height), w.at(0, 0, height)), w.ws->points),
-      Outcome::done);
+  ASSERT_EQ(w.ws->ring.gather(w.mesh, t, axis_of(w, t, w.at(0, 0, -height), w.at(0, 0, height))),
+            Outcome::done);
 }
 
 void expect_positive_in_order(const Workbench& w) {
@@ -32,7 +30,7 @@ void expect_positive_in_order(const Workbench& w) {
     EXPECT_EQ(orient3d(w.mesh.position(r.a), w.mesh.position(r.b), w.mesh.position(p), w.mesh.position(q)),
               1);
     for (Index v : {r.a, r.b, p, q}) {
-      const Tet& t = w.mesh.tet(r.tets[i]).points;
+      const Tet& t = w.mesh.points(r.tets[i]);
       EXPECT_NE(std::find(t.begin(), t.end(), v), t.end());
     }
   }
@@ -81,20 +79,9 @@ TEST(EdgeRing, CountsSheetsAndBeginsAtOne) {
   EXPECT_EQ(inner_sheet.ws->ring.dimension(), 1);
 }
 
-TEST(EdgeRing, TellsATakenLockAndTooManyTets) {
-  Workbench w(ring_mesh(5, 1));
-  for (Index p : w.mesh.tet(0).points) ASSERT_TRUE(w.ws->points.try_lock(p));
-  Index far = 0;
-  while (w.ws->points.holds(far)) ++far;
-  ASSERT_TRUE(w.mesh.locks().try_lock(far));
-  const int axis = axis_of(w, 0, w.at(0, 0, -1), w.at(0, 0, 1));
-  EXPECT_EQ(w.ws->ring.gather(w.mesh, 0, axis, w.ws->points), Outcome::lock_taken);
-  w.mesh.locks().unlock(far);
-
+TEST(EdgeRing, TellsTooManyTets) {
   Workbench many(ring_mesh(20, 1));
-  for (Index p : many.mesh.tet(0).points) ASSERT_TRUE(many.ws->points.try_lock(p));
-  EXPECT_EQ(many.ws->ring.gather(many.mesh, 0, axis_of(many, 0, many.at(0, 0, -1), many.at(0, 0, 1)),
-                                 many.ws->points),
+  EXPECT_EQ(many.ws->ring.gather(many.mesh, 0, axis_of(many, 0, many.at(0, 0, -1), many.at(0, 0, 1))),
             Outcome::too_large);
 }
 

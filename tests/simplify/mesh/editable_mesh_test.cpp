@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "common/error.h"
 #include "tests/simplify/meshes.h"
@@ -98,23 +99,36 @@ TEST(EditableMesh, TakesNegativeAndFlatTetsAsTheyAre) {
 
 // Two cubes that touch along an edge only: no walk across faces leads from one to the other.
 TEST(EditableMesh, SplitsWhatTouchesWithoutAFaceAndPutsItTogetherAgain) {
-  const TetMesh touching = grid_mesh({2, 2, 1}, [](int x, int y, int) {
-    return x == y ? std::optional<MaterialTag>(1) : std::optional<MaterialTag>();
+  const TetMesh touching = grid_mesh({6, 6, 1}, [](int x, int y, int) {
+    return (x < 3) == (y < 3) ? std::optional<MaterialTag>(1) : std::optional<MaterialTag>();
   });
   const auto before = contents(touching);
   EditableMesh editable(TetMesh(touching), "mesh");
   EXPECT_TRUE(editable.links_consistent());
   EXPECT_EQ(editable.point_slots(), touching.points.size() + 2);
   editable.compact(10, 10);
-  std::size_t pinned = 0, copies = 0;
+  std::size_t copies = 0;
+  std::set<Index> split;
   for (Index p = 0; p < editable.point_slots(); ++p) {
-    pinned += editable.pinned(p);
     if (editable.original(p) == p) continue;
     ++copies;
+    split.insert({p, editable.original(p)});
     EXPECT_EQ(editable.position(p), editable.position(editable.original(p)));
   }
-  EXPECT_EQ(pinned, 4u);
   EXPECT_EQ(copies, 2u);
+  EXPECT_EQ(split.size(), 4u);
+  EXPECT_EQ(editable.touching_points(), 2u);
+  // They are frozen with all their tets, and nothing else is.
+  std::size_t frozen = 0;
+  for (Index t = 0; t < editable.tet_slots(); ++t) {
+    if (editable.dead(t)) continue;
+    const Tet& points = editable.points(t);
+    const bool at_split = std::any_of(points.begin(), points.end(), [&](Index p) { return split.count(p); });
+    EXPECT_TRUE(editable.frozen_tet(t) || !at_split);
+    frozen += editable.frozen_tet(t);
+  }
+  EXPECT_GE(frozen, 6u);
+  EXPECT_LT(frozen, 30u);
   const TetMesh after = std::move(editable).to_mesh();
   EXPECT_EQ(after.points.size(), touching.points.size());
   EXPECT_EQ(contents(after), before);

@@ -1,5 +1,6 @@
 #include "simplify/mesh/star.h"
 
+#include "tests/simplify/rings.h"
 #include "tests/simplify/workbench.h"
 
 namespace tetwright::star_test {
@@ -14,7 +15,6 @@ TEST(Star, InnerPointOfOneMaterialHasDimensionThree) {
   EXPECT_EQ(star.points.size(), 14u);
   EXPECT_TRUE(star.interface_triangles.empty());
   EXPECT_EQ(star.dimension(), 3);
-  EXPECT_EQ(w.ws->points.count(), 15u);  // the whole closed star is held, each point once
 }
 
 TEST(Star, BoundaryPointHasDimensionTwo) {
@@ -80,15 +80,15 @@ TEST(Star, GradientsAreExactForTheVolume) {
   }
 }
 
-TEST(Star, ATakenPointIsToldAndGivenBack) {
+TEST(Star, OfAPointThatIsGoneOrHasTooManyNeighbours) {
   Workbench w(grid_mesh(4));
-  const Index neighbour = w.at(2, 2, 3);
-  ASSERT_TRUE(w.mesh.locks().try_lock(neighbour));
-  ASSERT_TRUE(w.ws->points.try_lock(w.at(2, 2, 2)));
-  EXPECT_EQ(w.ws->star.gather(w.mesh, w.at(2, 2, 2), w.ws->points), Outcome::lock_taken);
-  w.ws->release();
-  w.mesh.locks().unlock(neighbour);
-  EXPECT_TRUE(w.mesh.locks().all_free());
+  const Index p = w.at(2, 2, 2);
+  w.mesh.set_incident_tet(p, no_index);
+  EXPECT_EQ(w.ws->star.gather(w.mesh, p), Outcome::stale);
+  constexpr int many = static_cast<int>(Star::max_points);
+  Workbench wheel(ring_mesh(many, 1));
+  EXPECT_EQ(wheel.ws->star.gather(wheel.mesh, wheel.at(0, 0, 1)), Outcome::too_large);
+  EXPECT_EQ(wheel.ws->star.gather(wheel.mesh, wheel.at(1, 0, 0)), Outcome::done);
 }
 
 }  // namespace

@@ -13,14 +13,11 @@ const FlipReach all{7, 5}, basic{3, 1};
 Outcome remove_axis(Workbench& w, Index low, Index high, const FlipReach& reach) {
   for (Index t = 0; t < w.mesh.tet_slots(); ++t) {
     if (w.mesh.dead(t)) continue;
-    const Tet p = w.mesh.tet(t).points;
+    const Tet p = w.mesh.points(t);
     for (int e = 0; e < 6; ++e) {
       const Index a = p[tet_edges[e][0]], b = p[tet_edges[e][1]];
       if (!((a == low && b == high) || (a == high && b == low))) continue;
-      for (Index q : p) EXPECT_TRUE(w.ws->points.try_lock(q));
-      const Outcome o = remove_edge(*w.ws, w.rules, t, e, reach);
-      w.ws->release();
-      return o;
+      return w.carry_out(remove_edge(*w.ws, w.rules, t, e, reach));
     }
   }
   ADD_FAILURE() << "no such edge";
@@ -76,7 +73,7 @@ TEST(EdgeRemoval, FindsTheBestTriangulation) {
     ASSERT_EQ(o, Outcome::done) << seed;
     float worst = 1;
     for (Index t = 0; t < w.mesh.tet_slots(); ++t)
-      if (!w.mesh.dead(t)) worst = std::min(worst, w.mesh.tet(t).quality);
+      if (!w.mesh.dead(t)) worst = std::min(worst, w.mesh.quality(t));
     EXPECT_NEAR(worst, best, 1e-6) << seed;
   }
 }
@@ -163,12 +160,12 @@ TEST(EdgeRemoval, AnEdgeThatIsThereElsewhereIsNotMadeAgain) {
 TEST(EdgeRemoval, CountLimitsHold) {
   Workbench w(ring_mesh(3, 1));
   make_poor(w);
-  w.rules.min_tets = 3;
+  w.rules.count.min = 3;
   EXPECT_EQ(remove_axis(w, w.at(0, 0, -1), w.at(0, 0, 1), all), Outcome::count);
   w.expect_sound();
   Workbench six(ring_mesh(6, 1));
   make_poor(six);
-  six.rules.max_tets = 7;
+  six.rules.count.max = 7;
   EXPECT_EQ(remove_axis(six, six.at(0, 0, -1), six.at(0, 0, 1), all), Outcome::count);
   six.expect_sound();
 }

@@ -27,8 +27,7 @@ int inner_face(const Workbench& w, Index t) {
 TEST(FaceRemoval, TwoToThree) {
   Workbench w(bipyramid(0.3));
   make_poor(w);
-  lock_tet(w, 0);
-  ASSERT_EQ(remove_face(*w.ws, w.rules, 0, inner_face(w, 0), basic_flips), Outcome::done);
+  ASSERT_EQ(w.carry_out(remove_face(*w.ws, w.rules, 0, inner_face(w, 0), basic_flips)), Outcome::done);
   EXPECT_EQ(w.mesh.live_tets(), 3u);
   EXPECT_EQ(w.ws->counts.of(Operation::flip23, Outcome::done), 1u);
   w.expect_sound();
@@ -36,30 +35,16 @@ TEST(FaceRemoval, TwoToThree) {
 
 TEST(FaceRemoval, IsRefusedWhereItDoesNotImprove) {
   Workbench w(bipyramid(0.9));
-  lock_tet(w, 0);
-  EXPECT_EQ(remove_face(*w.ws, w.rules, 0, inner_face(w, 0), all_flips), Outcome::quality);
+  EXPECT_EQ(w.carry_out(remove_face(*w.ws, w.rules, 0, inner_face(w, 0), all_flips)), Outcome::quality);
   w.expect_sound();
 }
 
 TEST(FaceRemoval, NeverCrossesAnInterfaceNorTheBoundary) {
   Workbench w(bipyramid(0.12, 2));
   make_poor(w);
-  lock_tet(w, 0);
   const int inner = inner_face(w, 0);
-  EXPECT_EQ(remove_face(*w.ws, w.rules, 0, inner, all_flips), Outcome::material_rule);
-  EXPECT_EQ(remove_face(*w.ws, w.rules, 0, (inner + 1) % 4, all_flips), Outcome::no_candidate);
-  w.expect_sound();
-}
-
-TEST(FaceRemoval, ATakenFarPointIsTold) {
-  Workbench w(bipyramid(0.3));
-  make_poor(w);
-  lock_tet(w, 0);
-  Index far = 0;
-  while (w.ws->points.holds(far)) ++far;
-  ASSERT_TRUE(w.mesh.locks().try_lock(far));
-  EXPECT_EQ(remove_face(*w.ws, w.rules, 0, inner_face(w, 0), all_flips), Outcome::lock_taken);
-  w.mesh.locks().unlock(far);
+  EXPECT_EQ(w.carry_out(remove_face(*w.ws, w.rules, 0, inner, all_flips)), Outcome::material_rule);
+  EXPECT_EQ(w.carry_out(remove_face(*w.ws, w.rules, 0, (inner + 1) % 4, all_flips)), Outcome::no_candidate);
   w.expect_sound();
 }
 
@@ -70,30 +55,26 @@ TEST(FaceRemoval, UndoesEdgeRemoval) {
         ring_mesh(n, 0.25);  // a lens: tets around its short axis are good, those over its faces flat
     Workbench w(flat);
     make_poor(w);
-    lock_tet(w, 0);
     const Index low = w.at(0, 0, -0.25), high = w.at(0, 0, 0.25);
-    const Tet p = w.mesh.tet(0).points;
+    const Tet p = w.mesh.points(0);
     for (int e = 0; e < 6; ++e) {
       const Index a = p[tet_edges[e][0]], b = p[tet_edges[e][1]];
       if ((a == low && b == high) || (a == high && b == low)) {
-        ASSERT_EQ(remove_edge(*w.ws, w.rules, 0, e, all_flips), Outcome::done);
+        ASSERT_EQ(w.carry_out(remove_edge(*w.ws, w.rules, 0, e, all_flips)), Outcome::done);
       }
     }
-    w.ws->release();
     ASSERT_EQ(w.mesh.live_tets(), static_cast<std::size_t>(2 * (n - 2)));
     w.rules.objective.kind = Objective::Kind::shape;
     for (Index t = 0; t < w.mesh.tet_slots(); ++t) {
       if (w.mesh.dead(t)) continue;
-      const Tet& v = w.mesh.tet(t).points;
+      const Tet& v = w.mesh.points(t);
       w.mesh.set_quality(t, w.rules.objective(w.mesh.position(v[0]), w.mesh.position(v[1]),
                                               w.mesh.position(v[2]), w.mesh.position(v[3])));
     }
     bool done = false;
     for (Index t = 0; t < w.mesh.tet_slots() && !done; ++t)
       for (int f = 0; f < 4 && !done && !w.mesh.dead(t); ++f) {
-        lock_tet(w, t);
-        done = remove_face(*w.ws, w.rules, t, f, all_flips) == Outcome::done;
-        w.ws->release();
+        done = w.carry_out(remove_face(*w.ws, w.rules, t, f, all_flips)) == Outcome::done;
       }
     EXPECT_TRUE(done) << n;
     EXPECT_EQ(w.mesh.live_tets(), static_cast<std::size_t>(n));

@@ -14,8 +14,7 @@ INSTANTIATE_TEST_SUITE_P(Places, Insertion, testing::Values(InsertionPlace::cent
 TEST_P(Insertion, InATetMakesFour) {
   Workbench w(grid_mesh(2));
   make_poor(w);
-  lock_tet(w, 5);
-  ASSERT_EQ(insert_in_tet(*w.ws, w.rules, 5, GetParam()), Outcome::done);
+  ASSERT_EQ(w.carry_out(insert_in_tet(*w.ws, w.rules, 5, GetParam())), Outcome::done);
   if (GetParam() == InsertionPlace::centre) {
     EXPECT_EQ(w.mesh.live_tets(), 48u + 3u);
   }
@@ -30,11 +29,10 @@ TEST_P(Insertion, InEveryFaceOfTheBoundaryAndTheInterface) {
     for (int f = 0; f < 4; ++f) {
       Workbench w(mesh);
       make_poor(w);
-      lock_tet(w, t);
-      const bool inner = w.mesh.region_across(t, f) == w.mesh.tet(t).region;
+      const bool inner = w.mesh.region_across(t, f) == w.mesh.region(t);
       const bool outside = w.mesh.neighbour(t, f) == no_index;
       const double volume = w.mesh.total_volume();
-      const Outcome o = insert_in_face(*w.ws, w.rules, t, f, GetParam());
+      const Outcome o = w.carry_out(insert_in_face(*w.ws, w.rules, t, f, GetParam()));
       if (inner) {
         EXPECT_EQ(o, Outcome::no_candidate);
         continue;
@@ -58,14 +56,14 @@ TEST_P(Insertion, InEdgesOfEveryDimension) {
     for (int e = 0; e < 6; ++e) {
       Workbench w(mesh);
       make_poor(w);
-      lock_tet(w, t);
-      ASSERT_EQ(w.ws->ring.gather(w.mesh, t, e, w.ws->points), Outcome::done);
+      ASSERT_EQ(w.ws->ring.gather(w.mesh, t, e), Outcome::done);
       const int dimension = w.ws->ring.dimension();
       const std::size_t around = w.ws->ring.tets.size();
       if (dimension == 3) {
-        EXPECT_EQ(insert_in_edge(*w.ws, w.rules, t, e, GetParam(), false), Outcome::no_candidate);
+        EXPECT_EQ(w.carry_out(insert_in_edge(*w.ws, w.rules, t, e, GetParam(), false)),
+                  Outcome::no_candidate);
       }
-      ASSERT_EQ(insert_in_edge(*w.ws, w.rules, t, e, GetParam(), true), Outcome::done);
+      ASSERT_EQ(w.carry_out(insert_in_edge(*w.ws, w.rules, t, e, GetParam(), true)), Outcome::done);
       if (GetParam() == InsertionPlace::centre) {
         EXPECT_EQ(w.mesh.live_tets(), 48u + around);
       }
@@ -82,12 +80,11 @@ TEST(InsertionJudges, ByTheOutcome) {
   Workbench w(grid_mesh(2));
   w.rules.objective.kind = Objective::Kind::shape;
   for (Index t = 0; t < 48; ++t) {
-    const Tet& v = w.mesh.tet(t).points;
+    const Tet& v = w.mesh.points(t);
     w.mesh.set_quality(t, w.rules.objective(w.mesh.position(v[0]), w.mesh.position(v[1]),
                                             w.mesh.position(v[2]), w.mesh.position(v[3])));
   }
-  lock_tet(w, 0);
-  EXPECT_EQ(insert_in_tet(*w.ws, w.rules, 0, InsertionPlace::centre), Outcome::quality);
+  EXPECT_EQ(w.carry_out(insert_in_tet(*w.ws, w.rules, 0, InsertionPlace::centre)), Outcome::quality);
   w.expect_sound();
 }
 
@@ -102,21 +99,20 @@ TEST(InsertionJudges, TakesTheTetsAroundAPoorOneToo) {
     w.rules.objective.kind = Objective::Kind::shape;
     std::vector<std::pair<float, Index>> worst;
     for (Index t = 0; t < mesh.tets.size(); ++t) {
-      const Tet& v = w.mesh.tet(t).points;
+      const Tet& v = w.mesh.points(t);
       w.mesh.set_quality(t, w.rules.objective(w.mesh.position(v[0]), w.mesh.position(v[1]),
                                               w.mesh.position(v[2]), w.mesh.position(v[3])));
-      worst.emplace_back(w.mesh.tet(t).quality, t);
+      worst.emplace_back(w.mesh.quality(t), t);
     }
     std::sort(worst.begin(), worst.end());
     worst.resize(20);
     for (const auto& [before, t] : worst) {
-      if (w.mesh.dead(t) || w.mesh.tet(t).quality != before || before == 0) continue;
-      lock_tet(w, t);
-      EXPECT_EQ(insert_in_tet(*w.ws, w.rules, t, InsertionPlace::centre), Outcome::quality);
-      if (insert_in_tet(*w.ws, w.rules, t, InsertionPlace::best) == Outcome::done) {
+      if (w.mesh.dead(t) || w.mesh.quality(t) != before || before == 0) continue;
+      EXPECT_EQ(w.carry_out(insert_in_tet(*w.ws, w.rules, t, InsertionPlace::centre)), Outcome::quality);
+      if (w.carry_out(insert_in_tet(*w.ws, w.rules, t, InsertionPlace::best)) == Outcome::done) {
         ++done;
-        EXPECT_GT(w.ws->cavity.removed.size(), 1u);
-        EXPECT_GT(w.star(w.ws->cavity.added.front().points[0]).worst, before);
+        EXPECT_GT(w.last.removed.size(), 1u);
+        EXPECT_GT(w.star(w.last.new_point_id).worst, before);
       }
       w.expect_sound();
     }
@@ -127,17 +123,21 @@ TEST(InsertionJudges, TakesTheTetsAroundAPoorOneToo) {
 TEST(InsertionLimits, CountAndRoom) {
   Workbench w(grid_mesh(2));
   make_poor(w);
-  lock_tet(w, 5);
-  w.rules.max_tets = 48;
-  EXPECT_EQ(insert_in_tet(*w.ws, w.rules, 5, InsertionPlace::centre), Outcome::count);
+  w.rules.count.max = 48;
+  EXPECT_EQ(w.carry_out(insert_in_tet(*w.ws, w.rules, 5, InsertionPlace::centre)), Outcome::count);
   w.expect_sound();
+  // Where there are no free slots, there are some after.
   Workbench tight(grid_mesh(2));
   tight.mesh.compact(0, 0);
   tight.grid.build(tight.mesh, 0);
-  tight.ws = std::make_unique<Workspace>(tight.mesh, tight.grid, tight.ledger);
   make_poor(tight);
-  lock_tet(tight, 5);
-  EXPECT_EQ(insert_in_tet(*tight.ws, tight.rules, 5, InsertionPlace::centre), Outcome::no_room);
+  EXPECT_EQ(tight.mesh.free_tets().available(), 0u);
+  for (Index t = 0; t < 10; ++t) {
+    tight.mesh.set_quality(t, 0);
+    EXPECT_EQ(tight.carry_out(insert_in_tet(*tight.ws, tight.rules, t, InsertionPlace::centre)),
+              Outcome::done);
+  }
+  EXPECT_EQ(tight.mesh.live_tets(), 48u + 30u);
   tight.expect_sound();
 }
 

@@ -13,7 +13,7 @@ TEST(Smoothing, BringsADisplacedInnerPointBack) {
     if (p == Vec3(1, 1, 1)) p = Vec3(1.3, 1.25, 1.2);
   Workbench w(mesh);
   const float before = w.star(w.at(1.3, 1.25, 1.2)).worst;
-  ASSERT_EQ(smooth(*w.ws, w.rules), Outcome::done);
+  ASSERT_EQ(w.carry_out(smooth(*w.ws, w.rules)), Outcome::done);
   const float after = w.star(w.at(1, 1, 1)).worst;  // the centroid of the cube's points
   EXPECT_GT(after, before);
   w.expect_sound();
@@ -29,12 +29,12 @@ TEST(Smoothing, SlidesOnTheBoundaryWithoutChangingTheVolume) {
     w.rules.objective.kind = Objective::Kind::shape;
     const Index p = w.at(2.4, 2.3, 4.25);
     for (const auto& t : w.star(p).tets) {
-      const Tet& v = w.mesh.tet(t.tet).points;
+      const Tet& v = w.mesh.points(t.tet);
       w.mesh.set_quality(t.tet, w.rules.objective(w.mesh.position(v[0]), w.mesh.position(v[1]),
                                                   w.mesh.position(v[2]), w.mesh.position(v[3])));
     }
     const float before = w.star(p).worst;
-    ASSERT_EQ(operation(*w.ws, w.rules), Outcome::done);
+    ASSERT_EQ(w.carry_out(operation(*w.ws, w.rules)), Outcome::done);
     EXPECT_GT(w.star(p).worst, before);
     EXPECT_NEAR(w.mesh.total_volume(), volume, 1e-14);
     w.expect_sound();
@@ -51,7 +51,7 @@ TEST(Smoothing, OptimisingBeatsTheCentroid) {
     for (auto* operation : {&smooth, &optimise}) {
       Workbench w(mesh);
       w.star(p);
-      operation(*w.ws, w.rules);
+      w.carry_out(operation(*w.ws, w.rules));
       reached[i++] = w.star(p).worst;
       w.expect_sound();
     }
@@ -84,7 +84,7 @@ TEST(Smoothing, ACornerMayLeaveItsPlaceALittleWhereThatIsAsked) {
   float worst = w.star(p).worst;
   for (int k = 0; k < 10; ++k) {
     w.star(p);
-    if (optimise(*w.ws, w.rules) != Outcome::done) break;
+    if (w.carry_out(optimise(*w.ws, w.rules)) != Outcome::done) break;
     EXPECT_GT(w.star(p).worst, worst);
     worst = w.star(p).worst;
   }
@@ -101,7 +101,7 @@ TEST(Smoothing, AJunctionPointStaysOnAStraightCurve) {
   Workbench w(mesh);
   const Index p = w.at(2, 2.4, 0);
   w.star(p);
-  ASSERT_EQ(optimise(*w.ws, w.rules), Outcome::done);
+  ASSERT_EQ(w.carry_out(optimise(*w.ws, w.rules)), Outcome::done);
   const Vec3 now = w.mesh.space().to_input(w.mesh.position(p));
   EXPECT_NEAR(now.x(), 2, 1e-12);
   EXPECT_NEAR(now.z(), 0, 1e-12);
