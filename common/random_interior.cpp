@@ -20,16 +20,16 @@ constexpr double skin_jitter = 0.22;
 constexpr int max_steps = 2000;
 
 /// A place on the surface of the cube from -1 to 1, on the skin. sqrt alone has the same bits everywhere.
-Vec3 on_blob(const Vec3& p) {
+Vec3 on_blob(const Vec3& p, double thickness) {
   const Vec3 u = p / std::sqrt(p.x() * p.x() + p.y() * p.y() + p.z() * p.z());
   const double radius = 1 + 0.3 * u.x() * u.y() + 0.25 * u.z() * u.z() * u.x() - 0.2 * u.y() * u.y();
-  return {1.4 * radius * u.x(), radius * u.y(), 0.9 * radius * u.z()};
+  return {1.4 * radius * u.x(), radius * u.y(), thickness * radius * u.z()};
 }
 
 /// The cube's surface in squares, each cut along a diagonal chosen at random, oriented outwards.
 class Skin {
  public:
-  explicit Skin(Index cells) : n_(cells) {
+  Skin(Index cells, double thickness) : n_(cells), thickness_(thickness) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (const Index side : {Index{0}, n_})
         for (Index i = 0; i < n_; ++i)
@@ -54,7 +54,7 @@ class Skin {
         const double away = c == 0 || c == n_ ? 0 : skin_jitter * (2 * random_.uniform() - 1);
         p[k] = 2 * (c + away) / n_ - 1;
       }
-      points.push_back(on_blob(p));
+      points.push_back(on_blob(p, thickness_));
     }
     return entry->second;
   }
@@ -69,20 +69,15 @@ class Skin {
   }
 
   Index n_;
+  double thickness_;
   Random random_{skin_seed};
   std::map<std::array<Index, 3>, Index> ids_;
 };
 
-/// Heights count for that much more where it is asked what is Delaunay, as in programs that work in voxels of
-/// another height. Without it 28 % of the tets are below 0.1 sr, with it 42 %.
-constexpr double stretch = 2;
-
-/// Whether p lies inside the circumsphere of a positive tet, in stretched coordinates and up to rounding:
-/// what that decides wrongly leaves a tet that is Delaunay but for rounding.
+/// Whether p lies inside the circumsphere of a positive tet, up to rounding: what that decides wrongly leaves
+/// a tet that is Delaunay but for rounding.
 bool in_sphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& p) {
-  const Vec3 scale(1, 1, stretch);
-  const Vec3 ap = (a - p).cwiseProduct(scale), bp = (b - p).cwiseProduct(scale),
-             cp = (c - p).cwiseProduct(scale), dp = (d - p).cwiseProduct(scale);
+  const Vec3 ap = a - p, bp = b - p, cp = c - p, dp = d - p;
   const auto det = [](const Vec3& u, const Vec3& v, const Vec3& w) {
     return orient3d_value(Vec3::Zero(), u, v, w);
   };
@@ -307,8 +302,8 @@ class Interior {
 
 }  // namespace
 
-TetMesh random_interior(Index skin_cells, std::size_t interior_points) {
-  Skin skin(skin_cells);
+TetMesh random_interior(Index skin_cells, std::size_t interior_points, double thickness) {
+  Skin skin(skin_cells, thickness);
   Interior interior(skin);
   std::vector<Vec3> inside;
   for (std::size_t i = 0; i + 1 < interior_points; ++i) inside.push_back(interior.next());
