@@ -5,6 +5,7 @@
 
 #include "common/error.h"
 #include "common/memory.h"
+#include "simplify/schedule/bulk_improvement.h"
 #include "simplify/schedule/engine.h"
 #include "simplify/schedule/improvement.h"
 #include "simplify/schedule/paper_schedule.h"
@@ -24,8 +25,8 @@ constexpr double closing_margin = 1.27;
 /// up to 30 degrees). In the closing that would move the surface a quarter farther.
 constexpr double improve_margin = 1.5;
 constexpr int closing_fit_sweeps = 1;
-/// Solid angle, steradians, up to which improve() works by default: dihedral angles up to 42 degrees.
-constexpr double improve_all_below = 0.2;
+/// Rounds of improve() in bulk, before those that take the worst tets first.
+constexpr int max_bulk_rounds = 30;
 /// The first bound on the way there, for a --min-solid-angle of next to nothing.
 constexpr double min_first_bound = 1e-3;
 /// Factor from one bound to the next.
@@ -72,6 +73,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
   const double loop_end = seconds_since(start);
   if (options.schedule == Schedule::tuned) {
     engine.begin_stage("improve");
+    begin_improvement(engine);
     const auto count = static_cast<double>(std::min(options.target_tets, first_count));
     run_improvement(engine, {.kind = "close",
                              .angle = closing_margin * options.min_solid_angle,
@@ -104,24 +106,27 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
   engine.begin_stage("improve");
   const double build = seconds_since(start);
   engine.rules.max_error = improve_error_edges * engine.rules.objective.quality.ideal_edge;
-  const double below = options.only_below > 0
-                           ? options.only_below
-                           : std::max(improve_all_below, improve_margin * options.min_solid_angle);
+  begin_improvement(engine);
+  const auto min_tets = static_cast<std::size_t>(std::ceil(count * (1 - improve_slack)));
+  const auto max_tets = static_cast<std::size_t>(count * (1 + improve_slack));
+  const double below = options.only_below > 0 ? options.only_below : improve_margin * options.min_solid_angle;
   // The worst first, also in the large: a bound that most tets are below would leave no time for them.
   int rounds = options.max_iterations;
-  for (double limit = std::min(below, std::max(min_first_bound, closing_margin * options.min_solid_angle));
-       rounds > 0; limit *= improve_step) {
+  double limit = std::min(below, std::max(min_first_bound, closing_margin * options.min_solid_angle));
+  const auto poor = static_cast<float>(shape_quality_bound(options.objective, limit));
+  rounds -=
+      run_bulk_improvement(engine, {"improve", poor, min_tets, max_tets, std::min(rounds, max_bulk_rounds)});
+  for (; rounds > 0; limit *= improve_step) {
     limit = std::min(limit, below);
-    rounds -=
-        run_improvement(engine, {.kind = "improve",
-                                 .angle = limit,
-                                 .leave_surface_angle = improve_margin * options.min_solid_angle,
-                                 .target_tets = static_cast<std::size_t>(count),
-                                 .min_tets = static_cast<std::size_t>(std::ceil(count * (1 - improve_slack))),
-                                 .max_tets = static_cast<std::size_t>(count * (1 + improve_slack)),
-                                 .local = options.only_below > 0,
-                                 .max_rounds = rounds,
-                                 .fit_sweeps = 0});
+    rounds -= run_improvement(engine, {.kind = "improve",
+                                       .angle = limit,
+                                       .leave_surface_angle = improve_margin * options.min_solid_angle,
+                                       .target_tets = static_cast<std::size_t>(count),
+                                       .min_tets = min_tets,
+                                       .max_tets = max_tets,
+                                       .local = options.only_below > 0,
+                                       .max_rounds = rounds,
+                                       .fit_sweeps = 0});
     if (limit >= below) break;
   }
   if (report) {

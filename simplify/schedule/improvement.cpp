@@ -45,17 +45,11 @@ class ImprovementLoop {
         mesh_(engine.mesh()),
         plan_(plan),
         bounds_{quality(plan.angle), quality(plan.leave_surface_angle)} {
-    BlockRules& rules = engine_.rules;
-    rules.objective.kind = Objective::Kind::shape;
-    rules.accept_worse = 0;
-    rules.count = {plan_.min_tets, plan_.max_tets};
-    rules.projection = &engine_.projection();
+    engine_.rules.count = {plan_.min_tets, plan_.max_tets};
   }
 
   /// The number of rounds.
   int run() {
-    engine_.compact();
-    engine_.rate_all();
     for (int sweep = 0; sweep < plan_.fit_sweeps; ++sweep) {
       Engine::Round round(engine_, plan_.kind);
       engine_.fit_interfaces(bounds_.poor);
@@ -170,6 +164,14 @@ class ImprovementLoop {
 };
 
 }  // namespace
+
+void begin_improvement(Engine& engine) {
+  engine.rules.objective.kind = Objective::Kind::shape;
+  engine.rules.accept_worse = 0;
+  engine.rules.projection = &engine.projection();
+  engine.compact();
+  engine.rate_all();
+}
 
 int run_improvement(Engine& engine, const ImprovementPlan& plan) {
   return ImprovementLoop(engine, plan).run();

@@ -18,6 +18,10 @@ struct ImprovementPlan {
   int fit_sweeps;  ///< of fit_to_surface() over all interface points, before the rounds
 };
 
+/// Compacts the mesh, rates its tets by their shapes and sets the rules that all improvement shares: before
+/// the first run_bulk_improvement() or run_improvement().
+void begin_improvement(Engine& engine);
+
 /// Improves the shapes of the worst tets, worst first (README.md, Improvement). Returns the number of rounds
 /// it took. Throws Interrupted.
 int run_improvement(Engine& engine, const ImprovementPlan& plan);

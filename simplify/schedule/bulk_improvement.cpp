@@ -1,0 +1,141 @@
+#include "simplify/schedule/bulk_improvement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "common/geometry/predicates.h"
+#include "common/portable_math.h"
+#include "simplify/operations/collapse.h"
+#include "simplify/operations/edge_removal.h"
+#include "simplify/operations/face_removal.h"
+#include "simplify/operations/insertion.h"
+#include "simplify/operations/smoothing.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Sizes are changed where more than this share of all tets stays poor: shapes alone would not do.
+constexpr double resize_above = 0.01;
+/// A round that leaves more than this share of the poor tets is the last but for max_idle others.
+constexpr double idle_above = 0.9;
+constexpr int max_idle = 2;
+/// Edge of the regular tet of volume 1, cubed: 6 sqrt(2).
+constexpr double cubed_edge_of_unit_volume = 8.48528137423857;
+/// In edges of the regular tet of the volume that the tets around have on average: what is longer is split on
+/// the surface, and a point with a shorter edge is crowded.
+constexpr double long_edge = 1.6;
+constexpr double short_edge = 0.6;
+/// Share of the worst quality that splits and collapses must leave: flips and better places make it up.
+constexpr float resize_floor = 0.5f;
+
+double local_edge(double volume, std::size_t tets) {
+  return portable_cbrt(cubed_edge_of_unit_volume * volume / static_cast<double>(tets));
+}
+
+/// The first flip that makes the worst tet better.
+Outcome flip_tet(Workspace& ws, const BlockRules& rules, const ListedTet& item, float poor) {
+  if (!exists(ws.mesh, item) || ws.mesh.quality(item.tet) > poor) return Outcome::stale;
+  for (int e = 0; e < 6; ++e)
+    if (remove_edge(ws, rules, item.tet, e, full_reach) == Outcome::done) return Outcome::done;
+  for (int f = 0; f < 4; ++f)
+    if (remove_face(ws, rules, item.tet, f, full_reach) == Outcome::done) return Outcome::done;
+  return Outcome::no_candidate;
+}
+
+/// A point in the longest edge of the tet that is on the surface and long for what stands around it.
+Outcome split_tet(Workspace& ws, const BlockRules& rules, const ListedTet& item, float poor) {
+  const EditableMesh& mesh = ws.mesh;
+  if (!exists(mesh, item) || mesh.quality(item.tet) > poor) return Outcome::stale;
+  int longest = -1;
+  double longest2 = 0;
+  for (int e = 0; e < 6; ++e) {
+    if (ws.ring.gather(mesh, item.tet, e) != Outcome::done || ws.ring.interface_triangles == 0) continue;
+    const double length2 = (mesh.position(ws.ring.a) - mesh.position(ws.ring.b)).squaredNorm();
+    if (length2 <= longest2) continue;
+    double volume = 0;
+    for (Index t : ws.ring.tets) volume += mesh.signed_volume(t);
+    const double local = long_edge * local_edge(volume, ws.ring.tets.size());
+    if (length2 < local * local) continue;
+    longest = e;
+    longest2 = length2;
+  }
+  if (longest < 0) return Outcome::no_candidate;
+  return insert_in_edge(ws, rules, item.tet, longest, InsertionPlace::centre, false);
+}
+
+/// Whether the centre of the gathered star has an edge that is short for the star.
+bool crowded(const EditableMesh& mesh, const Star& star) {
+  double shortest2 = std::numeric_limits<double>::infinity(), volume = 0;
+  for (const Vec3& p : star.positions)
+    shortest2 = std::min(shortest2, (p - star.centre_position).squaredNorm());
+  for (const Star::StarTet& t : star.tets) volume += mesh.signed_volume(t.tet);
+  const double local = short_edge * local_edge(volume, star.tets.size());
+  return shortest2 < local * local;
+}
+
+class BulkLoop {
+ public:
+  BulkLoop(Engine& engine, const BulkPlan& plan)
+      : engine_(engine), mesh_(engine.mesh()), plan_(plan), rules_(engine.rules) {
+    rules_.count = {plan.min_tets, plan.max_tets};
+  }
+
+  int run() {
+    int idle = 0, i = 0;
+    std::size_t fewest = std::numeric_limits<std::size_t>::max();
+    for (; i < plan_.max_rounds; ++i) {
+      const std::vector<ListedTet> poor = engine_.poor_tets(plan_.poor);
+      if (poor.empty()) break;
+      const bool gained = static_cast<double>(poor.size()) < idle_above * static_cast<double>(fewest);
+      idle = gained ? 0 : idle + 1;
+      if (idle > max_idle) break;
+      fewest = std::min(fewest, poor.size());
+      run_round(poor);
+    }
+    return i;
+  }
+
+ private:
+  void run_round(const std::vector<ListedTet>& poor) {
+    Engine::Round round(engine_, plan_.kind);
+    round.report().percent = 100 * static_cast<double>(poor.size()) / static_cast<double>(mesh_.live_tets());
+    if (static_cast<double>(poor.size()) > resize_above * static_cast<double>(mesh_.live_tets())) resize();
+    each_poor_tet(
+        [&](Workspace& ws, const ListedTet& item) { return flip_tet(ws, rules_, item, plan_.poor); });
+    engine_.each_star(engine_.poor_points(plan_.poor), Operation::optimise,
+                      [&](Workspace& ws) { return optimise(ws, rules_); });
+    round.finish();
+  }
+
+  void resize() {
+    BlockRules resizing = rules_;
+    resizing.accept_worse = 1;
+    resizing.annealing_floor = resize_floor;
+    engine_.each_star(engine_.poor_points(plan_.poor), Operation::collapse, [&](Workspace& ws) {
+      return crowded(ws.mesh, ws.star) ? collapse(ws, resizing) : Outcome::no_candidate;
+    });
+    each_poor_tet(
+        [&](Workspace& ws, const ListedTet& item) { return split_tet(ws, resizing, item, plan_.poor); });
+  }
+
+  template <class Attempt>
+  void each_poor_tet(const Attempt& attempt) {
+    engine_.runner().tets(
+        engine_.poor_tets(plan_.poor),
+        [&](Workspace& ws, const ListedTet& item, int) { return attempt(ws, item); }, [] { return false; });
+  }
+
+  Engine& engine_;
+  EditableMesh& mesh_;
+  const BulkPlan& plan_;
+  BlockRules rules_;
+};
+
+}  // namespace
+
+int run_bulk_improvement(Engine& engine, const BulkPlan& plan) { return BulkLoop(engine, plan).run(); }
+
+}  // namespace tetwright
