@@ -14,25 +14,27 @@ TEST(ProjectionTree, FindsWhatASearchOfAllFinds) {
   for (Index i = 0; i < 500; ++i) {
     const Vec3 c(number(), number(), number());
     for (int k = 0; k < 3; ++k) points.push_back(c + 0.1 * Vec3(number(), number(), number()));
-    items.push_back({{3 * i, 3 * i + 1, i % 7 ? 3 * i + 2 : 3 * i + 1}, i % 3, 9});
+    items.push_back(
+        {{3 * i, 3 * i + 1, i % 7 ? 3 * i + 2 : 3 * i + 1}, i % 3, 9, static_cast<PatchId>(i % 2)});
   }
   const ProjectionTree tree(points, items);
   for (int i = 0; i < 300; ++i) {
     const Vec3 p = 1.2 * Vec3(number(), number(), number());
     const RegionId kind = static_cast<RegionId>(i % 3);
+    const auto patch = static_cast<PatchId>(i % 2);
     double best = 0.3;
     for (const auto& item : items)
-      if (item.first == kind)
+      if (item.first == kind && item.patch == patch)
         best = std::min(best, std::sqrt(squared_distance(p, points[item.corners[0]], points[item.corners[1]],
                                                          points[item.corners[2]])));
-    const auto found = tree.nearest(p, 9, kind, 0.3);
+    const auto found = tree.nearest(p, 9, kind, patch, 0.3);
     ASSERT_EQ(found.has_value(), best < 0.3);
     if (found) {
       EXPECT_NEAR((*found - p).norm(), best, 1e-12);
     }
-    EXPECT_FALSE(tree.nearest(p, 5, 6, 10));
+    EXPECT_FALSE(tree.nearest(p, 5, 6, 0, 10));
   }
-  EXPECT_FALSE(ProjectionTree().nearest({0, 0, 0}, 0, 0, 10));
+  EXPECT_FALSE(ProjectionTree().nearest({0, 0, 0}, 0, 0, 0, 10));
 }
 
 TEST(SurfaceProjection, KnowsSurfacesByTheirMaterialsAndJunctionCurves) {
@@ -41,14 +43,14 @@ TEST(SurfaceProjection, KnowsSurfacesByTheirMaterialsAndJunctionCurves) {
   const SurfaceProjection projection(w.mesh, nullptr);
   const double s = w.mesh.space().scale();
   const auto at = [&](double x, double y, double z) { return w.mesh.space().to_working({x, y, z}); };
-  const auto interface = projection.onto_surface(at(1.7, 2.2, 2.1), 0, 1, s);
+  const auto interface = projection.onto_surface(at(1.7, 2.2, 2.1), 0, 1, 0, s);
   ASSERT_TRUE(interface);
   EXPECT_NEAR((*interface - at(2, 2.2, 2.1)).norm(), 0, 1e-12);
-  const auto boundary = projection.onto_surface(at(1, 2.2, 0.3), 0, outside_id, s);
+  const auto boundary = projection.onto_surface(at(1, 2.2, 0.3), 0, outside_id, 0, s);
   ASSERT_TRUE(boundary);
   EXPECT_NEAR((*boundary - at(1, 2.2, 0)).norm(), 0, 1e-12);
-  EXPECT_FALSE(
-      projection.onto_surface(at(3, 2.2, 0.3), 0, outside_id, 0.5 * s));  // there it is the other's boundary
+  EXPECT_FALSE(projection.onto_surface(at(3, 2.2, 0.3), 0, outside_id, 0,
+                                       0.5 * s));  // there it is the other's boundary
   const auto curve = projection.onto_curve(at(2.1, 3, 0.2), s);
   ASSERT_TRUE(curve);
   EXPECT_NEAR((*curve - at(2, 3, 0)).norm(), 0, 1e-12);
