@@ -16,7 +16,7 @@ namespace {
 #ifdef TETWRIGHT_INJECT_YIELDS
 constexpr int cells = 8;  // sleeping takes time
 #else
-constexpr int cells = 12;
+constexpr int cells = 10;
 #endif
 constexpr std::size_t target = static_cast<std::size_t>(cells * cells * cells) * 6 / 8;
 
