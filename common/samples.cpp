@@ -289,9 +289,9 @@ const std::vector<NamedSample>& samples() {
       {"tet_cube", tet_cube},
       {"two_materials", two_materials},
       {"layers", layers},
-      {"random_interior", +[] { return random_interior(8, 5100, 0.07); }},
-      {"random_interior_small", +[] { return random_interior(3, 170, 0.25); }},
-      {"random_interior_large", +[] { return random_interior(14, 30000, 0.07); }},
+      {"random-interior", +[] { return random_interior(8, 5100, 0.07); }},
+      {"random-interior-small", +[] { return random_interior(3, 170, 0.25); }},
+      {"random-interior-large", +[] { return random_interior(14, 30000, 0.07); }},
       {"organs", organs},
   };
   return all;

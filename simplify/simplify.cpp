@@ -58,11 +58,11 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
   check(mesh, options.name);
   const auto start = std::chrono::steady_clock::now();
   const std::size_t first_count = mesh.tets.size();
-  Engine engine(
-      std::move(mesh),
-      {options.name, static_cast<double>(options.target_tets), options.beta, options.gamma, options.seed,
-       options.batch_size, options.objective, options.reference, options.schedule == Schedule::tuned},
-      report, progress);
+  Engine engine(std::move(mesh),
+                {options.name, static_cast<double>(options.target_tets), options.beta, options.gamma,
+                 options.seed, options.batch_size, options.objective, options.reference, options.frozen,
+                 options.fix_boundary, options.schedule == Schedule::tuned},
+                report, progress);
   engine.begin_stage("simplify");
   const double build = seconds_since(start);
   if (options.schedule == Schedule::paper) {
@@ -101,7 +101,7 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
   const SimplifyOptions defaults;
   Engine engine(std::move(mesh),
                 {options.name, count, defaults.beta, defaults.gamma, options.seed, options.batch_size,
-                 options.objective, options.reference},
+                 options.objective, options.reference, options.frozen, options.fix_boundary},
                 report, progress);
   engine.begin_stage("improve");
   const double build = seconds_since(start);

@@ -296,10 +296,16 @@ void add_mesh(CLI::App& app, CommandLine& c) {
   add_seed(app, c);
 }
 
+void add_fix_boundary(CLI::App& app, CommandLine& c) {
+  app.add_flag("--fix-boundary", c.fix_boundary,
+               "Keep the points and faces of the boundary and of interfaces between materials as they are");
+}
+
 void add_simplify(CLI::App& app, CommandLine& c) {
   app.add_option("MESH", c.inputs, meshes)->required()->expected(1);
   add_output(app, c, mesh_out);
   add_simplifying(app, c);
+  add_fix_boundary(app, c);
   add_material_field(app, c);
   add_common(app, c);
   add_seed(app, c);
@@ -314,6 +320,7 @@ void add_improve(CLI::App& app, CommandLine& c) {
       "that stay below it are reported")
       ->default_str(short_text(c.only_below));
   add_shaping(app, c, "Max number of rounds, 1 to 10000");
+  add_fix_boundary(app, c);
   add_material_field(app, c);
   add_common(app, c);
   add_seed(app, c);

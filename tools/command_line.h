@@ -36,6 +36,7 @@ struct CommandLine {
   Schedule schedule = Schedule::tuned;
   ShapeObjective objective = ShapeObjective::both;
   double only_below = 0;  ///< `improve`, steradians; 0: all tets
+  bool fix_boundary = false;
 
   int resolution = 0;     ///< 0: not given
   double voxel_size = 0;  ///< input units; 0: not given

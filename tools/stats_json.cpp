@@ -33,7 +33,10 @@ nlohmann::json iteration_json(const IterationReport& it) {
           {"operations", operations},
           {"rejections", rejections},
           {"lock_conflicts", it.conflicts},
-          {"skipped", 0},
+          {"repeats", it.repeats},
+          {"batches", it.batches},
+          {"skipped", 0},  // no item is given up any more
+
           {"seconds", it.seconds}};
 }
 

@@ -42,6 +42,8 @@ Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, P
     throw InputError(
         options.name, 0,
         "the volumes of its tets add up to nothing or less; turn the tets so that they are positive");
+  if (!options.frozen.empty()) mesh_.freeze(options.frozen);
+  if (options.fix_boundary) mesh_.freeze_interfaces();
   rules.objective.quality = TetQuality::for_target(volume, options.target_tets, options.beta);
   rules.objective.shape = options.objective;
   rules.gamma = options.gamma;

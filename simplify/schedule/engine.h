@@ -22,6 +22,8 @@ class Engine {
     std::size_t batch_size;
     ShapeObjective objective;
     const ReferenceSurface* reference;
+    const std::vector<std::uint8_t>& frozen;
+    bool fix_boundary;
     bool keep_volumes = true;  ///< by a VolumeLedger
   };
   Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, Progress* progress);

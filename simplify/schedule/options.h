@@ -31,6 +31,10 @@ struct SimplifyOptions {
   /// Points or tets of a batch (BlockRunner); 0: from the number of items. Results depend on it, never on the
   /// number of threads.
   std::size_t batch_size = 0;
+  /// Points that never move nor go, one number for each point of the mesh, not 0 where it is frozen; tets
+  /// that have only such points stay. Empty: none.
+  std::vector<std::uint8_t> frozen;
+  bool fix_boundary = false;  ///< freezes all points of boundary and interfaces, and so their faces
   std::string name = "mesh";  ///< what messages call the mesh
 };
 
@@ -46,6 +50,8 @@ struct ImproveOptions {
   std::uint64_t seed = 1;
   std::size_t batch_size = 0;  ///< as in SimplifyOptions
   const ReferenceSurface* reference = nullptr;
+  std::vector<std::uint8_t> frozen;  ///< as in SimplifyOptions, like fix_boundary
+  bool fix_boundary = false;
   std::string name = "mesh";
 };
 

@@ -90,6 +90,7 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options) {
     Engine::Round round(engine, "simplify");
     IterationReport& it = round.report();
     it.percent = percent;
+    rules.count.max = it.tets_before;
     const double log_now = portable_log(static_cast<double>(it.tets_before) / target);
     rules.accept_worse = first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
     const float limit = engine.cutoff(percent);

@@ -117,7 +117,7 @@ TEST(Remesher, CoarsensAndRefines) {
   RemeshChanges c = r.coarsen(all, 2);
   expect_told(before, r, c);
   expect_sound(mesh, r);
-  EXPECT_LT(r.tet_count(), mesh.tets.size() / 3);
+  EXPECT_LT(r.tet_count(), mesh.tets.size() / 2);
   const std::size_t coarse = r.tet_count();
   before = Snapshot(r);
   c = r.refine(RemeshRegion::box({0, 0, 0}, {3, 3, 3}), 0.7);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "common/formats/formats.h"
+#include "common/mesh/interfaces.h"
 #include "tests/tools/program.h"
 
 namespace tetwright::improve_test {
@@ -57,6 +59,32 @@ TEST(Improve, AnAngleThatCannotBeHadIsStatusOneAndWritten) {
   EXPECT_EQ(std::count(a.err.begin(), a.err.end(), '\n'), 1) << a.err;
   EXPECT_EQ(json_of(f / "s.json")["shortfall"][0]["what"], "min_solid_angle");
   EXPECT_EQ(run("check " + (f / "o.vtu") + " --before " + (f / "m.vtu")).status, 0);
+}
+
+TEST(Improve, FixBoundaryKeepsTheBoundaryAndInterfaces) {
+  const TemporaryFolder f;
+  ASSERT_EQ(run("sample two_materials -o " + (f / "m.mesh")).status, 0);
+  /// The boundary and interface triangles of a file by their coordinates.
+  const auto triangles = [&](const std::string& path) {
+    const TetMesh mesh = read_tet_mesh(path).mesh;
+    std::vector<std::vector<std::array<double, 3>>> out;
+    for (const InterfaceTriangle& t : find_interfaces(mesh)) {
+      out.emplace_back();
+      for (Index p : t.ids)
+        out.back().push_back({mesh.points[p].x(), mesh.points[p].y(), mesh.points[p].z()});
+      std::sort(out.back().begin(), out.back().end());
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+  };
+  const auto before = triangles(f / "m.mesh");
+  for (const std::string& call : {std::string("improve "), std::string("simplify --target-tets 100 ")}) {
+    const Answer fixed = run(call + (f / "m.mesh") + " -o " + (f / "f.mesh") + " --fix-boundary");
+    EXPECT_LE(fixed.status, 1) << fixed.err;
+    EXPECT_EQ(triangles(f / "f.mesh"), before);
+    ASSERT_LE(run(call + (f / "m.mesh") + " -o " + (f / "g.mesh")).status, 1);
+    EXPECT_NE(triangles(f / "g.mesh"), before);
+  }
 }
 
 TEST(Improve, TetsThatStayBelowOnlyBelowAreReported) {

@@ -14,6 +14,7 @@ TetMesh simplify_to_target(TetMesh mesh, const ReferenceSurface* surface, Comman
   options.schedule = run.line.schedule;
   options.objective = run.line.objective;
   options.reference = surface;
+  options.fix_boundary = run.line.fix_boundary;
   options.seed = run.line.seed;
   options.name = run.report.inputs.front();
   run.report.simplify.emplace();
