@@ -215,8 +215,8 @@ Outcome remove_edge(Workspace& ws, const BlockRules& rules, Index tet, int edge,
   Operation kind = Operation::edge_removal;
   Outcome o = ws.ring.gather(ws.mesh, tet, edge, reach.basic() ? basic_ring : EdgeRing::max_tets);
   if (o == Outcome::done) o = EdgeRemoval(ws, rules).run(reach, kind);
-  if (reach.basic() && kind == Operation::edge_removal)
-    return o;  // none of the three flips: nothing was tried
+  // None of the three flips: nothing was tried.
+  if (reach.basic() && kind == Operation::edge_removal) return Outcome::no_candidate;
   return ws.count(kind, o);
 }
 
