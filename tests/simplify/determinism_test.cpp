@@ -14,9 +14,12 @@ namespace tetwright::determinism_test {
 namespace {
 
 #ifdef TETWRIGHT_INJECT_YIELDS
-constexpr int cells = 8;  // sleeping takes time
+// Pauses, and the thread sanitizer, take time.
+constexpr int cells = 6;
+const std::vector<unsigned> thread_counts{2, 8};
 #else
 constexpr int cells = 10;
+const std::vector<unsigned> thread_counts{2, 3, 8, 16};
 #endif
 constexpr std::size_t target = static_cast<std::size_t>(cells * cells * cells) * 6 / 8;
 
@@ -69,8 +72,7 @@ INSTANTIATE_TEST_SUITE_P(
     Cases, Determinism,
     testing::Values(Case{"tuned", Work::tuned, 0}, Case{"tuned_small_batches", Work::tuned, 64},
                     Case{"tuned_large_batches", Work::tuned, 4000}, Case{"paper", Work::paper, 0},
-                    Case{"paper_small_batches", Work::paper, 64},
-                    Case{"paper_large_batches", Work::paper, 4000}, Case{"improve", Work::improve, 0},
+                    Case{"improve", Work::improve, 0},
                     Case{"improve_small_batches", Work::improve, 16}),
     [](const auto& c) { return c.param.name; });
 
@@ -82,9 +84,9 @@ TEST_P(Determinism, AnyNumberOfThreadsGivesTheSameBytes) {
     batches += it.batches;
     conflicts += it.conflicts;
   }
-  EXPECT_GT(batches, 20u);
+  EXPECT_GT(batches, 10u);
   EXPECT_GT(conflicts, 0u);
-  for (const unsigned threads : {2u, 3u, 8u, 16u}) {
+  for (const unsigned threads : thread_counts) {
     SimplifyReport report;
     const TetMesh mesh = run(GetParam(), threads, 1, &report);
     EXPECT_EQ(difference(mesh, expected), "") << threads << " threads";
@@ -107,9 +109,11 @@ TEST_P(Determinism, AnyNumberOfThreadsGivesTheSameBytes) {
   }
 }
 
+#ifndef TETWRIGHT_INJECT_YIELDS
 TEST_P(Determinism, AnotherSeedGivesAnotherResult) {
   EXPECT_NE(difference(run(GetParam(), 2, 1), run(GetParam(), 2, 2)), "");
 }
+#endif
 
 }  // namespace
 }  // namespace tetwright::determinism_test

