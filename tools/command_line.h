@@ -35,7 +35,8 @@ struct CommandLine {
   int max_iterations = 100;
   Schedule schedule = Schedule::tuned;
   ShapeObjective objective = ShapeObjective::both;
-  double only_below = 0;  ///< `improve`, steradians; 0: all tets
+  double only_below = 0;    ///< `improve`, steradians; 0: all tets
+  bool free_count = false;  ///< `improve`
 
   int resolution = 0;     ///< 0: not given
   double voxel_size = 0;  ///< input units; 0: not given

@@ -13,8 +13,8 @@ namespace tetwright {
 
 namespace {
 
-/// A round that leaves more than this share of the poor tets is followed by one that moves all points around
-/// them too, for the tets that stand in their way.
+/// A round that leaves more than this share of the poor tets is followed by one that flips tets around them
+/// at random and moves all points around, for what stands in their way.
 constexpr double stuck_above = 0.8;
 /// What collapses that make room for insertions must leave, over the quality that is aimed at.
 constexpr float thinning_margin = 1.1f;
@@ -32,6 +32,15 @@ constexpr double min_gain_of_many = 0.05;
 /// else.
 constexpr int max_idle_rounds = 8;
 constexpr int max_idle_rounds_when_good = 2;
+/// The same where less than this share of all tets is poor: such rounds take next to no time.
+constexpr double few_poor = 5e-4;
+constexpr int max_idle_rounds_of_few = 30;
+/// Perturbation leaves tets that are at least this much of what is aimed at: it frees twice as many of the
+/// last ones as with all of it, and what is poor then is mended at once.
+constexpr float perturbed_share = 0.95f;
+/// Share of the tets by which the count may fall that is kept for the last resort: edge removals would use up
+/// all of it, and no collapse could take the last slivers out.
+constexpr double kept_share = 0.125;
 
 /// Qualities (shape_quality()) below which a tet is worked on, and points may leave the surface for it.
 struct Bounds {
@@ -45,16 +54,17 @@ Outcome improve_tet(Workspace& ws, const BlockRules& rules, const BlockRules& su
   if (!exists(mesh, item)) return Outcome::stale;
   const float quality = mesh.quality(item.tet);
   if (quality > bounds.poor) return Outcome::stale;
+  // Flips first: they take half the time of places on a surface, and a quarter less for all.
+  for (int e = 0; e < 6; ++e)
+    if (remove_edge(ws, surgery, item.tet, e, full_reach) == Outcome::done) return Outcome::done;
+  for (int f = 0; f < 4; ++f)
+    if (remove_face(ws, rules, item.tet, f, full_reach) == Outcome::done) return Outcome::done;
   const BlockRules& moving = last_resort && quality < bounds.leave_surface ? surgery : rules;
   for (Index p : item.points) {
     Outcome o = ws.gather(p);
     if (o == Outcome::done) o = optimise(ws, moving);
     if (ws.count(Operation::optimise, o) == Outcome::done) return o;
   }
-  for (int e = 0; e < 6; ++e)
-    if (remove_edge(ws, surgery, item.tet, e, full_reach) == Outcome::done) return Outcome::done;
-  for (int f = 0; f < 4; ++f)
-    if (remove_face(ws, rules, item.tet, f, full_reach) == Outcome::done) return Outcome::done;
   for (Index p : item.points) {
     if (mesh.live_tets() <= rules.count.min) break;
     Outcome o = ws.gather(p);
@@ -68,15 +78,6 @@ Outcome improve_tet(Workspace& ws, const BlockRules& rules, const BlockRules& su
   for (int f = 0; f < 4; ++f)
     if (insert_in_face(ws, rules, item.tet, f, InsertionPlace::best) == Outcome::done) return Outcome::done;
   return insert_in_tet(ws, rules, item.tet, InsertionPlace::best);
-}
-
-/// A flip of the tet, chosen at random, that leaves only good tets or an improvement: it changes the
-/// connectivity near tets that no operation improves.
-Outcome perturb_tet(Workspace& ws, const BlockRules& perturbation, const ListedTet& item) {
-  if (!exists(ws.mesh, item)) return Outcome::stale;
-  const auto pick = static_cast<int>(ws.random.below(10));
-  return pick < 6 ? remove_edge(ws, perturbation, item.tet, pick, full_reach)
-                  : remove_face(ws, perturbation, item.tet, pick - 6, full_reach);
 }
 
 /// The rounds of run_improvement().
@@ -97,7 +98,8 @@ class ImprovementLoop {
       engine_.fit_interfaces(bounds_.poor);
       round.finish();
     }
-    set_surgery_rules();
+    surgery_ = surgery_rules(engine_);
+    surgery_.leave_surface = true;
     min_poor_ = 4 * mesh_.live_tets();
     int i = 0;
     for (; i < plan_.max_rounds; ++i) {
@@ -114,19 +116,8 @@ class ImprovementLoop {
     return static_cast<float>(std::min(0.99, shape_quality_bound(engine_.rules.objective.shape, angle)));
   }
 
-  /// Rules of collapses that cut off an ear and of edge removal. They sweep much volume though the surface
-  /// hardly moves, so that the distance from the reference bounds them instead of E.
-  void set_surgery_rules() {
-    surgery_ = engine_.rules;
-    const double edge = engine_.rules.objective.quality.ideal_edge;
-    surgery_.max_error = std::max(engine_.rules.max_error, surgery_error_edges * edge);
-    surgery_.leave_surface = true;
-    surgery_.max_targets = surgery_targets;
-    surgery_.max_distance = surgery_distance_edges * edge;
-  }
-
   /// Judges the round before by what it left: false where the last ones gained too little. Decides whether
-  /// the next one also moves the points around the poor tets, and whether it resorts to perturbation.
+  /// the next one also moves the points around the poor tets and resorts to perturbation.
   bool worth_a_round(const std::vector<ListedTet>& poor) {
     const bool bad = std::any_of(poor.begin(), poor.end(), [&](const ListedTet& t) {
       return mesh_.quality(t.tet) < bounds_.leave_surface;
@@ -136,9 +127,11 @@ class ImprovementLoop {
     // Where a large share is poor, the interfaces are the reason, and more rounds would take long for little.
     const bool many = static_cast<double>(poor.size()) > many_poor * static_cast<double>(mesh_.live_tets());
     idle_ = gain >= (many ? min_gain_of_many : min_round_gain) ? 0 : idle_ + 1;
-    if (idle_ >= ((bad && !many) ? max_idle_rounds : max_idle_rounds_when_good)) return false;
+    const bool few = static_cast<double>(poor.size()) < few_poor * static_cast<double>(mesh_.live_tets());
+    if (idle_ >= (few ? max_idle_rounds_of_few : bad && !many ? max_idle_rounds : max_idle_rounds_when_good))
+      return false;
     min_poor_ = std::min(min_poor_, poor.size());
-    last_resort_ = stuck_ && idle_ > 0;
+    last_resort_ = stuck_;
     return true;
   }
 
@@ -146,6 +139,10 @@ class ImprovementLoop {
     Engine::Round round(engine_, plan_.kind);
     IterationReport& it = round.report();
     it.cutoff = plan_.angle;
+    const double kept = last_resort_ || plan_.target_tets <= plan_.min_tets
+                            ? 0
+                            : kept_share * static_cast<double>(plan_.target_tets - plan_.min_tets);
+    engine_.rules.count.min = surgery_.count.min = plan_.min_tets + static_cast<std::size_t>(kept);
     it.percent = 100 * static_cast<double>(poor.size()) / static_cast<double>(it.tets_before);
     if (2 * mesh_.live_tets() > plan_.target_tets + plan_.max_tets) make_room(poor);
     if (last_resort_) perturb(poor);
@@ -176,7 +173,7 @@ class ImprovementLoop {
 
   void perturb(const std::vector<ListedTet>& poor) {
     BlockRules perturbation = surgery_;
-    perturbation.good_enough = bounds_.poor;
+    perturbation.good_enough = perturbed_share * bounds_.poor;
     engine_.runner().tets(
         engine_.tets_around(poor),
         [&](Workspace& ws, const ListedTet& item, int) { return perturb_tet(ws, perturbation, item); },
@@ -218,12 +215,28 @@ class ImprovementLoop {
 
 }  // namespace
 
+Outcome perturb_tet(Workspace& ws, const BlockRules& perturbation, const ListedTet& item) {
+  if (!exists(ws.mesh, item)) return Outcome::stale;
+  const auto pick = static_cast<int>(ws.random.below(10));
+  return pick < 6 ? remove_edge(ws, perturbation, item.tet, pick, full_reach)
+                  : remove_face(ws, perturbation, item.tet, pick - 6, full_reach);
+}
+
 void begin_improvement(Engine& engine) {
   engine.rules.objective.kind = Objective::Kind::shape;
   engine.rules.accept_worse = 0;
   engine.rules.projection = &engine.projection();
   engine.compact();
   engine.rate_all();
+}
+
+BlockRules surgery_rules(const Engine& engine) {
+  BlockRules surgery = engine.rules;
+  const double edge = engine.rules.objective.quality.ideal_edge;
+  surgery.max_error = std::max(engine.rules.max_error, surgery_error_edges * edge);
+  surgery.max_targets = surgery_targets;
+  surgery.max_distance = surgery_distance_edges * edge;
+  return surgery;
 }
 
 int run_improvement(Engine& engine, const ImprovementPlan& plan) {

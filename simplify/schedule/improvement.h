@@ -22,6 +22,14 @@ struct ImprovementPlan {
 /// the first run_bulk_improvement() or run_improvement().
 void begin_improvement(Engine& engine);
 
+/// Rules of collapses that cut off an ear and of edge removal. They sweep much volume though the surface
+/// hardly moves, so that the distance from the reference bounds them instead of E.
+BlockRules surgery_rules(const Engine& engine);
+
+/// A flip of the tet, chosen at random, that leaves only good tets (BlockRules::good_enough) or an
+/// improvement: it changes the connectivity near tets that no operation improves.
+Outcome perturb_tet(Workspace& ws, const BlockRules& perturbation, const ListedTet& item);
+
 /// Improves the shapes of the worst tets, worst first (README.md, Improvement). Returns the number of rounds
 /// it took. Throws Interrupted.
 int run_improvement(Engine& engine, const ImprovementPlan& plan);

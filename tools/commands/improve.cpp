@@ -18,6 +18,7 @@ TetMesh improve_shapes(TetMesh mesh, CommandRun& run) {
   options.only_below = run.line.only_below;
   options.min_solid_angle = run.line.min_solid_angle;
   options.objective = run.line.objective;
+  options.free_count = run.line.free_count;
   options.max_iterations = run.line.max_iterations;
   options.seed = run.line.seed;
   options.name = run.report.inputs.front();
