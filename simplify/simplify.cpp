@@ -25,8 +25,19 @@ constexpr double closing_margin = 1.27;
 /// up to 30 degrees). In the closing that would move the surface a quarter farther.
 constexpr double improve_margin = 1.5;
 constexpr int closing_fit_sweeps = 1;
-/// Rounds of improve() in bulk, before those that take the worst tets first.
+/// Rounds in bulk each time.
 constexpr int max_bulk_rounds = 30;
+/// Shares of the tets below the bound above which improve() begins in bulk, and from which on whatever stays
+/// below it after rounds for the worst is taken up in bulk. Scans and what programs make of them have up to
+/// 32 % below 0.15 sr at first, and the rounds alone end them in half the time.
+constexpr double bulk_before = 0.4;
+constexpr double bulk_after = 0.01;
+/// In the end improve() takes up all tets below this solid angle, steradians, by the cheap operations alone:
+/// the mean rises by 0.01 sr. The rounds would take four times as long as all before for as much again.
+constexpr double polish_below = 0.2;
+constexpr int max_polish_rounds = 3;
+/// Factor by which the count may change with ImproveOptions::free_count, so that no mesh grows for ever.
+constexpr double free_factor = 4;
 /// The first bound on the way there, for a --min-solid-angle of next to nothing.
 constexpr double min_first_bound = 1e-3;
 /// Factor from one bound to the next.
@@ -40,6 +51,34 @@ constexpr double improve_error_edges = 1;
 /// of the input. README.md, Memory, compares it with what was measured.
 constexpr double program_bytes = 40e6;
 constexpr double bytes_per_tet = 105;
+
+float quality_at(const Engine& engine, double angle) {
+  return static_cast<float>(std::min(0.99, shape_quality_bound(engine.rules.objective.shape, angle)));
+}
+
+/// Works in bulk on what is below an angle; returns the number of rounds.
+int improve_in_bulk(Engine& engine, const ImprovementPlan& plan, double angle, int max_rounds, bool remodel) {
+  return run_bulk_improvement(engine, {.kind = plan.kind,
+                                       .poor = quality_at(engine, angle),
+                                       .min_tets = plan.min_tets,
+                                       .max_tets = plan.max_tets,
+                                       .max_rounds = std::min(plan.max_rounds, max_rounds),
+                                       .remodel = remodel});
+}
+
+/// Improves what is below the plan's angle: the worst first, and in bulk before where more than `bulk_first`
+/// of the tets are below it at first, or too many still are afterwards. Takes the rounds off plan.max_rounds.
+void improve_to_angle(Engine& engine, ImprovementPlan& plan, double bulk_first) {
+  for (const double bulk_above : {bulk_first, bulk_after}) {
+    const std::size_t poor = engine.poor_tets(quality_at(engine, plan.angle)).size();
+    const bool bulk = static_cast<double>(poor) > bulk_above * static_cast<double>(engine.mesh().live_tets());
+    const bool second = bulk_above == bulk_after;
+    if (plan.max_rounds <= 0 || (second && !bulk)) return;
+    if (bulk) plan.max_rounds -= improve_in_bulk(engine, plan, plan.angle, max_bulk_rounds, true);
+    plan.max_rounds -= run_improvement(engine, plan);
+    plan.fit_sweeps = 0;
+  }
+}
 
 /// Checks what both calls share, before any work.
 void check(const TetMesh& mesh, const std::string& name) {
@@ -75,15 +114,16 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     engine.begin_stage("improve");
     begin_improvement(engine);
     const auto count = static_cast<double>(std::min(options.target_tets, first_count));
-    run_improvement(engine, {.kind = "close",
-                             .angle = closing_margin * options.min_solid_angle,
-                             .leave_surface_angle = closing_margin * options.min_solid_angle,
-                             .target_tets = static_cast<std::size_t>(count),
-                             .min_tets = static_cast<std::size_t>(std::ceil(count * (1 - closing_slack))),
-                             .max_tets = static_cast<std::size_t>(count * (1 + closing_slack)),
-                             .local = false,
-                             .max_rounds = max_closing_rounds,
-                             .fit_sweeps = closing_fit_sweeps});
+    ImprovementPlan plan{.kind = "close",
+                         .angle = closing_margin * options.min_solid_angle,
+                         .leave_surface_angle = closing_margin * options.min_solid_angle,
+                         .target_tets = static_cast<std::size_t>(count),
+                         .min_tets = static_cast<std::size_t>(std::ceil(count * (1 - closing_slack))),
+                         .max_tets = static_cast<std::size_t>(count * (1 + closing_slack)),
+                         .local = false,
+                         .max_rounds = max_closing_rounds,
+                         .fit_sweeps = closing_fit_sweeps};
+    improve_to_angle(engine, plan, 1);
   }
   if (report) {
     report->touching_points = engine.mesh().touching_points();
@@ -107,27 +147,29 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
   const double build = seconds_since(start);
   engine.rules.max_error = improve_error_edges * engine.rules.objective.quality.ideal_edge;
   begin_improvement(engine);
-  const auto min_tets = static_cast<std::size_t>(std::ceil(count * (1 - improve_slack)));
-  const auto max_tets = static_cast<std::size_t>(count * (1 + improve_slack));
   const double below = options.only_below > 0 ? options.only_below : improve_margin * options.min_solid_angle;
+  const double least = options.free_count ? 1 / free_factor : 1 - improve_slack;
+  const double most = options.free_count ? free_factor : 1 + improve_slack;
+  ImprovementPlan plan{.kind = "improve",
+                       .angle = below,
+                       .leave_surface_angle = improve_margin * options.min_solid_angle,
+                       .target_tets = static_cast<std::size_t>(count),
+                       .min_tets = static_cast<std::size_t>(std::ceil(count * least)),
+                       .max_tets = static_cast<std::size_t>(count * most),
+                       .local = options.only_below > 0,
+                       .max_rounds = options.max_iterations,
+                       .fit_sweeps = 0};
   // The worst first, also in the large: a bound that most tets are below would leave no time for them.
-  int rounds = options.max_iterations;
-  double limit = std::min(below, std::max(min_first_bound, closing_margin * options.min_solid_angle));
-  const auto poor = static_cast<float>(shape_quality_bound(options.objective, limit));
-  rounds -=
-      run_bulk_improvement(engine, {"improve", poor, min_tets, max_tets, std::min(rounds, max_bulk_rounds)});
-  for (; rounds > 0; limit *= improve_step) {
-    limit = std::min(limit, below);
-    rounds -= run_improvement(engine, {.kind = "improve",
-                                       .angle = limit,
-                                       .leave_surface_angle = improve_margin * options.min_solid_angle,
-                                       .target_tets = static_cast<std::size_t>(count),
-                                       .min_tets = min_tets,
-                                       .max_tets = max_tets,
-                                       .local = options.only_below > 0,
-                                       .max_rounds = rounds,
-                                       .fit_sweeps = 0});
-    if (limit >= below) break;
+  for (double limit = std::max(min_first_bound, closing_margin * options.min_solid_angle);;
+       limit *= improve_step) {
+    plan.angle = std::min(limit, below);
+    improve_to_angle(engine, plan, bulk_before);
+    if (limit >= below || plan.max_rounds <= 0) break;
+  }
+  if (!plan.local && plan.max_rounds > 0) {
+    plan.max_rounds -= improve_in_bulk(engine, plan, std::max(below, polish_below), max_polish_rounds, false);
+    // Other connectivity around them lets the last ones go on.
+    if (plan.max_rounds > 0) run_improvement(engine, plan);
   }
   if (report) {
     report->touching_points = engine.mesh().touching_points();

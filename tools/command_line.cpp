@@ -319,6 +319,8 @@ void add_improve(CLI::App& app, CommandLine& c) {
       "Work only on tets with a smaller solid angle (steradians) and their neighbours; 0: on all. Tets "
       "that stay below it are reported")
       ->default_str(short_text(c.only_below));
+  app.add_flag("--free-count", c.free_count,
+               "Let the number of tets become what good shapes need, instead of keeping it within 5 %");
   add_shaping(app, c, "Max number of rounds, 1 to 10000");
   add_fix_boundary(app, c);
   add_material_field(app, c);

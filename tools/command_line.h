@@ -35,7 +35,8 @@ struct CommandLine {
   int max_iterations = 100;
   Schedule schedule = Schedule::tuned;
   ShapeObjective objective = ShapeObjective::both;
-  double only_below = 0;  ///< `improve`, steradians; 0: all tets
+  double only_below = 0;    ///< `improve`, steradians; 0: all tets
+  bool free_count = false;  ///< `improve`
   bool fix_boundary = false;
 
   int resolution = 0;     ///< 0: not given

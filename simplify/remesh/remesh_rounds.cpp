@@ -142,7 +142,8 @@ void RemeshRounds::refine(double size) {
 }
 
 void RemeshRounds::improve() {
-  const BlockRules surgery = surgery_rules(rules_, mean_edge());
+  BlockRules surgery = surgery_rules(rules_, mean_edge());
+  surgery.leave_surface = true;
   const ImproveBounds bounds{bounds_.poor, bounds_.leave_surface};
   std::vector<Index> tets = tets_;
   for (int round = 0; round < max_improving_rounds; ++round) {

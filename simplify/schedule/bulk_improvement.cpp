@@ -12,23 +12,25 @@
 #include "simplify/operations/face_removal.h"
 #include "simplify/operations/insertion.h"
 #include "simplify/operations/smoothing.h"
+#include "simplify/schedule/improve_turn.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Sizes are changed where more than this share of all tets stays poor: shapes alone would not do.
+/// Sizes are changed where more than this share of all tets is poor: of fewer, shapes alone are mended.
 constexpr double resize_above = 0.01;
-/// A round that leaves more than this share of the poor tets is the last but for max_idle others.
+/// A round that leaves more than this share of the poor tets gains too little; so many may.
 constexpr double idle_above = 0.9;
 constexpr int max_idle = 2;
-/// Edge of the regular tet of volume 1, cubed: 6 sqrt(2).
+/// Cubed edge of the regular tet of volume 1: 6 sqrt(2).
 constexpr double cubed_edge_of_unit_volume = 8.48528137423857;
-/// In edges of the regular tet of the volume that the tets around have on average: what is longer is split on
-/// the surface, and a point with a shorter edge is crowded.
+/// In edges of the regular tet of the volume that the tets around have on average: longer edges of the
+/// surface are split, and a point with a shorter edge is crowded.
 constexpr double long_edge = 1.6;
 constexpr double short_edge = 0.6;
-/// Share of the worst quality that splits and collapses must leave: flips and better places make it up.
+/// Share of the worst quality that splits and collapses must leave: halves of a tet are hardly better than
+/// the whole, but flips and better places then make them so.
 constexpr float resize_floor = 0.5f;
 
 double local_edge(double volume, std::size_t tets) {
@@ -79,59 +81,80 @@ bool crowded(const EditableMesh& mesh, const Star& star) {
 class BulkLoop {
  public:
   BulkLoop(Engine& engine, const BulkPlan& plan)
-      : engine_(engine), mesh_(engine.mesh()), plan_(plan), rules_(engine.rules) {
-    rules_.count = {plan.min_tets, plan.max_tets};
+      : engine_(engine),
+        mesh_(engine.mesh()),
+        plan_(plan),
+        moving_(engine.rules),
+        flipping_(surgery_rules(engine.rules, engine.rules.objective.quality.ideal_edge)) {
+    moving_.count = flipping_.count = {plan.min_tets, plan.max_tets};
+    perturbing_ = resizing_ = flipping_;
+    perturbing_.good_enough = plan.poor;
+    resizing_.accept_worse = 1;
+    resizing_.annealing_floor = resize_floor;
   }
 
   int run() {
-    int idle = 0, i = 0;
     std::size_t fewest = std::numeric_limits<std::size_t>::max();
+    int idle = 0, i = 0;
     for (; i < plan_.max_rounds; ++i) {
-      const std::vector<ListedTet> poor = engine_.poor_tets(plan_.poor);
-      if (poor.empty()) break;
-      const bool gained = static_cast<double>(poor.size()) < idle_above * static_cast<double>(fewest);
-      idle = gained ? 0 : idle + 1;
-      if (idle > max_idle) break;
-      fewest = std::min(fewest, poor.size());
-      run_round(poor);
+      const std::size_t poor = engine_.poor_tets(plan_.poor).size();
+      if (poor == 0) break;
+      if (static_cast<double>(poor) > idle_above * static_cast<double>(fewest)) ++idle;
+      if (idle > (plan_.remodel ? max_idle : 0)) break;
+      fewest = std::min(fewest, poor);
+      run_round(poor, i == 0);
     }
     return i;
   }
 
  private:
-  void run_round(const std::vector<ListedTet>& poor) {
+  void run_round(std::size_t poor_count, bool first) {
     Engine::Round round(engine_, plan_.kind);
-    round.report().percent = 100 * static_cast<double>(poor.size()) / static_cast<double>(mesh_.live_tets());
-    if (static_cast<double>(poor.size()) > resize_above * static_cast<double>(mesh_.live_tets())) resize();
-    each_poor_tet(
-        [&](Workspace& ws, const ListedTet& item) { return flip_tet(ws, rules_, item, plan_.poor); });
-    engine_.each_star(engine_.poor_points(plan_.poor), Operation::optimise,
-                      [&](Workspace& ws) { return optimise(ws, rules_); });
+    const double share = static_cast<double>(poor_count) / static_cast<double>(mesh_.live_tets());
+    round.report().percent = 100 * share;
+    if (plan_.remodel) {
+      if (share > resize_above) resize();
+      perturb();
+    }
+    std::vector<ListedTet> poor = engine_.poor_tets(plan_.poor);
+    // What failed comes again where something changed.
+    if (!first)
+      std::erase_if(poor, [&](const ListedTet& t) {
+        return std::none_of(t.points.begin(), t.points.end(), [&](Index p) { return mesh_.touched(p); });
+      });
+    mesh_.begin_round();
+    each_tet(poor,
+             [&](Workspace& ws, const ListedTet& item) { return flip_tet(ws, flipping_, item, plan_.poor); });
+    engine_.each_star(plan_.remodel ? engine_.points_around(poor) : engine_.poor_points(plan_.poor),
+                      Operation::optimise, [&](Workspace& ws) { return optimise(ws, moving_); });
     round.finish();
   }
 
+  void perturb() {
+    each_tet(engine_.tets_around(engine_.poor_tets(plan_.poor)),
+             [&](Workspace& ws, const ListedTet& item) { return perturb_tet(ws, perturbing_, item); });
+  }
+
   void resize() {
-    BlockRules resizing = rules_;
-    resizing.accept_worse = 1;
-    resizing.annealing_floor = resize_floor;
     engine_.each_star(engine_.poor_points(plan_.poor), Operation::collapse, [&](Workspace& ws) {
-      return crowded(ws.mesh, ws.star) ? collapse(ws, resizing) : Outcome::no_candidate;
+      return crowded(ws.mesh, ws.star) ? collapse(ws, resizing_) : Outcome::no_candidate;
     });
-    each_poor_tet(
-        [&](Workspace& ws, const ListedTet& item) { return split_tet(ws, resizing, item, plan_.poor); });
+    each_tet(engine_.poor_tets(plan_.poor), [&](Workspace& ws, const ListedTet& item) {
+      return split_tet(ws, resizing_, item, plan_.poor);
+    });
   }
 
   template <class Attempt>
-  void each_poor_tet(const Attempt& attempt) {
+  void each_tet(const std::vector<ListedTet>& tets, const Attempt& attempt) {
     engine_.runner().tets(
-        engine_.poor_tets(plan_.poor),
-        [&](Workspace& ws, const ListedTet& item, int) { return attempt(ws, item); }, [] { return false; });
+        tets, [&](Workspace& ws, const ListedTet& item, int) { return attempt(ws, item); },
+        [] { return false; });
   }
 
   Engine& engine_;
   EditableMesh& mesh_;
   const BulkPlan& plan_;
-  BlockRules rules_;
+  BlockRules moving_, flipping_, perturbing_, resizing_;
 };
 
 }  // namespace

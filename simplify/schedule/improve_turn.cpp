@@ -26,16 +26,17 @@ Outcome improve_tet(Workspace& ws, const BlockRules& rules, const BlockRules& su
   if (!exists(mesh, item)) return Outcome::stale;
   const float quality = mesh.quality(item.tet);
   if (quality > bounds.poor) return Outcome::stale;
+  // Flips first: they take half the time of places on a surface, and a quarter less for all.
+  for (int e = 0; e < 6; ++e)
+    if (remove_edge(ws, surgery, item.tet, e, full_reach) == Outcome::done) return Outcome::done;
+  for (int f = 0; f < 4; ++f)
+    if (remove_face(ws, rules, item.tet, f, full_reach) == Outcome::done) return Outcome::done;
   const BlockRules& moving = last_resort && quality < bounds.leave_surface ? surgery : rules;
   for (Index p : item.points) {
     Outcome o = ws.gather(p);
     if (o == Outcome::done) o = optimise(ws, moving);
     if (ws.count(Operation::optimise, o) == Outcome::done) return o;
   }
-  for (int e = 0; e < 6; ++e)
-    if (remove_edge(ws, surgery, item.tet, e, full_reach) == Outcome::done) return Outcome::done;
-  for (int f = 0; f < 4; ++f)
-    if (remove_face(ws, rules, item.tet, f, full_reach) == Outcome::done) return Outcome::done;
   for (Index p : item.points) {
     if (mesh.live_tets() <= rules.count.min) break;
     Outcome o = ws.gather(p);
@@ -51,10 +52,16 @@ Outcome improve_tet(Workspace& ws, const BlockRules& rules, const BlockRules& su
   return insert_in_tet(ws, rules, item.tet, InsertionPlace::best);
 }
 
+Outcome perturb_tet(Workspace& ws, const BlockRules& perturbation, const ListedTet& item) {
+  if (!exists(ws.mesh, item)) return Outcome::stale;
+  const auto pick = static_cast<int>(ws.random.below(10));
+  return pick < 6 ? remove_edge(ws, perturbation, item.tet, pick, full_reach)
+                  : remove_face(ws, perturbation, item.tet, pick - 6, full_reach);
+}
+
 BlockRules surgery_rules(const BlockRules& rules, double edge) {
   BlockRules surgery = rules;
   surgery.max_error = std::max(rules.max_error, surgery_error_edges * edge);
-  surgery.leave_surface = true;
   surgery.max_targets = surgery_targets;
   surgery.max_distance = surgery_distance_edges * edge;
   return surgery;

@@ -14,6 +14,10 @@ struct ImproveBounds {
 Outcome improve_tet(Workspace& ws, const BlockRules& rules, const BlockRules& surgery, bool last_resort,
                     const ListedTet& item, const ImproveBounds& bounds);
 
+/// A flip of the tet, chosen at random, that leaves only good tets (BlockRules::good_enough) or an
+/// improvement: it changes the connectivity near tets that no operation improves.
+Outcome perturb_tet(Workspace& ws, const BlockRules& perturbation, const ListedTet& item);
+
 /// Rules of collapses that cut off an ear and of edge removal. They sweep much volume though the surface
 /// hardly moves, so that the distance from the reference bounds them instead of E. `edge`: a usual one,
 /// working coordinates.

@@ -13,8 +13,8 @@ namespace tetwright {
 
 namespace {
 
-/// A round that leaves more than this share of the poor tets is followed by one that moves all points around
-/// them too, for the tets that stand in their way.
+/// A round that leaves more than this share of the poor tets is followed by one that flips tets around them
+/// at random and moves all points around, for what stands in their way.
 constexpr double stuck_above = 0.8;
 /// What collapses that make room for insertions must leave, over the quality that is aimed at.
 constexpr float thinning_margin = 1.1f;
@@ -27,15 +27,15 @@ constexpr double min_gain_of_many = 0.05;
 /// else.
 constexpr int max_idle_rounds = 8;
 constexpr int max_idle_rounds_when_good = 2;
-
-/// A flip of the tet, chosen at random, that leaves only good tets or an improvement: it changes the
-/// connectivity near tets that no operation improves.
-Outcome perturb_tet(Workspace& ws, const BlockRules& perturbation, const ListedTet& item) {
-  if (!exists(ws.mesh, item)) return Outcome::stale;
-  const auto pick = static_cast<int>(ws.random.below(10));
-  return pick < 6 ? remove_edge(ws, perturbation, item.tet, pick, full_reach)
-                  : remove_face(ws, perturbation, item.tet, pick - 6, full_reach);
-}
+/// The same where less than this share of all tets is poor: such rounds take next to no time.
+constexpr double few_poor = 5e-4;
+constexpr int max_idle_rounds_of_few = 30;
+/// Perturbation leaves tets that are at least this much of what is aimed at: it frees twice as many of the
+/// last ones as with all of it, and what is poor then is mended at once.
+constexpr float perturbed_share = 0.95f;
+/// Share of the tets by which the count may fall that is kept for the last resort: edge removals would use up
+/// all of it, and no collapse could take the last slivers out.
+constexpr double kept_share = 0.125;
 
 /// The rounds of run_improvement().
 class ImprovementLoop {
@@ -56,6 +56,7 @@ class ImprovementLoop {
       round.finish();
     }
     surgery_ = surgery_rules(engine_.rules, engine_.rules.objective.quality.ideal_edge);
+    surgery_.leave_surface = true;
     min_poor_ = 4 * mesh_.live_tets();
     int i = 0;
     for (; i < plan_.max_rounds; ++i) {
@@ -73,7 +74,7 @@ class ImprovementLoop {
   }
 
   /// Judges the round before by what it left: false where the last ones gained too little. Decides whether
-  /// the next one also moves the points around the poor tets, and whether it resorts to perturbation.
+  /// the next one also moves the points around the poor tets and resorts to perturbation.
   bool worth_a_round(const std::vector<ListedTet>& poor) {
     const bool bad = std::any_of(poor.begin(), poor.end(), [&](const ListedTet& t) {
       return mesh_.quality(t.tet) < bounds_.leave_surface;
@@ -83,9 +84,11 @@ class ImprovementLoop {
     // Where a large share is poor, the interfaces are the reason, and more rounds would take long for little.
     const bool many = static_cast<double>(poor.size()) > many_poor * static_cast<double>(mesh_.live_tets());
     idle_ = gain >= (many ? min_gain_of_many : min_round_gain) ? 0 : idle_ + 1;
-    if (idle_ >= ((bad && !many) ? max_idle_rounds : max_idle_rounds_when_good)) return false;
+    const bool few = static_cast<double>(poor.size()) < few_poor * static_cast<double>(mesh_.live_tets());
+    if (idle_ >= (few ? max_idle_rounds_of_few : bad && !many ? max_idle_rounds : max_idle_rounds_when_good))
+      return false;
     min_poor_ = std::min(min_poor_, poor.size());
-    last_resort_ = stuck_ && idle_ > 0;
+    last_resort_ = stuck_;
     return true;
   }
 
@@ -93,6 +96,10 @@ class ImprovementLoop {
     Engine::Round round(engine_, plan_.kind);
     IterationReport& it = round.report();
     it.cutoff = plan_.angle;
+    const double kept = last_resort_ || plan_.target_tets <= plan_.min_tets
+                            ? 0
+                            : kept_share * static_cast<double>(plan_.target_tets - plan_.min_tets);
+    engine_.rules.count.min = surgery_.count.min = plan_.min_tets + static_cast<std::size_t>(kept);
     it.percent = 100 * static_cast<double>(poor.size()) / static_cast<double>(it.tets_before);
     if (2 * mesh_.live_tets() > plan_.target_tets + plan_.max_tets) make_room(poor);
     if (last_resort_) perturb(poor);
@@ -123,7 +130,7 @@ class ImprovementLoop {
 
   void perturb(const std::vector<ListedTet>& poor) {
     BlockRules perturbation = surgery_;
-    perturbation.good_enough = bounds_.poor;
+    perturbation.good_enough = perturbed_share * bounds_.poor;
     engine_.runner().tets(
         engine_.tets_around(poor),
         [&](Workspace& ws, const ListedTet& item, int) { return perturb_tet(ws, perturbation, item); },

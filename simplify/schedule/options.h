@@ -38,14 +38,16 @@ struct SimplifyOptions {
   std::string name = "mesh";  ///< what messages call the mesh
 };
 
-/// Shape only; the count stays within 5 %.
+/// Shape only; the count stays within 5 % unless it is free.
 struct ImproveOptions {
   /// Only tets whose shape is worse, by the objective, than this solid angle (steradians) stands for
-  /// (shape_quality_bound()) are worked on, with what stands around them. 0: all below 0.2, or more if
-  /// min_solid_angle asks for it.
+  /// (shape_quality_bound()) are worked on, with what stands around them. 0: all below 1.5 times
+  /// min_solid_angle, and by the cheap operations all below 0.2.
   double only_below = 0;
   double min_solid_angle = 0.1;  ///< steradians; the work ends early once all are well above it
   ShapeObjective objective = ShapeObjective::both;
+  /// The count may be what the shapes need: between a quarter and four times what it was.
+  bool free_count = false;
   int max_iterations = 100;  ///< rounds
   std::uint64_t seed = 1;
   std::size_t batch_size = 0;  ///< as in SimplifyOptions

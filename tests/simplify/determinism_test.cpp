@@ -68,13 +68,13 @@ TetMesh run(const Case& c, unsigned threads, std::uint64_t seed, SimplifyReport*
 
 // Batches below 33 points or tets are decided by one thread, but for those of ordered blocks.
 class Determinism : public testing::TestWithParam<Case> {};
-INSTANTIATE_TEST_SUITE_P(
-    Cases, Determinism,
-    testing::Values(Case{"tuned", Work::tuned, 0}, Case{"tuned_small_batches", Work::tuned, 64},
-                    Case{"tuned_large_batches", Work::tuned, 4000}, Case{"paper", Work::paper, 0},
-                    Case{"improve", Work::improve, 0},
-                    Case{"improve_small_batches", Work::improve, 16}),
-    [](const auto& c) { return c.param.name; });
+INSTANTIATE_TEST_SUITE_P(Cases, Determinism,
+                         testing::Values(Case{"tuned", Work::tuned, 0},
+                                         Case{"tuned_small_batches", Work::tuned, 64},
+                                         Case{"tuned_large_batches", Work::tuned, 4000},
+                                         Case{"paper", Work::paper, 0}, Case{"improve", Work::improve, 0},
+                                         Case{"improve_small_batches", Work::improve, 16}),
+                         [](const auto& c) { return c.param.name; });
 
 TEST_P(Determinism, AnyNumberOfThreadsGivesTheSameBytes) {
   SimplifyReport alone;

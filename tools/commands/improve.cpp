@@ -19,6 +19,7 @@ TetMesh improve_shapes(TetMesh mesh, CommandRun& run) {
   options.min_solid_angle = run.line.min_solid_angle;
   options.objective = run.line.objective;
   options.fix_boundary = run.line.fix_boundary;
+  options.free_count = run.line.free_count;
   options.max_iterations = run.line.max_iterations;
   options.seed = run.line.seed;
   options.name = run.report.inputs.front();

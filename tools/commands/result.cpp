@@ -21,6 +21,9 @@ constexpr double improve_slack = 0.05;
 /// Relative change of a material's volume above which it is reported.
 constexpr double volume_note_share = 0.02;
 
+/// Share of tets below the bound, in percent, above which it is reported.
+constexpr double poor_note_percent = 0.1;
+
 /// Lost labels that are named one by one.
 constexpr std::size_t max_lost_named = 5;
 
@@ -77,12 +80,24 @@ void find_count_and_shape_shortfall(const CommandLine& line, RunReport& report) 
   const bool improved = line.command == Command::improve;
   const double asked = static_cast<double>(improved ? report.dense->tets : line.target_tets);
   const double reached = static_cast<double>(report.result->tets);
-  if (std::fabs(reached - asked) > (improved ? improve_slack : target_slack) * asked)
+  if (!line.free_count && std::fabs(reached - asked) > (improved ? improve_slack : target_slack) * asked)
     add("target_tets", improved ? "about the same count" : "--target-tets", asked, reached,
         rules_behind_count(line, report, asked, reached));
   if (line.min_solid_angle_given && report.result->min_solid_angle < line.min_solid_angle)
     add("min_solid_angle", "--min-solid-angle", line.min_solid_angle, report.result->min_solid_angle,
         rules_limiting_shapes(*report.simplify));
+}
+
+/// Tets below the bound where it is the default: a finding and no shortfall.
+void report_poor_shapes(const CommandLine& line, RunReport& report) {
+  const MeshStatistics& result = *report.result;
+  if (line.min_solid_angle_given || result.below_percent <= poor_note_percent) return;
+  char what[100];
+  std::snprintf(what, sizeof what, "tets below %.6g sr, %.2g %% of all, the smallest at %.3g sr",
+                line.min_solid_angle, result.below_percent, result.min_solid_angle);
+  report.findings.push_back(
+      {report.inputs.front(),
+       {what, result.below_count, {}, "held back by: " + rules_limiting_shapes(*report.simplify)}});
 }
 
 /// Labels that were to be meshed and are not in the mesh.
@@ -130,6 +145,7 @@ ExitStatus finish(const TetMesh& mesh, const MaterialField* field, CommandRun& r
     report_touching_points(report.inputs.front(), report);
     report_volumes(mesh, report.inputs.front(), report);
     find_count_and_shape_shortfall(run.line, report);
+    report_poor_shapes(run.line, report);
   } else {
     report.result = report.dense;  // the dense mesh is the result
   }
