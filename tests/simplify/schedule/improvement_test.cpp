@@ -5,6 +5,7 @@
 #include "common/mesh/mesh_statistics.h"
 #include "common/mesh/topology.h"
 #include "common/parallel/parallel.h"
+#include "common/random_interior.h"
 #include "simplify/simplify.h"
 #include "tests/simplify/meshes.h"
 
@@ -125,6 +126,24 @@ TEST(Improve, RefusesAndCancels) {
   Progress progress;
   progress.cancel();
   EXPECT_THROW(improve(grid_mesh(3), ImproveOptions(), nullptr, &progress), Interrupted);
+}
+
+// A coarse skin around random points, as other programs fill it: half of the tets are slivers.
+TEST(Improvement, MendsMeshesWithRandomInteriors) {
+  const TetMesh mesh = random_interior(3, 170, 0.25);
+  EXPECT_GT(mesh_statistics(mesh, 0.1).below_percent, 35);
+  for (const bool free_count : {false, true}) {
+    ImproveOptions options;
+    options.free_count = free_count;
+    const TetMesh after = improve(mesh, options);
+    EXPECT_LE(mesh_statistics(after, 0.1).below_percent, 0.5);
+    if (!free_count) {
+      EXPECT_NEAR(static_cast<double>(after.tets.size()), static_cast<double>(mesh.tets.size()),
+                  0.05 * static_cast<double>(mesh.tets.size()));
+    }
+    for (const MeshFinding& f : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(f);
+    for (const std::string& d : topology_differences(topology(mesh), topology(after))) ADD_FAILURE() << d;
+  }
 }
 
 }  // namespace
