@@ -91,7 +91,8 @@ void find_count_and_shape_shortfall(const CommandLine& line, RunReport& report) 
 /// Tets below the bound where it is the default: a finding and no shortfall.
 void report_poor_shapes(const CommandLine& line, RunReport& report) {
   const MeshStatistics& result = *report.result;
-  if (line.min_solid_angle_given || result.below_percent <= poor_note_percent) return;
+  // --only-below has its own report.
+  if (line.min_solid_angle_given || line.only_below > 0 || result.below_percent <= poor_note_percent) return;
   char what[100];
   std::snprintf(what, sizeof what, "tets below %.6g sr, %.2g %% of all, the smallest at %.3g sr",
                 line.min_solid_angle, result.below_percent, result.min_solid_angle);
