@@ -364,6 +364,7 @@ constexpr std::array<CommandEntry, 6> commands{{
 void check_command(int argc, char** argv) {
   if (argc > 1 && argv[1][0] == '-') return;
   std::vector<std::string> names;
+  names.reserve(commands.size());
   for (const CommandEntry& entry : commands) names.emplace_back(name_of(entry.command));
   if (argc < 2)
     throw UsageError("there is no command; give one of " + joined(names) +

@@ -283,6 +283,7 @@ std::vector<MeshTriangle> SurfaceGrid::triangles() const {
   std::sort(seen.begin(), seen.end());
   seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
   std::vector<MeshTriangle> out;
+  out.reserve(seen.size());
   for (std::uint32_t i : seen) out.push_back(records_[i]);
   return out;
 }

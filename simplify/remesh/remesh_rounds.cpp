@@ -114,6 +114,7 @@ void RemeshRounds::refine(double size) {
   std::vector<Index> tets = tets_, changed;
   for (int round = 0; round < max_refining_rounds && !tets.empty(); ++round) {
     std::vector<ListedTet> items;
+    items.reserve(tets.size());
     for (Index t : tets) items.push_back({t, mesh_.points(t)});
     runner_.tets(
         items,

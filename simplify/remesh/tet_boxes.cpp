@@ -43,6 +43,7 @@ void TetBoxes::repair(const EditableMesh& mesh, const std::vector<Index>& slots)
     return;
   }
   std::vector<std::size_t> nodes;
+  nodes.reserve(slots.size());
   for (Index t : slots) nodes.push_back(leaves_ + t / block_slots);
   const auto unique = [&] {
     std::sort(nodes.begin(), nodes.end());
