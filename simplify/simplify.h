@@ -12,10 +12,10 @@ namespace tetwright {
 /// boundary does not come to intersect itself; all tets stay positive by exact sign. The result
 /// has its interface triangles.
 ///
-/// Uses thread_count() threads; with one thread the same input and seed give the same bytes. A mesh that has
-/// fewer tets than the target is only improved. Throws InputError if a coordinate is not finite, a tet
-/// repeats a point or a face has more than two tets, OutputError if there is too little memory, UsageError
-/// for impossible options, Interrupted when cancelled.
+/// Uses thread_count() threads; the same input, options and seed give the same bytes for any number. A mesh
+/// that has fewer tets than the target is only improved. Throws InputError if a coordinate is not finite, a
+/// tet repeats a point or a face has more than two tets, OutputError if there is too little memory,
+/// UsageError for impossible options, Interrupted when cancelled.
 TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report = nullptr,
                  Progress* progress = nullptr);
 

@@ -58,8 +58,8 @@ struct TetQuality {
   /// Quality(t)^3 in [0, 1], which orders tets as Quality(t) does without the cube root; 0 for a tet that is
   /// negative or so flat that rounding may have decided its sign: more than 0 means positive by exact sign.
   double cubed(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const;
-  /// What cubed() of a tet of six times this volume is at most, a little above for rounding.
-  double most_for_volume(double det) const { return det * (1 + 0x1p-20) / (6 * ideal_volume); }
+  /// The maximum of cubed() for a tet of six times this volume, a little above for rounding.
+  double max_for_volume(double det) const { return det * (1 + 0x1p-20) / (6 * ideal_volume); }
   /// Quality(t) in [0, 1].
   double operator()(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const;
 };

@@ -4,7 +4,7 @@
 
 namespace tetwright {
 
-Outcome EdgeRing::gather(const EditableMesh& mesh, Index tet, int edge, std::size_t most) {
+Outcome EdgeRing::gather(const EditableMesh& mesh, Index tet, int edge, std::size_t limit) {
   points.clear();
   tets.clear();
   regions.clear();
@@ -44,7 +44,7 @@ Outcome EdgeRing::gather(const EditableMesh& mesh, Index tet, int edge, std::siz
       points.pop_back();
       break;
     }
-    if (tets.size() == most) return Outcome::too_large;
+    if (tets.size() == limit) return Outcome::too_large;
     const Index p = fourth(next, points.back());
     if (p == no_index) return Outcome::too_large;  // a tet that the input repeats: no ring to speak of
     leave = points.back();                         // on across (a, b, p)
@@ -57,7 +57,7 @@ Outcome EdgeRing::gather(const EditableMesh& mesh, Index tet, int edge, std::siz
     for (Index at = tet, leave = second;;) {
       const Index next = beyond(at, leave);
       if (next == no_index) break;
-      if (tets.size() == most) return Outcome::too_large;
+      if (tets.size() == limit) return Outcome::too_large;
       const Index p = fourth(next, points.front());
       if (p == no_index) return Outcome::too_large;
       leave = points.front();

@@ -22,9 +22,9 @@ struct EdgeRing {
   float worst = 1;                ///< quality of the tets
   int interface_triangles = 0;    ///< interface triangles at the edge
 
-  /// Walks around the edge `edge` of tet_edges of a tet: done, or too_large where there are more than `most`
+  /// Walks around the edge `edge` of tet_edges of a tet: done, or too_large where there are more than `limit`
   /// tets.
-  Outcome gather(const EditableMesh& mesh, Index tet, int edge, std::size_t most = max_tets);
+  Outcome gather(const EditableMesh& mesh, Index tet, int edge, std::size_t limit = max_tets);
 
   /// Of the edge: 3 within a material, 2 on an interface, 1 on a junction curve.
   int dimension() const { return interface_triangles == 0 ? 3 : interface_triangles == 2 ? 2 : 1; }

@@ -20,7 +20,7 @@ enum class Outcome : std::uint8_t {
   quality,            ///< the worst tet would become worse, and annealing did not let it pass
   link_condition,     ///< the topology would change
   self_intersection,  ///< a boundary or interface triangle would meet another
-  no_room,            ///< the arrays of tets or points have reached their largest size
+  no_room,            ///< never answered: arrays grow (kept for the statistics, whose keys are fixed)
   count,              ///< fewer tets than wanted would be left, or more
   too_large,          ///< the star holds more points than are worth the time
   volume,             ///< a material's volume would leave its bounds (VolumeLedger)

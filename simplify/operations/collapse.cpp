@@ -141,7 +141,7 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
   ws.proposal.volumes = star.volume_changes(to - star.centre_position);
   if (!ws.ledger.allows(ws.proposal.volumes)) return Outcome::volume;
   const float limit = ws.acceptance_limit(rules, star.worst);
-  if (!(rules.objective.most_for_volume(least) > limit)) return Outcome::quality;
+  if (!(rules.objective.max_for_volume(least) > limit)) return Outcome::quality;
   qualities.resize(star.tets.size());
   for (std::size_t k = 0; k < star.tets.size(); ++k) {
     const Star::StarTet& t = star.tets[k];

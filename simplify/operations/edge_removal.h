@@ -15,7 +15,7 @@ namespace tetwright {
 ///
 /// Counts itself as flip32, flip22, flip44 or edge_removal. Answers done (proposed), no_candidate,
 /// material_rule, too_large, quality (also: would invert), link_condition (the new edge is there already),
-/// surface_error (Error(op) above E), self_intersection, volume, no_room, count.
+/// surface_error (Error(op) above E), self_intersection, volume, count.
 Outcome remove_edge(Workspace& ws, const BlockRules& rules, Index tet, int edge, const FlipReach& reach);
 
 }  // namespace tetwright

@@ -12,7 +12,7 @@ namespace tetwright {
 /// that number.
 ///
 /// Counts itself as flip23 or face_removal. Answers done (proposed), no_candidate (boundary), material_rule,
-/// quality (also: would invert), link_condition (the edge is there already), no_room, count.
+/// quality (also: would invert), link_condition (the edge is there already), count.
 Outcome remove_face(Workspace& ws, const BlockRules& rules, Index tet, int face, const FlipReach& reach);
 
 }  // namespace tetwright

@@ -16,7 +16,7 @@ enum class InsertionPlace {
 /// the worst new tet must be better than the old one (or pass the annealing). Counted as insert_in_tet.
 ///
 /// These three answer done (proposed), no_candidate, too_large, material_rule, quality (also: would invert),
-/// surface_error, link_condition, self_intersection, volume, no_room, count.
+/// surface_error, link_condition, self_intersection, volume, count.
 Outcome insert_in_tet(Workspace& ws, const BlockRules& rules, Index tet, InsertionPlace place);
 
 /// Adds a point in a face of the boundary or of an interface, whose one or two tets become three each.

@@ -19,9 +19,9 @@ struct Objective {
   float operator()(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
     return static_cast<float>(unsigned_value(a, b, c, d));
   }
-  /// What a tet of six times this volume has at most, rounded up.
-  float most_for_volume(double det) const {
-    return kind == Kind::paper ? static_cast<float>(quality.most_for_volume(det)) : 1;
+  /// The maximum for a tet of six times this volume, rounded up.
+  float max_for_volume(double det) const {
+    return kind == Kind::paper ? static_cast<float>(quality.max_for_volume(det)) : 1;
   }
   /// Below 0 for a flat or negative tet, the lower the worse it is: shows the way out of inversion.
   float signed_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
