@@ -28,13 +28,14 @@ constexpr double min_round_gain = 0.02;
 /// The same where more than this share of all tets is poor.
 constexpr double many_poor = 0.01;
 constexpr double min_gain_of_many = 0.05;
+constexpr int max_idle_rounds_of_many = 4;
 /// Rounds without gain before the work ends: while some tets are below ImprovementPlan::leave_surface_angle,
 /// else.
 constexpr int max_idle_rounds = 8;
 constexpr int max_idle_rounds_when_good = 2;
 /// The same where less than this share of all tets is poor: such rounds take next to no time.
 constexpr double few_poor = 5e-4;
-constexpr int max_idle_rounds_of_few = 30;
+constexpr int max_idle_rounds_of_few = 15;
 /// Perturbation leaves tets that are at least this much of what is aimed at: it frees twice as many of the
 /// last ones as with all of it, and what is poor then is mended at once.
 constexpr float perturbed_share = 0.95f;
@@ -128,10 +129,13 @@ class ImprovementLoop {
     const bool many = static_cast<double>(poor.size()) > many_poor * static_cast<double>(mesh_.live_tets());
     idle_ = gain >= (many ? min_gain_of_many : min_round_gain) ? 0 : idle_ + 1;
     const bool few = static_cast<double>(poor.size()) < few_poor * static_cast<double>(mesh_.live_tets());
-    if (idle_ >= (few ? max_idle_rounds_of_few : bad && !many ? max_idle_rounds : max_idle_rounds_when_good))
+    if (idle_ >= (few            ? max_idle_rounds_of_few
+                  : bad && !many ? max_idle_rounds
+                  : many         ? max_idle_rounds_of_many
+                                 : max_idle_rounds_when_good))
       return false;
     min_poor_ = std::min(min_poor_, poor.size());
-    last_resort_ = stuck_;
+    last_resort_ = stuck_ && (idle_ > 0 || !many);
     return true;
   }
 
