@@ -124,6 +124,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
                          .min_tets = static_cast<std::size_t>(std::ceil(count * (1 - closing_slack))),
                          .max_tets = static_cast<std::size_t>(count * (1 + closing_slack)),
                          .local = false,
+                         .fast = false,
                          .max_rounds = max_closing_rounds,
                          .fit_sweeps = closing_fit_sweeps};
     improve_to_angle(engine, plan, 1);
@@ -162,6 +163,7 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
                        .min_tets = static_cast<std::size_t>(std::ceil(count * least)),
                        .max_tets = static_cast<std::size_t>(count * most),
                        .local = options.only_below > 0,
+                       .fast = true,
                        .max_rounds = options.max_iterations - kept_rounds,
                        .fit_sweeps = 0};
   // The worst first, also in the large: a bound that most tets are below would leave no time for them.
