@@ -36,8 +36,11 @@ constexpr double bulk_after = 0.01;
 /// the mean rises by 0.01 sr. The rounds would take four times as long as all before for as much again.
 constexpr double polish_below = 0.2;
 constexpr int max_polish_rounds = 3;
-/// Factor by which the count may change with ImproveOptions::free_count, so that no mesh grows for ever.
-constexpr double free_factor = 4;
+/// Rounds kept for that and for what comes after it.
+constexpr int max_last_rounds = 20;
+/// Factors by which the count may change with ImproveOptions::free_count, so that detail is not lost by the
+/// way and no mesh grows for ever.
+constexpr double least_free = 0.8, most_free = 4;
 /// The first bound on the way there, for a --min-solid-angle of next to nothing.
 constexpr double min_first_bound = 1e-3;
 /// Factor from one bound to the next.
@@ -121,6 +124,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
                          .min_tets = static_cast<std::size_t>(std::ceil(count * (1 - closing_slack))),
                          .max_tets = static_cast<std::size_t>(count * (1 + closing_slack)),
                          .local = false,
+                         .fast = false,
                          .max_rounds = max_closing_rounds,
                          .fit_sweeps = closing_fit_sweeps};
     improve_to_angle(engine, plan, 1);
@@ -148,8 +152,10 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
   engine.rules.max_error = improve_error_edges * engine.rules.objective.quality.ideal_edge;
   begin_improvement(engine);
   const double below = options.only_below > 0 ? options.only_below : improve_margin * options.min_solid_angle;
-  const double least = options.free_count ? 1 / free_factor : 1 - improve_slack;
-  const double most = options.free_count ? free_factor : 1 + improve_slack;
+  const double least = options.free_count ? least_free : 1 - improve_slack;
+  const double most = options.free_count ? most_free : 1 + improve_slack;
+  // The last rounds are kept for what comes in the end.
+  const int kept_rounds = options.only_below > 0 ? 0 : std::min(options.max_iterations / 2, max_last_rounds);
   ImprovementPlan plan{.kind = "improve",
                        .angle = below,
                        .leave_surface_angle = improve_margin * options.min_solid_angle,
@@ -157,7 +163,8 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
                        .min_tets = static_cast<std::size_t>(std::ceil(count * least)),
                        .max_tets = static_cast<std::size_t>(count * most),
                        .local = options.only_below > 0,
-                       .max_rounds = options.max_iterations,
+                       .fast = true,
+                       .max_rounds = options.max_iterations - kept_rounds,
                        .fit_sweeps = 0};
   // The worst first, also in the large: a bound that most tets are below would leave no time for them.
   for (double limit = std::max(min_first_bound, closing_margin * options.min_solid_angle);;
@@ -166,6 +173,7 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
     improve_to_angle(engine, plan, bulk_before);
     if (limit >= below || plan.max_rounds <= 0) break;
   }
+  plan.max_rounds += kept_rounds;
   if (!plan.local && plan.max_rounds > 0) {
     plan.max_rounds -= improve_in_bulk(engine, plan, std::max(below, polish_below), max_polish_rounds, false);
     // Other connectivity around them lets the last ones go on.

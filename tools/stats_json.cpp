@@ -171,10 +171,12 @@ std::string stats_json(const CommandLine& line, const RunReport& run) {
   j["seed"] = line.seed;
   if (run.simplify) {
     j["objective"] = name_of(line.objective);
-    if (line.command == Command::improve)
+    if (line.command == Command::improve) {
       j["only_below"] = line.only_below;
-    else
+      j["free_count"] = line.free_count;
+    } else {
       j["schedule"] = name_of(line.schedule);
+    }
   }
   j["input"] = input_json(run);
   if (run.dense) j["dense"] = mesh_json(*run.dense, run.material_names, line.min_solid_angle);

@@ -159,7 +159,7 @@ void RemeshRounds::improve() {
     const bool last_resort = round >= last_resort_round;
     const std::uint64_t before = operations_;
     runner_.tets_in_order(poor, [&](Workspace& ws, const ListedTet& item, int) {
-      return improve_tet(ws, rules_, surgery, last_resort, item, bounds);
+      return improve_tet(ws, {rules_, surgery, bounds, last_resort, true}, item);
     });
     if (operations_ == before && last_resort) return;
     // What failed comes again only where something around it changed, or where a round allows more.

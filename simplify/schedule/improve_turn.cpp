@@ -18,25 +18,37 @@ constexpr double surgery_error_edges = 12;
 constexpr double surgery_distance_edges = 0.3;
 constexpr std::size_t surgery_targets = 30;  ///< all neighbours of nearly every point
 
+/// The first place of one of the tet's points that makes the worst tet around better.
+Outcome move_points(Workspace& ws, const BlockRules& rules, const ListedTet& item) {
+  for (Index p : item.points) {
+    Outcome o = ws.gather(p);
+    if (o == Outcome::done) o = optimise(ws, rules);
+    if (ws.count(Operation::optimise, o) == Outcome::done) return o;
+  }
+  return Outcome::no_candidate;
+}
+
+/// The same of the flips.
+Outcome flip(Workspace& ws, const ImproveRules& turn, const ListedTet& item) {
+  for (int e = 0; e < 6; ++e)
+    if (remove_edge(ws, turn.surgery, item.tet, e, full_reach) == Outcome::done) return Outcome::done;
+  for (int f = 0; f < 4; ++f)
+    if (remove_face(ws, turn.rules, item.tet, f, full_reach) == Outcome::done) return Outcome::done;
+  return Outcome::no_candidate;
+}
+
 }  // namespace
 
-Outcome improve_tet(Workspace& ws, const BlockRules& rules, const BlockRules& surgery, bool last_resort,
-                    const ListedTet& item, const ImproveBounds& bounds) {
+Outcome improve_tet(Workspace& ws, const ImproveRules& turn, const ListedTet& item) {
   const EditableMesh& mesh = ws.mesh;
   if (!exists(mesh, item)) return Outcome::stale;
   const float quality = mesh.quality(item.tet);
-  if (quality > bounds.poor) return Outcome::stale;
-  // Flips first: they take half the time of places on a surface, and a quarter less for all.
-  for (int e = 0; e < 6; ++e)
-    if (remove_edge(ws, surgery, item.tet, e, full_reach) == Outcome::done) return Outcome::done;
-  for (int f = 0; f < 4; ++f)
-    if (remove_face(ws, rules, item.tet, f, full_reach) == Outcome::done) return Outcome::done;
-  const BlockRules& moving = last_resort && quality < bounds.leave_surface ? surgery : rules;
-  for (Index p : item.points) {
-    Outcome o = ws.gather(p);
-    if (o == Outcome::done) o = optimise(ws, moving);
-    if (ws.count(Operation::optimise, o) == Outcome::done) return o;
-  }
+  if (quality > turn.bounds.poor) return Outcome::stale;
+  const BlockRules &rules = turn.rules, &surgery = turn.surgery;
+  const BlockRules& moving = turn.last_resort && quality < turn.bounds.leave_surface ? surgery : rules;
+  if (turn.flips_first && flip(ws, turn, item) == Outcome::done) return Outcome::done;
+  if (move_points(ws, moving, item) == Outcome::done) return Outcome::done;
+  if (!turn.flips_first && flip(ws, turn, item) == Outcome::done) return Outcome::done;
   for (Index p : item.points) {
     if (mesh.live_tets() <= rules.count.min) break;
     Outcome o = ws.gather(p);

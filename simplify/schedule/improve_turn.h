@@ -9,10 +9,17 @@ struct ImproveBounds {
   float poor, leave_surface;
 };
 
-/// One tet's turn: the first action that makes the worst tet around better ends it. `surgery`: rules of edge
-/// removals and collapses. `last_resort`: points of tets worse than bounds.leave_surface move by them, too.
-Outcome improve_tet(Workspace& ws, const BlockRules& rules, const BlockRules& surgery, bool last_resort,
-                    const ListedTet& item, const ImproveBounds& bounds);
+/// What a tet's turn may do.
+struct ImproveRules {
+  const BlockRules& rules;
+  const BlockRules& surgery;  ///< of edge removals and collapses: surgery_rules()
+  ImproveBounds bounds;
+  bool last_resort;  ///< points of tets worse than bounds.leave_surface move by `surgery`, too
+  bool flips_first;  ///< before better places: half the time, but less gain in thin layers of many materials
+};
+
+/// One tet's turn: the first action that makes the worst tet around better ends it.
+Outcome improve_tet(Workspace& ws, const ImproveRules& turn, const ListedTet& item);
 
 /// A flip of the tet, chosen at random, that leaves only good tets (BlockRules::good_enough) or an
 /// improvement: it changes the connectivity near tets that no operation improves.

@@ -23,6 +23,7 @@ constexpr double min_round_gain = 0.02;
 /// The same where more than this share of all tets is poor.
 constexpr double many_poor = 0.01;
 constexpr double min_gain_of_many = 0.05;
+constexpr int max_idle_rounds_of_many = 4;
 /// Rounds without gain before the work ends: while some tets are below ImprovementPlan::leave_surface_angle,
 /// else.
 constexpr int max_idle_rounds = 8;
@@ -85,10 +86,13 @@ class ImprovementLoop {
     const bool many = static_cast<double>(poor.size()) > many_poor * static_cast<double>(mesh_.live_tets());
     idle_ = gain >= (many ? min_gain_of_many : min_round_gain) ? 0 : idle_ + 1;
     const bool few = static_cast<double>(poor.size()) < few_poor * static_cast<double>(mesh_.live_tets());
-    if (idle_ >= (few ? max_idle_rounds_of_few : bad && !many ? max_idle_rounds : max_idle_rounds_when_good))
+    if (idle_ >= (few            ? max_idle_rounds_of_few
+                  : bad && !many ? max_idle_rounds
+                  : many         ? max_idle_rounds_of_many
+                                 : max_idle_rounds_when_good))
       return false;
     min_poor_ = std::min(min_poor_, poor.size());
-    last_resort_ = stuck_;
+    last_resort_ = stuck_ && (idle_ > 0 || (plan_.fast && !many));
     return true;
   }
 
@@ -112,7 +116,7 @@ class ImprovementLoop {
       return qa != qb ? qa < qb : a.tet < b.tet;
     });
     engine_.runner().tets_in_order(tries, [&](Workspace& ws, const ListedTet& item, int) {
-      return improve_tet(ws, engine_.rules, surgery_, last_resort_, item, bounds_);
+      return improve_tet(ws, {engine_.rules, surgery_, bounds_, last_resort_, plan_.fast}, item);
     });
     round.finish();
   }

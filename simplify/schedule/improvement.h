@@ -14,6 +14,9 @@ struct ImprovementPlan {
   double leave_surface_angle;
   std::size_t target_tets, min_tets, max_tets;
   bool local;  ///< only near such tets: no room for insertions is made elsewhere
+  /// Flips before better places, and the last resort as soon as a round gains little: half the time of
+  /// improve(), but less gain where thin layers of many materials keep most points from moving far.
+  bool fast;
   int max_rounds;
   int fit_sweeps;  ///< of fit_to_surface() over all interface points, before the rounds
 };

@@ -46,7 +46,7 @@ struct ImproveOptions {
   double only_below = 0;
   double min_solid_angle = 0.1;  ///< steradians; the work ends early once all are well above it
   ShapeObjective objective = ShapeObjective::both;
-  /// The count may be what the shapes need: between a quarter and four times what it was.
+  /// The count may be what the shapes need: between 0.8 and 4 times what it was.
   bool free_count = false;
   int max_iterations = 100;  ///< rounds
   std::uint64_t seed = 1;
