@@ -93,15 +93,19 @@ class EditableMesh {
     return link.is_outside() ? outside_id : regions_[link.tet()];
   }
   /// Where `point` stands in tet t, which has it.
-  int slot_of(Index t, Index point) const {
-    const Tet& p = tets_[t].points;
-    return p[0] == point ? 0 : p[1] == point ? 1 : p[2] == point ? 2 : 3;
-  }
+  int slot_of(Index t, Index point) const { return slot_in(tets_[t].points, point); }
   /// The face of t across which `other` lies, which is a neighbour.
   int face_towards(Index t, Index other) const {
     const auto& n = tets_[t].links;
     return n[0].tet() == other ? 0 : n[1].tet() == other ? 1 : n[2].tet() == other ? 2 : 3;
   }
+
+  /// Asks for what is going to be read of a tet, or of a point, so that it is there by then.
+  void prefetch_tet(Index t) const {
+    __builtin_prefetch(&tets_[t]);
+    __builtin_prefetch(&qualities_[t]);
+  }
+  void prefetch_point(Index p) const { __builtin_prefetch(&positions_[p]); }
 
   // Writing: while no task runs, or by who marked the points concerned.
   void set_position(Index point, const Vec3& position) {

@@ -19,7 +19,7 @@ Outcome Star::gather(const EditableMesh& mesh, Index centre_point) {
     const std::uint32_t n = point_numbers_.number(p, added);
     if (added) {
       points.push_back(p);
-      positions.push_back(mesh.position(p));
+      mesh.prefetch_point(p);
       interface_count.push_back(0);
     }
     return static_cast<std::uint16_t>(n);
@@ -39,14 +39,9 @@ Outcome Star::gather(const EditableMesh& mesh, Index centre_point) {
     const Tet& corners = mesh.points(tet);
     std::array<std::uint16_t, 3> link = tets[i].link;
     // Of all but the first the neighbour it was met from knows two points of the link.
-    const Index p = points[link[0]], q = points[link[1]];
-    std::array<int, 3> corner{};  // of the link's points
-    int slot = 0;
-    for (int k = 0; k < 4; ++k)
-      (corners[k] == centre ? slot
-       : corners[k] == p    ? corner[0]
-       : corners[k] == q    ? corner[1]
-                            : corner[2]) = k;
+    const int slot = slot_in(corners, centre), first_corner = slot_in(corners, points[link[0]]),
+              second_corner = slot_in(corners, points[link[1]]);
+    const std::array<int, 3> corner{first_corner, second_corner, 6 - slot - first_corner - second_corner};
     if (i > 0) link[2] = number_of(corners[corner[2]]);
     if (points.size() > max_points) return Outcome::too_large;
     tets[i].link = link;
@@ -62,8 +57,10 @@ Outcome Star::gather(const EditableMesh& mesh, Index centre_point) {
         const Index other = across.tet();
         if (k < 2 || i == 0) {  // across the third one is where it was met from
           tet_numbers_.number(other, added);
-          if (added)
+          if (added) {
             tets.push_back({other, {b, a, 0}, 0, across.is_interface() ? mesh.region(other) : region, 0});
+            mesh.prefetch_tet(other);
+          }
         }
         if (!across.is_interface() || other < tet) continue;  // an inner interface is met twice
         interface_triangles.push_back({a, b, region, mesh.region(other), 0});
@@ -72,6 +69,7 @@ Outcome Star::gather(const EditableMesh& mesh, Index centre_point) {
       ++interface_count[b];
     }
   }
+  for (Index p : points) positions.push_back(mesh.position(p));
   find_creases();
   return Outcome::done;
 }
@@ -84,6 +82,7 @@ void Star::begin(Index centre_point, const Vec3& position) {
   positions.clear();
   interface_triangles.clear();
   interface_count.clear();
+  normals.clear();
   gradients.clear();
   point_numbers_.clear();
   worst = 1;
@@ -176,17 +175,25 @@ int Star::dimension() const {
   return std::all_of(visited_.begin(), visited_.end(), [](std::uint8_t v) { return v != 0; }) ? 1 : 0;
 }
 
+void Star::compute_normals() {
+  normals.clear();
+  for (const StarTet& t : tets) {
+    const Vec3 &x = positions[t.link[0]], &y = positions[t.link[1]], &z = positions[t.link[2]];
+    normals.push_back((y - x).cross(z - x));
+  }
+}
+
 void Star::compute_gradients() {
   gradients.clear();
   areas_.clear();
   if (interface_triangles.empty()) return;
+  if (normals.empty()) compute_normals();
   for (const InterfaceTriangle& s : interface_triangles)
     areas_.push_back((positions[s.first] - centre_position).cross(positions[s.second] - centre_position) *
                      (1.0 / 6));
-  for (const StarTet& t : tets) {
-    const Vec3 &x = positions[t.link[0]], &y = positions[t.link[1]], &z = positions[t.link[2]];
-    // Volume of (c, x, y, z) is (x - c) . ((y - x) x (z - x)) / 6: linear in c.
-    const Vec3 change = (y - x).cross(z - x) * (-1.0 / 6);
+  for (std::size_t k = 0; k < tets.size(); ++k) {
+    const StarTet& t = tets[k];
+    const Vec3 change = normals[k] * (-1.0 / 6);  // the volume is linear in c
     auto g = std::find_if(gradients.begin(), gradients.end(),
                           [&](const VolumeGradient& v) { return v.region == t.region; });
     if (g == gradients.end()) {

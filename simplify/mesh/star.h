@@ -76,6 +76,11 @@ struct Star {
   /// Dimension of the centre (README.md, Topology): 3, 2, 1, or 0 for all else.
   int dimension() const;
 
+  /// For each tet (y - x) x (z - x), where x, y, z are its points of the link: six times its volume is
+  /// (x - c) . normals[k] wherever the centre c stands. compute_normals() fills it, in the order of the tets.
+  std::vector<Vec3> normals;
+  void compute_normals();
+
   /// Gradient of the volume of each region with respect to the centre's position: moving the centre by d
   /// changes the volume of gradients[i].region by gradients[i].change . d exactly. Outside is left out;
   /// without interface triangles it is empty.

@@ -120,11 +120,11 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
   // Orientation first: the cheapest test, and the one that fails most often.
   std::size_t left = 0;
   double least = std::numeric_limits<double>::infinity();
-  for (const Star::StarTet& t : star.tets) {
+  for (std::size_t k = 0; k < star.tets.size(); ++k) {
+    const Star::StarTet& t = star.tets[k];
     if (has(t, b)) continue;
     ++left;
-    const Vec3 &x = star.positions[t.link[0]], &y = star.positions[t.link[1]], &z = star.positions[t.link[2]];
-    const double det = (x - to).dot((y - x).cross(z - x));
+    const double det = (star.positions[t.link[0]] - to).dot(star.normals[k]);
     if (!(det > 0)) return Outcome::inverts;
     least = std::min(least, det);
   }
@@ -181,6 +181,7 @@ Outcome collapse_onto(Workspace& ws, const BlockRules& rules, std::size_t b) {
   Star& star = ws.star;
   const int dimension = star.dimension();
   if (!may_go(star, dimension) || star.edge_dimension(b) != dimension) return Outcome::material_rule;
+  star.compute_normals();
   star.compute_gradients();
   if (collapse_weight(star, b, rules) > rules.max_error) return Outcome::surface_error;
   return try_target(ws, rules, b);
@@ -190,6 +191,7 @@ Outcome collapse(Workspace& ws, const BlockRules& rules) {
   Star& star = ws.star;
   const int dimension = star.dimension();
   if (!may_go(star, dimension)) return Outcome::material_rule;
+  star.compute_normals();
   star.compute_gradients();
 
   std::vector<CollapseTarget>& targets = ws.targets;

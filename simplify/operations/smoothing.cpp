@@ -193,8 +193,18 @@ class PlacementSearch {
   }
 
  private:
-  /// The nearest place of the surface, the junction curve or the corners that the centre belongs to.
-  std::optional<Vec3> nearest(const Vec3& to, double max_distance) const {
+  /// The nearest place of the surface, the junction curve or the corners that the centre belongs to, if it is
+  /// nearer than `max_distance`.
+  std::optional<Vec3> nearest(const Vec3& to, double max_distance) {
+    // The last one found bounds the search: steps are short.
+    const double known = known_ ? (*known_ - to).norm() : std::numeric_limits<double>::infinity();
+    std::optional<Vec3> found = find_nearest(to, std::min(max_distance, known));
+    if (!found && known < max_distance) found = known_;
+    if (found) known_ = found;
+    return found;
+  }
+
+  std::optional<Vec3> find_nearest(const Vec3& to, double max_distance) const {
     const Star::InterfaceTriangle& s = star_.interface_triangles.front();
     return dimension_ == 2   ? rules_.projection->onto_surface(to, s.inside, s.across, s.patch, max_distance)
            : dimension_ == 1 ? rules_.projection->onto_curve(to, max_distance)
@@ -223,7 +233,7 @@ class PlacementSearch {
   }
 
   /// Where a step to `to` ends: back on the surface or curve, or near it; nothing where that is too far away.
-  std::optional<Vec3> placed(Vec3 to) const {
+  std::optional<Vec3> placed(Vec3 to) {
     if (rules_.projection && dimension_ < 3) {
       const auto on = nearest(to, leave_surface_ ? max_distance_ : reach_);
       if (!on) return {};
@@ -337,6 +347,7 @@ class PlacementSearch {
   double shortest_ = 0;  ///< edge at the centre
   double reach_ = 0;     ///< how far a step may leave the surface before it is projected back
   double max_distance_ = 0;
+  std::optional<Vec3> known_;   ///< what nearest() has found last
   Vec3 offset_ = Vec3::Zero();  ///< from the surface
   Vec3 at_ = Vec3::Zero();
   float worst_ = 0;

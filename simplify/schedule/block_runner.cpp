@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
+#include <span>
 
 #ifdef TETWRIGHT_INJECT_YIELDS
 #include <thread>
@@ -21,34 +23,52 @@ constexpr std::uint32_t spacing = 24;
 constexpr std::size_t min_batch = 256, max_batch = 1024, batches_of_large_blocks = 1024;
 /// The same in the order given, where each item takes ten times as long and what failed before comes again.
 constexpr std::size_t min_ordered_batch = 16, max_ordered_batch = 128, ordered_batches = 16;
+/// Of the proposals of a batch, the share that loses: above it the next batch is smaller, below half of it
+/// larger. What loses is decided twice, and in a mesh of few points, or around points of many tets, large
+/// batches hold little else.
+constexpr double max_lost_share = 0.3;
+/// Batches are not made smaller than this.
+constexpr std::size_t least_batch = 16;
 /// Items that a thread decides at a time, and winners that it commits.
 constexpr std::size_t chunk_in_order = 2, chunk_shuffled = 16, commit_chunk = 16;
 /// Batches with fewer chunks than this are not worth waking other threads.
 constexpr std::size_t min_parallel_chunks = 3;
 
-/// The batches of a shuffled block, one after the other. Item i has the key i / step + random(spacing), and a
-/// batch is what has one key.
-class ShuffledBatches {
+/// The order of a shuffled block: item i has the key i / step + r, the keys ascend, and r goes through all
+/// numbers below `spacing` in random order, for as many items in a row. `step` 0: the order given.
+class BlockOrder {
  public:
-  ShuffledBatches(std::size_t items, std::size_t step, Random random)
-      : items_(items), step_(step), random_(random) {}
-  /// Appends the next batch; false if there is none.
-  bool next(std::vector<std::uint32_t>& batch) {
-    if (key_ >= (items_ + step_ - 1) / step_ + spacing - 1) return false;
-    const std::size_t end = std::min(items_, (key_ + 1) * step_);
-    for (std::size_t i = key_ * step_; i < end; ++i)
-      waiting_[(key_ + random_.below(spacing)) % spacing].push_back(static_cast<std::uint32_t>(i));
-    std::vector<std::uint32_t>& due = waiting_[key_ % spacing];
-    batch.insert(batch.end(), due.begin(), due.end());
-    due.clear();
-    ++key_;
-    return true;
+  BlockOrder(std::size_t items, std::size_t step, Random random)
+      : items_(items), step_(step), left_(items), random_(random) {
+    std::iota(keys_.begin(), keys_.end(), 0u);
+  }
+  bool empty() const { return left_ == 0; }
+  /// The next item; there is one.
+  std::uint32_t take() {
+    --left_;
+    if (step_ == 0) return static_cast<std::uint32_t>(listed_++);
+    while (next_ == due_.size()) list_next_key();
+    return due_[next_++];
   }
 
  private:
-  std::size_t items_, step_, key_ = 0;
+  void list_next_key() {
+    for (const std::size_t end = std::min(items_, listed_ + step_); listed_ < end; ++listed_) {
+      const std::size_t place = listed_ % spacing;
+      if (place == 0) random_.shuffle(std::span<std::uint32_t>(keys_));
+      waiting_[(key_ + keys_[place]) % spacing].push_back(static_cast<std::uint32_t>(listed_));
+    }
+    due_.clear();
+    next_ = 0;
+    std::swap(due_, waiting_[key_++ % spacing]);
+  }
+
+  std::size_t items_, step_, left_, listed_ = 0, key_ = 0;
   Random random_;
+  std::array<std::uint32_t, spacing> keys_;  ///< of `spacing` items in a row, less key_
   std::array<std::vector<std::uint32_t>, spacing> waiting_;
+  std::vector<std::uint32_t> due_;  ///< of one key
+  std::size_t next_ = 0;            ///< of due_
 };
 
 /// In the test build that looks for what depends on time: lets another thread run now and then.
@@ -128,6 +148,7 @@ bool BlockRunner::select(const Stop& stop) {
   winners_.clear();
   surface_winners_.clear();
   again_.clear();
+  lost_ = 0;
   std::size_t tets = 0, points = 0;
   for (std::size_t i = 0; i < batch_.size(); ++i) {
     if (outcomes_[i] != Outcome::done) continue;
@@ -143,7 +164,7 @@ bool BlockRunner::select(const Stop& stop) {
     Proposal& p = proposals_[i];
     const Outcome o = admit(p);
     if (o == Outcome::conflict) {
-      ++totals_.conflicts;
+      ++lost_;
       again_.push_back(batch_[i]);
     }
     totals_.counts.add(p.operation, o);
@@ -168,6 +189,13 @@ void BlockRunner::commit_winners() {
   grid_.end_batch();
 }
 
+std::size_t BlockRunner::next_batch_size(std::size_t size, std::size_t max_size) const {
+  const auto lost = static_cast<double>(lost_);
+  const double most = max_lost_share * static_cast<double>(lost_ + winners_.size());
+  if (lost > most) return std::max(std::min(least_batch, max_size), size - size / 4);
+  return lost < most / 2 ? std::min(max_size, size + size / 4) : size;
+}
+
 template <class Item, class Attempt>
 void BlockRunner::run(const std::vector<Item>& items, bool in_order, const Attempt& attempt,
                       const Stop& stop) {
@@ -178,39 +206,27 @@ void BlockRunner::run(const std::vector<Item>& items, bool in_order, const Attem
   if (step == 0)
     step = in_order ? std::clamp(n / ordered_batches, min_ordered_batch, max_ordered_batch)
                     : std::clamp(n / batches_of_large_blocks, min_batch, max_batch);
-  ShuffledBatches shuffled(n, step, Random(seed_, block, ~std::uint64_t{0}));
-  std::vector<std::uint32_t> fresh;
-  std::size_t listed = 0;  // of those in order
+  BlockOrder order(n, in_order ? 0 : step, Random(seed_, block, ~std::uint64_t{0}));
   const auto decide_entry = [&](Workspace& ws, const Entry& entry) {
     ws.random = Random(seed_, block, entry.item);
     return attempt(ws, items[entry.item], static_cast<int>(entry.stage));
   };
+  std::size_t batch = step;
   again_.clear();
-  for (;;) {
+  while (!order.empty() || !again_.empty()) {
     if (progress_) progress_->throw_if_cancelled();
-    fresh.clear();
-    bool more;
-    if (in_order) {
-      for (const std::size_t end = std::min(n, listed + step); listed < end; ++listed)
-        fresh.push_back(static_cast<std::uint32_t>(listed));
-      more = !fresh.empty();
-    } else {
-      more = shuffled.next(fresh);
-    }
     // Those that lost come first, so that each is done some time.
     totals_.repeats += static_cast<std::uint64_t>(
         std::count_if(again_.begin(), again_.end(), [](const Entry& e) { return e.stage == 0; }));
     batch_ = again_;
-    for (std::uint32_t i : fresh) batch_.push_back({i, 0});
-    if (batch_.empty()) {
-      if (!more) return;
-      continue;
-    }
+    while (batch_.size() < batch && !order.empty()) batch_.push_back({order.take(), 0});
     ++totals_.batches;
     decide(decide_entry, in_order ? chunk_in_order : chunk_shuffled);
     const bool goes_on = select(stop);
+    totals_.conflicts += lost_;
     commit_winners();
     if (!goes_on) return;
+    batch = next_batch_size(batch, step);
   }
 }
 

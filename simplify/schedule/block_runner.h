@@ -74,6 +74,8 @@ class BlockRunner {
   bool select(const Stop& stop);
   Outcome admit(Proposal& proposal);
   void commit_winners();
+  /// From how many of the batch have lost.
+  std::size_t next_batch_size(std::size_t size, std::size_t max_size) const;
   void make_workers();
 
   EditableMesh& mesh_;
@@ -90,6 +92,7 @@ class BlockRunner {
   std::vector<Outcome> outcomes_;                         ///< of batch_
   std::vector<Proposal> proposals_;                       ///< of those whose outcome is done
   std::vector<std::uint32_t> winners_, surface_winners_;  ///< places in batch_
+  std::size_t lost_ = 0;                                  ///< of the batch
   Totals totals_;
 };
 

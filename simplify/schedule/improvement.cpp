@@ -92,7 +92,7 @@ class ImprovementLoop {
                                  : max_idle_rounds_when_good))
       return false;
     min_poor_ = std::min(min_poor_, poor.size());
-    last_resort_ = stuck_ && (idle_ > 0 || (plan_.fast && !many));
+    last_resort_ = stuck_ && (idle_ > 0 || !plan_.fast || !many);
     return true;
   }
 
