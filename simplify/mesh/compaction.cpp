@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <type_traits>
 
 #include "common/geometry/morton.h"
 #include "common/mesh/interfaces.h"
@@ -92,24 +93,32 @@ std::vector<Index> MeshCompaction::number_tets(const std::vector<Index>& new_poi
 
 void MeshCompaction::move_tets(const std::vector<Index>& new_point, const std::vector<Index>& new_tet,
                                std::size_t live, std::size_t spare) {
-  std::vector<TetRecord> tets(live + spare, {dead_tet, {}});
-  std::vector<RegionId> regions(live + spare, 0);
-  std::vector<float> qualities(live + spare, 0);
-  parallel_for(0, mesh_.tets_.size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
-      if (new_tet[t] == no_index) continue;
-      TetRecord r = mesh_.tets_[t];
-      for (Index& p : r.points) p = new_point[p];
-      for (FaceLink& n : r.links)
-        if (!n.is_outside()) n = FaceLink::to(new_tet[n.tet()], n.is_interface());
-      tets[new_tet[t]] = r;
-      regions[new_tet[t]] = mesh_.regions_[t];
-      qualities[new_tet[t]] = mesh_.qualities_[t];
-    }
-  });
-  mesh_.tets_ = std::move(tets);
-  mesh_.regions_ = std::move(regions);
-  mesh_.qualities_ = std::move(qualities);
+  // One array after the other: the tets' old and new ones together are the peak of the simplifier's memory.
+  const std::size_t slots = mesh_.tets_.size();
+  {
+    std::vector<TetRecord> tets(live + spare, {dead_tet, {}});
+    parallel_for(0, slots, grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        if (new_tet[t] == no_index) continue;
+        TetRecord r = mesh_.tets_[t];
+        for (Index& p : r.points) p = new_point[p];
+        for (FaceLink& n : r.links)
+          if (!n.is_outside()) n = FaceLink::to(new_tet[n.tet()], n.is_interface());
+        tets[new_tet[t]] = r;
+      }
+    });
+    mesh_.tets_ = std::move(tets);
+  }
+  const auto move = [&](auto& values) {
+    std::remove_reference_t<decltype(values)> moved(live + spare, 0);
+    parallel_for(0, slots, grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t)
+        if (new_tet[t] != no_index) moved[new_tet[t]] = values[t];
+    });
+    values = std::move(moved);
+  };
+  move(mesh_.regions_);
+  move(mesh_.qualities_);
 }
 
 void MeshCompaction::run(std::size_t spare_tets, std::size_t spare_points, SlotNumbers* numbers) {

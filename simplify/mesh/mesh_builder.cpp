@@ -60,9 +60,12 @@ void MeshBuilder::take_points(std::vector<Vec3>&& points) {
 
 void MeshBuilder::take_tets(const TetMesh& input) {
   std::vector<MaterialTag>& tags = mesh_.tags_;
-  tags = input.materials;
-  std::sort(tags.begin(), tags.end());
-  tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
+  for (std::size_t i = 0; i < input.materials.size(); ++i) {
+    const MaterialTag tag = input.materials[i];
+    if (i > 0 && tag == input.materials[i - 1]) continue;
+    const auto at = std::lower_bound(tags.begin(), tags.end(), tag);
+    if (at == tags.end() || *at != tag) tags.insert(at, tag);
+  }
   mesh_.tets_.resize(input.tets.size());
   mesh_.regions_.resize(input.tets.size());
   mesh_.qualities_.resize(input.tets.size(), 0);
