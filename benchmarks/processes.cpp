@@ -22,6 +22,18 @@ std::string text_of(const nlohmann::json& json) {
   return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+/// A line of /proc/self/status.
+std::size_t bytes_of(const char* name) {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;)
+    if (word == name) {
+      std::size_t kib = 0;
+      status >> kib;
+      return kib * 1024;
+    }
+  return 0;
+}
+
 }  // namespace
 
 nlohmann::json in_child(const std::function<nlohmann::json()>& work) {
@@ -86,16 +98,8 @@ ProgramRun run_program(const std::vector<std::string>& arguments) {
   return run;
 }
 
-std::size_t peak_bytes_now() {
-  std::ifstream status("/proc/self/status");
-  for (std::string word; status >> word;)
-    if (word == "VmHWM:") {
-      std::size_t kib = 0;
-      status >> kib;
-      return kib * 1024;
-    }
-  return 0;
-}
+std::size_t peak_bytes_now() { return bytes_of("VmHWM:"); }
+std::size_t resident_bytes_now() { return bytes_of("VmRSS:"); }
 
 void reset_peak() {
   malloc_trim(0);

@@ -25,6 +25,8 @@ ProgramRun run_program(const std::vector<std::string>& arguments);
 
 /// Largest resident size of this process since its start or reset_peak() (VmHWM).
 std::size_t peak_bytes_now();
+/// What of this process is resident now (VmRSS).
+std::size_t resident_bytes_now();
 /// Gives free memory back to the system and begins the peak anew at what is resident.
 void reset_peak();
 

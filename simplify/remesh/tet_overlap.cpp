@@ -61,27 +61,54 @@ void clip(const TetCorners& tet, const std::array<double, 4>& distance, Pieces& 
   }
 }
 
+/// Signed distances, times twice the area of a face, of points from the planes of a positive tet's faces:
+/// positive inside.
+class Planes {
+ public:
+  explicit Planes(const TetCorners& tet) {
+    for (int f = 0; f < 4; ++f) {
+      const auto& face = tet_faces[f];
+      origins_[f] = tet[face[0]];
+      inward_[f] = (tet[face[2]] - origins_[f]).cross(tet[face[1]] - origins_[f]);
+    }
+  }
+  std::array<double, 4> distances(int face, const TetCorners& corners) const {
+    std::array<double, 4> d;
+    for (int k = 0; k < 4; ++k) d[k] = inward_[face].dot(corners[k] - origins_[face]);
+    return d;
+  }
+  /// Whether all corners lie beyond one of the planes.
+  bool separate(const TetCorners& corners) const {
+    for (int f = 0; f < 4; ++f) {
+      const std::array<double, 4> d = distances(f, corners);
+      if (std::all_of(d.begin(), d.end(), [](double x) { return x <= 0; })) return true;
+    }
+    return false;
+  }
+
+ private:
+  std::array<Vec3, 4> origins_, inward_;
+};
+
 }  // namespace
 
 double overlap_volume(const TetCorners& first, const TetCorners& second) {
-  Pieces pieces, next;
-  pieces.tets[0] = first;
-  pieces.count = 1;
-  for (const auto& face : tet_faces) {
-    const Vec3 &a = second[face[0]], &b = second[face[1]], &c = second[face[2]];
-    const Vec3 inward = (c - a).cross(b - a);
-    next.count = 0;
-    for (std::size_t i = 0; i < pieces.count; ++i) {
-      std::array<double, 4> distance;
-      for (int k = 0; k < 4; ++k) distance[k] = inward.dot(pieces.tets[i][k] - a);
-      clip(pieces.tets[i], distance, next);
-    }
+  const Planes planes(second);
+  // Most pairs whose boxes meet have nothing in common.
+  if (planes.separate(first) || Planes(first).separate(second)) return 0;
+  std::array<Pieces, 2> buffers;
+  Pieces *pieces = &buffers[0], *next = &buffers[1];
+  pieces->add(first[0], first[1], first[2], first[3]);
+  for (int f = 0; f < 4; ++f) {
+    next->count = 0;
+    for (std::size_t i = 0; i < pieces->count; ++i)
+      clip(pieces->tets[i], planes.distances(f, pieces->tets[i]), *next);
     std::swap(pieces, next);
-    if (pieces.count == 0) return 0;
+    if (pieces->count == 0) return 0;
   }
   double sum = 0;
-  for (std::size_t i = 0; i < pieces.count; ++i) {
-    const TetCorners& t = pieces.tets[i];
+  for (std::size_t i = 0; i < pieces->count; ++i) {
+    const TetCorners& t = pieces->tets[i];
     sum += std::abs(orient3d_value(t[0], t[1], t[2], t[3]));
   }
   return sum / 6;
