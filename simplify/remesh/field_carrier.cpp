@@ -105,38 +105,41 @@ void FieldCarrier::add_targets() {
   });
 }
 
+bool FieldCarrier::weigh(const Source& s, const Vec3& p, std::array<double, 4>& weights) {
+  const auto& c = s.corners;
+  weights = {orient3d_value(p, c[1], c[2], c[3]), orient3d_value(c[0], p, c[2], c[3]),
+             orient3d_value(c[0], c[1], p, c[3]), orient3d_value(c[0], c[1], c[2], p)};
+  const bool inside = std::all_of(weights.begin(), weights.end(), [](double w) { return w >= 0; });
+  double sum = 0;
+  for (double& w : weights) sum += w = std::max(w, 0.0);
+  if (!(sum > 0)) return false;  // flat
+  for (double& w : weights) w /= sum;
+  return inside;
+}
+
 FieldCarrier::Weights FieldCarrier::weights_at(const Vec3& p) const {
   Weights best{};
+  const auto holds = [&](std::size_t i) {
+    best.points = sources_[i].points;
+    return weigh(sources_[i], p, best.weights);
+  };
+  if (tree_.any_containing(p, tree_.all(), holds)) return best;
+  // Outside of all: the nearest place of their faces.
+  best = {};
   double nearest = std::numeric_limits<double>::infinity();
   tree_.nearest(p, nearest, tree_.all(), [&](std::size_t i, double limit) {
     const Source& s = sources_[i];
-    const auto& c = s.corners;
-    std::array<double, 4> w{orient3d_value(p, c[1], c[2], c[3]), orient3d_value(c[0], p, c[2], c[3]),
-                            orient3d_value(c[0], c[1], p, c[3]), orient3d_value(c[0], c[1], c[2], p)};
-    Vec3 place = p;
-    if (!(s.volume > 0) || std::any_of(w.begin(), w.end(), [](double x) { return x < 0; })) {
-      // Outside: the nearest place of its faces, whose weights follow from the same volumes.
-      double least = std::numeric_limits<double>::infinity();
-      for (const auto& f : tet_faces) {
-        const Vec3 q = closest_point(p, c[f[0]], c[f[1]], c[f[2]]);
-        if ((q - p).squaredNorm() < least) {
-          least = (q - p).squaredNorm();
-          place = q;
-        }
-      }
-      if (least >= nearest) return limit;
-      w = {orient3d_value(place, c[1], c[2], c[3]), orient3d_value(c[0], place, c[2], c[3]),
-           orient3d_value(c[0], c[1], place, c[3]), orient3d_value(c[0], c[1], c[2], place)};
+    for (const auto& f : tet_faces) {
+      const Vec3 q = closest_point(p, s.corners[f[0]], s.corners[f[1]], s.corners[f[2]]);
+      const double distance = (q - p).squaredNorm();
+      std::array<double, 4> weights;
+      if (distance >= nearest) continue;
+      weigh(s, q, weights);
+      if (!(weights[0] + weights[1] + weights[2] + weights[3] > 0)) continue;  // flat
+      nearest = distance;
+      best = {s.points, weights};
     }
-    double sum = 0;
-    for (double& x : w) sum += x = std::max(x, 0.0);
-    if (!(sum > 0)) return limit;  // flat
-    for (double& x : w) x /= sum;
-    const double distance = (place - p).squaredNorm();
-    if (distance >= nearest) return limit;
-    nearest = distance;
-    best = {s.points, w};
-    return std::min(limit, distance);
+    return std::min(limit, nearest);
   });
   return best;
 }

@@ -52,6 +52,8 @@ class FieldCarrier {
   void add_sources();
   void add_targets();
   void place_points();
+  /// Shares of a source's corners in a place, none below 0, or all 0 where it is flat; whether it holds it.
+  static bool weigh(const Source& source, const Vec3& p, std::array<double, 4>& weights);
   Weights weights_at(const Vec3& p) const;
   template <class Visit>
   void for_sources_near(const Box3& box, const Visit& visit) const;

@@ -57,14 +57,17 @@ std::vector<Index> RemeshRounds::take_changed_points() {
 
 std::vector<Index> RemeshRounds::tets_at(const std::vector<Index>& points) {
   std::vector<Index> tets;
+  seen_.clear();
   for (Index p : points)
     walk_.any_tet(mesh_, p, [&](Index t) {
+      bool added;
+      seen_.number(t, added);
       const Tet& corners = mesh_.points(t);
-      if (std::all_of(corners.begin(), corners.end(), [&](Index q) { return in_region(q); }))
+      if (added && std::all_of(corners.begin(), corners.end(), [&](Index q) { return in_region(q); }))
         tets.push_back(t);
       return false;
     });
-  sort_unique(tets);
+  std::sort(tets.begin(), tets.end());
   return tets;
 }
 

@@ -50,6 +50,7 @@ class RemeshRounds {
   std::vector<Index> region_point_list_;
   std::vector<Index> changed_points_;  ///< since they were last taken
   StarWalk walk_;
+  LocalNumbers seen_;  ///< tets, in tets_at()
   std::uint64_t operations_ = 0;
 };
 

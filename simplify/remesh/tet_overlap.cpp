@@ -12,6 +12,8 @@ namespace {
 
 /// Each of four planes cuts a piece into three at most.
 constexpr std::size_t max_pieces = 81;
+/// Distances from a plane of less than this share of the largest are rounding errors of coordinates.
+constexpr double rounding = 1e-13;
 
 struct Pieces {
   std::array<TetCorners, max_pieces> tets;
@@ -61,8 +63,7 @@ void clip(const TetCorners& tet, const std::array<double, 4>& distance, Pieces& 
   }
 }
 
-/// Signed distances, times twice the area of a face, of points from the planes of a positive tet's faces:
-/// positive inside.
+/// The planes of a positive tet's faces.
 class Planes {
  public:
   explicit Planes(const TetCorners& tet) {
@@ -72,46 +73,62 @@ class Planes {
       inward_[f] = (tet[face[2]] - origins_[f]).cross(tet[face[1]] - origins_[f]);
     }
   }
+  /// Signed distances of points from a plane, times twice the area of its face: positive inside.
   std::array<double, 4> distances(int face, const TetCorners& corners) const {
     std::array<double, 4> d;
     for (int k = 0; k < 4; ++k) d[k] = inward_[face].dot(corners[k] - origins_[face]);
     return d;
-  }
-  /// Whether all corners lie beyond one of the planes.
-  bool separate(const TetCorners& corners) const {
-    for (int f = 0; f < 4; ++f) {
-      const std::array<double, 4> d = distances(f, corners);
-      if (std::all_of(d.begin(), d.end(), [](double x) { return x <= 0; })) return true;
-    }
-    return false;
   }
 
  private:
   std::array<Vec3, 4> origins_, inward_;
 };
 
+enum class Side { beyond, across, within };
+
+/// On which side of a plane a tet lies, given the distances of its corners. What rounding alone puts across
+/// it, such as the halves of an edge, does not count as such.
+Side side_of(const std::array<double, 4>& d) {
+  const auto [least, most] = std::minmax_element(d.begin(), d.end());
+  const double tolerance = rounding * std::max(-*least, *most);
+  return *most <= tolerance ? Side::beyond : *least >= -tolerance ? Side::within : Side::across;
+}
+
+double volume_of(const TetCorners& t) { return std::abs(orient3d_value(t[0], t[1], t[2], t[3])) / 6; }
+
 }  // namespace
 
 double overlap_volume(const TetCorners& first, const TetCorners& second) {
   const Planes planes(second);
-  // Most pairs whose boxes meet have nothing in common.
-  if (planes.separate(first) || Planes(first).separate(second)) return 0;
+  std::array<int, 4> cutting{};
+  int cuts = 0;
+  for (int f = 0; f < 4; ++f) {
+    const Side side = side_of(planes.distances(f, first));
+    if (side == Side::beyond) return 0;
+    if (side == Side::across) cutting[cuts++] = f;
+  }
+  if (cuts == 0) return volume_of(first);
+  const Planes others(first);
+  bool inside = true;
+  for (int f = 0; f < 4; ++f) {
+    const Side side = side_of(others.distances(f, second));
+    if (side == Side::beyond) return 0;
+    inside &= side == Side::within;
+  }
+  if (inside) return volume_of(second);
   std::array<Pieces, 2> buffers;
   Pieces *pieces = &buffers[0], *next = &buffers[1];
   pieces->add(first[0], first[1], first[2], first[3]);
-  for (int f = 0; f < 4; ++f) {
+  for (int i = 0; i < cuts; ++i) {
     next->count = 0;
-    for (std::size_t i = 0; i < pieces->count; ++i)
-      clip(pieces->tets[i], planes.distances(f, pieces->tets[i]), *next);
+    for (std::size_t k = 0; k < pieces->count; ++k)
+      clip(pieces->tets[k], planes.distances(cutting[i], pieces->tets[k]), *next);
     std::swap(pieces, next);
     if (pieces->count == 0) return 0;
   }
   double sum = 0;
-  for (std::size_t i = 0; i < pieces->count; ++i) {
-    const TetCorners& t = pieces->tets[i];
-    sum += std::abs(orient3d_value(t[0], t[1], t[2], t[3]));
-  }
-  return sum / 6;
+  for (std::size_t i = 0; i < pieces->count; ++i) sum += volume_of(pieces->tets[i]);
+  return sum;
 }
 
 }  // namespace tetwright
