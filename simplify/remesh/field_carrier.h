@@ -5,6 +5,7 @@
 #include "common/geometry/box_tree.h"
 #include "simplify/mesh/editable_mesh.h"
 #include "simplify/remesh/change_journal.h"
+#include "simplify/remesh/tet_overlap.h"
 
 namespace tetwright {
 
@@ -29,11 +30,10 @@ class FieldCarrier {
  private:
   /// An old tet with its positive volume; inverted ones count as their mirror images.
   struct Source {
-    std::array<Vec3, 4> corners;
+    PlanedTet tet;
     Tet points;
     Index slot;
     RegionId region;
-    double volume;
   };
   struct Target {
     Index slot;
@@ -61,6 +61,7 @@ class FieldCarrier {
   const EditableMesh& mesh_;
   const ChangeJournal& journal_;
   std::vector<Source> sources_;  ///< in the order of the tree
+  std::vector<Box3> boxes_;  ///< of the sources
   BoxTree tree_;
   std::vector<Target> targets_;
   std::vector<PlacedPoint> placed_;
