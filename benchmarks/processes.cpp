@@ -4,6 +4,7 @@
 #include <malloc.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -104,6 +105,12 @@ std::size_t resident_bytes_now() { return bytes_of("VmRSS:"); }
 void reset_peak() {
   malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << 5;  // proc(5): resets VmHWM to what is resident
+}
+
+double ThreadStopwatch::now() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 ScratchFolder::ScratchFolder() {

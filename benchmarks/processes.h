@@ -40,6 +40,16 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// Processor time of the thread that asks: what waits for others on a busy machine does not count.
+class ThreadStopwatch {
+ public:
+  double seconds() const { return now() - start_; }
+
+ private:
+  static double now();
+  double start_ = now();
+};
+
 /// A folder in the system's temporary one, removed with all that is in it.
 class ScratchFolder {
  public:

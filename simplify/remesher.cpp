@@ -26,11 +26,14 @@ constexpr double volume_share = 0.015;
 /// Over min_solid_angle: what is improved, and what may leave the surface a little for it, as in improve().
 constexpr double poor_margin = 1.27, leave_surface_margin = 1;
 /// Of the bound: what coarsening and refining must leave of shapes that were good.
-constexpr float floor_share = 0.3f;
+constexpr double floor_share = 0.3;
 /// Rings of tets around a region whose surfaces are projected onto.
 constexpr int projection_rings = 2;
 
 struct Field {
+  Field(std::size_t count, std::vector<double>&& numbers) : components(count), values(std::move(numbers)) {
+    values.reserve(2 * values.size());  // as the mesh has room for twice as many slots
+  }
   std::size_t components;
   std::vector<double> values;
 };
@@ -95,6 +98,7 @@ struct Remesher::Impl {
       for (std::size_t t = begin; t < end; ++t) rate(static_cast<Index>(t));
     });
     grid.build(mesh, 0);
+    grid.reserve_twice();
     places.build(mesh);
   }
   void rate(Index t) {
@@ -213,20 +217,14 @@ RemeshChanges Remesher::Impl::call(const RemeshRegion& region, const Work& work)
   if (tets.empty()) return {};
   const SurfaceProjection projection = project_region(tets);
   rules.projection = &projection;
-  double edges = 0;
-  for (Index t : tets) {
-    const Tet& p = mesh.points(t);
-    for (const auto& e : tet_edges) edges += (mesh.position(p[e[0]]) - mesh.position(p[e[1]])).norm();
-  }
-  rules.max_error = edges / static_cast<double>(tet_edges.size() * tets.size());
-  const auto bound = [&](double margin) {
-    return static_cast<float>(
-        std::min(0.99, shape_quality_bound(options.objective, margin * options.min_solid_angle)));
-  };
+  const double floor =
+      floor_share * std::min(0.99, shape_quality_bound(options.objective, options.min_solid_angle));
   std::uint64_t operations = 0;
   {
     RemeshRounds rounds(mesh, runner, journal, rules,
-                        {bound(poor_margin), bound(leave_surface_margin), floor_share * bound(1)}, tets);
+                        {poor_margin * options.min_solid_angle,
+                         leave_surface_margin * options.min_solid_angle, static_cast<float>(floor)},
+                        tets);
     work(rounds);
     rounds.improve();
     operations = rounds.operations();
@@ -336,14 +334,14 @@ std::size_t Remesher::add_point_field(std::size_t components, std::vector<double
   if (components == 0 || values.size() != components * point_slots())
     throw UsageError("a field of points needs its components for each of " + std::to_string(point_slots()) +
                      " slots, not " + std::to_string(values.size()) + " numbers");
-  impl_->point_fields.push_back({components, std::move(values)});
+  impl_->point_fields.emplace_back(components, std::move(values));
   return impl_->point_fields.size() - 1;
 }
 std::size_t Remesher::add_tet_field(std::size_t components, std::vector<double> values) {
   if (components == 0 || values.size() != components * tet_slots())
     throw UsageError("a field of tets needs its components for each of " + std::to_string(tet_slots()) +
                      " slots, not " + std::to_string(values.size()) + " numbers");
-  impl_->tet_fields.push_back({components, std::move(values)});
+  impl_->tet_fields.emplace_back(components, std::move(values));
   return impl_->tet_fields.size() - 1;
 }
 std::vector<double>& Remesher::point_field(std::size_t field) { return impl_->point_fields.at(field).values; }
@@ -396,8 +394,8 @@ Renumbering Remesher::compact() {
   Renumbering numbers;
   impl_->keep_patches();
   impl_->renumber(&numbers);
-  for (Field& f : impl_->point_fields) f.values = renumbered(f, numbers.points, point_slots());
-  for (Field& f : impl_->tet_fields) f.values = renumbered(f, numbers.tets, tet_slots());
+  for (Field& f : impl_->point_fields) f = {f.components, renumbered(f, numbers.points, point_slots())};
+  for (Field& f : impl_->tet_fields) f = {f.components, renumbered(f, numbers.tets, tet_slots())};
   impl_->find_copies();
   return numbers;
 }

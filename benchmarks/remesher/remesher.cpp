@@ -23,6 +23,8 @@ constexpr double lattice_jitter = 0.1, simulated_motion = 0.22;
 constexpr double coarse_size = 2, fine_size = 1.2;
 /// Cubes between the regions of a series of calls.
 constexpr int gap = 4;
+/// Three kinds of calls, with regions given in two ways.
+constexpr std::size_t series_of_a_size = 6;
 
 struct Options {
   std::vector<double> sizes{1e6, 1e7};
@@ -64,26 +66,19 @@ class Subject {
   /// To make the lattice and to take it over.
   double seconds() const { return seconds_; }
 
-  /// Up to `count` regions of `tets` tets each, apart from each other and from the boundary; every other one
-  /// on the interface. What operations made of earlier regions is part of them.
-  std::vector<Place> places(std::size_t tets, int count) {
-    const int width = static_cast<int>(std::ceil(std::cbrt(static_cast<double>(tets) / 6))) + gap;
-    const int across = (n_ - gap) / width, beside = ((n_ - gap) / 2 - width / 2) / width;
-    const auto centre = [&](int x, int y, int z) {
-      return Vec3(n_ / 2.0 + x * width, gap / 2.0 + (y + 0.5) * width, gap / 2.0 + (z + 0.5) * width);
-    };
-    std::vector<Vec3> inside, on_interface;
-    for (int x = -beside; x <= beside; ++x)
-      for (int y = 0; y < across; ++y)
-        for (int z = 0; z < across; ++z) (x == 0 ? on_interface : inside).push_back(centre(x, y, z));
-    random_.shuffle(std::span(inside));
-    random_.shuffle(std::span(on_interface));
-    std::vector<Vec3> centres;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-      const std::vector<Vec3>& from = i % 2 == 0 ? inside : on_interface;
-      if (i / 2 < from.size()) centres.push_back(from[i / 2]);
-    }
-    return regions_at(centres, tets, width);
+  /// So many regions of `tets` tets each, as far as there is room, apart from each other, from the boundary
+  /// and from those of earlier calls; every other one on the interface. After places_for() of that size.
+  std::vector<Place> places(std::size_t tets, std::size_t count) {
+    const auto begin = centres_.begin() + static_cast<std::ptrdiff_t>(std::min(taken_, centres_.size()));
+    taken_ += count;
+    const auto end = centres_.begin() + static_cast<std::ptrdiff_t>(std::min(taken_, centres_.size()));
+    return regions_at({begin, end}, tets, width_of(tets));
+  }
+
+  /// How many regions of a size there is room for.
+  std::size_t places_for(std::size_t tets) {
+    list_centres(width_of(tets));
+    return centres_.size();
   }
 
   /// Moves the points of some tets that are within a box.
@@ -122,6 +117,29 @@ class Subject {
   Random& random() { return random_; }
 
  private:
+  /// Cubes across a region, with a gap.
+  static int width_of(std::size_t tets) {
+    return static_cast<int>(std::ceil(std::cbrt(static_cast<double>(tets) / 6))) + gap;
+  }
+
+  void list_centres(int width) {
+    centres_.clear();
+    const int across = (n_ - gap) / width, beside = ((n_ - gap) / 2 - width / 2) / width;
+    const auto centre = [&](int x, int y, int z) {
+      return Vec3(n_ / 2.0 + x * width, gap / 2.0 + (y + 0.5) * width, gap / 2.0 + (z + 0.5) * width);
+    };
+    std::vector<Vec3> inside, on_interface;
+    for (int x = -beside; x <= beside; ++x)
+      for (int y = 0; y < across; ++y)
+        for (int z = 0; z < across; ++z) (x == 0 ? on_interface : inside).push_back(centre(x, y, z));
+    random_.shuffle(std::span(inside));
+    random_.shuffle(std::span(on_interface));
+    for (std::size_t i = 0; i < std::min(inside.size(), on_interface.size()); ++i) {
+      centres_.push_back(inside[i]);
+      centres_.push_back(on_interface[i]);
+    }
+  }
+
   /// Looks at the whole mesh, so that a call finds the caches of the processor cold.
   std::vector<Place> regions_at(const std::vector<Vec3>& centres, std::size_t tets, double width) const {
     struct Candidate {
@@ -169,6 +187,8 @@ class Subject {
   Random random_;
   std::optional<Remesher> remesher_;
   double seconds_ = 0;
+  std::vector<Vec3> centres_;  ///< of regions
+  std::size_t taken_ = 0;      ///< of these
 };
 
 double median(std::vector<double> values) {
@@ -180,42 +200,43 @@ double median(std::vector<double> values) {
 
 double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / 1e6; }
 
-/// Calls of every kind on regions of every size.
-nlohmann::json measure_calls(double size, const Options& o) {
+/// Calls of every kind on regions of a size.
+nlohmann::json measure_calls(double size, std::size_t tets, const Options& o) {
   const ThreadLimit one(1);
   Subject subject(size, o);
+  const std::size_t count = subject.remesher().tet_count();
+  const std::size_t calls = std::min<std::size_t>(o.repeats, subject.places_for(tets) / series_of_a_size);
   nlohmann::json series = nlohmann::json::array();
-  for (const std::size_t tets : o.regions)
-    for (const Kind kind : {Kind::improve, Kind::coarsen, Kind::refine})
-      for (const bool box : {false, true}) {
-        std::vector<double> ms, set_ms;
-        std::size_t operations = 0, changed = 0;
-        for (const Place& place : subject.places(tets, o.repeats)) {
-          if (kind == Kind::improve) {
-            const Stopwatch watch;
-            subject.shake(place.tets, place.box);
-            set_ms.push_back(1000 * watch.seconds());
-          }
-          const RemeshRegion region =
-              box ? RemeshRegion::box(place.box.low, place.box.high) : RemeshRegion::tets(place.tets);
-          const Stopwatch watch;
-          const RemeshChanges changes = subject.call(kind, region);
-          ms.push_back(1000 * watch.seconds());
-          operations += changes.operations;
-          changed += changes.added_tets.size();
+  for (const Kind kind : {Kind::improve, Kind::coarsen, Kind::refine})
+    for (const bool box : {false, true}) {
+      std::vector<double> ms, set_ms;
+      std::size_t operations = 0, changed = 0;
+      for (const Place& place : subject.places(tets, calls)) {
+        if (kind == Kind::improve) {
+          const ThreadStopwatch watch;
+          subject.shake(place.tets, place.box);
+          set_ms.push_back(1000 * watch.seconds());
         }
-        if (ms.empty()) continue;
-        series.push_back({{"region", tets},
-                          {"kind", kind_names[static_cast<int>(kind)]},
-                          {"as", box ? "box" : "list"},
-                          {"calls", ms.size()},
-                          {"median_ms", median(ms)},
-                          {"max_ms", *std::max_element(ms.begin(), ms.end())},
-                          {"set_positions_ms", median(set_ms)},
-                          {"operations", static_cast<double>(operations) / static_cast<double>(ms.size())},
-                          {"added_tets", static_cast<double>(changed) / static_cast<double>(ms.size())}});
+        const RemeshRegion region =
+            box ? RemeshRegion::box(place.box.low, place.box.high) : RemeshRegion::tets(place.tets);
+        const ThreadStopwatch watch;
+        const RemeshChanges changes = subject.call(kind, region);
+        ms.push_back(1000 * watch.seconds());
+        operations += changes.operations;
+        changed += changes.added_tets.size();
       }
-  return {{"tets", subject.remesher().tet_count()},
+      if (ms.empty()) continue;
+      series.push_back({{"region", tets},
+                        {"kind", kind_names[static_cast<int>(kind)]},
+                        {"as", box ? "box" : "list"},
+                        {"calls", ms.size()},
+                        {"median_ms", median(ms)},
+                        {"max_ms", *std::max_element(ms.begin(), ms.end())},
+                        {"set_positions_ms", median(set_ms)},
+                        {"operations", static_cast<double>(operations) / static_cast<double>(ms.size())},
+                        {"added_tets", static_cast<double>(changed) / static_cast<double>(ms.size())}});
+    }
+  return {{"tets", count},
           {"cubes", subject.cubes()},
           {"build_seconds", subject.seconds()},
           {"resident_bytes", resident_bytes_now()},
@@ -249,7 +270,7 @@ nlohmann::json measure_row(const Options& o) {
       std::erase_if(moved, [&](Index t) { return !r.has_tet(t); });
       subject.shake(moved, box);
     }
-    const Stopwatch watch;
+    const ThreadStopwatch watch;
     const RemeshChanges changes = subject.call(kind, RemeshRegion::box(box.low, box.high));
     ms.push_back(1000 * watch.seconds());
     moved = changes.added_tets;
@@ -282,7 +303,15 @@ nlohmann::json checked(nlohmann::json answer) {
 int run(const Options& o) {
   nlohmann::json all{{"sizes", nlohmann::json::array()}};
   for (const double size : o.sizes) {
-    const nlohmann::json m = checked(in_child([&] { return measure_calls(size, o); }));
+    nlohmann::json m;
+    for (const std::size_t region : o.regions) {
+      const nlohmann::json part = checked(in_child([&] { return measure_calls(size, region, o); }));
+      if (m.is_null()) {
+        m = part;
+      } else {
+        m["series"].insert(m["series"].end(), part["series"].begin(), part["series"].end());
+      }
+    }
     std::printf(
         "%zu tets, one thread, %s; taken over in %.1f s, %.0f MB\n\n%8s %8s %5s %6s %10s %9s %8s %8s %11s\n",
         m["tets"].get<std::size_t>(), o.fields ? "a field of points and one of tets" : "no fields",

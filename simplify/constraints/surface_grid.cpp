@@ -120,6 +120,11 @@ void SurfaceGrid::build(const EditableMesh& mesh, double min_cell) {
   });
 }
 
+void SurfaceGrid::reserve_twice() {
+  records_.reserve(2 * records_.size());
+  patches_.reserve(2 * patches_.size());
+}
+
 void SurfaceGrid::insert(std::uint32_t record) {
   const Entry entry{record, cell_at(low_corner(records_[record])), box_of(records_[record])};
   for_cells(records_[record], [&](const Cell3& c) {

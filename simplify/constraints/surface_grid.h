@@ -49,6 +49,10 @@ class SurfaceGrid {
   /// size that triangles are about to grow to.
   void build(const EditableMesh& mesh, double min_cell);
 
+  /// Room for twice as many triangles without copying what there is; memory is taken up only where it is
+  /// written.
+  void reserve_twice();
+
   /// Whether no two triangles that stand meet elsewhere than in what they share; while no task runs, after
   /// build().
   bool embedded() const;

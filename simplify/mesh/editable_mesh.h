@@ -149,7 +149,7 @@ class EditableMesh {
     WriteRule::check();
     live_ = static_cast<std::size_t>(static_cast<std::int64_t>(live_) + change);
   }
-  /// Free slots for operations that add; make_room() adds slots where there are fewer.
+  /// Free slots for operations that add; make_room() adds slots where there are fewer, not many at a time.
   FreeSlots& free_tets() { return free_tets_; }
   FreeSlots& free_points() { return free_points_; }
   void make_room(std::size_t tets, std::size_t points);

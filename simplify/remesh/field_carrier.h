@@ -61,7 +61,7 @@ class FieldCarrier {
   const EditableMesh& mesh_;
   const ChangeJournal& journal_;
   std::vector<Source> sources_;  ///< in the order of the tree
-  std::vector<Box3> boxes_;  ///< of the sources
+  std::vector<Box3> boxes_;      ///< of the sources
   BoxTree tree_;
   std::vector<Target> targets_;
   std::vector<PlacedPoint> placed_;

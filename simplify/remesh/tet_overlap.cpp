@@ -128,7 +128,7 @@ struct Relation {
                          most = distances[0].max(distances[1]).max(distances[2].max(distances[3])),
                          // What rounding alone puts across a plane, such as the halves of an edge, does not
                          // count as such.
-                         tolerance = rounding * most.max(-least);
+        tolerance = rounding * most.max(-least);
     apart = (most <= tolerance).any();
     for (int f = 0; f < 4; ++f)
       if (least[f] < -tolerance[f]) crossed[count++] = f;

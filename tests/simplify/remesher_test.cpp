@@ -281,9 +281,8 @@ TEST(TetOverlap, SharesOfAGridAddUp) {
     volume = std::fabs(volume);
     double sum = 0;
     for (const Tet& t : grid.tets)
-      sum += overlap_volume(
-          PlanedTet(c),
-          PlanedTet({grid.points[t[0]], grid.points[t[1]], grid.points[t[2]], grid.points[t[3]]}));
+      sum += overlap_volume(PlanedTet(c), PlanedTet({grid.points[t[0]], grid.points[t[1]], grid.points[t[2]],
+                                                     grid.points[t[3]]}));
     EXPECT_NEAR(sum, volume, 1e-13);
   }
 }
