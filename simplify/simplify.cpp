@@ -138,6 +138,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
                          .min_tets = static_cast<std::size_t>(std::ceil(count * (1 - closing_slack))),
                          .max_tets = static_cast<std::size_t>(count * (1 + closing_slack)),
                          .fast = false,
+                         .brief = false,
                          .max_rounds = max_closing_rounds,
                          .fit_sweeps = closing_fit_sweeps};
     improve_to_angle(engine, plan, 1, RoundsOver::whole_mesh);
@@ -176,6 +177,7 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
                        .min_tets = static_cast<std::size_t>(std::ceil(count * least)),
                        .max_tets = static_cast<std::size_t>(count * most),
                        .fast = true,
+                       .brief = false,
                        .max_rounds = options.max_iterations - kept_rounds,
                        .fit_sweeps = 0};
   const RoundsOver over = options.only_below > 0 ? RoundsOver::poor_tets : RoundsOver::whole_mesh;

@@ -95,6 +95,7 @@ void RemeshRounds::improve() {
                    .min_tets = 0,
                    .max_tets = CountBounds().max,
                    .fast = true,
+                   .brief = true,
                    .max_rounds = max_improving_rounds,
                    .fit_sweeps = 0});
 }

@@ -112,6 +112,7 @@ class ImprovementLoop {
       return mesh_.quality(t.tet) < bounds_.leave_surface;
     });
     stuck_ = static_cast<double>(poor.size()) > stuck_above * static_cast<double>(min_poor_);
+    if (plan_.brief && stuck_ && !bad) return false;
     const double gain = 1 - static_cast<double>(poor.size()) / static_cast<double>(min_poor_);
     // Where a large share is poor, the interfaces are the reason, and more rounds would take long for little.
     const bool many = static_cast<double>(poor.size()) > many_poor * static_cast<double>(area_.tet_count());

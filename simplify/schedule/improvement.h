@@ -36,6 +36,9 @@ struct ImprovementPlan {
   /// Flips before better places, and the last resort as soon as a round gains little: half the time of
   /// improve(), but less gain where thin layers of many materials keep most points from moving far.
   bool fast;
+  /// Ends as soon as a round gains little and no tet is below leave_surface_angle: the last ones of those
+  /// that are better take as long as all others.
+  bool brief;
   int max_rounds;
   int fit_sweeps;  ///< of fit_to_surface() over all interface points, before the rounds
 };
