@@ -44,7 +44,8 @@ void sort_unique(std::vector<Index>& list) {
 }
 
 /// The values of a field by new numbers.
-std::vector<double> renumbered(const Field& field, const std::vector<Index>& numbers, std::size_t slots) {
+std::vector<double> renumbered_values(const Field& field, const std::vector<Index>& numbers,
+                                      std::size_t slots) {
   std::vector<double> values(field.components * slots, 0);
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (numbers[i] != no_index)
@@ -394,8 +395,9 @@ Renumbering Remesher::compact() {
   Renumbering numbers;
   impl_->keep_patches();
   impl_->renumber(&numbers);
-  for (Field& f : impl_->point_fields) f = {f.components, renumbered(f, numbers.points, point_slots())};
-  for (Field& f : impl_->tet_fields) f = {f.components, renumbered(f, numbers.tets, tet_slots())};
+  for (Field& f : impl_->point_fields)
+    f = {f.components, renumbered_values(f, numbers.points, point_slots())};
+  for (Field& f : impl_->tet_fields) f = {f.components, renumbered_values(f, numbers.tets, tet_slots())};
   impl_->find_copies();
   return numbers;
 }
@@ -435,19 +437,7 @@ TetMesh Remesher::mesh() const {
   add_fields(impl_->point_fields, "point_field_", points, out.point_fields);
   add_fields(impl_->tet_fields, "tet_field_", tets, out.cell_fields);
   out.interfaces = find_interfaces(out);
-  std::map<Triangle, PatchId> patches;
-  for (const auto& [ids, patch] : impl_->grid.patches()) {
-    Triangle key = ids;
-    for (Index& p : key) p = number[p];
-    std::sort(key.begin(), key.end());
-    patches.emplace(key, patch);
-  }
-  if (!patches.empty())
-    for (InterfaceTriangle& t : out.interfaces) {
-      Triangle key = t.ids;
-      std::sort(key.begin(), key.end());
-      if (const auto known = patches.find(key); known != patches.end()) t.patch = known->second;
-    }
+  put_patches(renumbered(impl_->grid.patches(), number), out.interfaces);
   return out;
 }
 

@@ -31,7 +31,7 @@ struct Options {
   std::vector<std::size_t> regions{100, 1000, 10000};
   int repeats = 15;
   int calls = 1000;
-  double calls_size = 1e6;
+  double calls_size = 1e5;
   bool fields = true;
   std::uint64_t seed = 1;
   std::string json;
@@ -243,24 +243,29 @@ nlohmann::json measure_calls(double size, std::size_t tets, const Options& o) {
           {"series", series}};
 }
 
-/// Many calls in a row: at each of many places a region is refined, coarsened, moved and improved.
+/// Many calls in a row: at each of many places a region is refined, coarsened, moved and improved. What is
+/// left after the first call and after each quarter.
 nlohmann::json measure_row(const Options& o) {
   const ThreadLimit one(1);
   Subject subject(o.calls_size, o);
   Remesher& r = subject.remesher();
   const std::size_t first_count = r.tet_count();
   constexpr double half = 2.5;  // a box of about 1,000 tets
-  std::vector<double> ms;
-  nlohmann::json after_one, after_all;
-  std::vector<Index> moved;
-  const auto state = [&] {
+  std::vector<double> ms;       // since the last state
+  nlohmann::json states = nlohmann::json::array();
+  const auto take_state = [&](int calls) {
     reset_peak();
-    return nlohmann::json{{"resident_bytes", resident_bytes_now()},
-                          {"tets", r.tet_count()},
-                          {"tet_slots", r.tet_slots()},
-                          {"point_slots", r.point_slots()}};
+    states.push_back({{"calls", calls},
+                      {"median_ms", median(ms)},
+                      {"max_ms", *std::max_element(ms.begin(), ms.end())},
+                      {"resident_bytes", resident_bytes_now()},
+                      {"tets", r.tet_count()},
+                      {"tet_slots", r.tet_slots()},
+                      {"point_slots", r.point_slots()}});
+    ms.clear();
   };
   Vec3 centre = Vec3::Zero();
+  std::vector<Index> moved;
   for (int call = 0; call < o.calls; ++call) {
     const Kind kind = call % 3 == 0 ? Kind::refine : call % 3 == 1 ? Kind::coarsen : Kind::improve;
     if (kind == Kind::refine)
@@ -274,25 +279,12 @@ nlohmann::json measure_row(const Options& o) {
     const RemeshChanges changes = subject.call(kind, RemeshRegion::box(box.low, box.high));
     ms.push_back(1000 * watch.seconds());
     moved = changes.added_tets;
-    if (call == 0) after_one = state();
+    if (call == 0 || 4 * (call + 1) % o.calls < 4) take_state(call + 1);
   }
-  after_all = state();
-  const auto part =
-      static_cast<std::ptrdiff_t>(std::min<std::size_t>(ms.size(), std::max<std::size_t>(3, ms.size() / 10)));
-  const double first_ms = median({ms.begin(), ms.begin() + part}),
-               last_ms = median({ms.end() - part, ms.end()});
   const TetMesh mesh = r.mesh();
   nlohmann::json faults = nlohmann::json::array();
   for (const MeshFinding& f : check_mesh(mesh)) faults.push_back(mesh_finding_line(f));
-  return {{"calls", o.calls},
-          {"tets_before", first_count},
-          {"after_one", after_one},
-          {"after_all", after_all},
-          {"median_ms", median(ms)},
-          {"max_ms", *std::max_element(ms.begin(), ms.end())},
-          {"first_tenth_median_ms", first_ms},
-          {"last_tenth_median_ms", last_ms},
-          {"faults", faults}};
+  return {{"calls", o.calls}, {"tets_before", first_count}, {"states", states}, {"faults", faults}};
 }
 
 nlohmann::json checked(nlohmann::json answer) {
@@ -332,17 +324,14 @@ int run(const Options& o) {
     return 0;
   }
   const nlohmann::json row = checked(in_child([&] { return measure_row(o); }));
-  const auto& one = row["after_one"];
-  const auto& many = row["after_all"];
-  std::printf(
-      "%d calls in a row on %zu tets: median %.2f ms, max %.2f ms; first tenth %.2f ms, last tenth %.2f ms\n",
-      o.calls, row["tets_before"].get<std::size_t>(), row["median_ms"].get<double>(),
-      row["max_ms"].get<double>(), row["first_tenth_median_ms"].get<double>(),
-      row["last_tenth_median_ms"].get<double>());
-  for (const auto& [name, s] : {std::pair{"one call", one}, std::pair{"all calls", many}})
-    std::printf("after %-9s: %zu tets, %zu tet slots, %zu point slots, %.1f MB resident\n", name,
-                s["tets"].get<std::size_t>(), s["tet_slots"].get<std::size_t>(),
-                s["point_slots"].get<std::size_t>(), megabytes(s["resident_bytes"].get<std::size_t>()));
+  std::printf("%d calls in a row on %zu tets\n\n%8s %10s %9s %9s %10s %12s %12s\n", o.calls,
+              row["tets_before"].get<std::size_t>(), "calls", "median ms", "max ms", "tets", "tet slots",
+              "point slots", "resident MB");
+  for (const auto& s : row["states"])
+    std::printf("%8d %10.2f %9.2f %9zu %10zu %12zu %12.1f\n", s["calls"].get<int>(),
+                s["median_ms"].get<double>(), s["max_ms"].get<double>(), s["tets"].get<std::size_t>(),
+                s["tet_slots"].get<std::size_t>(), s["point_slots"].get<std::size_t>(),
+                megabytes(s["resident_bytes"].get<std::size_t>()));
   for (const auto& fault : row["faults"]) std::printf("fault: %s\n", fault.get<std::string>().c_str());
   if (row["faults"].empty()) std::printf("mesh check: nothing found\n");
   all["row"] = row;
@@ -387,7 +376,7 @@ int main(int argc, char** argv) {
     o.sizes = {1e5};
     o.regions = {100, 1000};
     o.repeats = 3;
-    o.calls = 60;
+    o.calls = 40;
     o.calls_size = 5e4;
   }
   try {

@@ -272,8 +272,8 @@ PatchId SurfaceGrid::patch(const EditableMesh& mesh, const Triangle& ids) const 
   return patches_.empty() ? PatchId{0} : patches_[record_of(t)];
 }
 
-std::map<Triangle, PatchId> SurfaceGrid::patches() const {
-  std::map<Triangle, PatchId> out;
+FacePatches SurfaceGrid::patches() const {
+  FacePatches out;
   if (patches_.empty()) return out;
   for (const Cell& cell : cells_)
     for (const Entry& e : cell.entries)

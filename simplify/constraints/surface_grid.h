@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <map>
 #include <span>
 #include <vector>
 
@@ -78,7 +77,7 @@ class SurfaceGrid {
   /// between materials. Safe while nothing is committed.
   PatchId patch(const EditableMesh& mesh, const Triangle& ids) const;
   /// The patches other than 0 of all faces, by the ascending originals of their points; while no task runs.
-  std::map<Triangle, PatchId> patches() const;
+  FacePatches patches() const;
 
   /// All that stand, ids ascending within each; while no task runs, for tests.
   std::vector<MeshTriangle> triangles() const;

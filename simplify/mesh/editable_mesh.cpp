@@ -117,8 +117,7 @@ std::vector<InterfaceFace> EditableMesh::interface_faces() const {
             if (link.is_outside()) {
               patch = link.patch();
             } else if (interface_patches()) {
-              Triangle key{original(ids[0]), original(ids[1]), original(ids[2])};
-              std::sort(key.begin(), key.end());
+              const Triangle key = face_key({original(ids[0]), original(ids[1]), original(ids[2])});
               const auto known = interface_patches_.find(key);
               if (known != interface_patches_.end()) patch = known->second;
             }
