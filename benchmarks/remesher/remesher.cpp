@@ -18,6 +18,9 @@ namespace {
 /// How far the points of the lattice stand from where they belong, and how far a simulation moves those of a
 /// region before improve(), in cubes: the second turns some tets over.
 constexpr double lattice_jitter = 0.1, simulated_motion = 0.22;
+/// Points nearer than this to boundary or interface stay as far from it as they are: a simulation leaves
+/// surfaces smooth.
+constexpr double surface_share = 0.3;
 /// Edges of the lattice are 1, 1.41 and 1.73 long: coarsening to this size takes the short ones, refining to
 /// that one halves the longest.
 constexpr double coarse_size = 2, fine_size = 1.2;
@@ -94,8 +97,8 @@ class Subject {
       Vec3 to = remesher_->position(p);
       for (int axis = 0; axis < 3; ++axis) {
         const double move = simulated_motion * (2 * random_.uniform() - 1);
-        const bool fixed = to[axis] == 0 || to[axis] == n_ || (axis == 0 && to[axis] == n_ / 2.0);
-        if (!fixed) to[axis] += move;
+        const auto near = [&](double plane) { return std::fabs(to[axis] - plane) < surface_share; };
+        if (!near(0) && !near(n_) && !(axis == 0 && near(n_ / 2.0))) to[axis] += move;
       }
       positions.push_back(to);
     }
