@@ -165,13 +165,15 @@ PlanedTet::PlanedTet(const TetCorners& corners)
 }
 
 double overlap_volume(const PlanedTet& first, const PlanedTet& second) {
-  if (first.far_from(second) || second.far_from(first)) return 0;
-  const Relation a(first, second);
+  const bool ordered = first.volume() <= second.volume();
+  const PlanedTet &smaller = ordered ? first : second, &larger = ordered ? second : first;
+  // The planes of the larger one tell most pairs apart.
+  if (larger.far_from(smaller)) return 0;
+  const Relation a(smaller, larger);
   if (a.apart) return 0;
-  if (a.count == 0) return first.volume();
-  const Relation b(second, first);
+  if (a.count == 0) return smaller.volume();
+  const Relation b(larger, smaller);
   if (b.apart) return 0;
-  if (b.count == 0) return second.volume();
   const Relation& fewer = a.count <= b.count ? a : b;
   std::array<Pieces, 2> buffers;
   Pieces *pieces = &buffers[0], *next = &buffers[1];
