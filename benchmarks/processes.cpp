@@ -4,6 +4,7 @@
 #include <malloc.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -20,6 +21,18 @@ namespace {
 
 std::string text_of(const nlohmann::json& json) {
   return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// A line of /proc/self/status.
+std::size_t bytes_of(const char* name) {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;)
+    if (word == name) {
+      std::size_t kib = 0;
+      status >> kib;
+      return kib * 1024;
+    }
+  return 0;
 }
 
 }  // namespace
@@ -86,20 +99,18 @@ ProgramRun run_program(const std::vector<std::string>& arguments) {
   return run;
 }
 
-std::size_t peak_bytes_now() {
-  std::ifstream status("/proc/self/status");
-  for (std::string word; status >> word;)
-    if (word == "VmHWM:") {
-      std::size_t kib = 0;
-      status >> kib;
-      return kib * 1024;
-    }
-  return 0;
-}
+std::size_t peak_bytes_now() { return bytes_of("VmHWM:"); }
+std::size_t resident_bytes_now() { return bytes_of("VmRSS:"); }
 
 void reset_peak() {
   malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << 5;  // proc(5): resets VmHWM to what is resident
+}
+
+double ThreadStopwatch::now() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 ScratchFolder::ScratchFolder() {

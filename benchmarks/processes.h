@@ -25,6 +25,8 @@ ProgramRun run_program(const std::vector<std::string>& arguments);
 
 /// Largest resident size of this process since its start or reset_peak() (VmHWM).
 std::size_t peak_bytes_now();
+/// What of this process is resident now (VmRSS).
+std::size_t resident_bytes_now();
 /// Gives free memory back to the system and begins the peak anew at what is resident.
 void reset_peak();
 
@@ -36,6 +38,16 @@ class Stopwatch {
 
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Processor time of the thread that asks: what waits for others on a busy machine does not count.
+class ThreadStopwatch {
+ public:
+  double seconds() const { return now() - start_; }
+
+ private:
+  static double now();
+  double start_ = now();
 };
 
 /// A folder in the system's temporary one, removed with all that is in it.

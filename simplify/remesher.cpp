@@ -10,8 +10,8 @@
 #include "simplify/constraints/surface_projection.h"
 #include "simplify/remesh/change_journal.h"
 #include "simplify/remesh/field_carrier.h"
+#include "simplify/remesh/point_tree.h"
 #include "simplify/remesh/remesh_rounds.h"
-#include "simplify/remesh/tet_boxes.h"
 #include "simplify/schedule/block_runner.h"
 
 namespace tetwright {
@@ -26,11 +26,14 @@ constexpr double volume_share = 0.015;
 /// Over min_solid_angle: what is improved, and what may leave the surface a little for it, as in improve().
 constexpr double poor_margin = 1.27, leave_surface_margin = 1;
 /// Of the bound: what coarsening and refining must leave of shapes that were good.
-constexpr float floor_share = 0.3f;
+constexpr double floor_share = 0.3;
 /// Rings of tets around a region whose surfaces are projected onto.
 constexpr int projection_rings = 2;
 
 struct Field {
+  Field(std::size_t count, std::vector<double>&& numbers) : components(count), values(std::move(numbers)) {
+    values.reserve(2 * values.size());  // as the mesh has room for twice as many slots
+  }
   std::size_t components;
   std::vector<double> values;
 };
@@ -41,7 +44,8 @@ void sort_unique(std::vector<Index>& list) {
 }
 
 /// The values of a field by new numbers.
-std::vector<double> renumbered(const Field& field, const std::vector<Index>& numbers, std::size_t slots) {
+std::vector<double> renumbered_values(const Field& field, const std::vector<Index>& numbers,
+                                      std::size_t slots) {
   std::vector<double> values(field.components * slots, 0);
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (numbers[i] != no_index)
@@ -67,8 +71,7 @@ struct Remesher::Impl {
     rules.objective.shape = options.objective;
     renumber(numbers);
     ledger.open(mesh, volume_share);
-    for (Index p = 0; p < mesh.point_slots(); ++p)
-      if (mesh.original(p) != p) copies.push_back({p, mesh.original(p)});
+    find_copies();
   }
 
   /// Compacts, and builds anew what goes with the whole mesh.
@@ -80,18 +83,33 @@ struct Remesher::Impl {
     if (numbers) *numbers = {std::move(slots.points), std::move(slots.tets)};
     look_at_all();
   }
+  void find_copies() {
+    copies.clear();
+    for (Index p = 0; p < mesh.point_slots(); ++p)
+      if (mesh.original(p) != p) copies.push_back({mesh.original(p), p});
+    std::sort(copies.begin(), copies.end());
+  }
+  /// Patches of faces between materials go from the grid, which knows them, to the mesh: before the grid is
+  /// built anew.
+  void keep_patches() {
+    if (mesh.interface_patches()) mesh.set_interface_patches(grid.patches());
+  }
   void look_at_all() {
     parallel_for(0, mesh.tet_slots(), slot_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) rate(static_cast<Index>(t));
     });
     grid.build(mesh, 0);
-    boxes.build(mesh);
+    grid.reserve_twice();
+    places.build(mesh);
   }
   void rate(Index t) {
     if (!mesh.dead(t)) mesh.set_quality(t, quality_of(mesh, rules, mesh.points(t)));
   }
 
   std::vector<Index> tets_of(const RemeshRegion& region);
+  /// The tets at points, ascending.
+  std::vector<Index> tets_at(const std::vector<Index>& points);
+  std::vector<Index> points_of(const std::vector<Index>& tets);
   std::vector<Index> with_rings(std::vector<Index> tets, int rings);
   SurfaceProjection project_region(const std::vector<Index>& region);
   template <class Work>
@@ -105,12 +123,13 @@ struct Remesher::Impl {
   SurfaceGrid grid;
   VolumeLedger ledger;
   BlockRunner runner;
-  TetBoxes boxes;
+  PointTree places;
   ChangeJournal journal;
   BlockRules rules;
   StarWalk walk;
+  LocalNumbers seen;  ///< in tets_at() and points_of()
   std::vector<Field> point_fields, tet_fields;
-  std::vector<std::array<Index, 2>> copies;  ///< points that were split off, and from which
+  std::vector<std::array<Index, 2>> copies;  ///< points, and what was split off from them; ascending
 };
 
 std::vector<Index> Remesher::Impl::tets_of(const RemeshRegion& region) {
@@ -126,7 +145,7 @@ std::vector<Index> Remesher::Impl::tets_of(const RemeshRegion& region) {
     Box3 working;
     working.low = mesh.space().to_working(box->low);
     working.high = mesh.space().to_working(box->high);
-    return boxes.tets_in(mesh, working);
+    return tets_at(places.points_in(mesh, working));
   }
   const auto& inside = std::get<std::function<bool(const Vec3&)>>(region.value_);
   std::vector<std::uint8_t> chosen(mesh.point_slots(), 0);
@@ -140,19 +159,35 @@ std::vector<Index> Remesher::Impl::tets_of(const RemeshRegion& region) {
   return tets;
 }
 
-std::vector<Index> Remesher::Impl::with_rings(std::vector<Index> tets, int rings) {
-  for (int ring = 0; ring < rings; ++ring) {
-    std::vector<Index> points;
-    for (Index t : tets) points.insert(points.end(), mesh.points(t).begin(), mesh.points(t).end());
-    sort_unique(points);
-    for (Index p : points)
-      walk.any_tet(mesh, p, [&](Index t) {
-        tets.push_back(t);
-        return false;
-      });
-    sort_unique(tets);
-  }
+std::vector<Index> Remesher::Impl::tets_at(const std::vector<Index>& points) {
+  std::vector<Index> tets;
+  seen.clear();
+  for (Index p : points)
+    walk.any_tet(mesh, p, [&](Index t) {
+      bool added;
+      seen.number(t, added);
+      if (added) tets.push_back(t);
+      return false;
+    });
+  std::sort(tets.begin(), tets.end());
   return tets;
+}
+
+std::vector<Index> Remesher::Impl::with_rings(std::vector<Index> tets, int rings) {
+  for (int ring = 0; ring < rings; ++ring) tets = tets_at(points_of(tets));
+  return tets;
+}
+
+std::vector<Index> Remesher::Impl::points_of(const std::vector<Index>& tets) {
+  std::vector<Index> points;
+  seen.clear();
+  for (Index t : tets)
+    for (Index p : mesh.points(t)) {
+      bool added;
+      seen.number(p, added);
+      if (added) points.push_back(p);
+    }
+  return points;
 }
 
 SurfaceProjection Remesher::Impl::project_region(const std::vector<Index>& region) {
@@ -183,20 +218,14 @@ RemeshChanges Remesher::Impl::call(const RemeshRegion& region, const Work& work)
   if (tets.empty()) return {};
   const SurfaceProjection projection = project_region(tets);
   rules.projection = &projection;
-  double edges = 0;
-  for (Index t : tets) {
-    const Tet& p = mesh.points(t);
-    for (const auto& e : tet_edges) edges += (mesh.position(p[e[0]]) - mesh.position(p[e[1]])).norm();
-  }
-  rules.max_error = edges / static_cast<double>(tet_edges.size() * tets.size());
-  const auto bound = [&](double margin) {
-    return static_cast<float>(
-        std::min(0.99, shape_quality_bound(options.objective, margin * options.min_solid_angle)));
-  };
+  const double floor =
+      floor_share * std::min(0.99, shape_quality_bound(options.objective, options.min_solid_angle));
   std::uint64_t operations = 0;
   {
     RemeshRounds rounds(mesh, runner, journal, rules,
-                        {bound(poor_margin), bound(leave_surface_margin), floor_share * bound(1)}, tets);
+                        {poor_margin * options.min_solid_angle,
+                         leave_surface_margin * options.min_solid_angle, static_cast<float>(floor)},
+                        tets);
     work(rounds);
     rounds.improve();
     operations = rounds.operations();
@@ -204,9 +233,7 @@ RemeshChanges Remesher::Impl::call(const RemeshRegion& region, const Work& work)
   rules.projection = nullptr;
   runner.take_totals();
   carry_fields();
-  std::vector<Index> slots;
-  for (const ChangeJournal::OldTet& t : journal.tets()) slots.push_back(t.slot);
-  boxes.repair(mesh, slots);
+  places.repair(mesh, journal.points());
   RemeshChanges result = changes();
   result.operations = operations;
   return result;
@@ -241,16 +268,27 @@ void Remesher::Impl::carry_fields() {
 }
 
 void Remesher::Impl::move_points(std::span<const Index> points, std::span<const Vec3> positions) {
-  std::vector<Index> moved(points.begin(), points.end());
-  for (const auto& [copy, original] : copies)
-    if (std::find(points.begin(), points.end(), original) != points.end()) moved.push_back(copy);
-  std::vector<Index> tets;
-  for (Index p : moved)
-    walk.any_tet(mesh, p, [&](Index t) {
-      tets.push_back(t);
-      return false;
-    });
-  sort_unique(tets);
+  std::vector<Index> moved;
+  std::vector<Vec3> targets;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (mesh.original(points[i]) != points[i]) continue;  // goes with what it was split off from
+    const Vec3 to = mesh.space().to_working(positions[i]);
+    moved.push_back(points[i]);
+    targets.push_back(to);
+    for (auto c = std::lower_bound(copies.begin(), copies.end(), std::array<Index, 2>{points[i], 0});
+         c != copies.end() && (*c)[0] == points[i]; ++c) {
+      moved.push_back((*c)[1]);
+      targets.push_back(to);
+    }
+  }
+  const std::vector<Index> tets = tets_at(moved);
+  std::vector<ChangeJournal::OldPoint> old;
+  seen.clear();
+  for (Index p : moved) {
+    bool added;
+    seen.number(p, added);
+    if (added) old.push_back({p, true, mesh.position(p)});
+  }
   SurfaceGrid::Edit edit;
   std::vector<std::pair<Triangle, PatchId>> faces;
   const auto triangle = [&](const Triangle& ids) {
@@ -266,13 +304,11 @@ void Remesher::Impl::move_points(std::span<const Index> points, std::span<const 
       faces.push_back({ids, link.is_outside() ? link.patch() : grid.patch(mesh, ids)});
       edit.removed.push_back(triangle(ids));
     }
-  for (std::size_t i = 0; i < points.size(); ++i)
-    mesh.set_position(points[i], mesh.space().to_working(positions[i]));
-  for (const auto& [copy, original] : copies) mesh.set_position(copy, mesh.position(original));
+  for (std::size_t i = 0; i < moved.size(); ++i) mesh.set_position(moved[i], targets[i]);
   for (const auto& [ids, patch] : faces) edit.added.push_back({triangle(ids), patch});
   grid.replace(edit);
   for (Index t : tets) rate(t);
-  boxes.repair(mesh, tets);
+  places.repair(mesh, old);
 }
 
 Remesher::Remesher(TetMesh mesh, const RemesherOptions& options, Renumbering* numbers)
@@ -299,14 +335,14 @@ std::size_t Remesher::add_point_field(std::size_t components, std::vector<double
   if (components == 0 || values.size() != components * point_slots())
     throw UsageError("a field of points needs its components for each of " + std::to_string(point_slots()) +
                      " slots, not " + std::to_string(values.size()) + " numbers");
-  impl_->point_fields.push_back({components, std::move(values)});
+  impl_->point_fields.emplace_back(components, std::move(values));
   return impl_->point_fields.size() - 1;
 }
 std::size_t Remesher::add_tet_field(std::size_t components, std::vector<double> values) {
   if (components == 0 || values.size() != components * tet_slots())
     throw UsageError("a field of tets needs its components for each of " + std::to_string(tet_slots()) +
                      " slots, not " + std::to_string(values.size()) + " numbers");
-  impl_->tet_fields.push_back({components, std::move(values)});
+  impl_->tet_fields.emplace_back(components, std::move(values));
   return impl_->tet_fields.size() - 1;
 }
 std::vector<double>& Remesher::point_field(std::size_t field) { return impl_->point_fields.at(field).values; }
@@ -324,6 +360,7 @@ void Remesher::set_positions(std::span<const Vec3> positions) {
   for (Index p = 0; p < mesh.point_slots(); ++p)
     if (mesh.incident_tet(p) != no_index)
       mesh.set_position(p, mesh.space().to_working(positions[mesh.original(p)]));
+  impl_->keep_patches();
   impl_->look_at_all();
 }
 
@@ -356,12 +393,12 @@ RemeshChanges Remesher::refine(const RemeshRegion& region, double size) {
 
 Renumbering Remesher::compact() {
   Renumbering numbers;
-  if (impl_->mesh.interface_patches()) impl_->mesh.set_interface_patches(impl_->grid.patches());
+  impl_->keep_patches();
   impl_->renumber(&numbers);
-  for (Field& f : impl_->point_fields) f.values = renumbered(f, numbers.points, point_slots());
-  for (Field& f : impl_->tet_fields) f.values = renumbered(f, numbers.tets, tet_slots());
-  for (auto& copy : impl_->copies)
-    for (Index& p : copy) p = numbers.points[p];
+  for (Field& f : impl_->point_fields)
+    f = {f.components, renumbered_values(f, numbers.points, point_slots())};
+  for (Field& f : impl_->tet_fields) f = {f.components, renumbered_values(f, numbers.tets, tet_slots())};
+  impl_->find_copies();
   return numbers;
 }
 
@@ -400,19 +437,7 @@ TetMesh Remesher::mesh() const {
   add_fields(impl_->point_fields, "point_field_", points, out.point_fields);
   add_fields(impl_->tet_fields, "tet_field_", tets, out.cell_fields);
   out.interfaces = find_interfaces(out);
-  std::map<Triangle, PatchId> patches;
-  for (const auto& [ids, patch] : impl_->grid.patches()) {
-    Triangle key = ids;
-    for (Index& p : key) p = number[p];
-    std::sort(key.begin(), key.end());
-    patches.emplace(key, patch);
-  }
-  if (!patches.empty())
-    for (InterfaceTriangle& t : out.interfaces) {
-      Triangle key = t.ids;
-      std::sort(key.begin(), key.end());
-      if (const auto known = patches.find(key); known != patches.end()) t.patch = known->second;
-    }
+  put_patches(renumbered(impl_->grid.patches(), number), out.interfaces);
   return out;
 }
 

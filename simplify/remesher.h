@@ -67,7 +67,8 @@ struct Renumbering {
 /// A mesh that lives across calls, for remeshing within a running simulation (the aim that Cutler, Dorsey &
 /// McMillan 2004 name in their section 7). It keeps its links, the grid of its surface, its qualities and its
 /// fields, and repairs them where something changes: time and memory of a call go with the region, not with
-/// the mesh.
+/// the mesh. (There is room for twice the slots that there are at first, and after compact(); the call that
+/// goes beyond copies the arrays once.) benchmarks/README.md has times.
 ///
 /// Vertices and tets have numbers, those of slots: 0 <= number < point_slots(), tet_slots(). Not every slot
 /// is used; what is there keeps its number until it goes or compact() is called. Materials, topology and the
@@ -111,8 +112,12 @@ class Remesher {
   /// Tets may come out inverted: then improve() has something to do. Throws InputError where one is not
   /// finite.
   void set_positions(std::span<const Vec3> positions);
-  /// New positions of some.
+  /// New positions of some; time goes with their number. Throws UsageError where a point is not there. Where
+  /// parts of the mesh touch without a common face, each part has a point of its own at one place: they go
+  /// with the first of them, and what is given for the others does not matter.
   void set_positions(std::span<const Index> points, std::span<const Vec3> positions);
+
+  // All three throw UsageError where the region lists tets that are not there, or the size is not above 0.
 
   /// Makes the tets of the region well shaped that are not (RemesherOptions::min_solid_angle); their number
   /// stays about the same.

@@ -5,6 +5,7 @@
 
 #include "common/error.h"
 #include "common/memory.h"
+#include "simplify/remesh/local_area.h"
 #include "simplify/schedule/bulk_improvement.h"
 #include "simplify/schedule/engine.h"
 #include "simplify/schedule/improvement.h"
@@ -69,16 +70,29 @@ int improve_in_bulk(Engine& engine, const ImprovementPlan& plan, double angle, i
                                        .remodel = remodel});
 }
 
+/// What improve_to_angle() looks at for rounds of the worst tets: lists that follow what changes, where all
+/// but a few tets are left alone; where the count is held by collapses anywhere, the whole mesh.
+enum class RoundsOver { poor_tets, whole_mesh };
+
 /// Improves what is below the plan's angle: the worst first, and in bulk before where more than `bulk_first`
 /// of the tets are below it at first, or too many still are afterwards. Takes the rounds off plan.max_rounds.
-void improve_to_angle(Engine& engine, ImprovementPlan& plan, double bulk_first) {
+void improve_to_angle(Engine& engine, ImprovementPlan& plan, double bulk_first, RoundsOver over) {
   for (const double bulk_above : {bulk_first, bulk_after}) {
-    const std::size_t poor = engine.poor_tets(quality_at(engine, plan.angle)).size();
-    const bool bulk = static_cast<double>(poor) > bulk_above * static_cast<double>(engine.mesh().live_tets());
+    std::vector<ListedTet> poor = engine.poor_tets(quality_at(engine, plan.angle));
+    const bool bulk =
+        static_cast<double>(poor.size()) > bulk_above * static_cast<double>(engine.mesh().live_tets());
     const bool second = bulk_above == bulk_after;
     if (plan.max_rounds <= 0 || (second && !bulk)) return;
-    if (bulk) plan.max_rounds -= improve_in_bulk(engine, plan, plan.angle, max_bulk_rounds, true);
-    plan.max_rounds -= run_improvement(engine, plan);
+    if (bulk) {
+      plan.max_rounds -= improve_in_bulk(engine, plan, plan.angle, max_bulk_rounds, true);
+      poor = engine.poor_tets(quality_at(engine, plan.angle));
+    }
+    if (over == RoundsOver::poor_tets) {
+      LocalArea area(engine.mesh(), engine.runner(), engine.rules.objective.quality.ideal_edge, poor);
+      plan.max_rounds -= run_improvement(engine, plan, &area);
+    } else {
+      plan.max_rounds -= run_improvement(engine, plan);
+    }
     plan.fit_sweeps = 0;
   }
 }
@@ -123,11 +137,11 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
                          .target_tets = static_cast<std::size_t>(count),
                          .min_tets = static_cast<std::size_t>(std::ceil(count * (1 - closing_slack))),
                          .max_tets = static_cast<std::size_t>(count * (1 + closing_slack)),
-                         .local = false,
                          .fast = false,
+                         .brief = false,
                          .max_rounds = max_closing_rounds,
                          .fit_sweeps = closing_fit_sweeps};
-    improve_to_angle(engine, plan, 1);
+    improve_to_angle(engine, plan, 1, RoundsOver::whole_mesh);
   }
   if (report) {
     report->touching_points = engine.mesh().touching_points();
@@ -162,19 +176,20 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
                        .target_tets = static_cast<std::size_t>(count),
                        .min_tets = static_cast<std::size_t>(std::ceil(count * least)),
                        .max_tets = static_cast<std::size_t>(count * most),
-                       .local = options.only_below > 0,
                        .fast = true,
+                       .brief = false,
                        .max_rounds = options.max_iterations - kept_rounds,
                        .fit_sweeps = 0};
+  const RoundsOver over = options.only_below > 0 ? RoundsOver::poor_tets : RoundsOver::whole_mesh;
   // The worst first, also in the large: a bound that most tets are below would leave no time for them.
   for (double limit = std::max(min_first_bound, closing_margin * options.min_solid_angle);;
        limit *= improve_step) {
     plan.angle = std::min(limit, below);
-    improve_to_angle(engine, plan, bulk_before);
+    improve_to_angle(engine, plan, bulk_before, over);
     if (limit >= below || plan.max_rounds <= 0) break;
   }
   plan.max_rounds += kept_rounds;
-  if (!plan.local && plan.max_rounds > 0) {
+  if (over == RoundsOver::whole_mesh && plan.max_rounds > 0) {
     plan.max_rounds -= improve_in_bulk(engine, plan, std::max(below, polish_below), max_polish_rounds, false);
     // Other connectivity around them lets the last ones go on.
     if (plan.max_rounds > 0) run_improvement(engine, plan);

@@ -20,6 +20,7 @@
 #include "common/samples.h"
 #include "mesher/mesher.h"
 #include "simplify/mesh/editable_mesh.h"
+#include "simplify/remesher.h"
 #include "simplify/simplify.h"
 
 namespace tetwright {
@@ -266,6 +267,40 @@ void improve_again(benchmark::State& state) {
   count_mesh(state, result);
 }
 TETWRIGHT_CI(improve_again, "improve");
+
+/// Calls of a Remesher on boxes about points of the mesh.
+void remesh(benchmark::State& state) {
+  constexpr int calls = 60;
+  const TetMesh& mesh = knot_mesh();
+  const Vec3 edge = mesh.points[mesh.tets[0][1]] - mesh.points[mesh.tets[0][0]];
+  const double size = edge.norm();
+  const ThreadLimit one(1);
+  TetMesh result;
+  reset_peak();
+  for (auto _ : state) {
+    state.PauseTiming();
+    Remesher remesher{TetMesh(mesh)};
+    remesher.add_tet_field(1, std::vector<double>(remesher.tet_slots(), 1));
+    Random random(1);
+    state.ResumeTiming();
+    for (int call = 0; call < calls; ++call) {
+      const Vec3 centre = mesh.points[random.below(static_cast<std::uint32_t>(mesh.points.size()))];
+      const Vec3 half = Vec3::Constant(2.5 * size);
+      const RemeshRegion box = RemeshRegion::box(centre - half, centre + half);
+      if (call % 2 == 0) {
+        remesher.coarsen(box, 2 * size);
+      } else {
+        remesher.refine(box, size);
+      }
+    }
+    state.PauseTiming();
+    result = remesher.mesh();
+    state.ResumeTiming();
+  }
+  count_peak(state);
+  count_mesh(state, result);
+}
+TETWRIGHT_CI(remesh, "remesh");
 
 void write_mesh(benchmark::State& state, const char* extension) {
   const ScratchFolder folder;

@@ -120,6 +120,11 @@ void SurfaceGrid::build(const EditableMesh& mesh, double min_cell) {
   });
 }
 
+void SurfaceGrid::reserve_twice() {
+  records_.reserve(2 * records_.size());
+  patches_.reserve(2 * patches_.size());
+}
+
 void SurfaceGrid::insert(std::uint32_t record) {
   const Entry entry{record, cell_at(low_corner(records_[record])), box_of(records_[record])};
   for_cells(records_[record], [&](const Cell3& c) {
@@ -267,8 +272,8 @@ PatchId SurfaceGrid::patch(const EditableMesh& mesh, const Triangle& ids) const 
   return patches_.empty() ? PatchId{0} : patches_[record_of(t)];
 }
 
-std::map<Triangle, PatchId> SurfaceGrid::patches() const {
-  std::map<Triangle, PatchId> out;
+FacePatches SurfaceGrid::patches() const {
+  FacePatches out;
   if (patches_.empty()) return out;
   for (const Cell& cell : cells_)
     for (const Entry& e : cell.entries)

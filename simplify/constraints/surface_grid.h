@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <map>
 #include <span>
 #include <vector>
 
@@ -49,6 +48,10 @@ class SurfaceGrid {
   /// size that triangles are about to grow to.
   void build(const EditableMesh& mesh, double min_cell);
 
+  /// Room for twice as many triangles without copying what there is; memory is taken up only where it is
+  /// written.
+  void reserve_twice();
+
   /// Whether no two triangles that stand meet elsewhere than in what they share; while no task runs, after
   /// build().
   bool embedded() const;
@@ -74,7 +77,7 @@ class SurfaceGrid {
   /// between materials. Safe while nothing is committed.
   PatchId patch(const EditableMesh& mesh, const Triangle& ids) const;
   /// The patches other than 0 of all faces, by the ascending originals of their points; while no task runs.
-  std::map<Triangle, PatchId> patches() const;
+  FacePatches patches() const;
 
   /// All that stand, ids ascending within each; while no task runs, for tests.
   std::vector<MeshTriangle> triangles() const;

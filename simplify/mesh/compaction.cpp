@@ -60,14 +60,7 @@ void MeshCompaction::move_points(const std::vector<Index>& order, const std::vec
       originals[i] = new_point[mesh_.originals_[order[i]]];  // such points are frozen, never removed
     mesh_.originals_ = std::move(originals);
   }
-  std::map<Triangle, PatchId> patches;
-  for (const auto& [points, patch] : mesh_.interface_patches_) {
-    Triangle key = points;
-    for (Index& p : key) p = new_point[p];
-    std::sort(key.begin(), key.end());
-    patches.emplace(key, patch);
-  }
-  mesh_.interface_patches_ = std::move(patches);
+  mesh_.interface_patches_ = renumbered(mesh_.interface_patches_, new_point);
 }
 
 std::vector<Index> MeshCompaction::number_tets(const std::vector<Index>& new_point, std::size_t points,
@@ -144,14 +137,11 @@ void MeshCompaction::run(std::size_t spare_tets, std::size_t spare_points, SlotN
   mesh_.set_incident_tets();
 }
 
-std::map<Triangle, PatchId> MeshCompaction::patches(const std::vector<Index>& number) const {
-  std::map<Triangle, PatchId> patches;
-  for (const InterfaceFace& f : mesh_.interface_faces()) {
-    if (f.patch == 0) continue;
-    Triangle key{number[f.ids[0]], number[f.ids[1]], number[f.ids[2]]};
-    std::sort(key.begin(), key.end());
-    patches.emplace(key, f.patch);
-  }
+FacePatches MeshCompaction::patches(const std::vector<Index>& number) const {
+  FacePatches patches;
+  for (const InterfaceFace& f : mesh_.interface_faces())
+    if (f.patch != 0)
+      patches.emplace(face_key({number[f.ids[0]], number[f.ids[1]], number[f.ids[2]]}), f.patch);
   return patches;
 }
 
@@ -175,19 +165,14 @@ TetMesh MeshCompaction::to_mesh() {
     mesh.tets.push_back({number[t[0]], number[t[1]], number[t[2]], number[t[3]]});
     mesh.materials.push_back(mesh_.tags_[mesh_.regions_[i]]);
   }
-  std::map<Triangle, PatchId> patches = this->patches(number);
+  const FacePatches patches = this->patches(number);
   mesh.material_names = std::move(mesh_.names_);
   mesh_.tets_ = {};
   mesh_.regions_ = {};
   mesh_.qualities_ = {};
   mesh_.incident_tets_ = {};
   mesh.interfaces = find_interfaces(mesh);
-  if (!patches.empty())
-    for (InterfaceTriangle& t : mesh.interfaces) {
-      Triangle key = t.ids;
-      std::sort(key.begin(), key.end());
-      if (const auto known = patches.find(key); known != patches.end()) t.patch = known->second;
-    }
+  put_patches(patches, mesh.interfaces);
   return mesh;
 }
 

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <vector>
 
 #include "common/tet_mesh.h"
 #include "simplify/mesh/editable_mesh.h"
+#include "simplify/mesh/face_patches.h"
 
 namespace tetwright {
 
@@ -29,7 +29,7 @@ class MeshCompaction {
                  std::size_t spare);
 
   /// The patches other than 0, by ascending points; `number`: of each point in the result.
-  std::map<Triangle, PatchId> patches(const std::vector<Index>& number) const;
+  FacePatches patches(const std::vector<Index>& number) const;
 
   EditableMesh& mesh_;
 };

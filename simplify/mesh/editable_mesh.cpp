@@ -70,9 +70,11 @@ std::size_t EditableMesh::touching_points() const {
 }
 
 void EditableMesh::make_room(std::size_t tets, std::size_t points) {
-  constexpr std::size_t grow_share = 16;  // of what there is: few copies of the arrays, little memory idle
+  // More than a batch needs, and next to nothing beside a mesh that makes it worth counting: vectors keep
+  // room of their own, so that few of these copy what there is.
+  constexpr std::size_t step = 4096;
   if (const std::size_t have = free_tets_.available(); have < tets) {
-    const std::size_t more = std::max(tets - have, tets_.size() / grow_share);
+    const std::size_t more = std::max(tets - have, step);
     if (tets_.size() + more >= FaceLink::max_tets) throw OutputError("more than the 2^30 tets possible");
     tets_.resize(tets_.size() + more, {dead_tet, {}});
     regions_.resize(tets_.size(), 0);
@@ -80,7 +82,7 @@ void EditableMesh::make_room(std::size_t tets, std::size_t points) {
     free_tets_.grow(more);
   }
   if (const std::size_t have = free_points_.available(); have < points) {
-    const std::size_t more = std::max(points - have, positions_.size() / grow_share);
+    const std::size_t more = std::max(points - have, step);
     const std::size_t size = positions_.size() + more;
     if (size >= no_index) throw OutputError("more than the 2^32 points possible");
     if (!originals_.empty())
@@ -115,8 +117,7 @@ std::vector<InterfaceFace> EditableMesh::interface_faces() const {
             if (link.is_outside()) {
               patch = link.patch();
             } else if (interface_patches()) {
-              Triangle key{original(ids[0]), original(ids[1]), original(ids[2])};
-              std::sort(key.begin(), key.end());
+              const Triangle key = face_key({original(ids[0]), original(ids[1]), original(ids[2])});
               const auto known = interface_patches_.find(key);
               if (known != interface_patches_.end()) patch = known->second;
             }

@@ -8,6 +8,7 @@
 
 #include "common/tet_mesh.h"
 #include "common/types.h"
+#include "simplify/mesh/face_patches.h"
 #include "simplify/mesh/free_slots.h"
 #include "simplify/mesh/reservations.h"
 #include "simplify/mesh/tet_record.h"
@@ -153,7 +154,7 @@ class EditableMesh {
     WriteRule::check();
     live_ = static_cast<std::size_t>(static_cast<std::int64_t>(live_) + change);
   }
-  /// Free slots for operations that add; make_room() adds slots where there are fewer.
+  /// Free slots for operations that add; make_room() adds slots where there are fewer, not many at a time.
   FreeSlots& free_tets() { return free_tets_; }
   FreeSlots& free_points() { return free_points_; }
   void make_room(std::size_t tets, std::size_t points);
@@ -173,9 +174,7 @@ class EditableMesh {
   /// operation.
   std::vector<InterfaceFace> interface_faces() const;
   /// The patches of faces between materials, for to_mesh(); by operations' end they stand in SurfaceGrid.
-  void set_interface_patches(std::map<Triangle, PatchId>&& patches) {
-    interface_patches_ = std::move(patches);
-  }
+  void set_interface_patches(FacePatches&& patches) { interface_patches_ = std::move(patches); }
   /// Of a living tet, working coordinates cubed.
   double signed_volume(Index t) const;
   /// In working coordinates cubed; flat and negative tets count as they are.
@@ -213,7 +212,7 @@ class EditableMesh {
   std::vector<std::uint8_t> frozen_;  ///< by point; empty if none is
   std::vector<Index> originals_;      ///< by point; empty if no star was split
   /// By the ascending originals of their points; empty if all are 0.
-  std::map<Triangle, PatchId> interface_patches_;
+  FacePatches interface_patches_;
   std::vector<MaterialTag> tags_;  ///< of each region
   std::map<MaterialTag, std::string> names_;
   WorkingSpace space_;

@@ -123,13 +123,9 @@ void MeshBuilder::take_patches(const std::vector<InterfaceTriangle>& interfaces)
   if (std::all_of(interfaces.begin(), interfaces.end(),
                   [](const InterfaceTriangle& t) { return t.patch == 0; }))
     return;
-  std::map<Triangle, PatchId> patches;
-  for (const InterfaceTriangle& t : interfaces) {
-    Triangle key = t.ids;
-    std::sort(key.begin(), key.end());
-    patches.emplace(key, t.patch);
-  }
-  std::map<Triangle, PatchId> inner;
+  std::map<Triangle, PatchId> patches;  // those that are 0, too: they are counted
+  for (const InterfaceTriangle& t : interfaces) patches.emplace(face_key(t.ids), t.patch);
+  FacePatches inner;
   std::size_t known = 0;
   for (Index t = 0; t < mesh_.tets_.size(); ++t)
     for (int f = 0; f < 4; ++f) {

@@ -6,7 +6,6 @@
 #include "common/geometry/point_triangle.h"
 #include "common/geometry/predicates.h"
 #include "common/parallel/parallel.h"
-#include "simplify/remesh/tet_overlap.h"
 
 namespace tetwright {
 
@@ -17,13 +16,11 @@ constexpr std::size_t grain = 64;  ///< tets a parallel loop hands out at a time
 /// Passes that correct a sum: the first leaves rounding errors of the values, the second those of the sum.
 constexpr int correction_passes = 2;
 
-Box3 box_of(const std::array<Vec3, 4>& corners) {
+Box3 box_of(const TetCorners& corners) {
   Box3 box;
   for (const Vec3& p : corners) box.add(p);
   return box;
 }
-
-double volume_of(const std::array<Vec3, 4>& c) { return orient3d_value(c[0], c[1], c[2], c[3]) / 6; }
 
 /// Kahan's compensated sum: many small summands lose nothing.
 class Sum {
@@ -53,24 +50,24 @@ void FieldCarrier::add_sources() {
   std::vector<Box3> boxes;
   for (const ChangeJournal::OldTet& t : journal_.tets()) {
     if (t.points == dead_tet) continue;
-    Source s;
-    for (int k = 0; k < 4; ++k) s.corners[k] = journal_.point(t.points[k]).position;
-    s.points = t.points;
-    s.slot = t.slot;
-    s.region = t.region;
-    s.volume = volume_of(s.corners);
-    if (s.volume < 0) {
-      std::swap(s.corners[0], s.corners[1]);
-      std::swap(s.points[0], s.points[1]);
-      s.volume = -s.volume;
+    TetCorners corners;
+    for (int k = 0; k < 4; ++k) corners[k] = journal_.point(t.points[k]).position;
+    Tet points = t.points;
+    if (orient3d_value(corners[0], corners[1], corners[2], corners[3]) < 0) {
+      std::swap(corners[0], corners[1]);
+      std::swap(points[0], points[1]);
     }
-    boxes.push_back(box_of(s.corners));
-    sources.push_back(s);
+    boxes.push_back(box_of(corners));
+    sources.push_back({PlanedTet(corners), points, t.slot, t.region});
   }
   const std::vector<Index> order = morton_order(boxes);
   sources_.reserve(sources.size());
-  for (Index i : order) sources_.push_back(sources[i]);
-  tree_ = BoxTree(sources_.size(), leaf_tets, [&](std::size_t i) { return boxes[order[i]]; });
+  boxes_.reserve(sources.size());
+  for (Index i : order) {
+    sources_.push_back(sources[i]);
+    boxes_.push_back(boxes[i]);
+  }
+  tree_ = BoxTree(sources_.size(), leaf_tets, [&](std::size_t i) { return boxes_[i]; });
 }
 
 template <class Visit>
@@ -82,7 +79,8 @@ void FieldCarrier::for_sources_near(const Box3& box, const Visit& visit) const {
       continue;
     }
     if (tree_.is_leaf(nodes[k]))
-      for (std::uint32_t i = nodes[k].begin; i < nodes[k].end; ++i) visit(i);
+      for (std::uint32_t i = nodes[k].begin; i < nodes[k].end; ++i)
+        if (boxes_[i].intersects(box)) visit(i);
     ++k;
   }
 }
@@ -93,50 +91,57 @@ void FieldCarrier::add_targets() {
   parallel_for(0, targets_.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Target& target = targets_[i];
-      std::array<Vec3, 4> corners;
+      TetCorners corners;
       for (int k = 0; k < 4; ++k) corners[k] = mesh_.position(mesh_.points(target.slot)[k]);
-      target.volume = std::fabs(volume_of(corners));
+      if (orient3d_value(corners[0], corners[1], corners[2], corners[3]) < 0)
+        std::swap(corners[0], corners[1]);
+      const PlanedTet tet(corners);
+      target.volume = tet.volume();
       for_sources_near(box_of(corners), [&](std::uint32_t s) {
         if (sources_[s].region != target.region) return;
-        if (const double common = overlap_volume(corners, sources_[s].corners); common > 0)
+        if (const double common = overlap_volume(tet, sources_[s].tet); common > 0)
           target.shares.push_back({s, common});
       });
     }
   });
 }
 
+bool FieldCarrier::weigh(const Source& s, const Vec3& p, std::array<double, 4>& weights) {
+  const TetCorners& c = s.tet.corners();
+  weights = {orient3d_value(p, c[1], c[2], c[3]), orient3d_value(c[0], p, c[2], c[3]),
+             orient3d_value(c[0], c[1], p, c[3]), orient3d_value(c[0], c[1], c[2], p)};
+  const bool inside = std::all_of(weights.begin(), weights.end(), [](double w) { return w >= 0; });
+  double sum = 0;
+  for (double& w : weights) sum += w = std::max(w, 0.0);
+  if (!(sum > 0)) return false;  // flat
+  for (double& w : weights) w /= sum;
+  return inside;
+}
+
 FieldCarrier::Weights FieldCarrier::weights_at(const Vec3& p) const {
   Weights best{};
+  const auto holds = [&](std::size_t i) {
+    best.points = sources_[i].points;
+    return weigh(sources_[i], p, best.weights);
+  };
+  if (tree_.any_containing(p, tree_.all(), holds)) return best;
+  // Outside of all: the nearest place of their faces.
+  best = {};
   double nearest = std::numeric_limits<double>::infinity();
   tree_.nearest(p, nearest, tree_.all(), [&](std::size_t i, double limit) {
     const Source& s = sources_[i];
-    const auto& c = s.corners;
-    std::array<double, 4> w{orient3d_value(p, c[1], c[2], c[3]), orient3d_value(c[0], p, c[2], c[3]),
-                            orient3d_value(c[0], c[1], p, c[3]), orient3d_value(c[0], c[1], c[2], p)};
-    Vec3 place = p;
-    if (!(s.volume > 0) || std::any_of(w.begin(), w.end(), [](double x) { return x < 0; })) {
-      // Outside: the nearest place of its faces, whose weights follow from the same volumes.
-      double least = std::numeric_limits<double>::infinity();
-      for (const auto& f : tet_faces) {
-        const Vec3 q = closest_point(p, c[f[0]], c[f[1]], c[f[2]]);
-        if ((q - p).squaredNorm() < least) {
-          least = (q - p).squaredNorm();
-          place = q;
-        }
-      }
-      if (least >= nearest) return limit;
-      w = {orient3d_value(place, c[1], c[2], c[3]), orient3d_value(c[0], place, c[2], c[3]),
-           orient3d_value(c[0], c[1], place, c[3]), orient3d_value(c[0], c[1], c[2], place)};
+    const TetCorners& c = s.tet.corners();
+    for (const auto& f : tet_faces) {
+      const Vec3 q = closest_point(p, c[f[0]], c[f[1]], c[f[2]]);
+      const double distance = (q - p).squaredNorm();
+      std::array<double, 4> weights;
+      if (distance >= nearest) continue;
+      weigh(s, q, weights);
+      if (!(weights[0] + weights[1] + weights[2] + weights[3] > 0)) continue;  // flat
+      nearest = distance;
+      best = {s.points, weights};
     }
-    double sum = 0;
-    for (double& x : w) sum += x = std::max(x, 0.0);
-    if (!(sum > 0)) return limit;  // flat
-    for (double& x : w) x /= sum;
-    const double distance = (place - p).squaredNorm();
-    if (distance >= nearest) return limit;
-    nearest = distance;
-    best = {s.points, w};
-    return std::min(limit, distance);
+    return std::min(limit, nearest);
   });
   return best;
 }
@@ -178,13 +183,13 @@ void FieldCarrier::carry_tet_field(std::vector<double>& values, std::size_t comp
     for (RegionId region : regions) {
       Sum before, volume;
       for (const Source& s : sources_)
-        if (s.region == region) before.add(old_value(s) * s.volume);
+        if (s.region == region) before.add(old_value(s) * s.tet.volume());
       for (const Target& t : targets_)
         if (t.region == region) volume.add(t.volume);
       if (!(volume.value() > 0)) continue;
       Sum old_volume;
       for (const Source& s : sources_)
-        if (s.region == region) old_volume.add(s.volume);
+        if (s.region == region) old_volume.add(s.tet.volume());
       const double mean = old_volume.value() > 0 ? before.value() / old_volume.value() : 0;
       for (std::size_t i = 0; i < targets_.size(); ++i) {
         const Target& t = targets_[i];

@@ -5,6 +5,7 @@
 #include "common/geometry/box_tree.h"
 #include "simplify/mesh/editable_mesh.h"
 #include "simplify/remesh/change_journal.h"
+#include "simplify/remesh/tet_overlap.h"
 
 namespace tetwright {
 
@@ -29,11 +30,10 @@ class FieldCarrier {
  private:
   /// An old tet with its positive volume; inverted ones count as their mirror images.
   struct Source {
-    std::array<Vec3, 4> corners;
+    PlanedTet tet;
     Tet points;
     Index slot;
     RegionId region;
-    double volume;
   };
   struct Target {
     Index slot;
@@ -52,6 +52,8 @@ class FieldCarrier {
   void add_sources();
   void add_targets();
   void place_points();
+  /// Shares of a source's corners in a place, none below 0, or all 0 where it is flat; whether it holds it.
+  static bool weigh(const Source& source, const Vec3& p, std::array<double, 4>& weights);
   Weights weights_at(const Vec3& p) const;
   template <class Visit>
   void for_sources_near(const Box3& box, const Visit& visit) const;
@@ -59,6 +61,7 @@ class FieldCarrier {
   const EditableMesh& mesh_;
   const ChangeJournal& journal_;
   std::vector<Source> sources_;  ///< in the order of the tree
+  std::vector<Box3> boxes_;      ///< of the sources
   BoxTree tree_;
   std::vector<Target> targets_;
   std::vector<PlacedPoint> placed_;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <vector>
+#include <limits>
 
 #include "common/geometry/predicates.h"
 
@@ -10,81 +10,182 @@ namespace tetwright {
 
 namespace {
 
-/// Each of four planes cuts a piece into three at most.
-constexpr std::size_t max_pieces = 81;
+/// Each plane but the last cuts a piece into three at most; of the last only volumes are asked.
+constexpr std::size_t max_pieces = 27;
+/// Distances from a plane of less than this share of the largest are rounding errors of coordinates.
+constexpr double rounding = 1e-13;
 
-struct Pieces {
-  std::array<TetCorners, max_pieces> tets;
-  std::size_t count = 0;
-  void add(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) { tets[count++] = {a, b, c, d}; }
+/// The signed distances of a place from the planes that cut: they change linearly from place to place, so
+/// that coordinates are not needed.
+using Distances = std::array<double, 4>;
+
+struct Piece {
+  std::array<Distances, 4> corners;
+  double volume;
 };
 
-/// The prism between the triangles (a, b, c) and (d, e, f), whose edges ad, be and cf join them.
-void add_prism(Pieces& out, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e,
-               const Vec3& f) {
-  out.add(a, b, c, f);
-  out.add(a, b, f, e);
-  out.add(a, e, f, d);
+struct Pieces {
+  std::array<Piece, max_pieces> list;
+  std::size_t count = 0;
+  void add(const Distances& a, const Distances& b, const Distances& c, const Distances& d, double volume) {
+    list[count++] = {{a, b, c, d}, volume};
+  }
+};
+
+/// The corners of a piece by the side of a plane that they are on.
+struct Sides {
+  Sides(const Piece& piece, int plane) {
+    for (int k = 0; k < 4; ++k) {
+      distance[k] = piece.corners[k][plane];
+      (distance[k] > 0 ? inside[in++] : outside[out++]) = k;
+    }
+  }
+  /// Where the plane crosses the edge from an inner corner to an outer one, as a share of it.
+  double share(int i, int o) const { return distance[i] / (distance[i] - distance[o]); }
+
+  std::array<double, 4> distance{};
+  std::array<int, 4> inside{}, outside{};
+  int in = 0, out = 0;
+};
+
+/// What of a piece lies inside a plane.
+double volume_inside(const Piece& piece, int plane) {
+  const Sides s(piece, plane);
+  const auto& i = s.inside;
+  const auto& o = s.outside;
+  switch (s.in) {
+    case 0:
+      return 0;
+    case 1:
+      return piece.volume * s.share(i[0], o[0]) * s.share(i[0], o[1]) * s.share(i[0], o[2]);
+    case 2: {
+      const double a = s.share(i[0], o[0]), b = s.share(i[0], o[1]), c = s.share(i[1], o[0]),
+                   d = s.share(i[1], o[1]);
+      return piece.volume * (a * b * (1 - d) + a * d * (1 - c) + c * d);
+    }
+    case 3: {
+      const double a = s.share(i[0], o[0]), b = s.share(i[1], o[0]), c = s.share(i[2], o[0]);
+      return piece.volume * (1 - (1 - a) * (1 - b) * (1 - c));
+    }
+    default:
+      return piece.volume;
+  }
 }
 
-/// Appends what of a tet lies where the signed distances are positive; `distance`: of its corners.
-void clip(const TetCorners& tet, const std::array<double, 4>& distance, Pieces& out) {
-  std::array<int, 4> inside{}, outside{};
-  int in = 0, outs = 0;
-  for (int k = 0; k < 4; ++k) (distance[k] > 0 ? inside[in++] : outside[outs++]) = k;
-  /// Where the edge from corner i to corner j crosses the plane.
-  const auto crossing = [&](int i, int j) -> Vec3 {
-    return tet[i] + (tet[j] - tet[i]) * (distance[i] / (distance[i] - distance[j]));
+/// Appends what of a piece lies inside a plane. The volumes are determinants of the corners' barycentric
+/// coordinates in the piece.
+void clip(const Piece& piece, int plane, Pieces& out) {
+  const Sides s(piece, plane);
+  const auto crossing = [&](int i, double share, int o) {
+    Distances d;
+    for (int k = 0; k < 4; ++k)
+      d[k] = piece.corners[i][k] + share * (piece.corners[o][k] - piece.corners[i][k]);
+    return d;
   };
-  switch (in) {
+  const double v = piece.volume;
+  const auto& i = s.inside;
+  const auto& o = s.outside;
+  switch (s.in) {
     case 0:
       return;
     case 1: {
-      const int p = inside[0];
-      out.add(tet[p], crossing(p, outside[0]), crossing(p, outside[1]), crossing(p, outside[2]));
+      const double a = s.share(i[0], o[0]), b = s.share(i[0], o[1]), c = s.share(i[0], o[2]);
+      out.add(piece.corners[i[0]], crossing(i[0], a, o[0]), crossing(i[0], b, o[1]), crossing(i[0], c, o[2]),
+              v * a * b * c);
       return;
     }
-    case 2: {
-      const int p = inside[0], q = inside[1];
-      add_prism(out, tet[p], crossing(p, outside[0]), crossing(p, outside[1]), tet[q],
-                crossing(q, outside[0]), crossing(q, outside[1]));
+    case 2: {  // a prism between the triangles at both inner corners
+      const double a = s.share(i[0], o[0]), b = s.share(i[0], o[1]), c = s.share(i[1], o[0]),
+                   d = s.share(i[1], o[1]);
+      const Distances &p = piece.corners[i[0]], &q = piece.corners[i[1]];
+      const Distances p0 = crossing(i[0], a, o[0]), p1 = crossing(i[0], b, o[1]),
+                      q0 = crossing(i[1], c, o[0]), q1 = crossing(i[1], d, o[1]);
+      out.add(p, p0, p1, q1, v * a * b * (1 - d));
+      out.add(p, p0, q1, q0, v * a * d * (1 - c));
+      out.add(p, q0, q1, q, v * c * d);
       return;
     }
-    case 3: {
-      const int o = outside[0];
-      add_prism(out, tet[inside[0]], tet[inside[1]], tet[inside[2]], crossing(inside[0], o),
-                crossing(inside[1], o), crossing(inside[2], o));
+    case 3: {  // a prism between the inner face and the plane
+      const double a = s.share(i[0], o[0]), b = s.share(i[1], o[0]), c = s.share(i[2], o[0]);
+      const Distances &p = piece.corners[i[0]], &q = piece.corners[i[1]], &r = piece.corners[i[2]];
+      const Distances pc = crossing(i[0], a, o[0]), qc = crossing(i[1], b, o[0]),
+                      rc = crossing(i[2], c, o[0]);
+      out.add(p, q, r, rc, v * c);
+      out.add(p, q, rc, qc, v * b * (1 - c));
+      out.add(p, qc, rc, pc, v * a * (1 - b) * (1 - c));
       return;
     }
     default:
-      out.add(tet[0], tet[1], tet[2], tet[3]);
+      out.list[out.count++] = piece;
   }
 }
 
+/// How the corners of one tet lie to the planes of another.
+struct Relation {
+  Relation(const PlanedTet& tet, const PlanedTet& planes) : volume(tet.volume()) {
+    for (int k = 0; k < 4; ++k) distances[k] = planes.distances(tet.corners()[k]);
+    const Eigen::Array4d least = distances[0].min(distances[1]).min(distances[2].min(distances[3])),
+                         most = distances[0].max(distances[1]).max(distances[2].max(distances[3])),
+                         // What rounding alone puts across a plane, such as the halves of an edge, does not
+                         // count as such.
+        tolerance = rounding * most.max(-least);
+    apart = (most <= tolerance).any();
+    for (int f = 0; f < 4; ++f)
+      if (least[f] < -tolerance[f]) crossed[count++] = f;
+  }
+  /// The tet by its distances from the planes that cross it.
+  Piece piece() const {
+    Piece piece{{}, volume};
+    for (int i = 0; i < count; ++i)
+      for (int k = 0; k < 4; ++k) piece.corners[k][i] = distances[k][crossed[i]];
+    return piece;
+  }
+
+  double volume;
+  std::array<Eigen::Array4d, 4> distances;  ///< of the corners
+  std::array<int, 4> crossed{};             ///< planes
+  int count = 0;
+  bool apart = false;
+};
+
 }  // namespace
 
-double overlap_volume(const TetCorners& first, const TetCorners& second) {
-  Pieces pieces, next;
-  pieces.tets[0] = first;
-  pieces.count = 1;
-  for (const auto& face : tet_faces) {
-    const Vec3 &a = second[face[0]], &b = second[face[1]], &c = second[face[2]];
-    const Vec3 inward = (c - a).cross(b - a);
-    next.count = 0;
-    for (std::size_t i = 0; i < pieces.count; ++i) {
-      std::array<double, 4> distance;
-      for (int k = 0; k < 4; ++k) distance[k] = inward.dot(pieces.tets[i][k] - a);
-      clip(pieces.tets[i], distance, next);
-    }
+PlanedTet::PlanedTet(const TetCorners& corners)
+    : corners_(corners), volume_(orient3d_value(corners[0], corners[1], corners[2], corners[3]) / 6) {
+  for (int f = 0; f < 4; ++f) {
+    const auto& face = tet_faces[f];
+    const Vec3& origin = corners[face[0]];
+    const Vec3 inward = (corners[face[2]] - origin).cross(corners[face[1]] - origin);
+    for (int axis = 0; axis < 3; ++axis) inward_[axis][f] = inward[axis];
+    offset_[f] = inward.dot(origin);
+    lengths_[f] = inward.norm();
+  }
+  centre_ = (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
+  for (const Vec3& p : corners) radius_ = std::max(radius_, (p - centre_).norm());
+}
+
+double overlap_volume(const PlanedTet& first, const PlanedTet& second) {
+  const bool ordered = first.volume() <= second.volume();
+  const PlanedTet &smaller = ordered ? first : second, &larger = ordered ? second : first;
+  // The planes of the larger one tell most pairs apart.
+  if (larger.far_from(smaller)) return 0;
+  const Relation a(smaller, larger);
+  if (a.apart) return 0;
+  if (a.count == 0) return smaller.volume();
+  const Relation b(larger, smaller);
+  if (b.apart) return 0;
+  const Relation& fewer = a.count <= b.count ? a : b;
+  std::array<Pieces, 2> buffers;
+  Pieces *pieces = &buffers[0], *next = &buffers[1];
+  pieces->list[pieces->count++] = fewer.piece();
+  for (int plane = 0; plane + 1 < fewer.count; ++plane) {
+    next->count = 0;
+    for (std::size_t i = 0; i < pieces->count; ++i) clip(pieces->list[i], plane, *next);
     std::swap(pieces, next);
-    if (pieces.count == 0) return 0;
   }
   double sum = 0;
-  for (std::size_t i = 0; i < pieces.count; ++i) {
-    const TetCorners& t = pieces.tets[i];
-    sum += std::abs(orient3d_value(t[0], t[1], t[2], t[3]));
-  }
-  return sum / 6;
+  for (std::size_t i = 0; i < pieces->count; ++i) sum += volume_inside(pieces->list[i], fewer.count - 1);
+  return sum;
 }
 
 }  // namespace tetwright

@@ -8,9 +8,34 @@ namespace tetwright {
 
 using TetCorners = std::array<Vec3, 4>;
 
-/// The volume that two positive tets have in common: the first is cut by the four planes of the second, piece
-/// by piece (Sutherland & Hodgman 1974, in three dimensions). Rounding leaves an error of about 1e-15 of the
-/// smaller tet.
-double overlap_volume(const TetCorners& first, const TetCorners& second);
+/// A positive tet with the planes of its faces, computed once for all others that it is compared with.
+class PlanedTet {
+ public:
+  explicit PlanedTet(const TetCorners& corners);
+  const TetCorners& corners() const { return corners_; }
+  double volume() const { return volume_; }
+  /// Signed distances from the planes of the four faces, each times twice the area: positive inside.
+  Eigen::Array4d distances(const Vec3& p) const {
+    return inward_[0] * p.x() + inward_[1] * p.y() + inward_[2] * p.z() - offset_;
+  }
+  /// Whether one of its planes has all of a ball around the other tet beyond it: cheap, and true for most
+  /// tets that do not meet.
+  bool far_from(const PlanedTet& other) const {
+    return (distances(other.centre_) + other.radius_ * lengths_ <= 0).any();
+  }
+
+ private:
+  TetCorners corners_;
+  std::array<Eigen::Array4d, 3> inward_;  ///< normals, axis by axis: the four faces are computed at once
+  Eigen::Array4d offset_, lengths_;       ///< of the planes, lengths of their normals
+  Vec3 centre_;
+  double radius_ = 0;  ///< of a ball around the centre that holds the tet
+  double volume_;
+};
+
+/// The volume that two tets have in common: one is cut by the planes of the other that cross it, piece by
+/// piece (Sutherland & Hodgman 1974, in three dimensions). Rounding leaves an error of about 1e-13 of the
+/// larger tet.
+double overlap_volume(const PlanedTet& first, const PlanedTet& second);
 
 }  // namespace tetwright

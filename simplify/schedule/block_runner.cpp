@@ -239,6 +239,18 @@ void BlockRunner::tets(const std::vector<ListedTet>& items, const TetAttempt& at
   run(items, false, attempt, stop);
 }
 
+void BlockRunner::each_star(const std::vector<Index>& points, Operation kind,
+                            const std::function<Outcome(Workspace&)>& operation, const Stop& stop) {
+  this->points(
+      points,
+      [&](Workspace& ws, Index p) {
+        Outcome o = ws.gather(p);
+        if (o == Outcome::done) o = operation(ws);
+        return ws.count(kind, o);
+      },
+      stop);
+}
+
 void BlockRunner::tets_in_order(const std::vector<ListedTet>& items, const TetAttempt& attempt) {
   run(items, true, attempt, [] { return false; });
 }

@@ -44,6 +44,10 @@ class BlockRunner {
   /// cancelled.
   void points(const std::vector<Index>& items, const PointAttempt& attempt, const Stop& stop);
   void tets(const std::vector<ListedTet>& items, const TetAttempt& attempt, const Stop& stop);
+  /// One try at each of the points with an operation on its star, which may answer anything.
+  void each_star(
+      const std::vector<Index>& points, Operation kind, const std::function<Outcome(Workspace&)>& operation,
+      const Stop& stop = [] { return false; });
   /// In the order given.
   void tets_in_order(const std::vector<ListedTet>& items, const TetAttempt& attempt);
 

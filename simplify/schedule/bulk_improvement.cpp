@@ -125,8 +125,8 @@ class BulkLoop {
     mesh_.begin_round();
     each_tet(poor,
              [&](Workspace& ws, const ListedTet& item) { return flip_tet(ws, flipping_, item, plan_.poor); });
-    engine_.each_star(plan_.remodel ? engine_.points_around(poor) : engine_.poor_points(plan_.poor),
-                      Operation::optimise, [&](Workspace& ws) { return optimise(ws, moving_); });
+    engine_.runner().each_star(plan_.remodel ? engine_.points_around(poor) : engine_.poor_points(plan_.poor),
+                               Operation::optimise, [&](Workspace& ws) { return optimise(ws, moving_); });
     round.finish();
   }
 
@@ -136,7 +136,7 @@ class BulkLoop {
   }
 
   void resize() {
-    engine_.each_star(engine_.poor_points(plan_.poor), Operation::collapse, [&](Workspace& ws) {
+    engine_.runner().each_star(engine_.poor_points(plan_.poor), Operation::collapse, [&](Workspace& ws) {
       return crowded(ws.mesh, ws.star) ? collapse(ws, resizing_) : Outcome::no_candidate;
     });
     each_tet(engine_.poor_tets(plan_.poor), [&](Workspace& ws, const ListedTet& item) {

@@ -196,24 +196,11 @@ std::vector<Index> Engine::interface_points() const {
   });
 }
 
-void Engine::each_star(const std::vector<Index>& points, Operation kind,
-                       const std::function<Outcome(Workspace&)>& operation,
-                       const std::function<bool()>& stop) {
-  runner_.points(
-      points,
-      [&](Workspace& ws, Index p) {
-        Outcome o = ws.gather(p);
-        if (o == Outcome::done) o = operation(ws);
-        return ws.count(kind, o);
-      },
-      stop);
-}
-
 void Engine::fit_interfaces(float floor) {
   BlockRules fitting = rules;
   fitting.projection = &projection_;
-  each_star(interface_points(), Operation::fit,
-            [&](Workspace& ws) { return fit_to_surface(ws, fitting, floor); });
+  runner_.each_star(interface_points(), Operation::fit,
+                    [&](Workspace& ws) { return fit_to_surface(ws, fitting, floor); });
 }
 
 Engine::Round::Round(Engine& engine, const char* kind) : engine_(engine) {

@@ -63,11 +63,6 @@ class Engine {
   /// The points of boundary and interfaces, in the order of the curve.
   std::vector<Index> interface_points() const;
 
-  /// One try at each of the points with an operation on its star, which may answer anything; `stop` is asked
-  /// before each.
-  void each_star(
-      const std::vector<Index>& points, Operation kind, const std::function<Outcome(Workspace&)>& operation,
-      const std::function<bool()>& stop = [] { return false; });
   /// fit_to_surface() for all interface points.
   void fit_interfaces(float floor);
 

@@ -1,6 +1,7 @@
 #include "simplify/schedule/improvement.h"
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "simplify/operations/collapse.h"
@@ -38,40 +39,70 @@ constexpr float perturbed_share = 0.95f;
 /// all of it, and no collapse could take the last slivers out.
 constexpr double kept_share = 0.125;
 
+class WholeMesh final : public ImprovementArea {
+ public:
+  explicit WholeMesh(Engine& engine) : engine_(engine) {}
+  std::size_t tet_count() const override { return engine_.mesh().live_tets(); }
+  double usual_edge() const override { return engine_.rules.objective.quality.ideal_edge; }
+  std::vector<ListedTet> poor_tets(float limit) override { return engine_.poor_tets(limit); }
+  std::vector<ListedTet> tets_around(const std::vector<ListedTet>& tets) override {
+    return engine_.tets_around(tets);
+  }
+  std::vector<Index> points_around(const std::vector<ListedTet>& tets) override {
+    return engine_.points_around(tets);
+  }
+  std::vector<Index> points_to_thin(const std::vector<ListedTet>&) override { return engine_.poor_points(1); }
+
+ private:
+  Engine& engine_;
+};
+
 /// The rounds of run_improvement().
 class ImprovementLoop {
  public:
-  ImprovementLoop(Engine& engine, const ImprovementPlan& plan)
-      : engine_(engine),
-        mesh_(engine.mesh()),
+  ImprovementLoop(const ImprovementTools& tools, ImprovementArea& area, const ImprovementPlan& plan)
+      : engine_(tools.engine),
+        mesh_(tools.mesh),
+        runner_(tools.runner),
+        rules_(tools.rules),
+        area_(area),
         plan_(plan),
         bounds_{quality(plan.angle), quality(plan.leave_surface_angle)} {
-    engine_.rules.count = {plan_.min_tets, plan_.max_tets};
+    rules_.count = {plan_.min_tets, plan_.max_tets};
   }
 
   /// The number of rounds.
   int run() {
-    for (int sweep = 0; sweep < plan_.fit_sweeps; ++sweep) {
-      Engine::Round round(engine_, plan_.kind);
-      engine_.fit_interfaces(bounds_.poor);
+    for (int sweep = 0; engine_ && sweep < plan_.fit_sweeps; ++sweep) {
+      Engine::Round round(*engine_, plan_.kind);
+      engine_->fit_interfaces(bounds_.poor);
       round.finish();
     }
-    surgery_ = surgery_rules(engine_.rules, engine_.rules.objective.quality.ideal_edge);
+    surgery_ = surgery_rules(rules_, area_.usual_edge());
     surgery_.leave_surface = true;
-    min_poor_ = 4 * mesh_.live_tets();
+    min_poor_ = 4 * area_.tet_count();
     int i = 0;
     for (; i < plan_.max_rounds; ++i) {
-      std::vector<ListedTet> poor = engine_.poor_tets(bounds_.poor);
+      std::vector<ListedTet> poor = area_.poor_tets(bounds_.poor);
       if (poor.empty() || !worth_a_round(poor)) break;
+      std::optional<Engine::Round> round;
+      if (engine_) {
+        round.emplace(*engine_, plan_.kind);
+        round->report().cutoff = plan_.angle;
+        round->report().percent =
+            100 * static_cast<double>(poor.size()) / static_cast<double>(mesh_.live_tets());
+      }
       run_round(std::move(poor));
-      if (engine_.progress()) engine_.progress()->update(static_cast<double>(i + 1) / plan_.max_rounds);
+      if (!round) continue;
+      round->finish();
+      if (engine_->progress()) engine_->progress()->update(static_cast<double>(i + 1) / plan_.max_rounds);
     }
     return i;
   }
 
  private:
   float quality(double angle) const {
-    return static_cast<float>(std::min(0.99, shape_quality_bound(engine_.rules.objective.shape, angle)));
+    return static_cast<float>(std::min(0.99, shape_quality_bound(rules_.objective.shape, angle)));
   }
 
   /// Judges the round before by what it left: false where the last ones gained too little. Decides whether
@@ -81,11 +112,12 @@ class ImprovementLoop {
       return mesh_.quality(t.tet) < bounds_.leave_surface;
     });
     stuck_ = static_cast<double>(poor.size()) > stuck_above * static_cast<double>(min_poor_);
+    if (plan_.brief && stuck_ && !bad) return false;
     const double gain = 1 - static_cast<double>(poor.size()) / static_cast<double>(min_poor_);
     // Where a large share is poor, the interfaces are the reason, and more rounds would take long for little.
-    const bool many = static_cast<double>(poor.size()) > many_poor * static_cast<double>(mesh_.live_tets());
+    const bool many = static_cast<double>(poor.size()) > many_poor * static_cast<double>(area_.tet_count());
     idle_ = gain >= (many ? min_gain_of_many : min_round_gain) ? 0 : idle_ + 1;
-    const bool few = static_cast<double>(poor.size()) < few_poor * static_cast<double>(mesh_.live_tets());
+    const bool few = static_cast<double>(poor.size()) < few_poor * static_cast<double>(area_.tet_count());
     if (idle_ >= (few            ? max_idle_rounds_of_few
                   : bad && !many ? max_idle_rounds
                   : many         ? max_idle_rounds_of_many
@@ -97,14 +129,10 @@ class ImprovementLoop {
   }
 
   void run_round(std::vector<ListedTet> poor) {
-    Engine::Round round(engine_, plan_.kind);
-    IterationReport& it = round.report();
-    it.cutoff = plan_.angle;
     const double kept = last_resort_ || plan_.target_tets <= plan_.min_tets
                             ? 0
                             : kept_share * static_cast<double>(plan_.target_tets - plan_.min_tets);
-    engine_.rules.count.min = surgery_.count.min = plan_.min_tets + static_cast<std::size_t>(kept);
-    it.percent = 100 * static_cast<double>(poor.size()) / static_cast<double>(it.tets_before);
+    rules_.count.min = surgery_.count.min = plan_.min_tets + static_cast<std::size_t>(kept);
     if (2 * mesh_.live_tets() > plan_.target_tets + plan_.max_tets) make_room(poor);
     if (last_resort_) perturb(poor);
     if (stuck_) move_points_around(poor);
@@ -115,19 +143,18 @@ class ImprovementLoop {
       const float qa = mesh_.quality(a.tet), qb = mesh_.quality(b.tet);
       return qa != qb ? qa < qb : a.tet < b.tet;
     });
-    engine_.runner().tets_in_order(tries, [&](Workspace& ws, const ListedTet& item, int) {
-      return improve_tet(ws, {engine_.rules, surgery_, bounds_, last_resort_, plan_.fast}, item);
+    runner_.tets_in_order(tries, [&](Workspace& ws, const ListedTet& item, int) {
+      return improve_tet(ws, {rules_, surgery_, bounds_, last_resort_, plan_.fast}, item);
     });
-    round.finish();
   }
 
   /// Makes room for insertions: collapses that leave only good tets, or better ones.
   void make_room(const std::vector<ListedTet>& poor) {
-    BlockRules thinning = engine_.rules;
+    BlockRules thinning = rules_;
     thinning.good_enough = bounds_.poor * thinning_margin;
     thinning.count.min = plan_.target_tets;
-    engine_.each_star(
-        plan_.local ? engine_.points_around(poor) : engine_.poor_points(1), Operation::collapse,
+    runner_.each_star(
+        area_.points_to_thin(poor), Operation::collapse,
         [&](Workspace& ws) { return collapse(ws, thinning); },
         [&] { return mesh_.live_tets() <= plan_.target_tets; });
   }
@@ -135,17 +162,16 @@ class ImprovementLoop {
   void perturb(const std::vector<ListedTet>& poor) {
     BlockRules perturbation = surgery_;
     perturbation.good_enough = perturbed_share * bounds_.poor;
-    engine_.runner().tets(
-        engine_.tets_around(poor),
+    runner_.tets(
+        area_.tets_around(poor),
         [&](Workspace& ws, const ListedTet& item, int) { return perturb_tet(ws, perturbation, item); },
         [] { return false; });
   }
 
   void move_points_around(const std::vector<ListedTet>& poor) {
-    std::vector<Index> around = engine_.points_around(poor);
+    std::vector<Index> around = area_.points_around(poor);
     if (!last_resort_) std::erase_if(around, [&](Index p) { return !mesh_.touched(p); });
-    engine_.each_star(around, Operation::optimise,
-                      [&](Workspace& ws) { return optimise(ws, engine_.rules); });
+    runner_.each_star(around, Operation::optimise, [&](Workspace& ws) { return optimise(ws, rules_); });
   }
 
   /// Tets that the last round tried come again only where something around them changed, or where this round
@@ -163,8 +189,11 @@ class ImprovementLoop {
     return tries;
   }
 
-  Engine& engine_;
+  Engine* engine_;
   EditableMesh& mesh_;
+  BlockRunner& runner_;
+  BlockRules& rules_;
+  ImprovementArea& area_;
   const ImprovementPlan& plan_;
   ImproveBounds bounds_;
   BlockRules surgery_;
@@ -184,8 +213,13 @@ void begin_improvement(Engine& engine) {
   engine.rate_all();
 }
 
-int run_improvement(Engine& engine, const ImprovementPlan& plan) {
-  return ImprovementLoop(engine, plan).run();
+int run_improvement(const ImprovementTools& tools, ImprovementArea& area, const ImprovementPlan& plan) {
+  return ImprovementLoop(tools, area, plan).run();
+}
+
+int run_improvement(Engine& engine, const ImprovementPlan& plan, ImprovementArea* area) {
+  WholeMesh whole(engine);
+  return run_improvement({engine.mesh(), engine.runner(), engine.rules, &engine}, area ? *area : whole, plan);
 }
 
 }  // namespace tetwright

@@ -37,7 +37,7 @@ constexpr double fit_above_strain = 0.6;
 
 void collapse_block(Engine& engine, float limit, std::size_t target) {
   EditableMesh& mesh = engine.mesh();
-  engine.each_star(
+  engine.runner().each_star(
       engine.poor_points(limit), Operation::collapse,
       [&](Workspace& ws) { return collapse(ws, engine.rules); }, [&] { return mesh.live_tets() <= target; });
 }

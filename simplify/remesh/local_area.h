@@ -1,0 +1,69 @@
+#pragma once
+
+#include <vector>
+
+#include "simplify/mesh/local_numbers.h"
+#include "simplify/mesh/star_walk.h"
+#include "simplify/remesh/change_journal.h"
+#include "simplify/schedule/improvement.h"
+
+namespace tetwright {
+
+/// Tets and points to be worked on, as lists that follow what changes: nothing looks at the whole mesh. Sees
+/// all that a BlockRunner carries out while it exists.
+class LocalArea final : public ImprovementArea {
+ public:
+  /// The whole mesh is open to it. `poor` are all tets of at most the first limit that poor_tets() is given.
+  LocalArea(const EditableMesh& mesh, BlockRunner& runner, double usual_edge,
+            const std::vector<ListedTet>& poor);
+  /// Of these tets, each of which is there once, and of what takes their place: of edges only those between
+  /// their points are worked on, or points that came since, so that work does not spread. `journal` takes
+  /// down what changes.
+  LocalArea(const EditableMesh& mesh, BlockRunner& runner, ChangeJournal& journal,
+            const std::vector<Index>& tets);
+  ~LocalArea() override;
+  LocalArea(const LocalArea&) = delete;
+  LocalArea& operator=(const LocalArea&) = delete;
+
+  std::size_t tet_count() const override { return limited_ ? listed_at_first_ : mesh_.live_tets(); }
+  /// Of a limited area the mean of those of its tets that there were at first.
+  double usual_edge() const override { return usual_edge_; }
+  /// The limit may not rise: what was above it before and has not changed since is not listed.
+  std::vector<ListedTet> poor_tets(float limit) override;
+  std::vector<ListedTet> tets_around(const std::vector<ListedTet>& tets) override;
+  std::vector<Index> points_around(const std::vector<ListedTet>& tets) override;
+  std::vector<Index> points_to_thin(const std::vector<ListedTet>& poor) override {
+    return points_around(poor);
+  }
+
+  /// The points of the tets that there were at first, ascending.
+  const std::vector<Index>& first_points() const { return first_points_; }
+  /// The living points of the area around which something changed since this was last called, ascending.
+  std::vector<Index> take_changed_points();
+  /// The tets of the area at points, each once, ascending.
+  std::vector<Index> tets_at(const std::vector<Index>& points);
+  /// From now on poor_tets() looks at these tets, and at what changes.
+  void look_at(std::vector<Index> tets) { candidates_ = std::move(tets); }
+  /// Operations that were carried out.
+  std::uint64_t operations() const { return operations_; }
+
+ private:
+  void observe(const Proposal& proposal);
+  bool within(Index point) const { return !limited_ || points_.find(point) != no_index; }
+
+  const EditableMesh& mesh_;
+  BlockRunner& runner_;
+  ChangeJournal* journal_ = nullptr;
+  bool limited_;
+  std::size_t listed_at_first_ = 0;
+  double usual_edge_ = 0;
+  LocalNumbers points_;  ///< of a limited area
+  std::vector<Index> first_points_;
+  std::vector<Index> candidates_;      ///< tets that poor_tets() looks at
+  std::vector<Index> changed_points_;  ///< since they were last taken
+  StarWalk walk_;
+  LocalNumbers seen_;  ///< tets or points, in one function
+  std::uint64_t operations_ = 0;
+};
+
+}  // namespace tetwright
