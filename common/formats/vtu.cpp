@@ -48,7 +48,8 @@ class VtuReader {
     read_points(piece);
     read_cells(piece);
     result_.mesh.point_fields = read_fields(piece.child("PointData"), points_, nullptr);
-    result_.mesh.cell_fields = read_fields(piece.child("CellData"), cells_, &tet_to_cell_);
+    result_.mesh.cell_fields =
+        read_fields(piece.child("CellData"), cells_, tet_to_cell_.empty() ? nullptr : &tet_to_cell_);
     read_names(grid);
     take_material(result_, options_, name_);
     note_dropped_arrays(grid, piece);
@@ -95,18 +96,20 @@ class VtuReader {
     if (!cells) data_.fail(piece, "there are no Cells in it");
     const pugi::xml_node types_node = array(cells, "types"), offsets_node = array(cells, "offsets"),
                          connectivity_node = array(cells, "connectivity");
-    const std::vector<std::int64_t> types = data_.integers(types_node, cells_);
+    const std::vector<std::uint32_t> types = data_.counts(types_node, cells_);
     expect_size(types_node, types.size(), cells_);
-    const std::vector<std::int64_t> offsets = data_.integers(offsets_node, cells_);
+    const std::vector<std::uint32_t> offsets = data_.counts(offsets_node, cells_);
     expect_size(offsets_node, offsets.size(), cells_);
-    const std::vector<std::int64_t> connectivity = data_.integers(
-        connectivity_node,
-        offsets.empty() ? 0 : static_cast<std::size_t>(std::max<std::int64_t>(0, offsets.back())));
-    std::int64_t begin = 0;
+    const std::vector<std::uint32_t> connectivity =
+        data_.counts(connectivity_node, offsets.empty() ? 0 : offsets.back());
+    const auto tets = static_cast<std::size_t>(std::count(types.begin(), types.end(), vtk_tet_type));
+    result_.mesh.tets.reserve(tets);
+    if (tets < cells_) tet_to_cell_.reserve(tets);
+    std::size_t begin = 0;
     OtherVtkCells other_cells;
     for (std::size_t c = 0; c < cells_; ++c) {
-      const std::int64_t end = offsets[c];
-      if (end < begin || end > std::ssize(connectivity))
+      const std::size_t end = offsets[c];
+      if (end < begin || end > connectivity.size())
         data_.fail(offsets_node, "cell " + std::to_string(c) + " ends at " + std::to_string(end) + " of " +
                                      std::to_string(connectivity.size()) + "; the file is damaged");
       if (types[c] == vtk_tet_type) {
@@ -115,15 +118,14 @@ class VtuReader {
                                        std::to_string(end - begin) + " points; the file is damaged");
         Tet tet;
         for (std::size_t k = 0; k < 4; ++k) {
-          const std::int64_t index = connectivity[static_cast<std::size_t>(begin) + k];
-          if (index < 0 || index >= std::ssize(result_.mesh.points))
+          tet[k] = connectivity[begin + k];
+          if (tet[k] >= points_)
             data_.fail(connectivity_node, "cell " + std::to_string(c) + " names point " +
-                                              std::to_string(index) + " of " + std::to_string(points_) +
+                                              std::to_string(tet[k]) + " of " + std::to_string(points_) +
                                               "; export the file again");
-          tet[k] = static_cast<Index>(index);
         }
         result_.mesh.tets.push_back(tet);
-        tet_to_cell_.push_back(c);
+        if (tets < cells_) tet_to_cell_.push_back(c);
       } else {
         other_cells.add(types[c], c);
       }
@@ -131,7 +133,7 @@ class VtuReader {
     }
     if (other_cells.has_volumes()) data_.fail(types_node, other_cells.refusal());
     other_cells.append_flat_to(result_.dropped);
-    if (tet_to_cell_.empty())
+    if (tets == 0)
       data_.fail(cells, "there are no linear tets (type 10) among its " + std::to_string(cells_) +
                             " cells; a tet mesh is needed");
   }
@@ -155,7 +157,7 @@ class VtuReader {
       const auto per_item = static_cast<std::size_t>(components);
       field.values = data_.numbers(node, per_item * n);
       expect_size(node, field.values.size(), per_item * n);
-      if (chosen && chosen->size() < n) {
+      if (chosen) {
         for (std::size_t i = 0; i < chosen->size(); ++i)
           for (std::size_t k = 0; k < per_item; ++k)
             field.values[i * per_item + k] = field.values[(*chosen)[i] * per_item + k];
@@ -209,7 +211,7 @@ class VtuReader {
   const ReadTetMeshOptions& options_;
   std::size_t file_size_;
   std::size_t points_ = 0, cells_ = 0;
-  std::vector<std::size_t> tet_to_cell_;
+  std::vector<std::size_t> tet_to_cell_;  ///< where some cells are no tets
   ReadTetMesh result_;
 };
 

@@ -22,6 +22,8 @@ namespace {
 
 /// The best that deflate can do: 1032 bytes become one (zlib, "Technical Details").
 constexpr std::uint64_t max_zlib_ratio = 1032;
+/// Bytes of an uncompressed array that are decoded at a time.
+constexpr std::size_t piece_bytes = std::size_t{1} << 20;
 
 /// Has the interface of Base64Reader, for bytes that are not encoded.
 class RawReader {
@@ -93,7 +95,8 @@ void VtuData::fail(pugi::xml_node node, const std::string& message) const {
 }
 
 template <class Source>
-std::string VtuData::decode_from(Source source, pugi::xml_node array, std::size_t max_bytes) const {
+void VtuData::decode_from(Source source, pugi::xml_node array, std::size_t max_bytes,
+                          const DecodedBytes& out) const {
   const auto read_size = [&] {
     char bytes[8];
     const std::size_t n = wide_header_ ? 8 : 4;
@@ -107,16 +110,20 @@ std::string VtuData::decode_from(Source source, pugi::xml_node array, std::size_
     if (size > max_bytes)
       fail(array, std::to_string(size) + " bytes, but " + std::to_string(max_bytes) + " were expected");
   };
-  std::string out;
+  std::string decoded;
   if (!compressed_) {
     const std::uint64_t size = read_size();
     check_size(size, source.max_left());
-    out.resize(static_cast<std::size_t>(size));
-    if (source.read(out.data(), out.size()) != out.size()) fail(array, cut_short());
-    return out;
+    out.begin(static_cast<std::size_t>(size));
+    for (std::uint64_t left = size; left > 0; left -= decoded.size()) {
+      decoded.resize(static_cast<std::size_t>(std::min<std::uint64_t>(left, piece_bytes)));
+      if (source.read(decoded.data(), decoded.size()) != decoded.size()) fail(array, cut_short());
+      out.piece(decoded);
+    }
+    return;
   }
   const std::uint64_t blocks = read_size();
-  if (blocks == 0) return out;
+  if (blocks == 0) return;
   const std::uint64_t block_size = read_size(), last = read_size(), left = source.max_left();
   if (blocks > left / 4) fail(array, cut_short());
   std::vector<std::uint64_t> packed_sizes(static_cast<std::size_t>(blocks));
@@ -135,29 +142,27 @@ std::string VtuData::decode_from(Source source, pugi::xml_node array, std::size_
   if (block_size > 0 && blocks - 1 > possible / block_size) check_size(UINT64_MAX, possible);
   const std::uint64_t size = last > 0 ? (blocks - 1) * block_size + last : blocks * block_size;
   check_size(size, possible);
-  out.resize(static_cast<std::size_t>(size));
+  out.begin(static_cast<std::size_t>(size));
   const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> decompressor(
       libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
   if (!decompressor) throw std::bad_alloc();
   std::string packed;
-  std::size_t done = 0;
   for (std::size_t b = 0; b < blocks; ++b) {
     if (packed_sizes[b] > source.max_left()) fail(array, cut_short());
     packed.resize(static_cast<std::size_t>(packed_sizes[b]));
     if (source.read(packed.data(), packed.size()) != packed.size()) fail(array, cut_short());
-    const auto expected = static_cast<std::size_t>(b + 1 == blocks && last > 0 ? last : block_size);
-    // Anything but exactly `expected` bytes is an error. Takes 40 % of zlib's time on these blocks.
-    if (libdeflate_zlib_decompress(decompressor.get(), packed.data(), packed.size(), out.data() + done,
-                                   expected, nullptr) != LIBDEFLATE_SUCCESS)
+    decoded.resize(static_cast<std::size_t>(b + 1 == blocks && last > 0 ? last : block_size));
+    // Anything but exactly that many bytes is an error. Takes 40 % of zlib's time on these blocks.
+    if (libdeflate_zlib_decompress(decompressor.get(), packed.data(), packed.size(), decoded.data(),
+                                   decoded.size(), nullptr) != LIBDEFLATE_SUCCESS)
       fail(array, "block " + std::to_string(b) + " of its compressed data is damaged");
-    done += expected;
+    out.piece(decoded);
   }
-  return out;
 }
 
-std::string VtuData::decode(pugi::xml_node array, std::size_t max_bytes) const {
+void VtuData::decode(pugi::xml_node array, std::size_t max_bytes, const DecodedBytes& out) const {
   const std::string_view format = array.attribute("format").as_string();
-  if (format == "binary") return decode_from(Base64Reader(array.child_value()), array, max_bytes);
+  if (format == "binary") return decode_from(Base64Reader(array.child_value()), array, max_bytes, out);
   if (format != "appended") fail(array, "unknown format " + in_quotes(format));
   const std::string_view text = array.attribute("offset").as_string();
   std::int64_t offset = 0;
@@ -165,8 +170,27 @@ std::string VtuData::decode(pugi::xml_node array, std::size_t max_bytes) const {
     fail(array, "its offset " + in_quotes(text) + " is outside the appended data (" +
                     std::to_string(appended_.size()) + " bytes); the file is cut short");
   const std::string_view data = appended_.substr(static_cast<std::size_t>(offset));
-  return appended_raw_ ? decode_from(RawReader(data), array, max_bytes)
-                       : decode_from(Base64Reader(data), array, max_bytes);
+  appended_raw_ ? decode_from(RawReader(data), array, max_bytes, out)
+                : decode_from(Base64Reader(data), array, max_bytes, out);
+}
+
+/// Number `place` of an array as the kind asked for.
+template <class Value, class Stored>
+Value VtuData::checked(Stored stored, pugi::xml_node array, std::size_t place) const {
+  if constexpr (std::is_integral_v<Value> && std::is_floating_point_v<Stored>) {
+    if (!(stored == std::floor(stored) && std::fabs(stored) < 0x1p53))
+      fail(array, "expected whole numbers, found " + std::to_string(stored));
+  } else if constexpr (std::is_integral_v<Value> && std::is_same_v<Stored, std::uint64_t>) {
+    if (stored > static_cast<std::uint64_t>(INT64_MAX)) fail(array, "a value beyond 2^63");
+  }
+  if constexpr (std::is_same_v<Value, std::uint32_t>) {
+    const auto value = static_cast<std::int64_t>(stored);
+    if (value < 0 || value > UINT32_MAX)
+      fail(array, "number " + std::to_string(place) + " (counted from 0) is " + std::to_string(value) +
+                      ", expected 0 to 4294967295; the file is damaged");
+  }
+  // NOLINTNEXTLINE(bugprone-signed-char-misuse): an Int8 is a number here, not a character.
+  return static_cast<Value>(stored);
 }
 
 template <class Value>
@@ -175,29 +199,33 @@ std::vector<Value> VtuData::values(pugi::xml_node array, std::size_t max_count) 
   if (std::string_view(array.attribute("format").as_string("ascii")) == "ascii") {
     TextScanner in(array.child_value(), name_);
     for (std::string_view word; !(word = in.word()).empty();) {
-      Value value{};
+      std::conditional_t<std::is_integral_v<Value>, std::int64_t, double> value{};
       if (!parse_number(word, value)) fail(array, "expected a number, found " + in_quotes(word));
       if (out.size() == max_count)
         fail(array, "more than the " + std::to_string(max_count) + " values expected");
-      out.push_back(value);
+      out.push_back(checked<Value>(value, array, out.size()));
     }
     return out;
   }
   const auto convert = [&]<class Stored>(Stored) {
-    const std::string bytes = decode(array, max_count > SIZE_MAX / 8 ? SIZE_MAX : max_count * sizeof(Stored));
-    if (bytes.size() % sizeof(Stored) != 0) fail(array, "its size is no multiple of that of its numbers");
-    out.resize(bytes.size() / sizeof(Stored));
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      const auto stored = load<Stored>(bytes.data() + i * sizeof(Stored), swap_);
-      if constexpr (std::is_integral_v<Value> && std::is_floating_point_v<Stored>) {
-        if (!(stored == std::floor(stored) && std::fabs(stored) < 0x1p53))
-          fail(array, "expected whole numbers, found " + std::to_string(stored));
-      } else if constexpr (std::is_integral_v<Value> && std::is_same_v<Stored, std::uint64_t>) {
-        if (stored > static_cast<std::uint64_t>(INT64_MAX)) fail(array, "a value beyond 2^63");
-      }
-      // NOLINTNEXTLINE(bugprone-signed-char-misuse): an Int8 is a number here, not a character.
-      out[i] = static_cast<Value>(stored);
-    }
+    std::string rest;  // of a number that two pieces share
+    decode(array, max_count > SIZE_MAX / 8 ? SIZE_MAX : max_count * sizeof(Stored),
+           {[&](std::size_t size) {
+              if (size % sizeof(Stored) != 0) fail(array, "its size is no multiple of that of its numbers");
+              out.reserve(size / sizeof(Stored));
+            },
+            [&](std::string_view bytes) {
+              while (!rest.empty() && !bytes.empty()) {
+                rest += bytes.front();
+                bytes.remove_prefix(1);
+                if (rest.size() < sizeof(Stored)) continue;
+                out.push_back(checked<Value>(load<Stored>(rest.data(), swap_), array, out.size()));
+                rest.clear();
+              }
+              for (; bytes.size() >= sizeof(Stored); bytes.remove_prefix(sizeof(Stored)))
+                out.push_back(checked<Value>(load<Stored>(bytes.data(), swap_), array, out.size()));
+              if (rest.empty()) rest = bytes;
+            }});
   };
   const std::string_view type = array.attribute("type").as_string();
   if (type == "Float64")
@@ -231,6 +259,10 @@ std::vector<double> VtuData::numbers(pugi::xml_node array, std::size_t max_count
 
 std::vector<std::int64_t> VtuData::integers(pugi::xml_node array, std::size_t max_count) const {
   return values<std::int64_t>(array, max_count);
+}
+
+std::vector<std::uint32_t> VtuData::counts(pugi::xml_node array, std::size_t max_count) const {
+  return values<std::uint32_t>(array, max_count);
 }
 
 void write_vtu_array(std::size_t size, const std::function<void(std::size_t begin, std::span<char>)>& fill,

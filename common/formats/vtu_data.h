@@ -27,17 +27,26 @@ class VtuData {
   /// not of the kind asked for.
   std::vector<double> numbers(pugi::xml_node array, std::size_t max_count) const;
   std::vector<std::int64_t> integers(pugi::xml_node array, std::size_t max_count) const;
+  /// Whole numbers from 0 to 2^32 - 1, in half the memory.
+  std::vector<std::uint32_t> counts(pugi::xml_node array, std::size_t max_count) const;
 
   /// Throws InputError with the byte offset of `node`.
   [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const;
   [[noreturn]] void fail(const std::string& message) const;
 
  private:
+  /// What takes the bytes of an array, piece by piece: a large one never stands in memory as a whole.
+  struct DecodedBytes {
+    std::function<void(std::size_t size)> begin;
+    std::function<void(std::string_view bytes)> piece;
+  };
+  template <class Value, class Stored>
+  Value checked(Stored stored, pugi::xml_node array, std::size_t place) const;
   template <class Value>
   std::vector<Value> values(pugi::xml_node array, std::size_t max_count) const;
-  std::string decode(pugi::xml_node array, std::size_t max_bytes) const;
+  void decode(pugi::xml_node array, std::size_t max_bytes, const DecodedBytes& out) const;
   template <class Source>
-  std::string decode_from(Source source, pugi::xml_node array, std::size_t max_bytes) const;
+  void decode_from(Source source, pugi::xml_node array, std::size_t max_bytes, const DecodedBytes& out) const;
 
   std::string name_;
   std::size_t file_size_;
