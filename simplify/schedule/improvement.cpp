@@ -124,7 +124,8 @@ class ImprovementLoop {
                                  : max_idle_rounds_when_good))
       return false;
     min_poor_ = std::min(min_poor_, poor.size());
-    last_resort_ = stuck_ && (idle_ > 0 || !plan_.fast || !many);
+    last_resort_ = stuck_ && (idle_ > 0 || (plan_.fast && !many));
+    perturbs_ = stuck_ && (last_resort_ || !plan_.fast);
     return true;
   }
 
@@ -134,7 +135,7 @@ class ImprovementLoop {
                             : kept_share * static_cast<double>(plan_.target_tets - plan_.min_tets);
     rules_.count.min = surgery_.count.min = plan_.min_tets + static_cast<std::size_t>(kept);
     if (2 * mesh_.live_tets() > plan_.target_tets + plan_.max_tets) make_room(poor);
-    if (last_resort_) perturb(poor);
+    if (perturbs_) perturb(poor);
     if (stuck_) move_points_around(poor);
     std::vector<ListedTet> tries = worth_trying(poor);
     tried_ = std::move(poor);
@@ -160,7 +161,7 @@ class ImprovementLoop {
   }
 
   void perturb(const std::vector<ListedTet>& poor) {
-    BlockRules perturbation = surgery_;
+    BlockRules perturbation = last_resort_ ? surgery_ : rules_;
     perturbation.good_enough = perturbed_share * bounds_.poor;
     runner_.tets(
         area_.tets_around(poor),
@@ -200,7 +201,7 @@ class ImprovementLoop {
   std::vector<ListedTet> tried_;  ///< in the last round, by number
   std::size_t min_poor_ = 0;      ///< the minimum of poor tets after a round
   int idle_ = 0;                  ///< rounds in a row without gain
-  bool stuck_ = false, last_resort_ = false;
+  bool stuck_ = false, perturbs_ = false, last_resort_ = false;
 };
 
 }  // namespace
