@@ -50,8 +50,9 @@ class RemeshRegion {
   Value value_;
 };
 
-/// What a call changed. Numbers of what is not listed stay what they were. A number that went may be given
-/// again in the same call; it then is in both lists. All ascending.
+/// What a call changed. Numbers of what is not listed stay what they were. The number of a tet that went may
+/// be given again in the same call; it then is in both lists. That of a point, too: it then is among those
+/// that moved, as if the point had gone to the new one's place. All ascending.
 struct RemeshChanges {
   std::vector<Index> removed_tets, added_tets;
   std::vector<Index> removed_points, added_points;
@@ -73,10 +74,11 @@ struct Renumbering {
 /// Vertices and tets have numbers, those of slots: 0 <= number < point_slots(), tet_slots(). Not every slot
 /// is used; what is there keeps its number until it goes or compact() is called. Materials, topology and the
 /// volumes of materials are kept as by simplify(): each call's surface is the one that it found. Lengths in
-/// input units. Coordinates are kept to the bit.
+/// input units. Coordinates are those of the mesh that came, to the bit; places given to set_positions() may
+/// be rounded in the last one.
 ///
 /// The result of a call depends on the calls before it and their arguments, never on the number of threads.
-/// One call at a time. Where a call throws Interrupted or InputError, nothing was changed; after anything
+/// One call at a time. Where a call throws UsageError or InputError, nothing was changed; after anything
 /// else the object must not be used.
 class Remesher {
  public:
@@ -119,8 +121,8 @@ class Remesher {
 
   // All three throw UsageError where the region lists tets that are not there, or the size is not above 0.
 
-  /// Makes the tets of the region well shaped that are not (RemesherOptions::min_solid_angle); their number
-  /// stays about the same.
+  /// Makes the tets of the region well shaped that are not (RemesherOptions::min_solid_angle), also by points
+  /// that come or go.
   RemeshChanges improve(const RemeshRegion& region);
   /// Collapses edges much shorter than `size` in the region, as far as topology, surfaces and shapes allow,
   /// without making edges much longer than it; then improves.

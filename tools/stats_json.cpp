@@ -35,8 +35,7 @@ nlohmann::json iteration_json(const IterationReport& it) {
           {"lock_conflicts", it.conflicts},
           {"repeats", it.repeats},
           {"batches", it.batches},
-          {"skipped", 0},  // no item is given up any more
-
+          {"skipped", 0},  // a key of the schema: no item is given up
           {"seconds", it.seconds}};
 }
 

@@ -187,7 +187,7 @@ Value VtuData::checked(Stored stored, pugi::xml_node array, std::size_t place) c
     const auto value = static_cast<std::int64_t>(stored);
     if (value < 0 || value > UINT32_MAX)
       fail(array, "number " + std::to_string(place) + " (counted from 0) is " + std::to_string(value) +
-                      ", expected 0 to 4294967295; the file is damaged");
+                      "; 0 to 4294967295 are supported");
   }
   // NOLINTNEXTLINE(bugprone-signed-char-misuse): an Int8 is a number here, not a character.
   return static_cast<Value>(stored);

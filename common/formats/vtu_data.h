@@ -35,7 +35,8 @@ class VtuData {
   [[noreturn]] void fail(const std::string& message) const;
 
  private:
-  /// What takes the bytes of an array, piece by piece: a large one never stands in memory as a whole.
+  /// What takes the bytes of an array, piece by piece (a block of a compressed one): large ones need not
+  /// stand in memory as a whole.
   struct DecodedBytes {
     std::function<void(std::size_t size)> begin;
     std::function<void(std::string_view bytes)> piece;

@@ -46,7 +46,8 @@ class LocalNumbers {
     Index key = 0;
     std::uint32_t stamp = 0;  ///< first_ + number; below first_: free
   };
-  std::size_t home(Index key) const { return (key * 0x9e3779b1u >> 7) & mask_; }
+  /// Multiplicative hashing by the golden ratio (Knuth 1973, section 6.4); the upper half of the product.
+  std::size_t home(Index key) const { return (key * std::uint64_t{0x9e3779b97f4a7c15} >> 32) & mask_; }
   /// Doubles the table; the free slot for `key`.
   std::size_t grow(Index key);
   /// After 2^31 keys: nothing of before may look current.

@@ -34,7 +34,8 @@ class Reservations {
 #endif
     return true;
   }
-  /// Gives vertices to the next winner; those that others marked, too, which none of both needs.
+  /// Gives vertices to the next winner, also such that earlier winners marked: it needs none of them, so what
+  /// it has read is what it would read after them.
   void mark(std::span<const Index> marked) {
     for (Index v : marked) words_[v] = next_;
     ++next_;

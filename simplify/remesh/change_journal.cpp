@@ -10,8 +10,11 @@ void ChangeJournal::clear() {
 }
 
 void ChangeJournal::note(const EditableMesh& mesh, const Proposal& proposal) {
-  for (Index t : proposal.removed) note_tet(mesh, t);
-  if (proposal.change != Proposal::Change::replace)
+  using Change = Proposal::Change;
+  // What a kind of change does not use may hold what an operation left that was tried before.
+  if (proposal.change != Change::move)
+    for (Index t : proposal.removed) note_tet(mesh, t);
+  if (proposal.change != Change::replace)
     for (const Proposal::RatedTet& t : proposal.rated) note_tet(mesh, t.tet);
   for (Index t : proposal.new_tets) note_tet(mesh, t);
   if (proposal.has_new_point) note_point(mesh, proposal.new_point_id);

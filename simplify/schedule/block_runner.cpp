@@ -151,7 +151,7 @@ bool BlockRunner::select(const Stop& stop) {
   lost_ = 0;
   std::size_t tets = 0, points = 0;
   for (std::size_t i = 0; i < batch_.size(); ++i) {
-    if (outcomes_[i] != Outcome::done) continue;
+    if (outcomes_[i] != Outcome::done || proposals_[i].change != Proposal::Change::replace) continue;
     const Proposal& p = proposals_[i];
     if (p.added.size() > p.removed.size()) tets += p.added.size() - p.removed.size();
     points += p.has_new_point;

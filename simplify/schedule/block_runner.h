@@ -27,7 +27,7 @@ struct ListedTet {
 /// Random numbers come from (seed, block, item). Nothing depends on which thread does what, or when.
 class BlockRunner {
  public:
-  /// `batch_size` 0: from the number of items.
+  /// `batch_size`: of the first batch of a block, and the most for all; 0: from the number of items.
   BlockRunner(EditableMesh& mesh, SurfaceGrid& grid, VolumeLedger& ledger, std::uint64_t seed,
               std::size_t batch_size, Progress* progress);
   ~BlockRunner();

@@ -5,8 +5,6 @@
 #include <vector>
 
 #include "simplify/operations/collapse.h"
-#include "simplify/operations/edge_removal.h"
-#include "simplify/operations/face_removal.h"
 #include "simplify/operations/smoothing.h"
 #include "simplify/schedule/improve_turn.h"
 

@@ -28,8 +28,8 @@ struct SimplifyOptions {
   /// Must outlive the call.
   const ReferenceSurface* reference = nullptr;
   std::uint64_t seed = 1;
-  /// Points or tets of a batch (BlockRunner); 0: from the number of items. Results depend on it, never on the
-  /// number of threads.
+  /// Points or tets of a batch (BlockRunner), at most; 0: from the number of items. Results depend on it,
+  /// never on the number of threads.
   std::size_t batch_size = 0;
   /// Points that never move nor go, one number for each point of the mesh, not 0 where it is frozen; tets
   /// that have only such points stay. Empty: none.

@@ -15,7 +15,7 @@ namespace tetwright {
 
 namespace {
 
-// Found by trying on scans (README.md, Schedule).
+// Found by trying on scans (README.md, The tuned schedule).
 constexpr double first_error_edges = 4;  ///< E at first, in ideal edges
 constexpr double error_growth = 1.3;     ///< E's factor after an iteration that removed too little
 constexpr double min_removed = 0.15;     ///< of the tets: less than that is too little
