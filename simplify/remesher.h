@@ -69,7 +69,8 @@ struct Renumbering {
 /// McMillan 2004 name in their section 7). It keeps its links, the grid of its surface, its qualities and its
 /// fields, and repairs them where something changes: time and memory of a call go with the region, not with
 /// the mesh. (There is room for twice the slots that there are at first, and after compact(); the call that
-/// goes beyond copies the arrays once.) benchmarks/README.md has times.
+/// goes beyond copies the arrays once. The cells of the grid keep the size that suited the surface then: call
+/// compact() where triangles have become many times smaller or larger.) benchmarks/README.md has times.
 ///
 /// Vertices and tets have numbers, those of slots: 0 <= number < point_slots(), tet_slots(). Not every slot
 /// is used; what is there keeps its number until it goes or compact() is called. Materials, topology and the

@@ -57,12 +57,14 @@ class Subject {
     const Stopwatch watch;
     remesher_.emplace(jittered_lattice(n_, lattice_jitter, o.seed));
     seconds_ = watch.seconds();
-    if (!o.fields) return;
-    std::vector<double> at_points(remesher_->point_slots()), at_tets(remesher_->tet_slots());
-    for (double& x : at_points) x = random_.uniform();
-    for (double& x : at_tets) x = random_.uniform();
-    remesher_->add_point_field(1, std::move(at_points));
-    remesher_->add_tet_field(1, std::move(at_tets));
+    if (o.fields) add_fields();
+  }
+
+  /// Goes on with a new Remesher of the same mesh.
+  void renew(bool fields) {
+    TetMesh mesh = remesher_->mesh();
+    remesher_.emplace(std::move(mesh));
+    if (fields) add_fields();
   }
 
   Remesher& remesher() { return *remesher_; }
@@ -120,6 +122,14 @@ class Subject {
   Random& random() { return random_; }
 
  private:
+  void add_fields() {
+    std::vector<double> at_points(remesher_->point_slots()), at_tets(remesher_->tet_slots());
+    for (double& x : at_points) x = random_.uniform();
+    for (double& x : at_tets) x = random_.uniform();
+    remesher_->add_point_field(1, std::move(at_points));
+    remesher_->add_tet_field(1, std::move(at_tets));
+  }
+
   /// Cubes across a region, with a gap.
   static int width_of(std::size_t tets) {
     return static_cast<int>(std::ceil(std::cbrt(static_cast<double>(tets) / 6))) + gap;
@@ -247,16 +257,17 @@ nlohmann::json measure_calls(double size, std::size_t tets, const Options& o) {
 }
 
 /// Many calls in a row: at each of many places a region is refined, coarsened, moved and improved. What is
-/// left after the first call and after each quarter.
+/// left after the first call and after each quarter, and after another quarter by a new Remesher of that
+/// mesh: what only the old one has gathered would show there.
 nlohmann::json measure_row(const Options& o) {
   const ThreadLimit one(1);
   Subject subject(o.calls_size, o);
-  Remesher& r = subject.remesher();
-  const std::size_t first_count = r.tet_count();
+  const std::size_t first_count = subject.remesher().tet_count();
   constexpr double half = 2.5;  // a box of about 1,000 tets
   std::vector<double> ms;       // since the last state
   nlohmann::json states = nlohmann::json::array();
   const auto take_state = [&](int calls) {
+    const Remesher& r = subject.remesher();
     reset_peak();
     states.push_back({{"calls", calls},
                       {"median_ms", median(ms)},
@@ -269,7 +280,8 @@ nlohmann::json measure_row(const Options& o) {
   };
   Vec3 centre = Vec3::Zero();
   std::vector<Index> moved;
-  for (int call = 0; call < o.calls; ++call) {
+  const auto make_call = [&](int call) {
+    Remesher& r = subject.remesher();
     const Kind kind = call % 3 == 0 ? Kind::refine : call % 3 == 1 ? Kind::coarsen : Kind::improve;
     if (kind == Kind::refine)
       for (int axis = 0; axis < 3; ++axis) centre[axis] = subject.random().uniform() * subject.cubes();
@@ -282,9 +294,16 @@ nlohmann::json measure_row(const Options& o) {
     const RemeshChanges changes = subject.call(kind, RemeshRegion::box(box.low, box.high));
     ms.push_back(1000 * watch.seconds());
     moved = changes.added_tets;
+  };
+  for (int call = 0; call < o.calls; ++call) {
+    make_call(call);
     if (call == 0 || 4 * (call + 1) % o.calls < 4) take_state(call + 1);
   }
-  const TetMesh mesh = r.mesh();
+  const TetMesh mesh = subject.remesher().mesh();
+  subject.renew(o.fields);
+  moved.clear();
+  for (int call = 0; call < std::max(3, o.calls / 4); ++call) make_call(call);
+  take_state(o.calls + std::max(3, o.calls / 4));
   nlohmann::json faults = nlohmann::json::array();
   for (const MeshFinding& f : check_mesh(mesh)) faults.push_back(mesh_finding_line(f));
   return {{"calls", o.calls}, {"tets_before", first_count}, {"states", states}, {"faults", faults}};
