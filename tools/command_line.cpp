@@ -99,7 +99,7 @@ void add_common(CLI::App& app, CommandLine& c) {
 
 void add_seed(CLI::App& app, CommandLine& c) {
   add_whole_number(app, "--seed", c.seed, 0, std::numeric_limits<std::uint64_t>::max(),
-                   "Seed of the random numbers; with one thread the same seed gives the same bytes")
+                   "Seed of the random numbers; the same seed gives the same bytes")
       ->default_str(std::to_string(c.seed));
 }
 

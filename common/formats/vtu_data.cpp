@@ -199,11 +199,16 @@ std::vector<Value> VtuData::values(pugi::xml_node array, std::size_t max_count) 
   if (std::string_view(array.attribute("format").as_string("ascii")) == "ascii") {
     TextScanner in(array.child_value(), name_);
     for (std::string_view word; !(word = in.word()).empty();) {
-      std::conditional_t<std::is_integral_v<Value>, std::int64_t, double> value{};
-      if (!parse_number(word, value)) fail(array, "expected a number, found " + in_quotes(word));
       if (out.size() == max_count)
         fail(array, "more than the " + std::to_string(max_count) + " values expected");
-      out.push_back(checked<Value>(value, array, out.size()));
+      std::int64_t whole = 0;
+      double number = 0;
+      if (std::is_integral_v<Value> && parse_number(word, whole))
+        out.push_back(checked<Value>(whole, array, out.size()));
+      else if (parse_number(word, number))
+        out.push_back(checked<Value>(number, array, out.size()));
+      else
+        fail(array, "expected a number, found " + in_quotes(word));
     }
     return out;
   }

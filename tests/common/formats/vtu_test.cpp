@@ -178,6 +178,18 @@ TEST(Vtu, EveryEncoding) {
         }
 }
 
+TEST(Vtu, WholeNumbersMayBeStoredAsFloats) {
+  for (const char* format : {"ascii", "binary", "raw"}) {
+    std::vector<Array> cells = some_cells(false);
+    cells[2] = array<double>("Float64", "types", {5, 10}, false);
+    const ReadTetMesh r = read_vtu(file({.format = format}, some_points(false), cells, {}), "f");
+    EXPECT_EQ(r.mesh.tets, (std::vector<Tet>{{0, 1, 2, 3}})) << format;
+    cells[2] = array<double>("Float64", "types", {5, 10.5}, false);
+    expect_input_error(read_vtu, file({.format = format}, some_points(false), cells, {}), "whole numbers",
+                       "10.5");
+  }
+}
+
 TEST(Vtu, OtherVolumeCellsAreRefusedByKindAndNumber) {
   for (const char* format : {"ascii", "binary", "raw"}) {
     const auto with_first = [&](std::uint8_t type) {
