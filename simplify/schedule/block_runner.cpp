@@ -23,8 +23,8 @@ constexpr std::uint32_t spacing = 24;
 constexpr std::size_t min_batch = 256, max_batch = 1024, batches_of_large_blocks = 1024;
 /// The same in the order given, where each item takes ten times as long and what failed before comes again.
 constexpr std::size_t min_ordered_batch = 16, max_ordered_batch = 1024, ordered_batches = 16;
-/// Of the proposals of a batch, the share that loses: above it the next batch is smaller, below half of it
-/// larger. What loses is decided twice, and in a mesh of few points, or around points of many tets, large
+/// Of the proposals of a batch, the share that loses: above it the next batch is filled up less, below half
+/// of it more. What loses is decided twice, and in a mesh of few points, or around points of many tets, large
 /// batches hold little else.
 constexpr double max_lost_share = 0.3;
 /// Batches are not made smaller than this.
