@@ -184,6 +184,7 @@ Value VtuData::checked(Stored stored, pugi::xml_node array, std::size_t place) c
     if (stored > static_cast<std::uint64_t>(INT64_MAX)) fail(array, "a value beyond 2^63");
   }
   if constexpr (std::is_same_v<Value, std::uint32_t>) {
+    // NOLINTNEXTLINE(bugprone-signed-char-misuse): an Int8 is a number here, not a character.
     const auto value = static_cast<std::int64_t>(stored);
     if (value < 0 || value > UINT32_MAX)
       fail(array, "number " + std::to_string(place) + " (counted from 0) is " + std::to_string(value) +
