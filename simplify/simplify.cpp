@@ -41,7 +41,7 @@ constexpr int max_polish_rounds = 3;
 constexpr int max_last_rounds = 20;
 /// Factors by which the count may change with ImproveOptions::free_count, so that detail is not lost by the
 /// way and no mesh grows for ever.
-constexpr double least_free = 0.8, most_free = 4;
+constexpr double min_free = 0.8, max_free = 4;
 /// The first bound on the way there, for a --min-solid-angle of next to nothing.
 constexpr double min_first_bound = 1e-3;
 /// Factor from one bound to the next.
@@ -166,8 +166,8 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
   engine.rules.max_error = improve_error_edges * engine.rules.objective.quality.ideal_edge;
   begin_improvement(engine);
   const double below = options.only_below > 0 ? options.only_below : improve_margin * options.min_solid_angle;
-  const double least = options.free_count ? least_free : 1 - improve_slack;
-  const double most = options.free_count ? most_free : 1 + improve_slack;
+  const double least = options.free_count ? min_free : 1 - improve_slack;
+  const double most = options.free_count ? max_free : 1 + improve_slack;
   // The last rounds are kept for what comes in the end.
   const int kept_rounds = options.only_below > 0 ? 0 : std::min(options.max_iterations / 2, max_last_rounds);
   ImprovementPlan plan{.kind = "improve",

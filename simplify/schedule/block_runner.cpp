@@ -28,7 +28,7 @@ constexpr std::size_t min_ordered_batch = 16, max_ordered_batch = 1024, ordered_
 /// batches hold little else.
 constexpr double max_lost_share = 0.3;
 /// Batches are not made smaller than this.
-constexpr std::size_t least_batch = 16;
+constexpr std::size_t min_shrunk_batch = 16;
 /// Items that a thread decides at a time, and winners that it commits.
 constexpr std::size_t chunk_in_order = 2, chunk_shuffled = 16, commit_chunk = 16;
 /// Batches with fewer chunks than this are not worth waking other threads.
@@ -192,7 +192,7 @@ void BlockRunner::commit_winners() {
 std::size_t BlockRunner::next_batch_size(std::size_t size, std::size_t max_size) const {
   const auto lost = static_cast<double>(lost_);
   const double most = max_lost_share * static_cast<double>(lost_ + winners_.size());
-  if (lost > most) return std::max(std::min(least_batch, max_size), size - size / 4);
+  if (lost > most) return std::max(std::min(min_shrunk_batch, max_size), size - size / 4);
   return lost < most / 2 ? std::min(max_size, size + size / 4) : size;
 }
 
