@@ -27,8 +27,6 @@ constexpr double volume_share = 0.015;
 constexpr double poor_margin = 1.27, leave_surface_margin = 1;
 /// Of the bound: what coarsening and refining must leave of shapes that were good.
 constexpr double floor_share = 0.3;
-/// Rings of tets around a region whose surfaces are projected onto.
-constexpr int projection_rings = 2;
 
 struct Field {
   Field(std::size_t count, std::vector<double>&& numbers) : components(count), values(std::move(numbers)) {
@@ -110,8 +108,8 @@ struct Remesher::Impl {
   /// The tets at points, ascending.
   std::vector<Index> tets_at(const std::vector<Index>& points);
   std::vector<Index> points_of(const std::vector<Index>& tets);
-  std::vector<Index> with_rings(std::vector<Index> tets, int rings);
-  SurfaceProjection project_region(const std::vector<Index>& region);
+  /// Onto the surfaces at these points, ascending.
+  SurfaceProjection project_onto(const std::vector<Index>& points);
   template <class Work>
   RemeshChanges call(const RemeshRegion& region, const Work& work);
   RemeshChanges changes() const;
@@ -173,11 +171,6 @@ std::vector<Index> Remesher::Impl::tets_at(const std::vector<Index>& points) {
   return tets;
 }
 
-std::vector<Index> Remesher::Impl::with_rings(std::vector<Index> tets, int rings) {
-  for (int ring = 0; ring < rings; ++ring) tets = tets_at(points_of(tets));
-  return tets;
-}
-
 std::vector<Index> Remesher::Impl::points_of(const std::vector<Index>& tets) {
   std::vector<Index> points;
   seen.clear();
@@ -187,28 +180,26 @@ std::vector<Index> Remesher::Impl::points_of(const std::vector<Index>& tets) {
       seen.number(p, added);
       if (added) points.push_back(p);
     }
+  std::sort(points.begin(), points.end());
   return points;
 }
 
-SurfaceProjection Remesher::Impl::project_region(const std::vector<Index>& region) {
-  const std::vector<Index> inner = with_rings(region, projection_rings - 1), outer = with_rings(inner, 1);
-  LocalNumbers complete;
-  bool added;
-  for (Index t : inner)
-    for (Index p : mesh.points(t)) complete.number(p, added);
+SurfaceProjection Remesher::Impl::project_onto(const std::vector<Index>& points) {
+  const std::vector<Index> tets = tets_at(points);
   std::vector<InterfaceFace> faces;
-  for (Index t : outer)
+  for (Index t : tets)
     for (int f = 0; f < 4; ++f) {
       const FaceLink link = mesh.link(t, f);
-      // An inner one once; its other tet may be beyond the outer ring.
-      if (!link.is_interface() || (!link.is_outside() && link.tet() < t &&
-                                   std::binary_search(outer.begin(), outer.end(), link.tet())))
+      // An inner one once; its other tet may be beyond.
+      if (!link.is_interface() ||
+          (!link.is_outside() && link.tet() < t && std::binary_search(tets.begin(), tets.end(), link.tet())))
         continue;
       const Triangle ids = face_of(mesh.points(t), f);
       faces.push_back({ids, mesh.region(t), mesh.region_across(t, f),
                        link.is_outside() ? link.patch() : grid.patch(mesh, ids)});
     }
-  return SurfaceProjection(mesh, faces, nullptr, [&](Index p) { return complete.find(p) != no_index; });
+  return SurfaceProjection(mesh, faces, nullptr,
+                           [&](Index p) { return std::binary_search(points.begin(), points.end(), p); });
 }
 
 template <class Work>
@@ -216,7 +207,8 @@ RemeshChanges Remesher::Impl::call(const RemeshRegion& region, const Work& work)
   const std::vector<Index> tets = tets_of(region);
   journal.clear();
   if (tets.empty()) return {};
-  const SurfaceProjection projection = project_region(tets);
+  const std::vector<Index> reach = points_of(tets_at(points_of(tets)));
+  const SurfaceProjection projection = project_onto(reach);
   rules.projection = &projection;
   const double floor =
       floor_share * std::min(0.99, shape_quality_bound(options.objective, options.min_solid_angle));
@@ -225,7 +217,7 @@ RemeshChanges Remesher::Impl::call(const RemeshRegion& region, const Work& work)
     RemeshRounds rounds(mesh, runner, journal, rules,
                         {poor_margin * options.min_solid_angle,
                          leave_surface_margin * options.min_solid_angle, static_cast<float>(floor)},
-                        tets);
+                        tets, reach);
     work(rounds);
     rounds.improve();
     operations = rounds.operations();

@@ -27,7 +27,8 @@ struct RemesherOptions {
   std::string name = "mesh";  ///< what messages call the mesh
 };
 
-/// The part of a mesh that a call works on.
+/// The part of a mesh that a call works on. Where that leaves tets around it poor, which share vertices with
+/// it, these are improved too: vertices that are not of the region's tets, but next to them, may move or go.
 class RemeshRegion {
  public:
   /// These tets, by number.

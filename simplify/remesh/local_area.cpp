@@ -25,7 +25,7 @@ LocalArea::LocalArea(const EditableMesh& mesh, BlockRunner& runner, double usual
 }
 
 LocalArea::LocalArea(const EditableMesh& mesh, BlockRunner& runner, ChangeJournal& journal,
-                     const std::vector<Index>& tets)
+                     const std::vector<Index>& tets, const std::vector<Index>& reach)
     : mesh_(mesh),
       runner_(runner),
       journal_(&journal),
@@ -33,9 +33,10 @@ LocalArea::LocalArea(const EditableMesh& mesh, BlockRunner& runner, ChangeJourna
       listed_at_first_(tets.size()),
       usual_edge_(mean_edge(mesh, tets)),
       candidates_(tets) {
+  bool added;
+  for (Index p : reach) reach_.number(p, added);
   for (Index t : tets)
     for (Index p : mesh.points(t)) {
-      bool added;
       points_.number(p, added);
       if (added) first_points_.push_back(p);
     }
@@ -50,8 +51,20 @@ void LocalArea::observe(const Proposal& p) {
   changed_points_.insert(changed_points_.end(), p.marks.begin(), p.marks.end());
   if (journal_) journal_->note(mesh_, p);
   if (!limited_ || !p.has_new_point) return;
+  // Any other would draw points into the area that are two edges away from it.
+  if (!std::all_of(p.marks.begin(), p.marks.end(),
+                   [&](Index q) { return q == p.new_point_id || within_reach(q); }))
+    return;
   bool added;
   points_.number(p.new_point_id, added);
+  reach_.number(p.new_point_id, added);
+}
+
+bool LocalArea::has(const Tet& tet, Part part) const {
+  const auto inside = [&](Index p) { return within(p); };
+  if (part == Part::inner) return std::all_of(tet.begin(), tet.end(), inside);
+  return std::any_of(tet.begin(), tet.end(), inside) &&
+         std::all_of(tet.begin(), tet.end(), [&](Index p) { return within_reach(p); });
 }
 
 std::vector<Index> LocalArea::take_changed_points() {
@@ -67,16 +80,14 @@ std::vector<Index> LocalArea::take_changed_points() {
   return points;
 }
 
-std::vector<Index> LocalArea::tets_at(const std::vector<Index>& points) {
+std::vector<Index> LocalArea::tets_at(const std::vector<Index>& points, Part part) {
   std::vector<Index> tets;
   seen_.clear();
   for (Index p : points)
     walk_.any_tet(mesh_, p, [&](Index t) {
       bool added;
       seen_.number(t, added);
-      const Tet& corners = mesh_.points(t);
-      if (added && std::all_of(corners.begin(), corners.end(), [&](Index q) { return within(q); }))
-        tets.push_back(t);
+      if (added && has(mesh_.points(t), part)) tets.push_back(t);
       return false;
     });
   std::sort(tets.begin(), tets.end());
@@ -85,7 +96,7 @@ std::vector<Index> LocalArea::tets_at(const std::vector<Index>& points) {
 
 std::vector<ListedTet> LocalArea::poor_tets(float limit) {
   // Every tet that was made or changed has only points that were marked, or a new one beside them.
-  const std::vector<Index> changed = tets_at(take_changed_points());
+  const std::vector<Index> changed = tets_at(take_changed_points(), Part::with_rim);
   candidates_.insert(candidates_.end(), changed.begin(), changed.end());
   std::sort(candidates_.begin(), candidates_.end());
   candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
@@ -107,7 +118,7 @@ std::vector<ListedTet> LocalArea::tets_around(const std::vector<ListedTet>& tets
       if (added && mesh_.incident_tet(p) != no_index) points.push_back(p);
     }
   std::vector<ListedTet> around;
-  for (Index t : tets_at(points)) around.push_back({t, mesh_.points(t)});
+  for (Index t : tets_at(points, Part::with_rim)) around.push_back({t, mesh_.points(t)});
   return around;
 }
 

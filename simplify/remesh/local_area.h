@@ -16,11 +16,11 @@ class LocalArea final : public ImprovementArea {
   /// The whole mesh is open to it. `poor` are all tets of at most the first limit that poor_tets() is given.
   LocalArea(const EditableMesh& mesh, BlockRunner& runner, double usual_edge,
             const std::vector<ListedTet>& poor);
-  /// Of these tets, each of which is there once, and of what takes their place: of edges only those between
-  /// their points are worked on, or points that came since, so that work does not spread. `journal` takes
-  /// down what changes.
+  /// Of these tets, each of which is there once, of the rim around them, which are the tets that share points
+  /// with them, and of what takes their place: work does not spread beyond. `reach` are the points of all of
+  /// these. `journal` takes down what changes.
   LocalArea(const EditableMesh& mesh, BlockRunner& runner, ChangeJournal& journal,
-            const std::vector<Index>& tets);
+            const std::vector<Index>& tets, const std::vector<Index>& reach);
   ~LocalArea() override;
   LocalArea(const LocalArea&) = delete;
   LocalArea& operator=(const LocalArea&) = delete;
@@ -38,10 +38,12 @@ class LocalArea final : public ImprovementArea {
 
   /// The points of the tets that there were at first, ascending.
   const std::vector<Index>& first_points() const { return first_points_; }
-  /// The living points of the area around which something changed since this was last called, ascending.
+  /// The living points of the area, without those of the rim alone, around which something changed since this
+  /// was last called, ascending.
   std::vector<Index> take_changed_points();
+  enum class Part { inner, with_rim };
   /// The tets of the area at points, each once, ascending.
-  std::vector<Index> tets_at(const std::vector<Index>& points);
+  std::vector<Index> tets_at(const std::vector<Index>& points, Part part);
   /// From now on poor_tets() looks at these tets, and at what changes.
   void look_at(std::vector<Index> tets) { candidates_ = std::move(tets); }
   /// Operations that were carried out.
@@ -50,6 +52,8 @@ class LocalArea final : public ImprovementArea {
  private:
   void observe(const Proposal& proposal);
   bool within(Index point) const { return !limited_ || points_.find(point) != no_index; }
+  bool within_reach(Index point) const { return !limited_ || reach_.find(point) != no_index; }
+  bool has(const Tet& tet, Part part) const;
 
   const EditableMesh& mesh_;
   BlockRunner& runner_;
@@ -57,7 +61,8 @@ class LocalArea final : public ImprovementArea {
   bool limited_;
   std::size_t listed_at_first_ = 0;
   double usual_edge_ = 0;
-  LocalNumbers points_;  ///< of a limited area
+  /// Of a limited area the points of its tets, with the rim and without.
+  LocalNumbers reach_, points_;
   std::vector<Index> first_points_;
   std::vector<Index> candidates_;      ///< tets that poor_tets() looks at
   std::vector<Index> changed_points_;  ///< since they were last taken

@@ -20,13 +20,14 @@ constexpr int max_coarsening_rounds = 12, max_refining_rounds = 12, max_improvin
 }  // namespace
 
 RemeshRounds::RemeshRounds(EditableMesh& mesh, BlockRunner& runner, ChangeJournal& journal,
-                           const BlockRules& rules, const Plan& plan, const std::vector<Index>& region)
+                           const BlockRules& rules, const Plan& plan, const std::vector<Index>& region,
+                           const std::vector<Index>& reach)
     : mesh_(mesh),
       runner_(runner),
       rules_(rules),
       plan_(plan),
       region_(region),
-      area_(mesh, runner, journal, region) {
+      area_(mesh, runner, journal, region, reach) {
   rules_.max_error = area_.usual_edge();
 }
 
@@ -34,7 +35,7 @@ void RemeshRounds::look_at(std::vector<Index>&& changed) {
   std::sort(changed.begin(), changed.end());
   changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
   std::erase_if(changed, [&](Index p) { return mesh_.incident_tet(p) == no_index; });
-  area_.look_at(area_.tets_at(changed));
+  area_.look_at(area_.tets_at(changed, LocalArea::Part::with_rim));
 }
 
 void RemeshRounds::coarsen(double size) {
@@ -81,7 +82,7 @@ void RemeshRounds::refine(double size) {
         [] { return false; });
     const std::vector<Index> points = area_.take_changed_points();
     changed.insert(changed.end(), points.begin(), points.end());
-    tets = area_.tets_at(points);
+    tets = area_.tets_at(points, LocalArea::Part::inner);
   }
   look_at(std::move(changed));
 }

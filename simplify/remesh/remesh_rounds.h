@@ -14,14 +14,15 @@ class RemeshRounds {
     double leave_surface_angle;  ///< likewise: points of surfaces may leave them a little
     float floor;                 ///< shape_quality() that coarsening and refining leave
   };
-  /// `region`: living tets, each once. `journal` takes down what changes.
+  /// `region`: living tets, each once; `reach`: the points of all tets that share points with them. `journal`
+  /// takes down what changes.
   RemeshRounds(EditableMesh& mesh, BlockRunner& runner, ChangeJournal& journal, const BlockRules& rules,
-               const Plan& plan, const std::vector<Index>& region);
+               const Plan& plan, const std::vector<Index>& region, const std::vector<Index>& reach);
 
   /// Lengths in working coordinates.
   void coarsen(double size);
   void refine(double size);
-  /// What is poor of the region, or of what coarsen() and refine() have changed.
+  /// What is poor of the region, or, with the rim around it, of what coarsen() and refine() have changed.
   void improve();
   /// Operations that were carried out.
   std::uint64_t operations() const { return area_.operations(); }

@@ -124,8 +124,10 @@ void clip(const Piece& piece, int plane, Pieces& out) {
 struct Relation {
   Relation(const PlanedTet& tet, const PlanedTet& planes) : volume(tet.volume()) {
     for (int k = 0; k < 4; ++k) distances[k] = planes.distances(tet.corners()[k]);
+    const Eigen::Array4d most = distances[0].max(distances[1]).max(distances[2].max(distances[3]));
+    apart = (most <= 0).any();
+    if (apart) return;
     const Eigen::Array4d least = distances[0].min(distances[1]).min(distances[2].min(distances[3])),
-                         most = distances[0].max(distances[1]).max(distances[2].max(distances[3])),
                          // What rounding alone puts across a plane, such as the halves of an edge, does not
                          // count as such.
         tolerance = rounding * most.max(-least);
@@ -158,17 +160,13 @@ PlanedTet::PlanedTet(const TetCorners& corners)
     const Vec3 inward = (corners[face[2]] - origin).cross(corners[face[1]] - origin);
     for (int axis = 0; axis < 3; ++axis) inward_[axis][f] = inward[axis];
     offset_[f] = inward.dot(origin);
-    lengths_[f] = inward.norm();
   }
-  centre_ = (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
-  for (const Vec3& p : corners) radius_ = std::max(radius_, (p - centre_).norm());
 }
 
 double overlap_volume(const PlanedTet& first, const PlanedTet& second) {
   const bool ordered = first.volume() <= second.volume();
   const PlanedTet &smaller = ordered ? first : second, &larger = ordered ? second : first;
   // The planes of the larger one tell most pairs apart.
-  if (larger.far_from(smaller)) return 0;
   const Relation a(smaller, larger);
   if (a.apart) return 0;
   if (a.count == 0) return smaller.volume();

@@ -18,18 +18,11 @@ class PlanedTet {
   Eigen::Array4d distances(const Vec3& p) const {
     return inward_[0] * p.x() + inward_[1] * p.y() + inward_[2] * p.z() - offset_;
   }
-  /// Whether one of its planes has all of a ball around the other tet beyond it: cheap, and true for most
-  /// tets that do not meet.
-  bool far_from(const PlanedTet& other) const {
-    return (distances(other.centre_) + other.radius_ * lengths_ <= 0).any();
-  }
 
  private:
   TetCorners corners_;
   std::array<Eigen::Array4d, 3> inward_;  ///< normals, axis by axis: the four faces are computed at once
-  Eigen::Array4d offset_, lengths_;       ///< of the planes, lengths of their normals
-  Vec3 centre_;
-  double radius_ = 0;  ///< of a ball around the centre that holds the tet
+  Eigen::Array4d offset_;                 ///< of the planes
   double volume_;
 };
 

@@ -136,6 +136,37 @@ TEST(Remesher, CoarsensAndRefines) {
   EXPECT_GT(worst_quality(r), 0);
 }
 
+TEST(Remesher, CoarseningEndsInARimOfGoodTetsAndNothingBeyondItChanges) {
+  const TetMesh mesh = two_halves(14, 5, 0.1);
+  Remesher r(mesh);
+  const Box3 box{{5, 5, 5}, {9, 9, 9}};
+  // The points of the region's tets, and those next to them.
+  std::vector<bool> reach(r.point_slots(), false);
+  for (Index p = 0; p < r.point_slots(); ++p) reach[p] = r.has_point(p) && box.contains(r.position(p));
+  for (int ring = 0; ring < 2; ++ring) {
+    const std::vector<bool> inside = reach;
+    for (Index t = 0; t < r.tet_slots(); ++t)
+      if (r.has_tet(t) && std::any_of(r.tet(t).begin(), r.tet(t).end(), [&](Index p) { return inside[p]; }))
+        for (Index p : r.tet(t)) reach[p] = true;
+  }
+  const Snapshot before(r);
+  const RemeshChanges c = r.coarsen(RemeshRegion::box(box.low, box.high), 2);
+  expect_told(before, r, c);
+  expect_sound(mesh, r);
+  for (Index p = 0; p < before.points.size(); ++p)
+    if (before.there[p] && !reach[p]) {
+      EXPECT_TRUE(r.has_point(p));
+      EXPECT_EQ(r.position(p), before.points[p]);
+    }
+  std::size_t poor = 0;
+  for (Index t : c.added_tets) {
+    const Tet& p = r.tet(t);
+    poor += min_solid_angle(r.position(p[0]), r.position(p[1]), r.position(p[2]), r.position(p[3])) < 0.1;
+  }
+  EXPECT_GT(c.removed_tets.size(), c.added_tets.size() * 3 / 2);
+  EXPECT_LT(poor, c.added_tets.size() / 50);  // a tenth where the rim is left as it came out
+}
+
 TEST(Remesher, CarriesLinearFieldsAndKeepsIntegrals) {
   const TetMesh mesh = two_halves(8, 3);
   Remesher r(mesh);
@@ -216,6 +247,12 @@ TEST(Remesher, IsTheSameForAnyNumberOfThreads) {
   for (const unsigned threads : {1u, 2u, 8u}) {
     const ThreadLimit limit(threads);
     Remesher r(mesh);
+    Random random(7);
+    std::vector<double> at_points(3 * r.point_slots()), at_tets(r.tet_slots());
+    for (double& x : at_points) x = random.uniform();
+    for (double& x : at_tets) x = random.uniform();
+    r.add_point_field(3, std::move(at_points));
+    r.add_tet_field(1, std::move(at_tets));
     r.improve(RemeshRegion::box({0, 0, 0}, {5, 5, 5}));
     r.coarsen(RemeshRegion::box({4, 0, 0}, {8, 8, 8}), 1.5);
     r.refine(RemeshRegion::box({0, 0, 0}, {2, 2, 2}), 0.8);
@@ -224,6 +261,10 @@ TEST(Remesher, IsTheSameForAnyNumberOfThreads) {
   for (const TetMesh& m : results) {
     EXPECT_EQ(m.tets, results[0].tets);
     EXPECT_EQ(m.points, results[0].points);
+    ASSERT_EQ(m.point_fields.size(), 1u);
+    ASSERT_EQ(m.cell_fields.size(), 1u);
+    EXPECT_EQ(m.point_fields[0].values, results[0].point_fields[0].values);
+    EXPECT_EQ(m.cell_fields[0].values, results[0].cell_fields[0].values);
   }
 }
 

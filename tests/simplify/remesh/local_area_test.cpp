@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "simplify/operations/smoothing.h"
 #include "tests/simplify/workbench.h"
@@ -67,19 +68,30 @@ TEST(LocalArea, ListsWhatAScanFinds) {
   }
 }
 
-TEST(LocalArea, StaysWithinItsTets) {
+TEST(LocalArea, StaysWithinItsTetsAndTheirRim) {
   Bench b(2);
   std::vector<Index> tets;
   for (Index t = 0; t < 100; ++t) tets.push_back(t);
+  std::set<Index> points, reach;
+  for (const Index t : tets) points.insert(b.work.mesh.points(t).begin(), b.work.mesh.points(t).end());
+  for (Index t = 0; t < b.work.mesh.tet_slots(); ++t) {
+    const Tet& p = b.work.mesh.points(t);
+    if (std::any_of(p.begin(), p.end(), [&](Index q) { return points.count(q) != 0; }))
+      reach.insert(p.begin(), p.end());
+  }
   ChangeJournal journal;
-  LocalArea area(b.work.mesh, b.runner, journal, tets);
+  LocalArea area(b.work.mesh, b.runner, journal, tets, {reach.begin(), reach.end()});
   EXPECT_EQ(area.tet_count(), 100u);
-  const auto inside = [&](Index p) {
-    return std::binary_search(area.first_points().begin(), area.first_points().end(), p);
-  };
-  for (const ListedTet& t : area.tets_around(b.listed(tets)))
-    for (const Index p : t.points) EXPECT_TRUE(inside(p));
-  for (const Index p : area.points_around(b.listed(tets))) EXPECT_TRUE(inside(p));
+  EXPECT_EQ(area.first_points(), std::vector<Index>(points.begin(), points.end()));
+  for (const Index t : area.tets_at(area.first_points(), LocalArea::Part::inner))
+    for (const Index p : b.work.mesh.points(t)) EXPECT_TRUE(points.count(p));
+  const std::vector<ListedTet> around = area.tets_around(b.listed(tets));
+  EXPECT_GT(around.size(), tets.size());
+  for (const ListedTet& t : around) {
+    EXPECT_TRUE(std::any_of(t.points.begin(), t.points.end(), [&](Index p) { return points.count(p) != 0; }));
+    for (const Index p : t.points) EXPECT_TRUE(reach.count(p));
+  }
+  for (const Index p : area.points_around(b.listed(tets))) EXPECT_TRUE(reach.count(p));
   for (const ListedTet& t : area.poor_tets(1)) EXPECT_LT(t.tet, 100u);
 }
 
