@@ -7,7 +7,9 @@
 #include "common/error.h"
 #include "common/mesh/interfaces.h"
 #include "common/parallel/parallel.h"
+#include "simplify/constraints/constrained_mesh.h"
 #include "simplify/constraints/surface_projection.h"
+#include "simplify/mesh/neighbourhood.h"
 #include "simplify/remesh/change_journal.h"
 #include "simplify/remesh/field_carrier.h"
 #include "simplify/remesh/point_tree.h"
@@ -21,8 +23,6 @@ namespace {
 constexpr std::size_t slot_grain = 8192;  ///< tets a parallel loop hands out at a time
 /// Free slots at first, as a share of what there is: the arrays grow in place beyond them.
 constexpr std::size_t spare_share = 64, min_spare = 4096;
-/// Share by which the volume of a material may change over the life of a Remesher.
-constexpr double volume_share = 0.015;
 /// Over min_solid_angle: what is improved, and what may leave the surface a little for it, as in improve().
 constexpr double poor_margin = 1.27, leave_surface_margin = 1;
 /// Of the bound: what coarsening and refining must leave of shapes that were good.
@@ -35,11 +35,6 @@ struct Field {
   std::size_t components;
   std::vector<double> values;
 };
-
-void sort_unique(std::vector<Index>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
 
 /// The values of a field by new numbers.
 std::vector<double> renumbered_values(const Field& field, const std::vector<Index>& numbers,
@@ -57,18 +52,11 @@ std::vector<double> renumbered_values(const Field& field, const std::vector<Inde
 struct Remesher::Impl {
   Impl(TetMesh&& input, const RemesherOptions& given, Renumbering* numbers)
       : options(given),
-        mesh(std::move(input), given.name),
-        runner(mesh, grid, ledger, given.seed, 0, nullptr) {
-    if (!(mesh.total_volume() > 0))
-      throw InputError(
-          options.name, 0,
-          "the volumes of its tets add up to nothing or less; turn the tets so that they are positive");
-    if (!options.frozen.empty()) mesh.freeze(options.frozen);
-    if (options.fix_boundary) mesh.freeze_interfaces();
+        constrained(std::move(input), given.name, given.frozen, given.fix_boundary, true),
+        runner(mesh, grid, constrained.ledger, given.seed, 0, nullptr) {
     rules.objective.kind = Objective::Kind::shape;
     rules.objective.shape = options.objective;
     renumber(numbers);
-    ledger.open(mesh, volume_share);
     find_copies();
   }
 
@@ -87,11 +75,6 @@ struct Remesher::Impl {
       if (mesh.original(p) != p) copies.push_back({mesh.original(p), p});
     std::sort(copies.begin(), copies.end());
   }
-  /// Patches of faces between materials go from the grid, which knows them, to the mesh: before the grid is
-  /// built anew.
-  void keep_patches() {
-    if (mesh.interface_patches()) mesh.set_interface_patches(grid.patches());
-  }
   void look_at_all() {
     parallel_for(0, mesh.tet_slots(), slot_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) rate(static_cast<Index>(t));
@@ -105,9 +88,6 @@ struct Remesher::Impl {
   }
 
   std::vector<Index> tets_of(const RemeshRegion& region);
-  /// The tets at points, ascending.
-  std::vector<Index> tets_at(const std::vector<Index>& points);
-  std::vector<Index> points_of(const std::vector<Index>& tets);
   /// Onto the surfaces at these points, ascending.
   SurfaceProjection project_onto(const std::vector<Index>& points);
   template <class Work>
@@ -117,15 +97,14 @@ struct Remesher::Impl {
   void move_points(std::span<const Index> points, std::span<const Vec3> positions);
 
   RemesherOptions options;
-  EditableMesh mesh;
-  SurfaceGrid grid;
-  VolumeLedger ledger;
+  ConstrainedMesh constrained;
+  EditableMesh& mesh = constrained.mesh;
+  SurfaceGrid& grid = constrained.grid;
   BlockRunner runner;
   PointTree places;
   ChangeJournal journal;
   BlockRules rules;
-  StarWalk walk;
-  LocalNumbers seen;  ///< in tets_at() and points_of()
+  Neighbourhood near;
   std::vector<Field> point_fields, tet_fields;
   std::vector<std::array<Index, 2>> copies;  ///< points, and what was split off from them; ascending
 };
@@ -133,7 +112,7 @@ struct Remesher::Impl {
 std::vector<Index> Remesher::Impl::tets_of(const RemeshRegion& region) {
   if (const auto* list = std::get_if<std::vector<Index>>(&region.value_)) {
     std::vector<Index> tets = *list;
-    sort_unique(tets);
+    near.make_distinct(tets);
     for (Index t : tets)
       if (t >= mesh.tet_slots() || mesh.dead(t))
         throw UsageError("the region lists tet " + std::to_string(t) + ", which is not there");
@@ -143,7 +122,7 @@ std::vector<Index> Remesher::Impl::tets_of(const RemeshRegion& region) {
     Box3 working;
     working.low = mesh.space().to_working(box->low);
     working.high = mesh.space().to_working(box->high);
-    return tets_at(places.points_in(mesh, working));
+    return near.tets_at(mesh, places.points_in(mesh, working));
   }
   const auto& inside = std::get<std::function<bool(const Vec3&)>>(region.value_);
   std::vector<std::uint8_t> chosen(mesh.point_slots(), 0);
@@ -157,35 +136,8 @@ std::vector<Index> Remesher::Impl::tets_of(const RemeshRegion& region) {
   return tets;
 }
 
-std::vector<Index> Remesher::Impl::tets_at(const std::vector<Index>& points) {
-  std::vector<Index> tets;
-  seen.clear();
-  for (Index p : points)
-    walk.any_tet(mesh, p, [&](Index t) {
-      bool added;
-      seen.number(t, added);
-      if (added) tets.push_back(t);
-      return false;
-    });
-  std::sort(tets.begin(), tets.end());
-  return tets;
-}
-
-std::vector<Index> Remesher::Impl::points_of(const std::vector<Index>& tets) {
-  std::vector<Index> points;
-  seen.clear();
-  for (Index t : tets)
-    for (Index p : mesh.points(t)) {
-      bool added;
-      seen.number(p, added);
-      if (added) points.push_back(p);
-    }
-  std::sort(points.begin(), points.end());
-  return points;
-}
-
 SurfaceProjection Remesher::Impl::project_onto(const std::vector<Index>& points) {
-  const std::vector<Index> tets = tets_at(points);
+  const std::vector<Index> tets = near.tets_at(mesh, points);
   std::vector<InterfaceFace> faces;
   for (Index t : tets)
     for (int f = 0; f < 4; ++f) {
@@ -207,11 +159,10 @@ RemeshChanges Remesher::Impl::call(const RemeshRegion& region, const Work& work)
   const std::vector<Index> tets = tets_of(region);
   journal.clear();
   if (tets.empty()) return {};
-  const std::vector<Index> reach = points_of(tets_at(points_of(tets)));
+  const std::vector<Index> reach = near.points_of(mesh, near.tets_at(mesh, near.points_of(mesh, tets)));
   const SurfaceProjection projection = project_onto(reach);
   rules.projection = &projection;
-  const double floor =
-      floor_share * std::min(0.99, shape_quality_bound(options.objective, options.min_solid_angle));
+  const double floor = floor_share * shape_quality_bound(options.objective, options.min_solid_angle);
   std::uint64_t operations = 0;
   {
     RemeshRounds rounds(mesh, runner, journal, rules,
@@ -273,14 +224,11 @@ void Remesher::Impl::move_points(std::span<const Index> points, std::span<const 
       targets.push_back(to);
     }
   }
-  const std::vector<Index> tets = tets_at(moved);
+  const std::vector<Index> tets = near.tets_at(mesh, moved);
   std::vector<ChangeJournal::OldPoint> old;
-  seen.clear();
-  for (Index p : moved) {
-    bool added;
-    seen.number(p, added);
-    if (added) old.push_back({p, true, mesh.position(p)});
-  }
+  std::vector<Index> distinct = moved;
+  near.make_distinct(distinct);
+  for (Index p : distinct) old.push_back({p, true, mesh.position(p)});
   SurfaceGrid::Edit edit;
   std::vector<std::pair<Triangle, PatchId>> faces;
   const auto triangle = [&](const Triangle& ids) {
@@ -352,7 +300,7 @@ void Remesher::set_positions(std::span<const Vec3> positions) {
   for (Index p = 0; p < mesh.point_slots(); ++p)
     if (mesh.incident_tet(p) != no_index)
       mesh.set_position(p, mesh.space().to_working(positions[mesh.original(p)]));
-  impl_->keep_patches();
+  impl_->constrained.keep_patches();
   impl_->look_at_all();
 }
 
@@ -385,7 +333,7 @@ RemeshChanges Remesher::refine(const RemeshRegion& region, double size) {
 
 Renumbering Remesher::compact() {
   Renumbering numbers;
-  impl_->keep_patches();
+  impl_->constrained.keep_patches();
   impl_->renumber(&numbers);
   for (Field& f : impl_->point_fields)
     f = {f.components, renumbered_values(f, numbers.points, point_slots())};

@@ -57,7 +57,7 @@ constexpr double program_bytes = 40e6;
 constexpr double bytes_per_tet = 105;
 
 float quality_at(const Engine& engine, double angle) {
-  return static_cast<float>(std::min(0.99, shape_quality_bound(engine.rules.objective.shape, angle)));
+  return static_cast<float>(shape_quality_bound(engine.rules.objective.shape, angle));
 }
 
 /// Works in bulk on what is below an angle; returns the number of rounds.

@@ -55,13 +55,7 @@ bool Workpiece::propose(Workspace& ws, Index onto) {
 }
 
 void Workpiece::carry_out(Workspace& ws) {
-  mesh.reservations().begin_batch();
-  take_slots(mesh, grid, ws.proposal);
-  mesh.reservations().mark(ws.proposal.marks);
-  commit(mesh, grid, ws.proposal, commit_workspace_);
-  mesh.free_tets().end_batch();
-  mesh.free_points().end_batch();
-  grid.end_batch();
+  commit_alone(mesh, grid, ws.proposal, commit_workspace_);
   ++counts.collapses;
 }
 

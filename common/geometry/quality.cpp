@@ -160,8 +160,9 @@ double shape_quality(ShapeObjective objective, const Vec3& a, const Vec3& b, con
 }
 
 double shape_quality_bound(ShapeObjective objective, double solid_angle) {
-  if (objective == ShapeObjective::solid_angle) return std::min(1.0, solid_angle / regular_solid_angle);
-  return std::min(1.0, solid_angle / (sine_weight * regular_sine));
+  constexpr double max_bound = 0.99;
+  if (objective == ShapeObjective::solid_angle) return std::min(max_bound, solid_angle / regular_solid_angle);
+  return std::min(max_bound, solid_angle / (sine_weight * regular_sine));
 }
 
 double TetQuality::operator()(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {

@@ -68,7 +68,8 @@ struct TetQuality {
 /// TetQuality::cubed().
 double shape_quality(ShapeObjective objective, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 /// shape_quality() of a tet whose smallest solid angle is `solid_angle` and whose dihedral angles are no
-/// worse than the objective wants them beside it; what bounds on angles mean in terms of the objective.
+/// worse than the objective wants them beside it; what bounds on angles mean in terms of the objective. At
+/// most 0.99: no mesh is made of regular tets alone, and what is asked of all must be within reach.
 double shape_quality_bound(ShapeObjective objective, double solid_angle);
 
 }  // namespace tetwright

@@ -7,15 +7,8 @@
 
 namespace tetwright {
 
-namespace {
-
-/// Winners that a batch may have.
-constexpr std::uint32_t max_winners = 1u << 24;
-
-}  // namespace
-
-void Reservations::begin_batch() {
-  if (next_ > std::numeric_limits<std::uint32_t>::max() - max_winners) {
+void Reservations::begin_batch(std::size_t items) {
+  if (items > std::numeric_limits<std::uint32_t>::max() - next_) {
     std::fill(words_.begin(), words_.end(), 0);
     next_ = 1;
   }

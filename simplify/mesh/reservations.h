@@ -21,8 +21,8 @@ class Reservations {
   void reserve(std::size_t vertices) { words_.reserve(vertices); }
   /// More vertices, free ones.
   void grow(std::size_t vertices) { words_.resize(vertices, 0); }
-  /// What was marked before is free.
-  void begin_batch();
+  /// What was marked before is free. At most so many items win.
+  void begin_batch(std::size_t items);
 
   /// Whether no winner of this batch has marked one of these vertices.
   bool free(std::span<const Index> needed) const {

@@ -165,7 +165,12 @@ void Proposal::mark_cavity(const EditableMesh& mesh) {
   needs = marks.size();
 }
 
-void take_slots(EditableMesh& mesh, SurfaceGrid& grid, Proposal& p) {
+void begin_batch(EditableMesh& mesh, std::size_t proposals, std::size_t new_tets, std::size_t new_points) {
+  mesh.make_room(new_tets, new_points);
+  mesh.reservations().begin_batch(proposals);
+}
+
+void grant(EditableMesh& mesh, SurfaceGrid& grid, Proposal& p) {
   if (p.change == Proposal::Change::collapse) {
     for (Index t : p.removed) mesh.free_tets().give_back(t);
     mesh.free_points().give_back(p.centre);
@@ -182,6 +187,7 @@ void take_slots(EditableMesh& mesh, SurfaceGrid& grid, Proposal& p) {
   }
   mesh.change_count(p.count_change);
   if (!p.edit.empty()) grid.take_records(p.edit);
+  mesh.reservations().mark(p.marks);
 }
 
 void commit(EditableMesh& mesh, SurfaceGrid& grid, const Proposal& p, CommitWorkspace& ws) {
@@ -201,6 +207,19 @@ void commit(EditableMesh& mesh, SurfaceGrid& grid, const Proposal& p, CommitWork
   }
   for (Index point : p.marks) mesh.touch(point);
   if (!p.edit.empty()) grid.commit(p.edit);
+}
+
+void end_batch(EditableMesh& mesh, SurfaceGrid& grid) {
+  mesh.free_tets().end_batch();
+  mesh.free_points().end_batch();
+  grid.end_batch();
+}
+
+void commit_alone(EditableMesh& mesh, SurfaceGrid& grid, Proposal& proposal, CommitWorkspace& ws) {
+  begin_batch(mesh, 1, proposal.added.size(), proposal.has_new_point);
+  grant(mesh, grid, proposal);
+  commit(mesh, grid, proposal, ws);
+  end_batch(mesh, grid);
 }
 
 }  // namespace tetwright

@@ -96,9 +96,13 @@ struct Proposal {
   void mark_cavity(const EditableMesh& mesh);
 };
 
-/// Gives a proposal that has won the slots that it needs, and takes those of what goes back. One thread at a
-/// time; there is room for it (EditableMesh::make_room).
-void take_slots(EditableMesh& mesh, SurfaceGrid& grid, Proposal& proposal);
+// The steps of a batch of proposals. One thread at a time, but for commit().
+
+/// Makes room for so many proposals, tets beyond those that go, and points. All vertices are free.
+void begin_batch(EditableMesh& mesh, std::size_t proposals, std::size_t new_tets, std::size_t new_points);
+/// Marks a proposal as a winner, for which mesh.reservations().free(proposal.needed()): gives it the slots
+/// that it needs and the vertices that it changes, and takes the slots of what goes back.
+void grant(EditableMesh& mesh, SurfaceGrid& grid, Proposal& proposal);
 
 /// Memory of commit().
 struct CommitWorkspace {
@@ -117,5 +121,10 @@ struct CommitWorkspace {
 /// Carries out a proposal that has won: writes what it marked. Safe concurrently with other winners of its
 /// batch.
 void commit(EditableMesh& mesh, SurfaceGrid& grid, const Proposal& proposal, CommitWorkspace& ws);
+/// After the last commit: what its winners gave back may be given again.
+void end_batch(EditableMesh& mesh, SurfaceGrid& grid);
+
+/// A batch of one, which wins.
+void commit_alone(EditableMesh& mesh, SurfaceGrid& grid, Proposal& proposal, CommitWorkspace& ws);
 
 }  // namespace tetwright

@@ -35,12 +35,8 @@ LocalArea::LocalArea(const EditableMesh& mesh, BlockRunner& runner, ChangeJourna
       candidates_(tets) {
   bool added;
   for (Index p : reach) reach_.number(p, added);
-  for (Index t : tets)
-    for (Index p : mesh.points(t)) {
-      points_.number(p, added);
-      if (added) first_points_.push_back(p);
-    }
-  std::sort(first_points_.begin(), first_points_.end());
+  first_points_ = near_.points_of(mesh, tets);
+  for (Index p : first_points_) points_.number(p, added);
   runner_.set_observer([this](const Proposal& p) { observe(p); });
 }
 
@@ -68,72 +64,56 @@ bool LocalArea::has(const Tet& tet, Part part) const {
 }
 
 std::vector<Index> LocalArea::take_changed_points() {
+  near_.make_distinct(changed_points_);
   std::vector<Index> points;
-  seen_.clear();
-  for (Index p : changed_points_) {
-    bool added;
-    seen_.number(p, added);
-    if (added && mesh_.incident_tet(p) != no_index && within(p)) points.push_back(p);
-  }
+  for (Index p : changed_points_)
+    if (mesh_.incident_tet(p) != no_index && within(p)) points.push_back(p);
   changed_points_.clear();
-  std::sort(points.begin(), points.end());
   return points;
 }
 
 std::vector<Index> LocalArea::tets_at(const std::vector<Index>& points, Part part) {
-  std::vector<Index> tets;
-  seen_.clear();
-  for (Index p : points)
-    walk_.any_tet(mesh_, p, [&](Index t) {
-      bool added;
-      seen_.number(t, added);
-      if (added && has(mesh_.points(t), part)) tets.push_back(t);
-      return false;
-    });
-  std::sort(tets.begin(), tets.end());
-  return tets;
+  return near_.tets_at(mesh_, points, [&](Index t) { return has(mesh_.points(t), part); });
 }
 
 std::vector<ListedTet> LocalArea::poor_tets(float limit) {
   // Every tet that was made or changed has only points that were marked, or a new one beside them.
   const std::vector<Index> changed = tets_at(take_changed_points(), Part::with_rim);
   candidates_.insert(candidates_.end(), changed.begin(), changed.end());
-  std::sort(candidates_.begin(), candidates_.end());
-  candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
+  near_.make_distinct(candidates_);
   std::erase_if(candidates_, [&](Index t) { return mesh_.dead(t) || !(mesh_.quality(t) <= limit); });
-  std::vector<ListedTet> poor;
-  poor.reserve(candidates_.size());
-  for (Index t : candidates_) poor.push_back({t, mesh_.points(t)});
-  return poor;
+  return listed(candidates_);
+}
+
+std::vector<Index> LocalArea::tets_around_living(std::vector<Index>&& points) {
+  near_.make_distinct(points);
+  std::erase_if(points, [&](Index p) { return mesh_.incident_tet(p) == no_index; });
+  return tets_at(points, Part::with_rim);
+}
+
+void LocalArea::look_around(std::vector<Index>&& points) {
+  candidates_ = tets_around_living(std::move(points));
+}
+
+std::vector<Index> LocalArea::numbers_around(const std::vector<ListedTet>& tets) {
+  std::vector<Index> points;
+  for (const ListedTet& t : tets) points.insert(points.end(), t.points.begin(), t.points.end());
+  return tets_around_living(std::move(points));
 }
 
 std::vector<ListedTet> LocalArea::tets_around(const std::vector<ListedTet>& tets) {
-  std::vector<Index> points;
-  seen_.clear();
-  for (const ListedTet& t : tets)
-    for (Index p : t.points) {
-      bool added;
-      seen_.number(p, added);
-      // What was listed may have gone since.
-      if (added && mesh_.incident_tet(p) != no_index) points.push_back(p);
-    }
-  std::vector<ListedTet> around;
-  for (Index t : tets_at(points, Part::with_rim)) around.push_back({t, mesh_.points(t)});
-  return around;
+  return listed(numbers_around(tets));
 }
 
 std::vector<Index> LocalArea::points_around(const std::vector<ListedTet>& tets) {
-  const std::vector<ListedTet> around = tets_around(tets);
-  std::vector<Index> points;
-  seen_.clear();
-  for (const ListedTet& t : around)
-    for (Index p : t.points) {
-      bool added;
-      seen_.number(p, added);
-      if (added) points.push_back(p);
-    }
-  std::sort(points.begin(), points.end());
-  return points;
+  return near_.points_of(mesh_, numbers_around(tets));
+}
+
+std::vector<ListedTet> LocalArea::listed(const std::vector<Index>& tets) const {
+  std::vector<ListedTet> list;
+  list.reserve(tets.size());
+  for (Index t : tets) list.push_back({t, mesh_.points(t)});
+  return list;
 }
 
 }  // namespace tetwright

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "simplify/mesh/local_numbers.h"
-#include "simplify/mesh/star_walk.h"
+#include "simplify/mesh/neighbourhood.h"
 #include "simplify/remesh/change_journal.h"
 #include "simplify/schedule/improvement.h"
 
@@ -44,8 +44,9 @@ class LocalArea final : public ImprovementArea {
   enum class Part { inner, with_rim };
   /// The tets of the area at points, each once, ascending.
   std::vector<Index> tets_at(const std::vector<Index>& points, Part part);
-  /// From now on poor_tets() looks at these tets, and at what changes.
-  void look_at(std::vector<Index> tets) { candidates_ = std::move(tets); }
+  /// From now on poor_tets() looks at the tets around these points, some of which may have gone since, and at
+  /// what changes.
+  void look_around(std::vector<Index>&& points);
   /// Operations that were carried out.
   std::uint64_t operations() const { return operations_; }
 
@@ -54,6 +55,9 @@ class LocalArea final : public ImprovementArea {
   bool within(Index point) const { return !limited_ || points_.find(point) != no_index; }
   bool within_reach(Index point) const { return !limited_ || reach_.find(point) != no_index; }
   bool has(const Tet& tet, Part part) const;
+  std::vector<Index> tets_around_living(std::vector<Index>&& points);
+  std::vector<Index> numbers_around(const std::vector<ListedTet>& tets);
+  std::vector<ListedTet> listed(const std::vector<Index>& tets) const;
 
   const EditableMesh& mesh_;
   BlockRunner& runner_;
@@ -66,8 +70,7 @@ class LocalArea final : public ImprovementArea {
   std::vector<Index> first_points_;
   std::vector<Index> candidates_;      ///< tets that poor_tets() looks at
   std::vector<Index> changed_points_;  ///< since they were last taken
-  StarWalk walk_;
-  LocalNumbers seen_;  ///< tets or points, in one function
+  Neighbourhood near_;
   std::uint64_t operations_ = 0;
 };
 

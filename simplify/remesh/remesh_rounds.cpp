@@ -31,13 +31,6 @@ RemeshRounds::RemeshRounds(EditableMesh& mesh, BlockRunner& runner, ChangeJourna
   rules_.max_error = area_.usual_edge();
 }
 
-void RemeshRounds::look_at(std::vector<Index>&& changed) {
-  std::sort(changed.begin(), changed.end());
-  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-  std::erase_if(changed, [&](Index p) { return mesh_.incident_tet(p) == no_index; });
-  area_.look_at(area_.tets_at(changed, LocalArea::Part::with_rim));
-}
-
 void RemeshRounds::coarsen(double size) {
   BlockRules rules = rules_;
   rules.max_error = std::numeric_limits<double>::infinity();
@@ -51,7 +44,7 @@ void RemeshRounds::coarsen(double size) {
     points = area_.take_changed_points();
     changed.insert(changed.end(), points.begin(), points.end());
   }
-  look_at(std::move(changed));
+  area_.look_around(std::move(changed));
 }
 
 void RemeshRounds::refine(double size) {
@@ -84,7 +77,7 @@ void RemeshRounds::refine(double size) {
     changed.insert(changed.end(), points.begin(), points.end());
     tets = area_.tets_at(points, LocalArea::Part::inner);
   }
-  look_at(std::move(changed));
+  area_.look_around(std::move(changed));
 }
 
 void RemeshRounds::improve() {

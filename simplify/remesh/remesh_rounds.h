@@ -28,9 +28,6 @@ class RemeshRounds {
   std::uint64_t operations() const { return area_.operations(); }
 
  private:
-  /// Ends coarsening and refining around these points.
-  void look_at(std::vector<Index>&& changed);
-
   EditableMesh& mesh_;
   BlockRunner& runner_;
   BlockRules rules_;

@@ -131,16 +131,14 @@ void BlockRunner::decide(const std::function<Outcome(Workspace&, const Entry&)>&
 }
 
 Outcome BlockRunner::admit(Proposal& p) {
-  Reservations& reservations = mesh_.reservations();
-  if (!reservations.free(p.needed())) return Outcome::conflict;
+  if (!mesh_.reservations().free(p.needed())) return Outcome::conflict;
   if (!p.edit.empty())
     for (std::uint32_t w : surface_winners_)
       if (!SurfaceGrid::apart(proposals_[w].edit, p.edit)) return Outcome::conflict;
   if (!ledger_.allows(p.volumes)) return Outcome::volume;
   if (!p.count_bounds.allow(mesh_.live_tets(), p.count_change)) return Outcome::count;
   ledger_.book(p.volumes);
-  take_slots(mesh_, grid_, p);
-  reservations.mark(p.marks);
+  grant(mesh_, grid_, p);
   return Outcome::done;
 }
 
@@ -156,8 +154,7 @@ bool BlockRunner::select(const Stop& stop) {
     if (p.added.size() > p.removed.size()) tets += p.added.size() - p.removed.size();
     points += p.has_new_point;
   }
-  mesh_.make_room(tets, points);
-  mesh_.reservations().begin_batch();
+  begin_batch(mesh_, batch_.size(), tets, points);
   for (std::uint32_t i = 0; i < batch_.size(); ++i) {
     if (outcomes_[i] != Outcome::done) continue;
     if (stop()) return false;
@@ -184,9 +181,7 @@ void BlockRunner::commit_winners() {
       commit(mesh_, grid_, proposals_[winners_[i]], workers_[worker]->commit_workspace);
     }
   });
-  mesh_.free_tets().end_batch();
-  mesh_.free_points().end_batch();
-  grid_.end_batch();
+  end_batch(mesh_, grid_);
 }
 
 std::size_t BlockRunner::next_batch_size(std::size_t size, std::size_t max_size) const {

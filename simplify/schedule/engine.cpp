@@ -6,7 +6,6 @@
 #include <bit>
 #include <utility>
 
-#include "common/error.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "simplify/operations/smoothing.h"
@@ -22,9 +21,6 @@ constexpr double compact_above = 0.3;
 constexpr std::size_t spare_share = 16;
 constexpr std::size_t min_spare = 4096;
 
-/// Share by which the volume of a material may change.
-constexpr double volume_share = 0.015;
-
 }  // namespace
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -34,24 +30,16 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, Progress* progress)
     : report_(report),
       progress_(progress),
-      mesh_(std::move(mesh), options.name),
+      constrained_(std::move(mesh), options.name, options.frozen, options.fix_boundary, options.keep_volumes),
       projection_(mesh_, options.reference),
-      runner_(mesh_, grid_, ledger_, options.seed, options.batch_size, progress) {
-  const double volume = mesh_.total_volume();
-  if (!(volume > 0))
-    throw InputError(
-        options.name, 0,
-        "the volumes of its tets add up to nothing or less; turn the tets so that they are positive");
-  if (!options.frozen.empty()) mesh_.freeze(options.frozen);
-  if (options.fix_boundary) mesh_.freeze_interfaces();
-  rules.objective.quality = TetQuality::for_target(volume, options.target_tets, options.beta);
+      runner_(mesh_, grid_, constrained_.ledger, options.seed, options.batch_size, progress) {
+  rules.objective.quality = TetQuality::for_target(mesh_.total_volume(), options.target_tets, options.beta);
   rules.objective.shape = options.objective;
   rules.gamma = options.gamma;
-  if (options.keep_volumes) ledger_.open(mesh_, volume_share);
 }
 
 TetMesh Engine::take() && {
-  keep_patches();
+  constrained_.keep_patches();
   return std::move(mesh_).to_mesh();
 }
 
@@ -61,13 +49,9 @@ void Engine::begin_stage(const char* name) {
   progress_->begin_stage(name);
 }
 
-void Engine::keep_patches() {
-  if (mesh_.interface_patches()) mesh_.set_interface_patches(grid_.patches());
-}
-
 void Engine::compact() {
   const bool first = !std::exchange(compacted_, true);
-  if (!first) keep_patches();
+  if (!first) constrained_.keep_patches();
   const std::size_t spare = mesh_.live_tets() / spare_share + min_spare;
   mesh_.compact(spare, spare / 2);
   grid_.build(mesh_, rules.objective.quality.ideal_edge / 2);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "simplify/constraints/constrained_mesh.h"
 #include "simplify/schedule/block_runner.h"
 #include "simplify/schedule/options.h"
 
@@ -36,7 +37,7 @@ class Engine {
   EditableMesh& mesh() { return mesh_; }
   BlockRunner& runner() { return runner_; }
   const SurfaceProjection& projection() const { return projection_; }
-  const VolumeLedger& ledger() const { return ledger_; }
+  const VolumeLedger& ledger() const { return constrained_.ledger; }
   Progress* progress() { return progress_; }
   BlockRules rules;
 
@@ -81,8 +82,6 @@ class Engine {
   };
 
  private:
-  /// Patches of faces between materials go from the grid, which knows them, to the mesh.
-  void keep_patches();
   /// The points for which mark(tet, place in it) holds for some tet.
   template <class Mark>
   std::vector<Index> marked_points(const Mark& mark) const;
@@ -95,9 +94,9 @@ class Engine {
   SimplifyReport* report_;
   Progress* progress_;
   bool compacted_ = false;  ///< the grid is built
-  EditableMesh mesh_;
-  SurfaceGrid grid_;
-  VolumeLedger ledger_;
+  ConstrainedMesh constrained_;
+  EditableMesh& mesh_ = constrained_.mesh;
+  SurfaceGrid& grid_ = constrained_.grid;
   SurfaceProjection projection_;
   BlockRunner runner_;
 };

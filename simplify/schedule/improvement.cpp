@@ -100,7 +100,7 @@ class ImprovementLoop {
 
  private:
   float quality(double angle) const {
-    return static_cast<float>(std::min(0.99, shape_quality_bound(rules_.objective.shape, angle)));
+    return static_cast<float>(shape_quality_bound(rules_.objective.shape, angle));
   }
 
   /// Judges the round before by what it left: false where the last ones gained too little. Decides whether

@@ -93,18 +93,6 @@ Outcome operate(Workspace& ws, BlockRules rules, Bytes& bytes, Index t) {
   }
 }
 
-/// A batch of one.
-void carry_out(EditableMesh& mesh, SurfaceGrid& grid, Proposal& proposal, CommitWorkspace& ws) {
-  mesh.make_room(proposal.added.size(), 1);
-  mesh.reservations().begin_batch();
-  take_slots(mesh, grid, proposal);
-  mesh.reservations().mark(proposal.marks);
-  commit(mesh, grid, proposal, ws);
-  mesh.free_tets().end_batch();
-  mesh.free_points().end_batch();
-  grid.end_batch();
-}
-
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -131,7 +119,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (mesh.dead(t)) continue;
     ws.proposal.clear();
     if (operate(ws, rules, bytes, t) != Outcome::done) continue;
-    carry_out(mesh, grid, ws.proposal, commit_workspace);
+    commit_alone(mesh, grid, ws.proposal, commit_workspace);
     TETWRIGHT_CHECK(mesh.links_consistent());
     const TetMesh now = snapshot(mesh);
     TETWRIGHT_CHECK(check_mesh(now).empty());

@@ -80,22 +80,16 @@ struct Workbench {
       tets += p->added.size();
       points += p->has_new_point;
     }
-    mesh.make_room(tets, points);
-    mesh.reservations().begin_batch();
+    tetwright::begin_batch(mesh, proposals.size(), tets, points);
   }
   /// Whether a proposal has won; it has then marked what it changes and taken its slots.
   bool admit(Proposal& p) {
     if (!mesh.reservations().free(p.needed())) return false;
     ledger.book(p.volumes);
-    take_slots(mesh, grid, p);
-    mesh.reservations().mark(p.marks);
+    grant(mesh, grid, p);
     return true;
   }
-  void end_batch() {
-    mesh.free_tets().end_batch();
-    mesh.free_points().end_batch();
-    grid.end_batch();
-  }
+  void end_batch() { tetwright::end_batch(mesh, grid); }
 
   std::size_t count_live() const {
     std::size_t count = 0;

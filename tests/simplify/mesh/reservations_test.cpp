@@ -17,7 +17,7 @@ using Points = std::vector<Index>;
 TEST(Reservations, WhatAnEarlierWinnerMarkedIsNotFree) {
   Reservations r;
   r.reset(10);
-  r.begin_batch();
+  r.begin_batch(3);
   EXPECT_TRUE(r.free(Points{0, 1, 2}));
   r.mark(Points{1, 2, 3});
   EXPECT_FALSE(r.free(Points{0, 1}));
@@ -26,7 +26,7 @@ TEST(Reservations, WhatAnEarlierWinnerMarkedIsNotFree) {
   r.mark(Points{3, 4});  // one of them a second time
   EXPECT_FALSE(r.free(Points{3}));
   EXPECT_FALSE(r.free(Points{1}));
-  r.begin_batch();
+  r.begin_batch(3);
   EXPECT_TRUE(r.free(Points{0, 1, 2, 3, 4}));
   r.grow(20);
   EXPECT_TRUE(r.free(Points{19}));
@@ -38,14 +38,14 @@ TEST(Reservations, NumbersOfWinnersBeginAnewBeforeTheyRunOut) {
   Reservations r;
   r.reset(10, std::numeric_limits<std::uint32_t>::max() - 4);
   r.mark(Points{5});  // a number that would outlast all others
-  r.begin_batch();
+  r.begin_batch(10);
   EXPECT_TRUE(r.free(Points{5}));
   for (Index p = 0; p < 10; ++p) {
     EXPECT_TRUE(r.free(Points{p}));
     r.mark(Points{p});
     EXPECT_FALSE(r.free(Points{p}));
   }
-  r.begin_batch();
+  r.begin_batch(3);
   for (Index p = 0; p < 10; ++p) EXPECT_TRUE(r.free(Points{p}));
 }
 

@@ -1,0 +1,33 @@
+#include "simplify/constraints/constrained_mesh.h"
+
+#include <utility>
+
+#include "common/error.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Share by which the volume of a material may change.
+constexpr double volume_share = 0.015;
+
+}  // namespace
+
+ConstrainedMesh::ConstrainedMesh(TetMesh&& input, const std::string& name,
+                                 const std::vector<std::uint8_t>& frozen, bool fix_boundary,
+                                 bool keep_volumes)
+    : mesh(std::move(input), name) {
+  if (!(mesh.total_volume() > 0))
+    throw InputError(
+        name, 0,
+        "the volumes of its tets add up to nothing or less; turn the tets so that they are positive");
+  if (!frozen.empty()) mesh.freeze(frozen);
+  if (fix_boundary) mesh.freeze_interfaces();
+  if (keep_volumes) ledger.open(mesh, volume_share);
+}
+
+void ConstrainedMesh::keep_patches() {
+  if (mesh.interface_patches()) mesh.set_interface_patches(grid.patches());
+}
+
+}  // namespace tetwright
