@@ -16,8 +16,10 @@ namespace tetwright {
 namespace {
 
 /// M: of that many items near each other, one is in a batch. More of them make fewer conflicts, but the
-/// batches of a block then reach over more memory: 24 times a batch still fits into a core's cache.
-constexpr std::uint32_t spacing = 24;
+/// batches of a block then reach over more memory: 24 times a batch of points still fits into a core's cache.
+/// There are five times as many tets as points, an operation on one changes those around four points, and a
+/// list has neighbours of the same edge in a row.
+constexpr std::size_t point_spacing = 24, tet_spacing = 256;
 /// Items of a batch: enough to keep several threads busy, few enough for the cache, and more of them where
 /// there are so many items that none of these fits it anyway.
 constexpr std::size_t min_batch = 256, max_batch = 1024, batches_of_large_blocks = 1024;
@@ -38,8 +40,14 @@ constexpr std::size_t min_parallel_chunks = 3;
 /// numbers below `spacing` in random order, for as many items in a row. `step` 0: the order given.
 class BlockOrder {
  public:
-  BlockOrder(std::size_t items, std::size_t step, Random random)
-      : items_(items), step_(step), left_(items), random_(random) {
+  BlockOrder(std::size_t items, std::size_t step, std::size_t spacing, Random random)
+      : items_(items),
+        step_(step),
+        spacing_(spacing),
+        left_(items),
+        random_(random),
+        keys_(spacing),
+        waiting_(spacing) {
     std::iota(keys_.begin(), keys_.end(), 0u);
   }
   bool empty() const { return left_ == 0; }
@@ -54,19 +62,19 @@ class BlockOrder {
  private:
   void list_next_key() {
     for (const std::size_t end = std::min(items_, listed_ + step_); listed_ < end; ++listed_) {
-      const std::size_t place = listed_ % spacing;
+      const std::size_t place = listed_ % spacing_;
       if (place == 0) random_.shuffle(std::span<std::uint32_t>(keys_));
-      waiting_[(key_ + keys_[place]) % spacing].push_back(static_cast<std::uint32_t>(listed_));
+      waiting_[(key_ + keys_[place]) % spacing_].push_back(static_cast<std::uint32_t>(listed_));
     }
     due_.clear();
     next_ = 0;
-    std::swap(due_, waiting_[key_++ % spacing]);
+    std::swap(due_, waiting_[key_++ % spacing_]);
   }
 
-  std::size_t items_, step_, left_, listed_ = 0, key_ = 0;
+  std::size_t items_, step_, spacing_, left_, listed_ = 0, key_ = 0;
   Random random_;
-  std::array<std::uint32_t, spacing> keys_;  ///< of `spacing` items in a row, less key_
-  std::array<std::vector<std::uint32_t>, spacing> waiting_;
+  std::vector<std::uint32_t> keys_;  ///< of `spacing` items in a row, less key_
+  std::vector<std::vector<std::uint32_t>> waiting_;
   std::vector<std::uint32_t> due_;  ///< of one key
   std::size_t next_ = 0;            ///< of due_
 };
@@ -201,7 +209,8 @@ void BlockRunner::run(const std::vector<Item>& items, bool in_order, const Attem
   if (step == 0)
     step = in_order ? std::clamp(n / ordered_batches, min_ordered_batch, max_ordered_batch)
                     : std::clamp(n / batches_of_large_blocks, min_batch, max_batch);
-  BlockOrder order(n, in_order ? 0 : step, Random(seed_, block, ~std::uint64_t{0}));
+  constexpr std::size_t spacing = std::is_same_v<Item, ListedTet> ? tet_spacing : point_spacing;
+  BlockOrder order(n, in_order ? 0 : step, spacing, Random(seed_, block, ~std::uint64_t{0}));
   const auto decide_entry = [&](Workspace& ws, const Entry& entry) {
     ws.random = Random(seed_, block, entry.item);
     return attempt(ws, items[entry.item], static_cast<int>(entry.stage));
