@@ -122,7 +122,9 @@ class ImprovementLoop {
                                  : max_idle_rounds_when_good))
       return false;
     min_poor_ = std::min(min_poor_, poor.size());
-    last_resort_ = stuck_ && (idle_ > 0 || (plan_.fast && !many));
+    // Not before perturbation on the surfaces has gained nothing: what leaves them stays off.
+    const bool perturbed = plan_.fast || perturbs_;
+    last_resort_ = stuck_ && ((idle_ > 0 && perturbed) || (plan_.fast && !many));
     perturbs_ = stuck_ && (last_resort_ || !plan_.fast);
     return true;
   }
