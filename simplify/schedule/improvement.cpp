@@ -82,7 +82,7 @@ class ImprovementLoop {
     int i = 0;
     for (; i < plan_.max_rounds; ++i) {
       std::vector<ListedTet> poor = area_.poor_tets(bounds_.poor);
-      if (poor.empty() || !worth_a_round(poor)) break;
+      if (poor.empty() || !worth_a_round(poor, i == 0)) break;
       std::optional<Engine::Round> round;
       if (engine_) {
         round.emplace(*engine_, plan_.kind);
@@ -104,8 +104,9 @@ class ImprovementLoop {
   }
 
   /// Judges the round before by what it left: false where the last ones gained too little. Decides whether
-  /// the next one also moves the points around the poor tets and resorts to perturbation.
-  bool worth_a_round(const std::vector<ListedTet>& poor) {
+  /// the next one also moves the points around the poor tets and resorts to perturbation, which the first
+  /// round after a simplification does in any case.
+  bool worth_a_round(const std::vector<ListedTet>& poor, bool first) {
     const bool bad = std::any_of(poor.begin(), poor.end(), [&](const ListedTet& t) {
       return mesh_.quality(t.tet) < bounds_.leave_surface;
     });
@@ -125,7 +126,7 @@ class ImprovementLoop {
     // Not before perturbation on the surfaces has gained nothing: what leaves them stays off.
     const bool perturbed = plan_.fast || perturbs_;
     last_resort_ = stuck_ && ((idle_ > 0 && perturbed) || (plan_.fast && !many));
-    perturbs_ = stuck_ && (last_resort_ || !plan_.fast);
+    perturbs_ = last_resort_ || (!plan_.fast && (stuck_ || first));
     return true;
   }
 
