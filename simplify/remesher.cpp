@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 
 #include "common/error.h"
 #include "common/mesh/interfaces.h"
@@ -88,6 +87,8 @@ struct Remesher::Impl {
   }
 
   std::vector<Index> tets_of(const RemeshRegion& region);
+  /// The interface faces of an ascending list of tets, each once.
+  std::vector<InterfaceFace> interface_faces_of(const std::vector<Index>& tets) const;
   /// Onto the surfaces at these points, ascending.
   SurfaceProjection project_onto(const std::vector<Index>& points);
   template <class Work>
@@ -136,13 +137,12 @@ std::vector<Index> Remesher::Impl::tets_of(const RemeshRegion& region) {
   return tets;
 }
 
-SurfaceProjection Remesher::Impl::project_onto(const std::vector<Index>& points) {
-  const std::vector<Index> tets = near.tets_at(mesh, points);
+std::vector<InterfaceFace> Remesher::Impl::interface_faces_of(const std::vector<Index>& tets) const {
   std::vector<InterfaceFace> faces;
   for (Index t : tets)
     for (int f = 0; f < 4; ++f) {
       const FaceLink link = mesh.link(t, f);
-      // An inner one once; its other tet may be beyond.
+      // One between two of the tets once.
       if (!link.is_interface() ||
           (!link.is_outside() && link.tet() < t && std::binary_search(tets.begin(), tets.end(), link.tet())))
         continue;
@@ -150,7 +150,11 @@ SurfaceProjection Remesher::Impl::project_onto(const std::vector<Index>& points)
       faces.push_back({ids, mesh.region(t), mesh.region_across(t, f),
                        link.is_outside() ? link.patch() : grid.patch(mesh, ids)});
     }
-  return SurfaceProjection(mesh, faces, nullptr,
+  return faces;
+}
+
+SurfaceProjection Remesher::Impl::project_onto(const std::vector<Index>& points) {
+  return SurfaceProjection(mesh, interface_faces_of(near.tets_at(mesh, points)), nullptr,
                            [&](Index p) { return std::binary_search(points.begin(), points.end(), p); });
 }
 
@@ -159,8 +163,8 @@ RemeshChanges Remesher::Impl::call(const RemeshRegion& region, const Work& work)
   const std::vector<Index> tets = tets_of(region);
   journal.clear();
   if (tets.empty()) return {};
-  const std::vector<Index> reach = near.points_of(mesh, near.tets_at(mesh, near.points_of(mesh, tets)));
-  const SurfaceProjection projection = project_onto(reach);
+  const std::vector<Index> with_rim = near.tets_at(mesh, near.points_of(mesh, tets));
+  const SurfaceProjection projection = project_onto(near.points_of(mesh, with_rim));
   rules.projection = &projection;
   const double floor = floor_share * shape_quality_bound(options.objective, options.min_solid_angle);
   std::uint64_t operations = 0;
@@ -168,7 +172,7 @@ RemeshChanges Remesher::Impl::call(const RemeshRegion& region, const Work& work)
     RemeshRounds rounds(mesh, runner, journal, rules,
                         {poor_margin * options.min_solid_angle,
                          leave_surface_margin * options.min_solid_angle, static_cast<float>(floor)},
-                        tets, reach);
+                        tets, with_rim);
     work(rounds);
     rounds.improve();
     operations = rounds.operations();
@@ -230,22 +234,13 @@ void Remesher::Impl::move_points(std::span<const Index> points, std::span<const 
   near.make_distinct(distinct);
   for (Index p : distinct) old.push_back({p, true, mesh.position(p)});
   SurfaceGrid::Edit edit;
-  std::vector<std::pair<Triangle, PatchId>> faces;
+  const std::vector<InterfaceFace> faces = interface_faces_of(tets);
   const auto triangle = [&](const Triangle& ids) {
     return MeshTriangle{ids, {mesh.position(ids[0]), mesh.position(ids[1]), mesh.position(ids[2])}};
   };
-  for (Index t : tets)
-    for (int f = 0; f < 4; ++f) {
-      const FaceLink link = mesh.link(t, f);
-      if (!link.is_interface() ||
-          (!link.is_outside() && link.tet() < t && std::binary_search(tets.begin(), tets.end(), link.tet())))
-        continue;
-      const Triangle ids = face_of(mesh.points(t), f);
-      faces.push_back({ids, link.is_outside() ? link.patch() : grid.patch(mesh, ids)});
-      edit.removed.push_back(triangle(ids));
-    }
+  for (const InterfaceFace& f : faces) edit.removed.push_back(triangle(f.ids));
   for (std::size_t i = 0; i < moved.size(); ++i) mesh.set_position(moved[i], targets[i]);
-  for (const auto& [ids, patch] : faces) edit.added.push_back({triangle(ids), patch});
+  for (const InterfaceFace& f : faces) edit.added.push_back({triangle(f.ids), f.patch});
   grid.replace(edit);
   for (Index t : tets) rate(t);
   places.repair(mesh, old);

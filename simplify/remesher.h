@@ -27,8 +27,9 @@ struct RemesherOptions {
   std::string name = "mesh";  ///< what messages call the mesh
 };
 
-/// The part of a mesh that a call works on. Where that leaves tets around it poor, which share vertices with
-/// it, these are improved too: vertices that are not of the region's tets, but next to them, may move or go.
+/// The part of a mesh that a call works on. Tets that share a vertex with it are improved, too, where a call
+/// changes what is around them; so vertices next to the region's may move or go, and the tets around these
+/// change. Vertices beyond stay where they are.
 class RemeshRegion {
  public:
   /// These tets, by number.

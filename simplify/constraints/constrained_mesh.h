@@ -15,7 +15,7 @@ namespace tetwright {
 struct ConstrainedMesh {
   /// `name` is what messages call the mesh; `frozen` by point, empty: none; `fix_boundary` freezes boundary
   /// and interfaces. Throws InputError where the volumes of the tets add up to nothing or less. The grid is
-  /// built by who works on the mesh.
+  /// built by whoever works on the mesh; volumes are kept for as long as it exists.
   ConstrainedMesh(TetMesh&& input, const std::string& name, const std::vector<std::uint8_t>& frozen,
                   bool fix_boundary, bool keep_volumes);
   ConstrainedMesh(const ConstrainedMesh&) = delete;

@@ -11,7 +11,7 @@ namespace tetwright {
 /// memory from call to call; for one thread.
 class Neighbourhood {
  public:
-  /// The tets at points, which are there, for which keep(tet) is true; each once, ascending.
+  /// The tets at living points for which keep(tet) is true; each once, ascending.
   template <class Keep>
   std::vector<Index> tets_at(const EditableMesh& mesh, const std::vector<Index>& points, const Keep& keep) {
     std::vector<Index> tets;
@@ -28,7 +28,7 @@ class Neighbourhood {
     return tets_at(mesh, points, [](Index) { return true; });
   }
 
-  /// The points of tets, which are there; each once, ascending.
+  /// The points of living tets; each once, ascending.
   std::vector<Index> points_of(const EditableMesh& mesh, const std::vector<Index>& tets) {
     std::vector<Index> points;
     seen_.clear();
@@ -39,7 +39,7 @@ class Neighbourhood {
     return points;
   }
 
-  /// Leaves each number once, ascending; fast where most stand there many times.
+  /// Leaves each number once, ascending; fast where most occur many times.
   void make_distinct(std::vector<Index>& list) {
     seen_.clear();
     std::erase_if(list, [&](Index i) { return !is_new(i); });

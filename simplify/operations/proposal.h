@@ -98,7 +98,8 @@ struct Proposal {
 
 // The steps of a batch of proposals. One thread at a time, but for commit().
 
-/// Makes room for so many proposals, tets beyond those that go, and points. All vertices are free.
+/// Makes room for so many tets, beyond those that go, and points. All vertices are free; at most so many
+/// proposals may win.
 void begin_batch(EditableMesh& mesh, std::size_t proposals, std::size_t new_tets, std::size_t new_points);
 /// Marks a proposal as a winner, for which mesh.reservations().free(proposal.needed()): gives it the slots
 /// that it needs and the vertices that it changes, and takes the slots of what goes back.

@@ -25,49 +25,56 @@ LocalArea::LocalArea(const EditableMesh& mesh, BlockRunner& runner, double usual
 }
 
 LocalArea::LocalArea(const EditableMesh& mesh, BlockRunner& runner, ChangeJournal& journal,
-                     const std::vector<Index>& tets, const std::vector<Index>& reach)
+                     const std::vector<Index>& tets, const std::vector<Index>& with_rim)
     : mesh_(mesh),
       runner_(runner),
       journal_(&journal),
       limited_(true),
-      listed_at_first_(tets.size()),
+      first_count_(with_rim.size()),
       usual_edge_(mean_edge(mesh, tets)),
       candidates_(tets) {
-  bool added;
-  for (Index p : reach) reach_.number(p, added);
+  for (Index p : near_.points_of(mesh, with_rim)) set_place(p, Place::rim);
   first_points_ = near_.points_of(mesh, tets);
-  for (Index p : first_points_) points_.number(p, added);
+  for (Index p : first_points_) set_place(p, Place::inner);
   runner_.set_observer([this](const Proposal& p) { observe(p); });
 }
 
 LocalArea::~LocalArea() { runner_.set_observer(nullptr); }
+
+LocalArea::Place LocalArea::place(Index point) const {
+  if (!limited_) return Place::inner;
+  const Index number = point_numbers_.find(point);
+  return number == no_index ? Place::beyond : places_[number];
+}
+
+void LocalArea::set_place(Index point, Place place) {
+  bool added;
+  const Index number = point_numbers_.number(point, added);
+  if (added) places_.push_back(place);
+  places_[number] = place;
+}
 
 void LocalArea::observe(const Proposal& p) {
   ++operations_;
   changed_points_.insert(changed_points_.end(), p.marks.begin(), p.marks.end());
   if (journal_) journal_->note(mesh_, p);
   if (!limited_ || !p.has_new_point) return;
-  // Any other would draw points into the area that are two edges away from it.
-  if (!std::all_of(p.marks.begin(), p.marks.end(),
-                   [&](Index q) { return q == p.new_point_id || within_reach(q); }))
-    return;
-  bool added;
-  points_.number(p.new_point_id, added);
-  reach_.number(p.new_point_id, added);
+  // Next to a point beyond the rim it is of the rim, so that work does not spread from call to call of an
+  // operation. Its number may be that of a point which has gone.
+  const bool amid = std::all_of(p.marks.begin(), p.marks.end(),
+                                [&](Index q) { return q == p.new_point_id || place(q) != Place::beyond; });
+  set_place(p.new_point_id, amid ? Place::inner : Place::rim);
 }
 
 bool LocalArea::has(const Tet& tet, Part part) const {
-  const auto inside = [&](Index p) { return within(p); };
-  if (part == Part::inner) return std::all_of(tet.begin(), tet.end(), inside);
-  return std::any_of(tet.begin(), tet.end(), inside) &&
-         std::all_of(tet.begin(), tet.end(), [&](Index p) { return within_reach(p); });
+  return std::all_of(tet.begin(), tet.end(), [&](Index p) { return has(p, part); });
 }
 
-std::vector<Index> LocalArea::take_changed_points() {
+std::vector<Index> LocalArea::take_changed_points(Part part) {
   near_.make_distinct(changed_points_);
   std::vector<Index> points;
   for (Index p : changed_points_)
-    if (mesh_.incident_tet(p) != no_index && within(p)) points.push_back(p);
+    if (mesh_.incident_tet(p) != no_index && has(p, part)) points.push_back(p);
   changed_points_.clear();
   return points;
 }
@@ -78,10 +85,13 @@ std::vector<Index> LocalArea::tets_at(const std::vector<Index>& points, Part par
 
 std::vector<ListedTet> LocalArea::poor_tets(float limit) {
   // Every tet that was made or changed has only points that were marked, or a new one beside them.
-  const std::vector<Index> changed = tets_at(take_changed_points(), Part::with_rim);
+  const std::vector<Index> changed = tets_at(take_changed_points(Part::with_rim), Part::with_rim);
   candidates_.insert(candidates_.end(), changed.begin(), changed.end());
   near_.make_distinct(candidates_);
-  std::erase_if(candidates_, [&](Index t) { return mesh_.dead(t) || !(mesh_.quality(t) <= limit); });
+  // A slot may have been given to a tet that reaches beyond.
+  std::erase_if(candidates_, [&](Index t) {
+    return mesh_.dead(t) || !has(mesh_.points(t), Part::with_rim) || !(mesh_.quality(t) <= limit);
+  });
   return listed(candidates_);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "simplify/mesh/local_numbers.h"
@@ -16,16 +17,17 @@ class LocalArea final : public ImprovementArea {
   /// The whole mesh is open to it. `poor` are all tets of at most the first limit that poor_tets() is given.
   LocalArea(const EditableMesh& mesh, BlockRunner& runner, double usual_edge,
             const std::vector<ListedTet>& poor);
-  /// Of these tets, each of which is there once, of the rim around them, which are the tets that share points
-  /// with them, and of what takes their place: work does not spread beyond. `reach` are the points of all of
-  /// these. `journal` takes down what changes.
+  /// Of `tets`, each listed once, of the rim around them, and of what takes their place. `with_rim` are all
+  /// tets that share points with `tets`, which are among them. Points beyond it are never worked on; tets at
+  /// the rim's points change with these. `journal` takes down what changes.
   LocalArea(const EditableMesh& mesh, BlockRunner& runner, ChangeJournal& journal,
-            const std::vector<Index>& tets, const std::vector<Index>& reach);
+            const std::vector<Index>& tets, const std::vector<Index>& with_rim);
   ~LocalArea() override;
   LocalArea(const LocalArea&) = delete;
   LocalArea& operator=(const LocalArea&) = delete;
 
-  std::size_t tet_count() const override { return limited_ ? listed_at_first_ : mesh_.live_tets(); }
+  /// Of a limited area that of the tets that there were at first, with the rim.
+  std::size_t tet_count() const override { return limited_ ? first_count_ : mesh_.live_tets(); }
   /// Of a limited area the mean of those of its tets that there were at first.
   double usual_edge() const override { return usual_edge_; }
   /// The limit may not rise: what was above it before and has not changed since is not listed.
@@ -38,10 +40,11 @@ class LocalArea final : public ImprovementArea {
 
   /// The points of the tets that there were at first, ascending.
   const std::vector<Index>& first_points() const { return first_points_; }
-  /// The living points of the area, without those of the rim alone, around which something changed since this
-  /// was last called, ascending.
-  std::vector<Index> take_changed_points();
+  /// Which tets: those of inner points alone, or all without a point beyond the rim. Which points: those of
+  /// the tets that there were at first and those that came since, or with the rim's.
   enum class Part { inner, with_rim };
+  /// The living points around which something changed since this was last called, ascending.
+  std::vector<Index> take_changed_points(Part part);
   /// The tets of the area at points, each once, ascending.
   std::vector<Index> tets_at(const std::vector<Index>& points, Part part);
   /// From now on poor_tets() looks at the tets around these points, some of which may have gone since, and at
@@ -52,8 +55,12 @@ class LocalArea final : public ImprovementArea {
 
  private:
   void observe(const Proposal& proposal);
-  bool within(Index point) const { return !limited_ || points_.find(point) != no_index; }
-  bool within_reach(Index point) const { return !limited_ || reach_.find(point) != no_index; }
+  enum class Place : std::uint8_t { beyond, rim, inner };
+  Place place(Index point) const;
+  void set_place(Index point, Place place);
+  bool has(Index point, Part part) const {
+    return place(point) >= (part == Part::inner ? Place::inner : Place::rim);
+  }
   bool has(const Tet& tet, Part part) const;
   std::vector<Index> tets_around_living(std::vector<Index>&& points);
   std::vector<Index> numbers_around(const std::vector<ListedTet>& tets);
@@ -63,10 +70,10 @@ class LocalArea final : public ImprovementArea {
   BlockRunner& runner_;
   ChangeJournal* journal_ = nullptr;
   bool limited_;
-  std::size_t listed_at_first_ = 0;
+  std::size_t first_count_ = 0;
   double usual_edge_ = 0;
-  /// Of a limited area the points of its tets, with the rim and without.
-  LocalNumbers reach_, points_;
+  LocalNumbers point_numbers_;  ///< of a limited area
+  std::vector<Place> places_;   ///< by these
   std::vector<Index> first_points_;
   std::vector<Index> candidates_;      ///< tets that poor_tets() looks at
   std::vector<Index> changed_points_;  ///< since they were last taken

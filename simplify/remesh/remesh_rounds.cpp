@@ -1,6 +1,5 @@
 #include "simplify/remesh/remesh_rounds.h"
 
-#include <algorithm>
 #include <limits>
 
 #include "simplify/operations/collapse.h"
@@ -21,13 +20,13 @@ constexpr int max_coarsening_rounds = 12, max_refining_rounds = 12, max_improvin
 
 RemeshRounds::RemeshRounds(EditableMesh& mesh, BlockRunner& runner, ChangeJournal& journal,
                            const BlockRules& rules, const Plan& plan, const std::vector<Index>& region,
-                           const std::vector<Index>& reach)
+                           const std::vector<Index>& with_rim)
     : mesh_(mesh),
       runner_(runner),
       rules_(rules),
       plan_(plan),
       region_(region),
-      area_(mesh, runner, journal, region, reach) {
+      area_(mesh, runner, journal, region, with_rim) {
   rules_.max_error = area_.usual_edge();
 }
 
@@ -41,7 +40,7 @@ void RemeshRounds::coarsen(double size) {
   std::vector<Index> points = area_.first_points(), changed;
   for (int round = 0; round < max_coarsening_rounds && !points.empty(); ++round) {
     runner_.each_star(points, Operation::collapse, [&](Workspace& ws) { return collapse(ws, rules); });
-    points = area_.take_changed_points();
+    points = area_.take_changed_points(LocalArea::Part::inner);
     changed.insert(changed.end(), points.begin(), points.end());
   }
   area_.look_around(std::move(changed));
@@ -73,7 +72,7 @@ void RemeshRounds::refine(double size) {
           return insert_in_edge(ws, rules, item.tet, longest, InsertionPlace::centre, true);
         },
         [] { return false; });
-    const std::vector<Index> points = area_.take_changed_points();
+    const std::vector<Index> points = area_.take_changed_points(LocalArea::Part::inner);
     changed.insert(changed.end(), points.begin(), points.end());
     tets = area_.tets_at(points, LocalArea::Part::inner);
   }

@@ -14,10 +14,10 @@ class RemeshRounds {
     double leave_surface_angle;  ///< likewise: points of surfaces may leave them a little
     float floor;                 ///< shape_quality() that coarsening and refining leave
   };
-  /// `region`: living tets, each once; `reach`: the points of all tets that share points with them. `journal`
+  /// `region`: living tets, each once; `with_rim`: all that share points with them. `journal`
   /// takes down what changes.
   RemeshRounds(EditableMesh& mesh, BlockRunner& runner, ChangeJournal& journal, const BlockRules& rules,
-               const Plan& plan, const std::vector<Index>& region, const std::vector<Index>& reach);
+               const Plan& plan, const std::vector<Index>& region, const std::vector<Index>& with_rim);
 
   /// Lengths in working coordinates.
   void coarsen(double size);

@@ -1,9 +1,9 @@
 #include "simplify/schedule/block_runner.h"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <span>
+#include <type_traits>
 
 #ifdef TETWRIGHT_INJECT_YIELDS
 #include <thread>
@@ -17,8 +17,8 @@ namespace {
 
 /// M: of that many items near each other, one is in a batch. More of them make fewer conflicts, but the
 /// batches of a block then reach over more memory: 24 times a batch of points still fits into a core's cache.
-/// There are five times as many tets as points, an operation on one changes those around four points, and a
-/// list has neighbours of the same edge in a row.
+/// For tets conflicts cost more than cache misses: there are five times as many, an operation on one changes
+/// those around its four points, and tets around one edge stand next to each other in a list.
 constexpr std::size_t point_spacing = 24, tet_spacing = 256;
 /// Items of a batch: enough to keep several threads busy, few enough for the cache, and more of them where
 /// there are so many items that none of these fits it anyway.
@@ -41,14 +41,11 @@ constexpr std::size_t min_parallel_chunks = 3;
 class BlockOrder {
  public:
   BlockOrder(std::size_t items, std::size_t step, std::size_t spacing, Random random)
-      : items_(items),
-        step_(step),
-        spacing_(spacing),
-        left_(items),
-        random_(random),
-        keys_(spacing),
-        waiting_(spacing) {
+      : items_(items), step_(step), spacing_(spacing), left_(items), random_(random) {
+    if (step_ == 0) return;
+    keys_.resize(spacing_);
     std::iota(keys_.begin(), keys_.end(), 0u);
+    waiting_.resize(spacing_);
   }
   bool empty() const { return left_ == 0; }
   /// The next item; there is one.

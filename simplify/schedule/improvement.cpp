@@ -104,8 +104,8 @@ class ImprovementLoop {
   }
 
   /// Judges the round before by what it left: false where the last ones gained too little. Decides whether
-  /// the next one also moves the points around the poor tets and resorts to perturbation, which the first
-  /// round after a simplification does in any case.
+  /// the next one also moves the points around the poor tets and resorts to perturbation; where the plan is
+  /// not fast, the first one perturbs in any case.
   bool worth_a_round(const std::vector<ListedTet>& poor, bool first) {
     const bool bad = std::any_of(poor.begin(), poor.end(), [&](const ListedTet& t) {
       return mesh_.quality(t.tet) < bounds_.leave_surface;

@@ -35,7 +35,8 @@ struct ImprovementPlan {
   std::size_t target_tets, min_tets, max_tets;
   /// Flips before better places, and the last resort as soon as a round gains little but not much is poor:
   /// half the time of improve(), but less gain where thin layers of many materials keep most points from
-  /// moving far.
+  /// moving far. Else the first round perturbs: after a simplification that gives better shapes on nearer
+  /// surfaces.
   bool fast;
   /// Ends as soon as a round gains little and no tet is below leave_surface_angle: the last ones of those
   /// that are better take as long as all others.

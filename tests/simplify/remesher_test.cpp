@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "common/error.h"
+#include "common/geometry/box_tree.h"
 #include "common/geometry/predicates.h"
 #include "common/mesh/mesh_check.h"
 #include "common/mesh/topology.h"
@@ -136,7 +138,7 @@ TEST(Remesher, CoarsensAndRefines) {
   EXPECT_GT(worst_quality(r), 0);
 }
 
-TEST(Remesher, CoarseningEndsInARimOfGoodTetsAndNothingBeyondItChanges) {
+TEST(Remesher, CoarseningEndsInARimOfGoodTetsAndNoPointBeyondItMoves) {
   const TetMesh mesh = two_halves(14, 5, 0.1);
   Remesher r(mesh);
   const Box3 box{{5, 5, 5}, {9, 9, 9}};
@@ -158,6 +160,12 @@ TEST(Remesher, CoarseningEndsInARimOfGoodTetsAndNothingBeyondItChanges) {
       EXPECT_TRUE(r.has_point(p));
       EXPECT_EQ(r.position(p), before.points[p]);
     }
+  for (Index t = 0; t < before.tets.size(); ++t) {
+    const Tet& was = before.tets[t];
+    if (was != Tet{} && std::none_of(was.begin(), was.end(), [&](Index p) { return reach[p]; })) {
+      EXPECT_EQ(r.tet(t), was);
+    }
+  }
   std::size_t poor = 0;
   for (Index t : c.added_tets) {
     const Tet& p = r.tet(t);

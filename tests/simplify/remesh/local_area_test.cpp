@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <set>
+#include <utility>
 
+#include "simplify/operations/collapse.h"
+#include "simplify/operations/insertion.h"
 #include "simplify/operations/smoothing.h"
 #include "tests/simplify/workbench.h"
 
@@ -68,31 +70,83 @@ TEST(LocalArea, ListsWhatAScanFinds) {
   }
 }
 
-TEST(LocalArea, StaysWithinItsTetsAndTheirRim) {
+/// Some tets of a bench, and what shares points with them.
+struct Part {
+  Part(const EditableMesh& mesh, Index count) {
+    Neighbourhood near;
+    for (Index t = 0; t < count; ++t) tets.push_back(t);
+    points = near.points_of(mesh, tets);
+    with_rim = near.tets_at(mesh, points);
+    reach = near.points_of(mesh, with_rim);
+  }
+  std::vector<Index> tets, points, with_rim, reach;
+};
+
+bool has(const std::vector<Index>& list, Index i) { return std::binary_search(list.begin(), list.end(), i); }
+
+TEST(LocalArea, ListsItsTetsAndTheirRim) {
   Bench b(2);
-  std::vector<Index> tets;
-  for (Index t = 0; t < 100; ++t) tets.push_back(t);
-  std::set<Index> points, reach;
-  for (const Index t : tets) points.insert(b.work.mesh.points(t).begin(), b.work.mesh.points(t).end());
-  for (Index t = 0; t < b.work.mesh.tet_slots(); ++t) {
-    const Tet& p = b.work.mesh.points(t);
-    if (std::any_of(p.begin(), p.end(), [&](Index q) { return points.count(q) != 0; }))
-      reach.insert(p.begin(), p.end());
-  }
+  const EditableMesh& mesh = b.work.mesh;
+  const Part part(mesh, 100);
   ChangeJournal journal;
-  LocalArea area(b.work.mesh, b.runner, journal, tets, {reach.begin(), reach.end()});
-  EXPECT_EQ(area.tet_count(), 100u);
-  EXPECT_EQ(area.first_points(), std::vector<Index>(points.begin(), points.end()));
-  for (const Index t : area.tets_at(area.first_points(), LocalArea::Part::inner))
-    for (const Index p : b.work.mesh.points(t)) EXPECT_TRUE(points.count(p));
-  const std::vector<ListedTet> around = area.tets_around(b.listed(tets));
-  EXPECT_GT(around.size(), tets.size());
-  for (const ListedTet& t : around) {
-    EXPECT_TRUE(std::any_of(t.points.begin(), t.points.end(), [&](Index p) { return points.count(p) != 0; }));
-    for (const Index p : t.points) EXPECT_TRUE(reach.count(p));
+  LocalArea area(mesh, b.runner, journal, part.tets, part.with_rim);
+  EXPECT_EQ(area.tet_count(), part.with_rim.size());
+  EXPECT_EQ(area.first_points(), part.points);
+  EXPECT_EQ(area.tets_at(part.points, LocalArea::Part::with_rim), part.with_rim);
+  const std::vector<Index> inner = area.tets_at(part.points, LocalArea::Part::inner);
+  EXPECT_GE(inner.size(), part.tets.size());
+  EXPECT_LT(inner.size(), part.with_rim.size());
+  EXPECT_TRUE(std::includes(inner.begin(), inner.end(), part.tets.begin(), part.tets.end()));
+  for (const Index t : inner)
+    for (const Index p : mesh.points(t)) EXPECT_TRUE(has(part.points, p));
+  EXPECT_EQ(numbers(area.tets_around(b.listed(part.tets))), part.with_rim);
+  EXPECT_EQ(area.points_around(b.listed(part.tets)), part.reach);
+  EXPECT_EQ(numbers(area.poor_tets(1)), part.tets);  // and the rim's only where something changed
+}
+
+TEST(LocalArea, NoWorkBeyondTheRimWhateverHappensInIt) {
+  Bench b(3);
+  EditableMesh& mesh = b.work.mesh;
+  BlockRules& rules = b.work.rules;
+  rules.good_enough = 0;
+  const Part part(mesh, 150);
+  std::vector<std::pair<Index, Vec3>> beyond;
+  for (const Index p : b.work.live_points())
+    if (!has(part.reach, p)) beyond.push_back({p, mesh.position(p)});
+  ASSERT_GT(beyond.size(), 20u);
+  ChangeJournal journal;
+  LocalArea area(mesh, b.runner, journal, part.tets, part.with_rim);
+  std::size_t rim_tets = 0, gone = 0, came = 0;
+  for (int round = 0; round < 12; ++round) {
+    const std::vector<ListedTet> listed = area.poor_tets(1);
+    for (const ListedTet& t : listed) {
+      bool inner = true;
+      for (const Index p : t.points) {
+        EXPECT_TRUE(std::none_of(beyond.begin(), beyond.end(), [&](const auto& x) { return x.first == p; }));
+        inner &= has(part.points, p);
+      }
+      rim_tets += !inner;
+    }
+    const std::size_t live = b.work.live_points().size();
+    if (round % 2 == 0) {  // points come in edges of all that is listed, and go again
+      b.runner.tets_in_order(listed, [&](Workspace& ws, const ListedTet& item, int) {
+        if (!exists(ws.mesh, item)) return Outcome::stale;
+        return insert_in_edge(ws, rules, item.tet, round / 2 % 6, InsertionPlace::centre, true);
+      });
+      came += b.work.live_points().size() - live;
+    } else {
+      b.runner.each_star(area.points_around(listed), Operation::collapse,
+                         [&](Workspace& ws) { return collapse(ws, rules); });
+      gone += live - b.work.live_points().size();
+    }
+    for (const auto& [p, position] : beyond) {
+      ASSERT_NE(mesh.incident_tet(p), no_index);
+      EXPECT_EQ(mesh.position(p), position);
+    }
   }
-  for (const Index p : area.points_around(b.listed(tets))) EXPECT_TRUE(reach.count(p));
-  for (const ListedTet& t : area.poor_tets(1)) EXPECT_LT(t.tet, 100u);
+  EXPECT_GT(rim_tets, 100u);
+  EXPECT_GT(came, 50u);
+  EXPECT_GT(gone, 50u);
 }
 
 }  // namespace

@@ -1,0 +1,40 @@
+#include "simplify/constraints/constrained_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include "common/error.h"
+#include "tests/simplify/meshes.h"
+
+namespace tetwright::constrained_mesh_test {
+namespace {
+
+TEST(ConstrainedMesh, RefusesAMeshThatIsInsideOut) {
+  TetMesh mesh = grid_mesh(2);
+  for (Tet& t : mesh.tets) std::swap(t[0], t[1]);
+  try {
+    ConstrainedMesh(std::move(mesh), "scan.vtu", {}, false, true);
+    ADD_FAILURE();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("scan.vtu"), std::string::npos);
+    EXPECT_NE(std::string(e.what()).find("add up to nothing or less"), std::string::npos);
+  }
+}
+
+TEST(ConstrainedMesh, FreezesAndBoundsVolumesAsAsked) {
+  const ConstrainedMesh open(grid_mesh(3), "mesh", {}, false, false);
+  const ConstrainedMesh bounded(grid_mesh(3), "mesh", {}, true, true);
+  std::size_t frozen = 0;
+  for (Index p = 0; p < bounded.mesh.point_slots(); ++p) {
+    EXPECT_FALSE(open.mesh.frozen(p));
+    frozen += bounded.mesh.frozen(p);
+  }
+  EXPECT_EQ(frozen, 56u);  // of 4^3 points all but 2^3
+  const double volume = open.mesh.total_volume();
+  const std::vector<VolumeChange> tenth{{0, 0.1 * volume}}, hundredth{{0, 0.01 * volume}};
+  EXPECT_TRUE(open.ledger.allows(tenth));
+  EXPECT_FALSE(bounded.ledger.allows(tenth));
+  EXPECT_TRUE(bounded.ledger.allows(hundredth));
+}
+
+}  // namespace
+}  // namespace tetwright::constrained_mesh_test
