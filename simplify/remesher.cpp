@@ -232,6 +232,7 @@ void Remesher::Impl::move_points(std::span<const Index> points, std::span<const 
   std::vector<ChangeJournal::OldPoint> old;
   std::vector<Index> distinct = moved;
   near.make_distinct(distinct);
+  old.reserve(distinct.size());
   for (Index p : distinct) old.push_back({p, true, mesh.position(p)});
   SurfaceGrid::Edit edit;
   const std::vector<InterfaceFace> faces = interface_faces_of(tets);
