@@ -59,8 +59,8 @@ void LocalArea::observe(const Proposal& p) {
   changed_points_.insert(changed_points_.end(), p.marks.begin(), p.marks.end());
   if (journal_) journal_->note(mesh_, p);
   if (!limited_ || !p.has_new_point) return;
-  // Next to a point beyond the rim it is of the rim, so that work does not spread from call to call of an
-  // operation. Its number may be that of a point which has gone.
+  // Next to a point beyond the rim it counts as one of the rim, so that work does not spread. Its number may
+  // be that of a point which has gone.
   const bool amid = std::all_of(p.marks.begin(), p.marks.end(),
                                 [&](Index q) { return q == p.new_point_id || place(q) != Place::beyond; });
   set_place(p.new_point_id, amid ? Place::inner : Place::rim);
