@@ -14,6 +14,7 @@
 #include "simplify/remesh/point_tree.h"
 #include "simplify/remesh/remesh_rounds.h"
 #include "simplify/schedule/block_runner.h"
+#include "simplify/schedule/round_recorder.h"
 
 namespace tetwright {
 
@@ -52,7 +53,9 @@ struct Remesher::Impl {
   Impl(TetMesh&& input, const RemesherOptions& given, Renumbering* numbers)
       : options(given),
         constrained(std::move(input), given.name, given.frozen, given.fix_boundary, true),
-        runner(mesh, grid, constrained.ledger, given.seed, 0, nullptr) {
+        runner(mesh, grid, constrained.ledger, given.seed, given.batch_size, given.progress),
+        recorder(mesh, runner, given.report, given.progress) {
+    recorder.begin_stage("improve");
     rules.objective.kind = Objective::Kind::shape;
     rules.objective.shape = options.objective;
     renumber(numbers);
@@ -91,8 +94,11 @@ struct Remesher::Impl {
   std::vector<InterfaceFace> interface_faces_of(const std::vector<Index>& tets) const;
   /// Onto the surfaces at these points, ascending.
   SurfaceProjection project_onto(const std::vector<Index>& points);
+  RemeshAim usual_aim() const;
   template <class Work>
-  RemeshChanges call(const RemeshRegion& region, const Work& work);
+  RemeshChanges call(const RemeshRegion& region, const RemeshAim& aim, const Work& work);
+  template <class Resize>
+  RemeshChanges resize(const RemeshRegion& region, double size, const Resize& work);
   RemeshChanges changes() const;
   void carry_fields();
   void move_points(std::span<const Index> points, std::span<const Vec3> positions);
@@ -102,6 +108,7 @@ struct Remesher::Impl {
   EditableMesh& mesh = constrained.mesh;
   SurfaceGrid& grid = constrained.grid;
   BlockRunner runner;
+  RoundRecorder recorder;
   PointTree places;
   ChangeJournal journal;
   BlockRules rules;
@@ -154,27 +161,37 @@ std::vector<InterfaceFace> Remesher::Impl::interface_faces_of(const std::vector<
 }
 
 SurfaceProjection Remesher::Impl::project_onto(const std::vector<Index>& points) {
-  return SurfaceProjection(mesh, interface_faces_of(near.tets_at(mesh, points)), nullptr,
+  return SurfaceProjection(mesh, interface_faces_of(near.tets_at(mesh, points)), options.reference,
                            [&](Index p) { return std::binary_search(points.begin(), points.end(), p); });
 }
 
+RemeshAim Remesher::Impl::usual_aim() const {
+  return {.angle = poor_margin * options.min_solid_angle,
+          .leave_surface_angle = leave_surface_margin * options.min_solid_angle};
+}
+
 template <class Work>
-RemeshChanges Remesher::Impl::call(const RemeshRegion& region, const Work& work) {
+RemeshChanges Remesher::Impl::call(const RemeshRegion& region, const RemeshAim& aim, const Work& work) {
   const std::vector<Index> tets = tets_of(region);
   journal.clear();
   if (tets.empty()) return {};
   const std::vector<Index> with_rim = near.tets_at(mesh, near.points_of(mesh, tets));
   const SurfaceProjection projection = project_onto(near.points_of(mesh, with_rim));
   rules.projection = &projection;
-  const double floor = floor_share * shape_quality_bound(options.objective, options.min_solid_angle);
   std::uint64_t operations = 0;
+  int improved = 0;
   {
-    RemeshRounds rounds(mesh, runner, journal, rules,
-                        {poor_margin * options.min_solid_angle,
-                         leave_surface_margin * options.min_solid_angle, static_cast<float>(floor)},
-                        tets, with_rim);
+    RemeshRounds rounds({mesh, runner, rules, recorder}, journal, tets, with_rim);
     work(rounds);
-    rounds.improve();
+    improved = rounds.improve({.kind = "improve",
+                               .angle = aim.angle,
+                               .leave_surface_angle = aim.leave_surface_angle,
+                               .target_tets = aim.target_tets,
+                               .min_tets = aim.min_tets,
+                               .max_tets = aim.max_tets,
+                               .fast = true,
+                               .brief = aim.brief,
+                               .max_rounds = aim.max_rounds});
     operations = rounds.operations();
   }
   rules.projection = nullptr;
@@ -183,7 +200,17 @@ RemeshChanges Remesher::Impl::call(const RemeshRegion& region, const Work& work)
   places.repair(mesh, journal.points());
   RemeshChanges result = changes();
   result.operations = operations;
+  result.rounds = improved;
   return result;
+}
+
+template <class Resize>
+RemeshChanges Remesher::Impl::resize(const RemeshRegion& region, double size, const Resize& work) {
+  if (!(size > 0)) throw UsageError("the size of edges must be above 0");
+  const auto floor =
+      static_cast<float>(floor_share * shape_quality_bound(options.objective, options.min_solid_angle));
+  return call(region, usual_aim(),
+              [&](RemeshRounds& rounds) { work(rounds, size * mesh.space().scale(), floor); });
 }
 
 RemeshChanges Remesher::Impl::changes() const {
@@ -256,6 +283,7 @@ Remesher& Remesher::operator=(Remesher&&) noexcept = default;
 std::size_t Remesher::tet_count() const { return impl_->mesh.live_tets(); }
 std::size_t Remesher::tet_slots() const { return impl_->mesh.tet_slots(); }
 std::size_t Remesher::point_slots() const { return impl_->mesh.point_slots(); }
+std::size_t Remesher::touching_points() const { return impl_->mesh.touching_points(); }
 bool Remesher::has_tet(Index tet) const { return tet < tet_slots() && !impl_->mesh.dead(tet); }
 bool Remesher::has_point(Index point) const {
   return point < point_slots() && impl_->mesh.incident_tet(point) != no_index;
@@ -313,18 +341,20 @@ void Remesher::set_positions(std::span<const Index> points, std::span<const Vec3
   impl_->move_points(points, positions);
 }
 
-RemeshChanges Remesher::improve(const RemeshRegion& region) {
-  return impl_->call(region, [](RemeshRounds&) {});
+RemeshChanges Remesher::improve(const RemeshRegion& region) { return improve(region, impl_->usual_aim()); }
+
+RemeshChanges Remesher::improve(const RemeshRegion& region, const RemeshAim& aim) {
+  if (!(aim.angle >= 0) || !(aim.leave_surface_angle >= 0))
+    throw UsageError("the solid angles to improve to must be at least 0");
+  return impl_->call(region, aim, [](RemeshRounds&) {});
 }
 
 RemeshChanges Remesher::coarsen(const RemeshRegion& region, double size) {
-  if (!(size > 0)) throw UsageError("the size of edges must be above 0");
-  return impl_->call(region, [&](RemeshRounds& r) { r.coarsen(size * impl_->mesh.space().scale()); });
+  return impl_->resize(region, size, [](RemeshRounds& r, double s, float floor) { r.coarsen(s, floor); });
 }
 
 RemeshChanges Remesher::refine(const RemeshRegion& region, double size) {
-  if (!(size > 0)) throw UsageError("the size of edges must be above 0");
-  return impl_->call(region, [&](RemeshRounds& r) { r.refine(size * impl_->mesh.space().scale()); });
+  return impl_->resize(region, size, [](RemeshRounds& r, double s, float floor) { r.refine(s, floor); });
 }
 
 Renumbering Remesher::compact() {

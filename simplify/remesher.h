@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -14,6 +15,10 @@
 
 namespace tetwright {
 
+class Progress;
+class ReferenceSurface;
+struct SimplifyReport;
+
 struct RemesherOptions {
   ShapeObjective objective = ShapeObjective::both;
   /// Steradians: improve() works on tets whose shape is worse than shape_quality_bound() of it; coarsen() and
@@ -24,7 +29,27 @@ struct RemesherOptions {
   std::vector<std::uint8_t> frozen;
   bool fix_boundary = false;  ///< freezes the vertices of boundary and interfaces, and so their faces
   std::uint64_t seed = 1;
-  std::string name = "mesh";  ///< what messages call the mesh
+  std::string name = "mesh";   ///< what messages call the mesh
+  std::size_t batch_size = 0;  ///< as in SimplifyOptions
+  // Null, or they outlive the object.
+
+  /// What points of boundary and interfaces are projected onto; null: the surfaces that each call finds.
+  const ReferenceSurface* reference = nullptr;
+  SimplifyReport* report = nullptr;  ///< gets the rounds of improvement
+  Progress* progress = nullptr;      ///< is told of them; what it cancels throws Interrupted
+};
+
+/// What improve() goes for.
+struct RemeshAim {
+  double angle;  ///< steradians: tets whose shape is worse than shape_quality_bound() of it are improved
+  /// Likewise: for tets worse than this, points of surfaces may leave them a little.
+  double leave_surface_angle;
+  /// Of the whole mesh: bounds of its count, and what collapses bring it back to where it has come halfway to
+  /// the upper one.
+  std::size_t target_tets = 0, min_tets = 0, max_tets = std::numeric_limits<std::size_t>::max();
+  /// Ends as soon as a round gains little and no tet is below leave_surface_angle.
+  bool brief = true;
+  int max_rounds = 16;
 };
 
 /// The part of a mesh that a call works on. Tets that share a vertex with it are improved, too, where a call
@@ -60,6 +85,7 @@ struct RemeshChanges {
   std::vector<Index> removed_points, added_points;
   std::vector<Index> moved_points;  ///< those that were there before
   std::uint64_t operations = 0;     ///< carried out
+  int rounds = 0;                   ///< of improvement
 };
 
 /// Numbers before and after: renumbering.tets[old] is the new number, no_index where there was nothing.
@@ -94,6 +120,8 @@ class Remesher {
   std::size_t tet_count() const;
   std::size_t tet_slots() const;
   std::size_t point_slots() const;
+  /// Points where parts touch without a common face: they stay as they are, with all tets around.
+  std::size_t touching_points() const;
   bool has_tet(Index tet) const;
   bool has_point(Index point) const;
   /// Of what is there.
@@ -122,11 +150,13 @@ class Remesher {
   /// with the first of them, and what is given for the others does not matter.
   void set_positions(std::span<const Index> points, std::span<const Vec3> positions);
 
-  // All three throw UsageError where the region lists tets that are not there, or the size is not above 0.
+  // They throw UsageError where the region lists tets that are not there, an angle of the aim is not a number
+  // or below 0, or the size is not above 0.
 
   /// Makes the tets of the region well shaped that are not (RemesherOptions::min_solid_angle), also by points
   /// that come or go.
   RemeshChanges improve(const RemeshRegion& region);
+  RemeshChanges improve(const RemeshRegion& region, const RemeshAim& aim);
   /// Collapses edges much shorter than `size` in the region, as far as topology, surfaces and shapes allow,
   /// without making edges much longer than it; then improves.
   RemeshChanges coarsen(const RemeshRegion& region, double size);

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "common/error.h"
 #include "common/memory.h"
-#include "simplify/remesh/local_area.h"
+#include "simplify/remesher.h"
 #include "simplify/schedule/bulk_improvement.h"
 #include "simplify/schedule/engine.h"
-#include "simplify/schedule/improvement.h"
+#include "simplify/schedule/improve_area.h"
 #include "simplify/schedule/paper_schedule.h"
 #include "simplify/schedule/schedule_constants.h"
 #include "simplify/schedule/tuned_schedule.h"
@@ -26,13 +28,9 @@ constexpr double closing_margin = 1.27;
 /// up to 30 degrees). In the closing that would move the surface a quarter farther.
 constexpr double improve_margin = 1.5;
 constexpr int closing_fit_sweeps = 1;
-/// Rounds in bulk each time.
-constexpr int max_bulk_rounds = 30;
-/// Shares of the tets below the bound above which improve() begins in bulk, and from which on whatever stays
-/// below it after rounds for the worst is taken up in bulk. Scans and what programs make of them have up to
-/// 32 % below 0.15 sr at first, and the rounds alone end them in half the time.
+/// Share of the tets below the bound above which improve() begins in bulk. Scans and what programs make of
+/// them have up to 32 % below 0.15 sr at first, and the rounds alone end them in half the time.
 constexpr double bulk_before = 0.4;
-constexpr double bulk_after = 0.01;
 /// In the end improve() takes up all tets below this solid angle, steradians, by the cheap operations alone:
 /// the mean rises by 0.01 sr. The rounds would take four times as long as all before for as much again.
 constexpr double polish_below = 0.2;
@@ -44,8 +42,6 @@ constexpr int max_last_rounds = 20;
 constexpr double min_free = 0.8, max_free = 4;
 /// The first bound on the way there, for a --min-solid-angle of next to nothing.
 constexpr double min_first_bound = 1e-3;
-/// Factor from one bound to the next.
-constexpr double improve_step = 1.18;
 /// Share of the tets that improve() may add or take away; 5 % are promised.
 constexpr double improve_slack = 0.045;
 /// E of improve(), in edges of a regular mesh of that count: the paper's first E.
@@ -60,41 +56,22 @@ float quality_at(const Engine& engine, double angle) {
   return static_cast<float>(shape_quality_bound(engine.rules.objective.shape, angle));
 }
 
-/// Works in bulk on what is below an angle; returns the number of rounds.
-int improve_in_bulk(Engine& engine, const ImprovementPlan& plan, double angle, int max_rounds, bool remodel) {
-  return run_bulk_improvement(engine, {.kind = plan.kind,
-                                       .poor = quality_at(engine, angle),
-                                       .min_tets = plan.min_tets,
-                                       .max_tets = plan.max_tets,
-                                       .max_rounds = std::min(plan.max_rounds, max_rounds),
-                                       .remodel = remodel});
+ImprovementTools tools_of(Engine& engine) {
+  return {engine.mesh(), engine.runner(), engine.rules, engine.recorder()};
 }
 
-/// What improve_to_angle() looks at for rounds of the worst tets: lists that follow what changes, where all
-/// but a few tets are left alone; where the count is held by collapses anywhere, the whole mesh.
-enum class RoundsOver { poor_tets, whole_mesh };
-
-/// Improves what is below the plan's angle: the worst first, and in bulk before where more than `bulk_first`
-/// of the tets are below it at first, or too many still are afterwards. Takes the rounds off plan.max_rounds.
-void improve_to_angle(Engine& engine, ImprovementPlan& plan, double bulk_first, RoundsOver over) {
-  for (const double bulk_above : {bulk_first, bulk_after}) {
-    std::vector<ListedTet> poor = engine.poor_tets(quality_at(engine, plan.angle));
-    const bool bulk =
-        static_cast<double>(poor.size()) > bulk_above * static_cast<double>(engine.mesh().live_tets());
-    const bool second = bulk_above == bulk_after;
-    if (plan.max_rounds <= 0 || (second && !bulk)) return;
-    if (bulk) {
-      plan.max_rounds -= improve_in_bulk(engine, plan, plan.angle, max_bulk_rounds, true);
-      poor = engine.poor_tets(quality_at(engine, plan.angle));
-    }
-    if (over == RoundsOver::poor_tets) {
-      LocalArea area(engine.mesh(), engine.runner(), engine.rules.objective.quality.ideal_edge, poor);
-      plan.max_rounds -= run_improvement(engine, plan, &area);
-    } else {
-      plan.max_rounds -= run_improvement(engine, plan);
-    }
-    plan.fit_sweeps = 0;
+/// Sweeps of fit_to_surface() over all interface points.
+void fit(Engine& engine, int sweeps, float floor) {
+  for (int i = 0; i < sweeps; ++i) {
+    RoundRecorder::Round round(engine.recorder(), "close", engine.rules.max_error);
+    engine.fit_interfaces(floor);
+    round.finish();
   }
+}
+
+/// The first of the bounds that rise to the one to be reached.
+double first_bound(double min_solid_angle) {
+  return std::max(min_first_bound, closing_margin * min_solid_angle);
 }
 
 /// Checks what both calls share, before any work.
@@ -119,7 +96,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
                  options.seed, options.batch_size, options.objective, options.reference, options.frozen,
                  options.fix_boundary, options.schedule == Schedule::tuned},
                 report, progress);
-  engine.begin_stage("simplify");
+  engine.recorder().begin_stage("simplify");
   const double build = seconds_since(start);
   if (options.schedule == Schedule::paper) {
     run_paper_schedule(engine, options);
@@ -128,20 +105,21 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
   }
   const double loop_end = seconds_since(start);
   if (options.schedule == Schedule::tuned) {
-    engine.begin_stage("improve");
-    begin_improvement(engine);
+    engine.recorder().begin_stage("improve");
+    engine.begin_improvement();
     const auto count = static_cast<double>(std::min(options.target_tets, first_count));
-    ImprovementPlan plan{.kind = "close",
-                         .angle = closing_margin * options.min_solid_angle,
-                         .leave_surface_angle = closing_margin * options.min_solid_angle,
-                         .target_tets = static_cast<std::size_t>(count),
-                         .min_tets = static_cast<std::size_t>(std::ceil(count * (1 - closing_slack))),
-                         .max_tets = static_cast<std::size_t>(count * (1 + closing_slack)),
-                         .fast = false,
-                         .brief = false,
-                         .max_rounds = max_closing_rounds,
-                         .fit_sweeps = closing_fit_sweeps};
-    improve_to_angle(engine, plan, 1, RoundsOver::whole_mesh);
+    const ImprovementPlan plan{.kind = "close",
+                               .angle = closing_margin * options.min_solid_angle,
+                               .leave_surface_angle = closing_margin * options.min_solid_angle,
+                               .target_tets = static_cast<std::size_t>(count),
+                               .min_tets = static_cast<std::size_t>(std::ceil(count * (1 - closing_slack))),
+                               .max_tets = static_cast<std::size_t>(count * (1 + closing_slack)),
+                               .fast = false,
+                               .brief = false,
+                               .max_rounds = max_closing_rounds};
+    fit(engine, closing_fit_sweeps, quality_at(engine, plan.angle));
+    WholeMesh whole(engine);
+    improve_area(tools_of(engine), whole, plan, 1);
   }
   if (report) {
     report->touching_points = engine.mesh().touching_points();
@@ -152,47 +130,103 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
   return std::move(engine).take();
 }
 
+namespace {
+
+/// improve() with `only_below`: a Remesher works on the regions of poor tets alone.
+TetMesh improve_poor_regions(TetMesh&& mesh, const ImproveOptions& options, std::size_t min_tets,
+                             std::size_t max_tets, SimplifyReport* report, Progress* progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::size_t count = mesh.tets.size();
+  Remesher remesher(std::move(mesh), {.objective = options.objective,
+                                      .frozen = options.frozen,
+                                      .fix_boundary = options.fix_boundary,
+                                      .seed = options.seed,
+                                      .name = options.name,
+                                      .batch_size = options.batch_size,
+                                      .reference = options.reference,
+                                      .report = report,
+                                      .progress = progress});
+  const double build = seconds_since(start);
+  int rounds = options.max_iterations;
+  for (const double angle : rising_bounds(std::min(options.only_below, first_bound(options.min_solid_angle)),
+                                          options.only_below)) {
+    const double bound = shape_quality_bound(options.objective, angle);
+    for (std::size_t fewest = std::numeric_limits<std::size_t>::max(); rounds > 0;) {
+      std::vector<Index> poor;
+      for (Index t = 0; t < remesher.tet_slots(); ++t)
+        if (remesher.has_tet(t) && remesher.quality(t) <= bound) poor.push_back(t);
+      if (poor.empty() || poor.size() >= fewest) break;
+      fewest = poor.size();
+      const RemeshChanges changes =
+          remesher.improve(RemeshRegion::tets(std::move(poor)),
+                           {.angle = angle,
+                            .leave_surface_angle = improve_margin * options.min_solid_angle,
+                            .target_tets = count,
+                            .min_tets = min_tets,
+                            .max_tets = max_tets,
+                            .brief = false,
+                            .max_rounds = rounds});
+      rounds -= std::max(changes.rounds, 1);
+    }
+  }
+  if (report) {
+    report->touching_points = remesher.touching_points();
+    report->seconds_build = build;
+    report->seconds_close = seconds_since(start) - build;
+  }
+  return std::move(remesher).mesh();
+}
+
+}  // namespace
+
 TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* report, Progress* progress) {
   check(mesh, options.name);
   const auto start = std::chrono::steady_clock::now();
   const auto count = static_cast<double>(mesh.tets.size());
+  const auto min_tets =
+      static_cast<std::size_t>(std::ceil(count * (options.free_count ? min_free : 1 - improve_slack)));
+  const auto max_tets = static_cast<std::size_t>(count * (options.free_count ? max_free : 1 + improve_slack));
+  if (options.only_below > 0)
+    return improve_poor_regions(std::move(mesh), options, min_tets, max_tets, report, progress);
   const SimplifyOptions defaults;
   Engine engine(std::move(mesh),
                 {options.name, count, defaults.beta, defaults.gamma, options.seed, options.batch_size,
                  options.objective, options.reference, options.frozen, options.fix_boundary},
                 report, progress);
-  engine.begin_stage("improve");
+  engine.recorder().begin_stage("improve");
   const double build = seconds_since(start);
   engine.rules.max_error = improve_error_edges * engine.rules.objective.quality.ideal_edge;
-  begin_improvement(engine);
-  const double below = options.only_below > 0 ? options.only_below : improve_margin * options.min_solid_angle;
-  const double least = options.free_count ? min_free : 1 - improve_slack;
-  const double most = options.free_count ? max_free : 1 + improve_slack;
+  engine.begin_improvement();
+  const double below = improve_margin * options.min_solid_angle;
   // The last rounds are kept for what comes in the end.
-  const int kept_rounds = options.only_below > 0 ? 0 : std::min(options.max_iterations / 2, max_last_rounds);
+  const int kept_rounds = std::min(options.max_iterations / 2, max_last_rounds);
   ImprovementPlan plan{.kind = "improve",
                        .angle = below,
-                       .leave_surface_angle = improve_margin * options.min_solid_angle,
+                       .leave_surface_angle = below,
                        .target_tets = static_cast<std::size_t>(count),
-                       .min_tets = static_cast<std::size_t>(std::ceil(count * least)),
-                       .max_tets = static_cast<std::size_t>(count * most),
+                       .min_tets = min_tets,
+                       .max_tets = max_tets,
                        .fast = true,
                        .brief = false,
-                       .max_rounds = options.max_iterations - kept_rounds,
-                       .fit_sweeps = 0};
-  const RoundsOver over = options.only_below > 0 ? RoundsOver::poor_tets : RoundsOver::whole_mesh;
-  // The worst first, also in the large: a bound that most tets are below would leave no time for them.
-  for (double limit = std::max(min_first_bound, closing_margin * options.min_solid_angle);;
-       limit *= improve_step) {
-    plan.angle = std::min(limit, below);
-    improve_to_angle(engine, plan, bulk_before, over);
-    if (limit >= below || plan.max_rounds <= 0) break;
+                       .max_rounds = options.max_iterations - kept_rounds};
+  const ImprovementTools tools = tools_of(engine);
+  WholeMesh whole(engine);
+  for (const double bound : rising_bounds(first_bound(options.min_solid_angle), below)) {
+    plan.angle = bound;
+    plan.max_rounds -= improve_area(tools, whole, plan, bulk_before);
+    if (plan.max_rounds <= 0) break;
   }
   plan.max_rounds += kept_rounds;
-  if (over == RoundsOver::whole_mesh && plan.max_rounds > 0) {
-    plan.max_rounds -= improve_in_bulk(engine, plan, std::max(below, polish_below), max_polish_rounds, false);
+  if (plan.max_rounds > 0) {
+    plan.max_rounds -= run_bulk_improvement(tools, whole,
+                                            {.kind = plan.kind,
+                                             .poor = quality_at(engine, std::max(below, polish_below)),
+                                             .min_tets = plan.min_tets,
+                                             .max_tets = plan.max_tets,
+                                             .max_rounds = std::min(plan.max_rounds, max_polish_rounds),
+                                             .remodel = false});
     // Other connectivity around them lets the last ones go on.
-    if (plan.max_rounds > 0) run_improvement(engine, plan);
+    if (plan.max_rounds > 0) run_improvement(tools, whole, plan);
   }
   if (report) {
     report->touching_points = engine.mesh().touching_points();

@@ -17,19 +17,11 @@ double mean_edge(const EditableMesh& mesh, const std::vector<Index>& tets) {
 
 }  // namespace
 
-LocalArea::LocalArea(const EditableMesh& mesh, BlockRunner& runner, double usual_edge,
-                     const std::vector<ListedTet>& poor)
-    : mesh_(mesh), runner_(runner), limited_(false), usual_edge_(usual_edge) {
-  for (const ListedTet& t : poor) candidates_.push_back(t.tet);
-  runner_.set_observer([this](const Proposal& p) { observe(p); });
-}
-
 LocalArea::LocalArea(const EditableMesh& mesh, BlockRunner& runner, ChangeJournal& journal,
                      const std::vector<Index>& tets, const std::vector<Index>& with_rim)
     : mesh_(mesh),
       runner_(runner),
-      journal_(&journal),
-      limited_(true),
+      journal_(journal),
       first_count_(with_rim.size()),
       usual_edge_(mean_edge(mesh, tets)),
       candidates_(tets) {
@@ -42,7 +34,6 @@ LocalArea::LocalArea(const EditableMesh& mesh, BlockRunner& runner, ChangeJourna
 LocalArea::~LocalArea() { runner_.set_observer(nullptr); }
 
 LocalArea::Place LocalArea::place(Index point) const {
-  if (!limited_) return Place::inner;
   const Index number = point_numbers_.find(point);
   return number == no_index ? Place::beyond : places_[number];
 }
@@ -57,8 +48,8 @@ void LocalArea::set_place(Index point, Place place) {
 void LocalArea::observe(const Proposal& p) {
   ++operations_;
   changed_points_.insert(changed_points_.end(), p.marks.begin(), p.marks.end());
-  if (journal_) journal_->note(mesh_, p);
-  if (!limited_ || !p.has_new_point) return;
+  journal_.note(mesh_, p);
+  if (!p.has_new_point) return;
   // Next to a point beyond the rim it counts as one of the rim, so that work does not spread. Its number may
   // be that of a point which has gone.
   const bool amid = std::all_of(p.marks.begin(), p.marks.end(),
@@ -93,6 +84,13 @@ std::vector<ListedTet> LocalArea::poor_tets(float limit) {
     return mesh_.dead(t) || !has(mesh_.points(t), Part::with_rim) || !(mesh_.quality(t) <= limit);
   });
   return listed(candidates_);
+}
+
+std::vector<Index> LocalArea::poor_points(float limit) {
+  std::vector<Index> points;
+  for (const ListedTet& t : poor_tets(limit)) points.insert(points.end(), t.points.begin(), t.points.end());
+  near_.make_distinct(points);
+  return points;
 }
 
 std::vector<Index> LocalArea::tets_around_living(std::vector<Index>&& points) {

@@ -6,7 +6,7 @@
 #include "simplify/mesh/local_numbers.h"
 #include "simplify/mesh/neighbourhood.h"
 #include "simplify/remesh/change_journal.h"
-#include "simplify/schedule/improvement.h"
+#include "simplify/schedule/improvement_area.h"
 
 namespace tetwright {
 
@@ -14,9 +14,6 @@ namespace tetwright {
 /// all that a BlockRunner carries out while it exists.
 class LocalArea final : public ImprovementArea {
  public:
-  /// The whole mesh is open to it. `poor` are all tets of at most the first limit that poor_tets() is given.
-  LocalArea(const EditableMesh& mesh, BlockRunner& runner, double usual_edge,
-            const std::vector<ListedTet>& poor);
   /// Of `tets`, each listed once, of the rim around them, and of what takes their place. `with_rim` are all
   /// tets that share points with `tets`, which are among them. Points beyond it are never worked on; tets at
   /// the rim's points change with these. `journal` takes down what changes.
@@ -26,12 +23,13 @@ class LocalArea final : public ImprovementArea {
   LocalArea(const LocalArea&) = delete;
   LocalArea& operator=(const LocalArea&) = delete;
 
-  /// Of a limited area that of the tets that there were at first, with the rim.
-  std::size_t tet_count() const override { return limited_ ? first_count_ : mesh_.live_tets(); }
-  /// Of a limited area the mean of those of its tets that there were at first.
+  /// Of the tets that there were at first, with the rim.
+  std::size_t tet_count() const override { return first_count_; }
+  /// The mean of those of its tets that there were at first.
   double usual_edge() const override { return usual_edge_; }
   /// The limit may not rise: what was above it before and has not changed since is not listed.
   std::vector<ListedTet> poor_tets(float limit) override;
+  std::vector<Index> poor_points(float limit) override;
   std::vector<ListedTet> tets_around(const std::vector<ListedTet>& tets) override;
   std::vector<Index> points_around(const std::vector<ListedTet>& tets) override;
   std::vector<Index> points_to_thin(const std::vector<ListedTet>& poor) override {
@@ -68,12 +66,11 @@ class LocalArea final : public ImprovementArea {
 
   const EditableMesh& mesh_;
   BlockRunner& runner_;
-  ChangeJournal* journal_ = nullptr;
-  bool limited_;
-  std::size_t first_count_ = 0;
-  double usual_edge_ = 0;
-  LocalNumbers point_numbers_;  ///< of a limited area
-  std::vector<Place> places_;   ///< by these
+  ChangeJournal& journal_;
+  std::size_t first_count_;
+  double usual_edge_;
+  LocalNumbers point_numbers_;
+  std::vector<Place> places_;  ///< by these
   std::vector<Index> first_points_;
   std::vector<Index> candidates_;      ///< tets that poor_tets() looks at
   std::vector<Index> changed_points_;  ///< since they were last taken

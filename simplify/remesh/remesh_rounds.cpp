@@ -4,6 +4,7 @@
 
 #include "simplify/operations/collapse.h"
 #include "simplify/operations/insertion.h"
+#include "simplify/schedule/improve_area.h"
 
 namespace tetwright {
 
@@ -14,56 +15,56 @@ namespace {
 constexpr double short_edge = 0.8, long_edge = 4.0 / 3;
 /// How far new triangles of a coarser surface may be from the one that the call found, in sizes.
 constexpr double coarsening_distance = 0.1;
-constexpr int max_coarsening_rounds = 12, max_refining_rounds = 12, max_improving_rounds = 16;
+/// Share of the tets below the bound above which improving begins in bulk, as in improve().
+constexpr double bulk_before = 0.4;
+constexpr int max_coarsening_rounds = 12, max_refining_rounds = 12;
 
 }  // namespace
 
-RemeshRounds::RemeshRounds(EditableMesh& mesh, BlockRunner& runner, ChangeJournal& journal,
-                           const BlockRules& rules, const Plan& plan, const std::vector<Index>& region,
-                           const std::vector<Index>& with_rim)
-    : mesh_(mesh),
-      runner_(runner),
-      rules_(rules),
-      plan_(plan),
+RemeshRounds::RemeshRounds(const ImprovementTools& tools, ChangeJournal& journal,
+                           const std::vector<Index>& region, const std::vector<Index>& with_rim)
+    : rules_(tools.rules),
+      tools_{tools.mesh, tools.runner, rules_, tools.recorder},
       region_(region),
-      area_(mesh, runner, journal, region, with_rim) {
+      area_(tools.mesh, tools.runner, journal, region, with_rim) {
   rules_.max_error = area_.usual_edge();
 }
 
-void RemeshRounds::coarsen(double size) {
+void RemeshRounds::coarsen(double size, float floor) {
   BlockRules rules = rules_;
   rules.max_error = std::numeric_limits<double>::infinity();
   rules.max_collapsed_edge = short_edge * size;
   rules.max_edge = long_edge * size;
   rules.max_distance = coarsening_distance * size;
-  rules.good_enough = plan_.floor;
+  rules.good_enough = floor;
   std::vector<Index> points = area_.first_points(), changed;
   for (int round = 0; round < max_coarsening_rounds && !points.empty(); ++round) {
-    runner_.each_star(points, Operation::collapse, [&](Workspace& ws) { return collapse(ws, rules); });
+    tools_.runner.each_star(points, Operation::collapse, [&](Workspace& ws) { return collapse(ws, rules); });
     points = area_.take_changed_points(LocalArea::Part::inner);
     changed.insert(changed.end(), points.begin(), points.end());
   }
   area_.look_around(std::move(changed));
 }
 
-void RemeshRounds::refine(double size) {
+void RemeshRounds::refine(double size, float floor) {
+  const EditableMesh& mesh = tools_.mesh;
   BlockRules rules = rules_;
-  rules.good_enough = plan_.floor;
+  rules.good_enough = floor;
   const double limit = long_edge * size;
   std::vector<Index> tets = region_, changed;
   for (int round = 0; round < max_refining_rounds && !tets.empty(); ++round) {
     std::vector<ListedTet> items;
     items.reserve(tets.size());
-    for (Index t : tets) items.push_back({t, mesh_.points(t)});
-    runner_.tets(
+    for (Index t : tets) items.push_back({t, mesh.points(t)});
+    tools_.runner.tets(
         items,
         [&](Workspace& ws, const ListedTet& item, int) {
-          if (!exists(mesh_, item)) return Outcome::stale;
+          if (!exists(mesh, item)) return Outcome::stale;
           int longest = -1;
           double length = limit;
           for (int e = 0; e < 6; ++e) {
             const Index p = item.points[tet_edges[e][0]], q = item.points[tet_edges[e][1]];
-            if (const double l = (mesh_.position(p) - mesh_.position(q)).norm(); l > length) {
+            if (const double l = (mesh.position(p) - mesh.position(q)).norm(); l > length) {
               longest = e;
               length = l;
             }
@@ -79,18 +80,8 @@ void RemeshRounds::refine(double size) {
   area_.look_around(std::move(changed));
 }
 
-void RemeshRounds::improve() {
-  run_improvement({mesh_, runner_, rules_, nullptr}, area_,
-                  {.kind = "improve",
-                   .angle = plan_.poor_angle,
-                   .leave_surface_angle = plan_.leave_surface_angle,
-                   .target_tets = 0,
-                   .min_tets = 0,
-                   .max_tets = CountBounds().max,
-                   .fast = true,
-                   .brief = true,
-                   .max_rounds = max_improving_rounds,
-                   .fit_sweeps = 0});
+int RemeshRounds::improve(const ImprovementPlan& plan) {
+  return improve_area(tools_, area_, plan, bulk_before);
 }
 
 }  // namespace tetwright

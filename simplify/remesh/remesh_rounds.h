@@ -3,35 +3,33 @@
 #include <vector>
 
 #include "simplify/remesh/local_area.h"
+#include "simplify/schedule/improvement.h"
 
 namespace tetwright {
 
 /// What one call of a Remesher does in its region.
 class RemeshRounds {
  public:
-  struct Plan {
-    double poor_angle;           ///< steradians: tets whose shape is worse than it stands for are improved
-    double leave_surface_angle;  ///< likewise: points of surfaces may leave them a little
-    float floor;                 ///< shape_quality() that coarsening and refining leave
-  };
   /// `region`: living tets, each once; `with_rim`: all that share points with them. `journal`
-  /// takes down what changes.
-  RemeshRounds(EditableMesh& mesh, BlockRunner& runner, ChangeJournal& journal, const BlockRules& rules,
-               const Plan& plan, const std::vector<Index>& region, const std::vector<Index>& with_rim);
+  /// takes down what changes. `tools.rules` are copied.
+  RemeshRounds(const ImprovementTools& tools, ChangeJournal& journal, const std::vector<Index>& region,
+               const std::vector<Index>& with_rim);
 
-  /// Lengths in working coordinates.
-  void coarsen(double size);
-  void refine(double size);
+  RemeshRounds(const RemeshRounds&) = delete;
+  RemeshRounds& operator=(const RemeshRounds&) = delete;
+
+  /// `size` in working coordinates; `floor`: the shape_quality() that they leave.
+  void coarsen(double size, float floor);
+  void refine(double size, float floor);
   /// What is poor of the region, or, with the rim around it, of what coarsen() and refine() have changed.
-  void improve();
+  /// Returns the number of rounds.
+  int improve(const ImprovementPlan& plan);
   /// Operations that were carried out.
   std::uint64_t operations() const { return area_.operations(); }
 
  private:
-  EditableMesh& mesh_;
-  BlockRunner& runner_;
   BlockRules rules_;
-  Plan plan_;
+  ImprovementTools tools_;
   std::vector<Index> region_;
   LocalArea area_;
 };

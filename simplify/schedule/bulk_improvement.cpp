@@ -80,12 +80,14 @@ bool crowded(const EditableMesh& mesh, const Star& star) {
 
 class BulkLoop {
  public:
-  BulkLoop(Engine& engine, const BulkPlan& plan)
-      : engine_(engine),
-        mesh_(engine.mesh()),
+  BulkLoop(const ImprovementTools& tools, ImprovementArea& area, const BulkPlan& plan)
+      : mesh_(tools.mesh),
+        runner_(tools.runner),
+        recorder_(tools.recorder),
+        area_(area),
         plan_(plan),
-        moving_(engine.rules),
-        flipping_(surgery_rules(engine.rules, engine.rules.objective.quality.ideal_edge)) {
+        moving_(tools.rules),
+        flipping_(surgery_rules(tools.rules, area.usual_edge())) {
     moving_.count = flipping_.count = {plan.min_tets, plan.max_tets};
     perturbing_ = resizing_ = flipping_;
     perturbing_.good_enough = plan.poor;
@@ -97,7 +99,7 @@ class BulkLoop {
     std::size_t fewest = std::numeric_limits<std::size_t>::max();
     int idle = 0, i = 0;
     for (; i < plan_.max_rounds; ++i) {
-      const std::size_t poor = engine_.poor_tets(plan_.poor).size();
+      const std::size_t poor = area_.poor_tets(plan_.poor).size();
       if (poor == 0) break;
       if (static_cast<double>(poor) > idle_above * static_cast<double>(fewest)) ++idle;
       if (idle > (plan_.remodel ? max_idle : 0)) break;
@@ -109,14 +111,14 @@ class BulkLoop {
 
  private:
   void run_round(std::size_t poor_count, bool first) {
-    Engine::Round round(engine_, plan_.kind);
-    const double share = static_cast<double>(poor_count) / static_cast<double>(mesh_.live_tets());
-    round.report().percent = 100 * share;
+    RoundRecorder::Round round(recorder_, plan_.kind, moving_.max_error);
+    const auto count = static_cast<double>(poor_count);
+    round.report().percent = 100 * count / static_cast<double>(mesh_.live_tets());
     if (plan_.remodel) {
-      if (share > resize_above) resize();
+      if (count > resize_above * static_cast<double>(area_.tet_count())) resize();
       perturb();
     }
-    std::vector<ListedTet> poor = engine_.poor_tets(plan_.poor);
+    std::vector<ListedTet> poor = area_.poor_tets(plan_.poor);
     // What failed comes again where something changed.
     if (!first)
       std::erase_if(poor, [&](const ListedTet& t) {
@@ -125,40 +127,44 @@ class BulkLoop {
     mesh_.begin_round();
     each_tet(poor,
              [&](Workspace& ws, const ListedTet& item) { return flip_tet(ws, flipping_, item, plan_.poor); });
-    engine_.runner().each_star(plan_.remodel ? engine_.points_around(poor) : engine_.poor_points(plan_.poor),
-                               Operation::optimise, [&](Workspace& ws) { return optimise(ws, moving_); });
+    runner_.each_star(plan_.remodel ? area_.points_around(poor) : area_.poor_points(plan_.poor),
+                      Operation::optimise, [&](Workspace& ws) { return optimise(ws, moving_); });
     round.finish();
   }
 
   void perturb() {
-    each_tet(engine_.tets_around(engine_.poor_tets(plan_.poor)),
+    each_tet(area_.tets_around(area_.poor_tets(plan_.poor)),
              [&](Workspace& ws, const ListedTet& item) { return perturb_tet(ws, perturbing_, item); });
   }
 
   void resize() {
-    engine_.runner().each_star(engine_.poor_points(plan_.poor), Operation::collapse, [&](Workspace& ws) {
+    runner_.each_star(area_.poor_points(plan_.poor), Operation::collapse, [&](Workspace& ws) {
       return crowded(ws.mesh, ws.star) ? collapse(ws, resizing_) : Outcome::no_candidate;
     });
-    each_tet(engine_.poor_tets(plan_.poor), [&](Workspace& ws, const ListedTet& item) {
+    each_tet(area_.poor_tets(plan_.poor), [&](Workspace& ws, const ListedTet& item) {
       return split_tet(ws, resizing_, item, plan_.poor);
     });
   }
 
   template <class Attempt>
   void each_tet(const std::vector<ListedTet>& tets, const Attempt& attempt) {
-    engine_.runner().tets(
+    runner_.tets(
         tets, [&](Workspace& ws, const ListedTet& item, int) { return attempt(ws, item); },
         [] { return false; });
   }
 
-  Engine& engine_;
   EditableMesh& mesh_;
+  BlockRunner& runner_;
+  RoundRecorder& recorder_;
+  ImprovementArea& area_;
   const BulkPlan& plan_;
   BlockRules moving_, flipping_, perturbing_, resizing_;
 };
 
 }  // namespace
 
-int run_bulk_improvement(Engine& engine, const BulkPlan& plan) { return BulkLoop(engine, plan).run(); }
+int run_bulk_improvement(const ImprovementTools& tools, ImprovementArea& area, const BulkPlan& plan) {
+  return BulkLoop(tools, area, plan).run();
+}
 
 }  // namespace tetwright

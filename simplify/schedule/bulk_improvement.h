@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "simplify/schedule/engine.h"
+#include "simplify/schedule/improvement.h"
 
 namespace tetwright {
 
@@ -21,7 +21,7 @@ struct BulkPlan {
 /// makes the worst tet of a large triangle of the surface better: run_improvement() then leaves 38 % below
 /// 0.1 sr of the sample random_interior, after this phase none.
 ///
-/// Needs begin_improvement(). Returns the number of rounds it took. Throws Interrupted.
-int run_bulk_improvement(Engine& engine, const BulkPlan& plan);
+/// The mesh is compacted and rated by shape. Returns the number of rounds it took. Throws Interrupted.
+int run_bulk_improvement(const ImprovementTools& tools, ImprovementArea& area, const BulkPlan& plan);
 
 }  // namespace tetwright

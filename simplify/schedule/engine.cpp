@@ -23,16 +23,11 @@ constexpr std::size_t min_spare = 4096;
 
 }  // namespace
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, Progress* progress)
-    : report_(report),
-      progress_(progress),
-      constrained_(std::move(mesh), options.name, options.frozen, options.fix_boundary, options.keep_volumes),
+    : constrained_(std::move(mesh), options.name, options.frozen, options.fix_boundary, options.keep_volumes),
       projection_(mesh_, options.reference),
-      runner_(mesh_, grid_, constrained_.ledger, options.seed, options.batch_size, progress) {
+      runner_(mesh_, grid_, constrained_.ledger, options.seed, options.batch_size, progress),
+      recorder_(mesh_, runner_, report, progress) {
   rules.objective.quality = TetQuality::for_target(mesh_.total_volume(), options.target_tets, options.beta);
   rules.objective.shape = options.objective;
   rules.gamma = options.gamma;
@@ -41,12 +36,6 @@ Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, P
 TetMesh Engine::take() && {
   constrained_.keep_patches();
   return std::move(mesh_).to_mesh();
-}
-
-void Engine::begin_stage(const char* name) {
-  if (!progress_) return;
-  progress_->throw_if_cancelled();
-  progress_->begin_stage(name);
 }
 
 void Engine::compact() {
@@ -108,6 +97,14 @@ float Engine::cutoff(double percent) const {
       });
   std::nth_element(in_bin.begin(), in_bin.begin() + static_cast<std::ptrdiff_t>(wanted), in_bin.end());
   return in_bin[wanted];
+}
+
+void Engine::begin_improvement() {
+  rules.objective.kind = Objective::Kind::shape;
+  rules.accept_worse = 0;
+  rules.projection = &projection_;
+  compact();
+  rate_all();
 }
 
 template <class Test>
@@ -185,27 +182,6 @@ void Engine::fit_interfaces(float floor) {
   fitting.projection = &projection_;
   runner_.each_star(interface_points(), Operation::fit,
                     [&](Workspace& ws) { return fit_to_surface(ws, fitting, floor); });
-}
-
-Engine::Round::Round(Engine& engine, const char* kind) : engine_(engine) {
-  report_.kind = kind;
-  report_.tets_before = engine.mesh_.live_tets();
-  report_.max_error = engine.rules.max_error / engine.mesh_.space().scale();
-}
-
-void Engine::Round::finish() {
-  const BlockRunner::Totals totals = engine_.runner_.take_totals();
-  report_.counts = totals.counts;
-  report_.conflicts = totals.conflicts;
-  report_.repeats = totals.repeats;
-  report_.batches = totals.batches;
-  report_.tets_after = engine_.mesh_.live_tets();
-  report_.seconds = seconds_since(start_);
-  if (!engine_.report_) return;
-  engine_.report_->iterations.push_back(report_);
-  std::vector<std::uint64_t>& decided = engine_.report_->decided_by_worker;
-  decided.resize(std::max(decided.size(), totals.decided.size()), 0);
-  for (std::size_t w = 0; w < totals.decided.size(); ++w) decided[w] += totals.decided[w];
 }
 
 }  // namespace tetwright

@@ -1,13 +1,12 @@
 #pragma once
 
-#include <chrono>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "simplify/constraints/constrained_mesh.h"
 #include "simplify/schedule/block_runner.h"
-#include "simplify/schedule/options.h"
+#include "simplify/schedule/improvement_area.h"
+#include "simplify/schedule/round_recorder.h"
 
 namespace tetwright {
 
@@ -38,10 +37,9 @@ class Engine {
   BlockRunner& runner() { return runner_; }
   const SurfaceProjection& projection() const { return projection_; }
   const VolumeLedger& ledger() const { return constrained_.ledger; }
-  Progress* progress() { return progress_; }
+  RoundRecorder& recorder() { return recorder_; }
   BlockRules rules;
 
-  void begin_stage(const char* name);
   /// Compacts the mesh and rebuilds the grid. Leaves free slots for operations that add tets. Every schedule
   /// calls it first, and rate_all() after setting its objective.
   void compact();
@@ -49,6 +47,9 @@ class Engine {
   void compact_if_sparse();
   /// Every tet's quality by rules.objective.
   void rate_all();
+  /// Compacts the mesh, rates its tets by their shapes and sets the rules that all improvement shares: before
+  /// the first run_bulk_improvement() or run_improvement().
+  void begin_improvement();
 
   // Only while no task runs. Parallel; the results do not depend on the threads.
 
@@ -67,20 +68,6 @@ class Engine {
   /// fit_to_surface() for all interface points.
   void fit_interfaces(float floor);
 
-  /// Times a round of the schedule and takes down what its tasks counted.
-  class Round {
-   public:
-    Round(Engine& engine, const char* kind);
-    IterationReport& report() { return report_; }
-    /// Into the engine's report.
-    void finish();
-
-   private:
-    Engine& engine_;
-    IterationReport report_;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  };
-
  private:
   /// The points for which mark(tet, place in it) holds for some tet.
   template <class Mark>
@@ -91,16 +78,33 @@ class Engine {
   /// 1 for the points of the listed tets.
   std::vector<std::uint8_t> points_of(const std::vector<ListedTet>& tets) const;
 
-  SimplifyReport* report_;
-  Progress* progress_;
   bool compacted_ = false;  ///< the grid is built
   ConstrainedMesh constrained_;
   EditableMesh& mesh_ = constrained_.mesh;
   SurfaceGrid& grid_ = constrained_.grid;
   SurfaceProjection projection_;
   BlockRunner runner_;
+  RoundRecorder recorder_;
 };
 
-double seconds_since(std::chrono::steady_clock::time_point start);
+/// The mesh of an engine.
+class WholeMesh final : public ImprovementArea {
+ public:
+  explicit WholeMesh(Engine& engine) : engine_(engine) {}
+  std::size_t tet_count() const override { return engine_.mesh().live_tets(); }
+  double usual_edge() const override { return engine_.rules.objective.quality.ideal_edge; }
+  std::vector<ListedTet> poor_tets(float limit) override { return engine_.poor_tets(limit); }
+  std::vector<Index> poor_points(float limit) override { return engine_.poor_points(limit); }
+  std::vector<ListedTet> tets_around(const std::vector<ListedTet>& tets) override {
+    return engine_.tets_around(tets);
+  }
+  std::vector<Index> points_around(const std::vector<ListedTet>& tets) override {
+    return engine_.points_around(tets);
+  }
+  std::vector<Index> points_to_thin(const std::vector<ListedTet>&) override { return engine_.poor_points(1); }
+
+ private:
+  Engine& engine_;
+};
 
 }  // namespace tetwright

@@ -1,7 +1,7 @@
 #include "simplify/schedule/improvement.h"
 
 #include <algorithm>
-#include <optional>
+#include <utility>
 #include <vector>
 
 #include "simplify/operations/collapse.h"
@@ -37,29 +37,11 @@ constexpr float perturbed_share = 0.95f;
 /// all of it, and no collapse could take the last slivers out.
 constexpr double kept_share = 0.125;
 
-class WholeMesh final : public ImprovementArea {
- public:
-  explicit WholeMesh(Engine& engine) : engine_(engine) {}
-  std::size_t tet_count() const override { return engine_.mesh().live_tets(); }
-  double usual_edge() const override { return engine_.rules.objective.quality.ideal_edge; }
-  std::vector<ListedTet> poor_tets(float limit) override { return engine_.poor_tets(limit); }
-  std::vector<ListedTet> tets_around(const std::vector<ListedTet>& tets) override {
-    return engine_.tets_around(tets);
-  }
-  std::vector<Index> points_around(const std::vector<ListedTet>& tets) override {
-    return engine_.points_around(tets);
-  }
-  std::vector<Index> points_to_thin(const std::vector<ListedTet>&) override { return engine_.poor_points(1); }
-
- private:
-  Engine& engine_;
-};
-
 /// The rounds of run_improvement().
 class ImprovementLoop {
  public:
   ImprovementLoop(const ImprovementTools& tools, ImprovementArea& area, const ImprovementPlan& plan)
-      : engine_(tools.engine),
+      : recorder_(tools.recorder),
         mesh_(tools.mesh),
         runner_(tools.runner),
         rules_(tools.rules),
@@ -71,11 +53,6 @@ class ImprovementLoop {
 
   /// The number of rounds.
   int run() {
-    for (int sweep = 0; engine_ && sweep < plan_.fit_sweeps; ++sweep) {
-      Engine::Round round(*engine_, plan_.kind);
-      engine_->fit_interfaces(bounds_.poor);
-      round.finish();
-    }
     surgery_ = surgery_rules(rules_, area_.usual_edge());
     surgery_.leave_surface = true;
     min_poor_ = 4 * area_.tet_count();
@@ -83,17 +60,13 @@ class ImprovementLoop {
     for (; i < plan_.max_rounds; ++i) {
       std::vector<ListedTet> poor = area_.poor_tets(bounds_.poor);
       if (poor.empty() || !worth_a_round(poor, i == 0)) break;
-      std::optional<Engine::Round> round;
-      if (engine_) {
-        round.emplace(*engine_, plan_.kind);
-        round->report().cutoff = plan_.angle;
-        round->report().percent =
-            100 * static_cast<double>(poor.size()) / static_cast<double>(mesh_.live_tets());
-      }
+      RoundRecorder::Round round(recorder_, plan_.kind, rules_.max_error);
+      round.report().cutoff = plan_.angle;
+      round.report().percent =
+          100 * static_cast<double>(poor.size()) / static_cast<double>(mesh_.live_tets());
       run_round(std::move(poor));
-      if (!round) continue;
-      round->finish();
-      if (engine_->progress()) engine_->progress()->update(static_cast<double>(i + 1) / plan_.max_rounds);
+      round.finish();
+      recorder_.update(static_cast<double>(i + 1) / plan_.max_rounds);
     }
     return i;
   }
@@ -191,7 +164,7 @@ class ImprovementLoop {
     return tries;
   }
 
-  Engine* engine_;
+  RoundRecorder& recorder_;
   EditableMesh& mesh_;
   BlockRunner& runner_;
   BlockRules& rules_;
@@ -207,21 +180,8 @@ class ImprovementLoop {
 
 }  // namespace
 
-void begin_improvement(Engine& engine) {
-  engine.rules.objective.kind = Objective::Kind::shape;
-  engine.rules.accept_worse = 0;
-  engine.rules.projection = &engine.projection();
-  engine.compact();
-  engine.rate_all();
-}
-
 int run_improvement(const ImprovementTools& tools, ImprovementArea& area, const ImprovementPlan& plan) {
   return ImprovementLoop(tools, area, plan).run();
-}
-
-int run_improvement(Engine& engine, const ImprovementPlan& plan, ImprovementArea* area) {
-  WholeMesh whole(engine);
-  return run_improvement({engine.mesh(), engine.runner(), engine.rules, &engine}, area ? *area : whole, plan);
 }
 
 }  // namespace tetwright

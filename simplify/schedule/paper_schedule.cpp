@@ -140,7 +140,7 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
       poor = now;
     }
     engine.compact_if_sparse();
-    Engine::Round round(engine, "simplify");
+    RoundRecorder::Round round(engine.recorder(), "simplify", rules.max_error);
     IterationReport& it = round.report();
     it.percent = percent;
     const auto before = static_cast<double>(it.tets_before);
@@ -165,7 +165,7 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
           std::min(max_interpolation_error, rules.max_error * std::max(1.0, portable_cbrt(after / target)));
     }
     percent = std::min(100.0, percent + percent_step);
-    if (engine.progress()) engine.progress()->update(1 - log_now / log_first);
+    engine.recorder().update(1 - log_now / log_first);
   }
   rules.accept_worse = 0;
 }

@@ -87,7 +87,7 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options) {
   int idle = 0;
   for (int i = 0; i < options.max_iterations && mesh.live_tets() > loop_target; ++i) {
     engine.compact_if_sparse();
-    Engine::Round round(engine, "simplify");
+    RoundRecorder::Round round(engine.recorder(), "simplify", rules.max_error);
     IterationReport& it = round.report();
     it.percent = percent;
     rules.count.max = it.tets_before;
@@ -115,7 +115,7 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options) {
     idle = removed < idle_below && percent >= 100 && !error_refuses ? idle + 1 : 0;
     if (idle == max_idle_iterations) break;
     percent = std::min(100.0, percent + percent_step);
-    if (engine.progress()) engine.progress()->update(1 - log_now / log_first);
+    engine.recorder().update(1 - log_now / log_first);
   }
   rules.accept_worse = 0;
 }

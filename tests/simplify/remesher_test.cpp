@@ -12,7 +12,9 @@
 #include "common/mesh/mesh_check.h"
 #include "common/mesh/topology.h"
 #include "common/parallel/parallel.h"
+#include "common/progress.h"
 #include "simplify/remesh/tet_overlap.h"
+#include "simplify/schedule/options.h"
 #include "tests/simplify/meshes.h"
 #include "tests/simplify/patches.h"
 
@@ -110,6 +112,51 @@ TEST(Remesher, ImprovesARegionAndNothingElse) {
   EXPECT_GT(r.improve(RemeshRegion::where([](const Vec3&) { return true; })).operations, 10u);
   EXPECT_GT(worst_quality(r), shape_quality_bound(ShapeObjective::both, 0.1));
   expect_sound(mesh, r);
+}
+
+TEST(Remesher, ImprovesToAnAimWithinItsCountAndReports) {
+  const TetMesh input = two_halves(8, 6, 0.45);
+  SimplifyReport report;
+  RemesherOptions options;
+  options.report = &report;
+  Remesher remesher(input, options);
+  const auto below = [&](double angle) {
+    std::vector<Index> tets;
+    for (Index t = 0; t < remesher.tet_slots(); ++t)
+      if (remesher.has_tet(t) && remesher.quality(t) <= shape_quality_bound(ShapeObjective::both, angle))
+        tets.push_back(t);
+    return tets;
+  };
+  const std::size_t poor = below(0.1).size();
+  ASSERT_GT(poor, 50u);
+  const std::size_t count = remesher.tet_count();
+  const RemeshAim aim{.angle = 0.1,
+                      .leave_surface_angle = 0.05,
+                      .target_tets = count,
+                      .min_tets = count - 10,
+                      .max_tets = count + 10,
+                      .max_rounds = 3};
+  const RemeshChanges changes = remesher.improve(RemeshRegion::tets(below(0.1)), aim);
+  EXPECT_LT(2 * below(0.1).size(), poor);
+  EXPECT_GE(remesher.tet_count(), count - 10);
+  EXPECT_LE(remesher.tet_count(), count + 10);
+  EXPECT_GE(changes.rounds, 1);
+  EXPECT_LE(changes.rounds, 3);
+  EXPECT_EQ(report.iterations.size(), static_cast<std::size_t>(changes.rounds)) << changes.rounds;
+  EXPECT_EQ(report.iterations.front().tets_before, count);
+  EXPECT_EQ(report.iterations.back().tets_after, remesher.tet_count());
+  // The bounds were that call's.
+  remesher.refine(RemeshRegion::box(Vec3(0, 0, 0), Vec3(3, 3, 3)), 0.4);
+  EXPECT_GT(remesher.tet_count(), count + 10);
+  expect_sound(input, remesher);
+
+  EXPECT_THROW(remesher.improve(RemeshRegion::tets({}), {.angle = std::nan(""), .leave_surface_angle = 0.1}),
+               UsageError);
+  Progress progress;
+  options.progress = &progress;
+  Remesher cancelled(input, options);
+  progress.cancel();
+  EXPECT_THROW(cancelled.improve(RemeshRegion::box(Vec3(0, 0, 0), Vec3(8, 8, 8))), Interrupted);
 }
 
 TEST(Remesher, CoarsensAndRefines) {

@@ -50,7 +50,9 @@ std::vector<Index> numbers(const std::vector<ListedTet>& list) {
 TEST(LocalArea, ListsWhatAScanFinds) {
   constexpr float limit = 0.5;
   Bench b(1);
-  LocalArea area(b.work.mesh, b.runner, 1, b.listed(b.poor(limit)));
+  ChangeJournal journal;
+  const std::vector<Index> all = b.poor(1);
+  LocalArea area(b.work.mesh, b.runner, journal, all, all);
   ASSERT_GT(b.poor(limit).size(), 10u);
   for (int round = 0; round < 4; ++round) {
     const std::uint64_t before = area.operations();
@@ -67,6 +69,7 @@ TEST(LocalArea, ListsWhatAScanFinds) {
       EXPECT_GT(area.operations(), before);
     }
     EXPECT_EQ(numbers(area.poor_tets(limit)), b.poor(limit));
+    EXPECT_EQ(area.poor_points(limit), Neighbourhood().points_of(b.work.mesh, b.poor(limit)));
   }
 }
 

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <chrono>
+
+#include "common/progress.h"
+#include "simplify/schedule/block_runner.h"
+#include "simplify/schedule/options.h"
+
+namespace tetwright {
+
+/// Takes down the rounds of work on a mesh, for whoever asked for a report, and tells the progress.
+class RoundRecorder {
+ public:
+  /// `report` and `progress` may be null.
+  RoundRecorder(const EditableMesh& mesh, BlockRunner& runner, SimplifyReport* report, Progress* progress)
+      : mesh_(mesh), runner_(runner), report_(report), progress_(progress) {}
+
+  /// Times a round and takes down what its tasks counted.
+  class Round {
+   public:
+    /// `max_error`: E, working coordinates.
+    Round(RoundRecorder& recorder, const char* kind, double max_error);
+    IterationReport& report() { return report_; }
+    /// Into the recorder's report.
+    void finish();
+
+   private:
+    RoundRecorder& recorder_;
+    IterationReport report_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  };
+
+  /// How much of the stage is done, from 0 to 1.
+  void update(double fraction) {
+    if (progress_) progress_->update(fraction);
+  }
+  /// Throws Interrupted.
+  void begin_stage(const char* name);
+
+ private:
+  const EditableMesh& mesh_;
+  BlockRunner& runner_;
+  SimplifyReport* report_;
+  Progress* progress_;
+};
+
+double seconds_since(std::chrono::steady_clock::time_point start);
+
+}  // namespace tetwright
