@@ -110,6 +110,8 @@ TEST(Golden, SimplifiedAndImprovedLabels) {
   ImproveOptions options;
   options.max_iterations = 6;
   EXPECT_EQ(hash_of(improve(after, options)), "2435 tets 7d9fc39762ff42df");
+  options.only_below = 0.2;
+  EXPECT_EQ(hash_of(improve(after, options)), "2458 tets 0ea4c8cc8f917b37");
 }
 
 }  // namespace
