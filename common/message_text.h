@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "common/types.h"
+
 namespace tetwright {
 
 /// A number with at most six significant digits ("%.6g"), for messages that people read. Files get the
@@ -12,6 +14,12 @@ inline std::string short_number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);
   return text;
+}
+
+/// "(x, y, z)" for messages.
+inline std::string place_text(const Vec3& place) {
+  return "(" + short_number(place.x()) + ", " + short_number(place.y()) + ", " + short_number(place.z()) +
+         ")";
 }
 
 /// A value from a file or the command line as messages show it: quoted, cut after 40 characters, with '?' for

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/mesh/solid_shape.h"
 #include "common/progress.h"
 #include "common/reference_surface.h"
 #include "common/tet_mesh.h"
@@ -36,6 +37,18 @@ struct ThinPartReport {
   bool refined = false;
 };
 
+/// The solid that a material is meant to be.
+struct ExpectedSolid {
+  std::string name;
+  MaterialTag tag = 0;
+  SolidShape shape;  ///< input units
+  /// True: by the surfaces as they were given. False: by the distances, where surfaces are open, intersect
+  /// or meet those of other materials.
+  bool by_surface = true;
+  /// Shells smaller than this (input units cubed) say nothing: by the distances, those of less than a cell.
+  double min_volume = 0;
+};
+
 /// What meshing takes.
 struct MesherEstimate {
   std::size_t tets = 0;   ///< of the dense mesh
@@ -50,6 +63,9 @@ struct MesherReport {
   std::size_t lattice_tets = 0;       ///< before cutting, without those far outside
   std::size_t isolated_vertices = 0;  ///< parts and cavities of a single lattice point, which are left out
   std::vector<ThinPartReport> thin_parts;
+  /// For each material of surfaces, in their order, what it is meant to be; not of layers and what they are
+  /// cut from, nor of what meets others where cells were refined between them.
+  std::vector<ExpectedSolid> expected;
   MesherEstimate estimate;          ///< from the input, see estimate_mesh()
   MesherEstimate lattice_estimate;  ///< from the regions of the lattice's points
   double seconds_sdf = 0, seconds_octree = 0, seconds_lattice = 0, seconds_move = 0, seconds_cut = 0;

@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "common/error.h"
 #include "common/tolerances.h"
 #include "mesher/distance/body_field.h"
+#include "mesher/distance/field_solid.h"
 #include "mesher/distance/field_thickness.h"
 #include "mesher/distance/material_field.h"
 #include "mesher/field_mesher.h"
+#include "mesher/input/expected_solids.h"
 #include "mesher/mesh_estimate.h"
 
 namespace tetwright {
@@ -55,6 +59,29 @@ void validate_materials_left(const MesherInput& input, const MaterialField& fiel
             "': it is smaller than a cell or later surfaces cover it; list the outermost surface "
             "first, or use a higher resolution");
   }
+}
+
+/// By the surfaces where they say it, else by the distances where the voxels show all of them.
+std::vector<ExpectedSolid> expected_materials(const MesherInput& input, const MaterialField& field,
+                                              const std::vector<MortonKey>& interface_voxels, bool refined) {
+  std::vector<ExpectedSolid> expected;
+  std::vector<std::optional<SolidShape>> solids = expected_solids(input);
+  const double cell = field.voxels().cell_size;
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    const MesherInput::Body& body = input.bodies[i];
+    if (solids[i]) {
+      expected.push_back({body.name, body.tag, std::move(*solids[i]), true, 0});
+      continue;
+    }
+    if (refined || (i == 0 && !input.layers.empty())) continue;
+    const auto region = std::find_if(field.regions().begin() + 1, field.regions().end(),
+                                     [&](const FieldRegion& r) { return r.tag == body.tag; });
+    expected.push_back(
+        {body.name, body.tag,
+         field_solid(field, interface_voxels, static_cast<RegionIndex>(region - field.regions().begin())),
+         false, cell * cell * cell});
+  }
+  return expected;
 }
 
 void validate_outside_is_free(const MesherInput& input) {
@@ -107,6 +134,7 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   };
   add_thin(sheets.too_thin, true);
   add_thin(find_thin_parts(*field, interface_voxels), false);
+  report.expected = expected_materials(input, *field, interface_voxels, sheets.finer.refinement > 0);
 
   return mesh_field(
       field, std::move(interface_voxels), std::move(sheets.finer), options, MemoryModel{}, std::move(report),

@@ -184,6 +184,10 @@ void add_material_options(CLI::App& app, CommandLine& c) {
       ->default_str("auto");
 }
 
+void add_strict(CLI::App& app, CommandLine& c) {
+  app.add_flag("--strict", c.strict, "Status 1 where there is anything to note");
+}
+
 void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) {
   add_whole_number(app, "--resolution", c.resolution, 4, 4096,
                    std::string("Number of finest cells along the longest side, 4 to 4096 (default: ") +
@@ -198,6 +202,10 @@ void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) 
   add_material_options(app, c);
   app.add_flag("--keep-outside", c.keep_outside,
                "Mesh the outside too, up to a box, as the material 'outside' with tag 0");
+  app.add_flag("--accept-changes", c.accept_changes,
+               "Where the mesh has not the volume, components, handles or cavities of the surfaces: a note "
+               "instead of status 1");
+  add_strict(app, c);
   app.add_option("--write-sdf", c.write_sdf, "Write the meshed signed distances to this .vdb file")
       ->type_name("FILE");
 }
@@ -306,6 +314,7 @@ void add_simplify(CLI::App& app, CommandLine& c) {
   add_output(app, c, mesh_out);
   add_simplifying(app, c);
   add_fix_boundary(app, c);
+  add_strict(app, c);
   add_material_field(app, c);
   add_common(app, c);
   add_seed(app, c);
@@ -323,6 +332,7 @@ void add_improve(CLI::App& app, CommandLine& c) {
                "Let the number of tets become what good shapes need, instead of keeping it within 5 %");
   add_shaping(app, c, "Max number of rounds, 1 to 10000");
   add_fix_boundary(app, c);
+  add_strict(app, c);
   add_material_field(app, c);
   add_common(app, c);
   add_seed(app, c);

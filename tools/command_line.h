@@ -57,6 +57,9 @@ struct CommandLine {
   std::size_t min_voxels = 8;  ///< min size of an island that is kept
   bool min_voxels_given = false;
 
+  bool accept_changes = false;  ///< another solid than the input's is a note
+  bool strict = false;          ///< a note is a shortfall
+
   unsigned threads = 0;  ///< 0: all
   std::uint64_t seed = 1;
   std::string stats;

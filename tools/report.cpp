@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <functional>
 
+#include "common/message_text.h"
 #include "tools/stats_json.h"
 
 namespace tetwright {
@@ -85,7 +86,8 @@ void print_report(const CommandLine& line, const RunReport& run) {
               static_cast<double>(peak_bytes()) / 1e6);
 }
 
-void print_notes(const RunReport& run) {
+std::vector<std::string> notes_of(const RunReport& run) {
+  std::vector<std::string> notes;
   std::string line, file;
   for (const InputFinding& f : run.findings) {
     line += line.empty() ? "" : "; ";
@@ -93,16 +95,22 @@ void print_notes(const RunReport& run) {
     file = f.file;
     line += std::to_string(f.finding.count) + " " + f.finding.what + " (" + f.finding.done + ")";
   }
-  if (!line.empty()) print_line("note: " + line);
-  if (!run.mesher) return;
+  if (!line.empty()) notes.push_back(line);
+  if (!run.mesher) return notes;
   if (run.mesher->isolated_vertices > 0)
-    print_line("note: " + std::to_string(run.mesher->isolated_vertices) +
-               " parts or cavities of a single lattice point (left out; a higher resolution keeps them)");
+    notes.push_back(
+        std::to_string(run.mesher->isolated_vertices) +
+        " parts or cavities of a single lattice point (left out; a higher resolution keeps them)");
   for (const ThinPartReport& t : run.mesher->thin_parts)
-    print_line("note: " + (t.name.empty() ? "a gap" : "'" + t.name + "'") + " is thinner than " +
-               (t.refined ? "the smallest cells can hold" : "two cells") + " at " + std::to_string(t.places) +
-               " places, the first at " + text("(%g, %g, %g)", t.first.x(), t.first.y(), t.first.z()) +
-               ": parts may tear or join there; a higher resolution keeps them");
+    notes.push_back((t.name.empty() ? "a gap" : "'" + t.name + "'") + " is thinner than " +
+                    (t.refined ? "the smallest cells can hold" : "two cells") + " at " +
+                    std::to_string(t.places) + " places, the first at " + place_text(t.first) +
+                    ": parts may tear or join there; a higher resolution keeps them");
+  return notes;
+}
+
+void print_notes(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) print_line("note: " + note);
 }
 
 void print_line(const std::string& text) { std::fprintf(stderr, "tetwright: %s\n", printable(text).c_str()); }

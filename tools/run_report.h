@@ -10,12 +10,13 @@
 #include "common/mesh/mesh_statistics.h"
 #include "mesher/mesher.h"
 #include "simplify/simplify.h"
+#include "tools/fidelity.h"
 
 namespace tetwright {
 
 /// A request that was not met, which makes the exit status 1.
 struct Shortfall {
-  std::string what;  ///< as in --stats: "target_tets", "min_solid_angle" or "labels"
+  std::string what;  ///< as in --stats: "target_tets", "fidelity" and others
   double asked = 0, reached = 0;
   std::string limited_by;  ///< the rules that prevented it
   std::string message;     ///< the line for the user, without its end
@@ -53,6 +54,7 @@ struct RunReport {
   std::vector<InputFinding> findings;
   std::optional<MesherReport> mesher;
   std::optional<MeshStatistics> dense, result;
+  std::vector<MaterialFidelity> fidelity;
   std::map<MaterialTag, std::string> material_names;
   std::optional<SimplifyReport> simplify;
   double seconds_read = 0, seconds_mesh = 0, seconds_write = 0, seconds_total = 0;

@@ -119,6 +119,25 @@ nlohmann::json input_json(const RunReport& run) {
   return j;
 }
 
+nlohmann::json solid_json(const SolidNumbers& s) {
+  return {
+      {"volume", s.volume}, {"components", s.components}, {"handles", s.handles}, {"cavities", s.cavities}};
+}
+
+nlohmann::json fidelity_json(const std::vector<MaterialFidelity>& all) {
+  nlohmann::json j = nlohmann::json::array();
+  for (const MaterialFidelity& f : all) {
+    j.push_back({{"name", f.name},
+                 {"tag", f.tag},
+                 {"against", f.by_surface ? "surface" : "distances"},
+                 {"expected", solid_json(f.expected)},
+                 {"result", solid_json(f.result)},
+                 {"same", f.same()}});
+    if (f.place) j.back()["place"] = place_json(*f.place);
+  }
+  return j;
+}
+
 /// Adds to the statistics of the dense mesh how it was made.
 void add_mesher_json(const MesherReport& m, nlohmann::json& dense) {
   dense["cell_size"] = m.cell_size;
@@ -182,6 +201,7 @@ std::string stats_json(const CommandLine& line, const RunReport& run) {
   if (run.mesher) add_mesher_json(*run.mesher, j["dense"]);
   j["result"] =
       run.result ? mesh_json(*run.result, run.material_names, line.min_solid_angle) : nlohmann::json();
+  if (run.mesher && !run.volume) j["fidelity"] = fidelity_json(run.fidelity);
   j["iterations"] = nlohmann::json::array();
   if (run.simplify)
     for (const IterationReport& it : run.simplify->iterations) j["iterations"].push_back(iteration_json(it));

@@ -92,8 +92,9 @@ class Scaling {
 
   std::size_t mesh_once(int resolution, const std::string& path) {
     const std::string stats = scratch_ / "mesh.json";
-    const ProgramRun r = run_program({o_.program, "mesh", o_.surface, "-o", path, "--uniform", "--resolution",
-                                      std::to_string(resolution), "--stats", stats, "--quiet"});
+    const ProgramRun r =
+        run_program({o_.program, "mesh", o_.surface, "-o", path, "--accept-changes", "--uniform",
+                     "--resolution", std::to_string(resolution), "--stats", stats, "--quiet"});
     if (r.status != 0)
       throw InputError("meshing at " + std::to_string(resolution) + " cells ended with status " +
                        std::to_string(r.status));

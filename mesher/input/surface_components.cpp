@@ -8,6 +8,7 @@
 
 #include "common/error.h"
 #include "common/mesh/disjoint_sets.h"
+#include "common/message_text.h"
 #include "common/parallel/parallel_sort.h"
 
 namespace tetwright {
@@ -345,12 +346,6 @@ std::vector<SurfaceComponent> Patches::components() const {
 void add_finding(std::vector<SurfaceFinding>& findings, const std::string& what, std::size_t count,
                  const std::optional<Vec3>& place, const std::string& done) {
   if (count > 0) findings.push_back({what, count, place, done});
-}
-
-std::string place_text(const Vec3& p) {
-  char text[96];
-  std::snprintf(text, sizeof text, "(%.9g, %.9g, %.9g)", p.x(), p.y(), p.z());
-  return text;
 }
 
 std::vector<SurfaceComponent> split_into_components(const std::vector<Vec3>& points,

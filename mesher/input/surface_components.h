@@ -18,9 +18,6 @@ struct SurfaceComponent {
 void add_finding(std::vector<SurfaceFinding>& findings, const std::string& what, std::size_t count,
                  const std::optional<Vec3>& place, const std::string& done);
 
-/// "(x, y, z)" for messages.
-std::string place_text(const Vec3& p);
-
 /// Orients neighbouring triangles consistently, by the majority of each patch, and returns the components in
 /// the order of their first triangles. Inner walls and fins belong to no component. Requires triangles with
 /// three different corners and no repeated triangles.

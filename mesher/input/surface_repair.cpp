@@ -142,14 +142,18 @@ Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<
   return result;
 }
 
-/// A surface of some of the components, closed ones first.
+/// A surface of some of the components, closed ones first. `crossing`: by triangle, whether it meets another
+/// one.
 RepairedSurface assemble(const Cleaned& from, const std::vector<SurfaceComponent>& components,
-                         const std::vector<Index>& chosen) {
+                         const std::vector<char>& crossing, const std::vector<Index>& chosen) {
   RepairedSurface s;
   for (const bool closed : {true, false}) {
     for (Index c : chosen)
       if (components[c].closed == closed)
-        for (Index t : components[c].triangles) s.triangles.push_back(from.triangles[t]);
+        for (Index t : components[c].triangles) {
+          s.triangles.push_back(from.triangles[t]);
+          s.intersects_itself |= crossing[t] != 0;
+        }
     if (closed) s.closed = s.triangles.size();
   }
   s.points = keep_used(from.points, s.triangles);
@@ -195,8 +199,10 @@ SurfaceRepair repair_surface(const TriangleMesh& surface, const std::string& fil
     if (arranged.turn[c])
       for (Index t : components[c].triangles) std::swap(cleaned.triangles[t][1], cleaned.triangles[t][2]);
   }
-  result.surface = assemble(cleaned, components, chosen);
-  for (Index c : arranged.nested) result.nested.push_back(assemble(cleaned, components, {c}));
+  std::vector<char> crosses(cleaned.triangles.size(), 0);
+  for (const auto& [f, g] : crossing) crosses[f] = crosses[g] = 1;
+  result.surface = assemble(cleaned, components, crosses, chosen);
+  for (Index c : arranged.nested) result.nested.push_back(assemble(cleaned, components, crosses, {c}));
   return result;
 }
 

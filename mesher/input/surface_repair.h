@@ -26,6 +26,7 @@ struct RepairedSurface {
   /// The number of triangles of closed components, which come first. All their edges balance, so their
   /// winding number is an integer everywhere off the surface.
   std::size_t closed = 0;
+  bool intersects_itself = false;  ///< some of its triangles meet elsewhere than in what they share
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< bounding box
   double area = 0;                               ///< input units squared
   /// Input units cubed, without cavities; for open components the volume of their cone from the centre of the

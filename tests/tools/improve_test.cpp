@@ -16,7 +16,8 @@ nlohmann::json json_of(const std::string& path) { return nlohmann::json::parse(c
 TEST(Improve, MakesShapesBetterAtAboutTheSameCount) {
   const TemporaryFolder f;
   ASSERT_EQ(run("sample knot -o " + (f / "k.off")).status, 0);
-  ASSERT_EQ(run("mesh " + (f / "k.off") + " -o " + (f / "d.vtu") + " --resolution 24").status, 0);
+  ASSERT_EQ(
+      run("mesh " + (f / "k.off") + " -o " + (f / "d.vtu") + " --resolution 24 --accept-changes").status, 0);
   const Answer a = run("improve " + (f / "d.vtu") + " -o " + (f / "i.vtu") + " --stats " + (f / "s.json"));
   ASSERT_EQ(a.status, 0) << a.err;
   EXPECT_EQ(a.err, "");
@@ -173,8 +174,9 @@ TEST(Simplify, BothSchedulesReachTheTarget) {
   const TemporaryFolder f;
   ASSERT_EQ(run("sample torus -o " + (f / "t.ply")).status, 0);
   for (const char* schedule : {"tuned", "paper"}) {
-    const Answer a = run("prepare " + (f / "t.ply") + " -o " + (f / "o.mesh") + " --target-tets 1500" +
-                         " --objective solid-angle --schedule " + schedule + " --stats " + (f / "s.json"));
+    const Answer a =
+        run("prepare " + (f / "t.ply") + " -o " + (f / "o.mesh") + " --target-tets 3000 --accept-changes" +
+            " --objective solid-angle --schedule " + schedule + " --stats " + (f / "s.json"));
     EXPECT_EQ(a.status, 0) << a.err;
     const auto j = json_of(f / "s.json");
     EXPECT_EQ(j["schedule"], schedule);

@@ -16,7 +16,7 @@ TEST(Program, PreparesASurfaceEndToEnd) {
   const TemporaryFolder f;
   ASSERT_EQ(run("sample torus -o " + (f / "torus.ply")).status, 0);
   const Answer a = run("prepare " + (f / "torus.ply") + " -o " + (f / "torus.vtu") +
-                       " --target-tets 2000 --stats " + (f / "stats.json"));
+                       " --target-tets 4000 --stats " + (f / "stats.json"));
   ASSERT_EQ(a.status, 0) << a.err;
   EXPECT_EQ(a.err, "");
   EXPECT_NE(a.out.find("smallest solid angle"), std::string::npos);
@@ -25,21 +25,27 @@ TEST(Program, PreparesASurfaceEndToEnd) {
   EXPECT_EQ(c.status, 0) << c.out;
   const auto j = nlohmann::json::parse(c.out);
   EXPECT_TRUE(j["valid"]);
-  EXPECT_NEAR(j["mesh"]["tets"].get<double>(), 2000, 20);
+  EXPECT_NEAR(j["mesh"]["tets"].get<double>(), 4000, 40);
   EXPECT_LT(j["mesh"]["percent_below_threshold"].get<double>(), 2);
 }
 
 TEST(Program, MeshThenSimplifyKeepsTheTopology) {
   const TemporaryFolder f;
   ASSERT_EQ(run("sample knot -o " + (f / "knot.stl")).status, 0);
-  ASSERT_EQ(run("mesh " + (f / "knot.stl") + " -o " + (f / "dense.mesh") + " --resolution 48").status, 0);
+  ASSERT_EQ(
+      run("mesh " + (f / "knot.stl") + " -o " + (f / "dense.mesh") + " --resolution 48 --accept-changes")
+          .status,
+      0);
   ASSERT_EQ(run("simplify " + (f / "dense.mesh") + " -o " + (f / "small.msh") + " --target-tets 3000").status,
             0);
   const Answer a = run("check " + (f / "small.msh") + " --before " + (f / "dense.mesh"));
   EXPECT_EQ(a.status, 0) << a.out;
   // A ball does not have the topology of a knotted ring.
   ASSERT_EQ(run("sample sphere -o " + (f / "sphere.off")).status, 0);
-  ASSERT_EQ(run("mesh " + (f / "sphere.off") + " -o " + (f / "sphere.vtu") + " --resolution 16").status, 0);
+  ASSERT_EQ(
+      run("mesh " + (f / "sphere.off") + " -o " + (f / "sphere.vtu") + " --resolution 16 --accept-changes")
+          .status,
+      0);
   EXPECT_EQ(run("check " + (f / "sphere.vtu") + " --before " + (f / "dense.mesh")).status, 1);
 }
 
@@ -48,7 +54,7 @@ TEST(Program, OneThreadAndOneSeedGiveTheSameFile) {
   ASSERT_EQ(run("sample torus -o " + (f / "torus.obj")).status, 0);
   for (const char* name : {"a.mesh", "b.mesh"})
     ASSERT_EQ(
-        run("prepare " + (f / "torus.obj") + " -o " + (f / name) + " --target-tets 1500 --threads 1 --seed 7")
+        run("prepare " + (f / "torus.obj") + " -o " + (f / name) + " --target-tets 3000 --threads 1 --seed 7")
             .status,
         0);
   EXPECT_EQ(contents(f / "a.mesh"), contents(f / "b.mesh"));
@@ -84,7 +90,7 @@ TEST(Program, HelpAndVersion) {
 TEST(Program, StatisticsNeverReplaceAMesh) {
   const TemporaryFolder f;
   put(f / "t.off", tetrahedron_off);
-  const std::string mesh = "mesh " + (f / "t.off") + " --resolution 8 -o ";
+  const std::string mesh = "mesh " + (f / "t.off") + " --accept-changes --resolution 8 -o ";
   expect_refused(mesh + (f / "a.vtu") + " --stats " + (f / "a.vtu"), 2, {"--stats", ".json"});
   expect_refused(mesh + (f / "a.vtu") + " --stats " + (f / "t.off"), 2, {"--stats", ".json"});
   ASSERT_EQ(run(mesh + (f / "a.vtu")).status, 0);
@@ -219,7 +225,7 @@ TEST(Program, MaterialsLayersAndLevelSets) {
       "0.4 -0.4 0.4\n-0.4 0.4 0.4\n0.4 0.4 0.4\n4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n"
       "4 0 4 6 2\n4 1 3 7 5\n");
   const std::string surfaces = (f / "ball.off") + " --material \"the core=" + (f / "cube.off") +
-                               "\" --layer skin=0.12 --voxel-size 0.08 ";
+                               "\" --layer skin=0.12 --voxel-size 0.08 --accept-changes ";
   const auto materials = [&](const std::string& mesh) {
     std::map<std::string, std::pair<int, double>> found;
     const auto j = nlohmann::json::parse(run("check --json " + mesh).out);
@@ -240,15 +246,16 @@ TEST(Program, MaterialsLayersAndLevelSets) {
   }
   // The fields that were meshed give the same materials again.
   const auto first = materials(f / "out.vtu");
-  const Answer again = run("mesh " + (f / "fields.vdb") + " --voxel-size 0.08 -o " + (f / "again.vtu"));
+  const Answer again =
+      run("mesh " + (f / "fields.vdb") + " --voxel-size 0.08 --accept-changes -o " + (f / "again.vtu"));
   ASSERT_EQ(again.status, 0) << again.err;
   for (const auto& [name, material] : materials(f / "again.vtu"))
     EXPECT_NEAR(material.second, first.at(name).second, 0.05 * first.at(name).second) << name;
   // `prepare` with the same input.
   ASSERT_EQ(run("prepare " + surfaces + " -o " + (f / "small.vtu") + " --target-tets 4000").status, 0);
   EXPECT_EQ(materials(f / "small.vtu").size(), 3u);
-  const Answer outside =
-      run("mesh " + (f / "ball.off") + " --keep-outside --resolution 12 -o " + (f / "box.vtu"));
+  const Answer outside = run("mesh " + (f / "ball.off") +
+                             " --keep-outside --resolution 12 --accept-changes -o " + (f / "box.vtu"));
   ASSERT_EQ(outside.status, 0) << outside.err;
   EXPECT_EQ(materials(f / "box.vtu").at("outside").first, 0);
 }
@@ -274,10 +281,11 @@ TEST(Program, MaterialsThatMakeNoSense) {
   ASSERT_EQ(std::system(("ln -s ball.off " + (f / "link.vtu")).c_str()), 0);
   expect_refused(ball + " --resolution 16 -o " + (f / "link.vtu"), 2, {"link.vtu"});
   EXPECT_EQ(contents(f / "ball.off").substr(0, 3), "OFF");
-  EXPECT_EQ(run("prepare --material \"$(printf '\\377')=" + (f / "ball.off") + "\" --target-tets 500 -o " +
-                (f / "odd.vtu") + " --stats " + (f / "odd.json"))
-                .status,
-            0);
+  EXPECT_EQ(
+      run("prepare --material \"$(printf '\\377')=" + (f / "ball.off") +
+          "\" --target-tets 500 --accept-changes -o " + (f / "odd.vtu") + " --stats " + (f / "odd.json"))
+          .status,
+      0);
   EXPECT_EQ(nlohmann::json::parse(contents(f / "odd.json"))["result"]["materials"].size(), 1u);
   // An outermost surface that is listed last covers the earlier ones.
   expect_refused("mesh " + (f / "cube.off") + " --voxel-size 0.1 --material shell=" + (f / "ball.off") +
@@ -319,7 +327,8 @@ TEST(Program, AnExistingFileSurvivesABrokenInput) {
 TEST(Program, ShortOfTheTargetIsStatusOneAndWritten) {
   const TemporaryFolder f;
   ASSERT_EQ(run("sample torus -o " + (f / "t.off")).status, 0);
-  ASSERT_EQ(run("mesh " + (f / "t.off") + " -o " + (f / "d.vtu") + " --resolution 24").status, 0);
+  ASSERT_EQ(
+      run("mesh " + (f / "t.off") + " -o " + (f / "d.vtu") + " --resolution 24 --accept-changes").status, 0);
   const Answer a = run("simplify " + (f / "d.vtu") + " -o " + (f / "s.vtu") + " --target-tets 3 --stats " +
                        (f / "s.json"));
   EXPECT_EQ(a.status, 1) << a.err;

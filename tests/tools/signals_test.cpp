@@ -152,7 +152,8 @@ TEST_F(Signals, AnIgnoredHangUpStaysIgnored) {
   ASSERT_EQ(run("sample sphere -o " + in("s.off")).status, 0);
   ASSERT_EQ(mkfifo(in("pipe.off").c_str(), 0600), 0);
   std::signal(SIGHUP, SIG_IGN);  // children inherit it
-  Process process = start({"mesh", in("pipe.off"), "-o", in("out.vtu"), "--resolution", "8"});
+  Process process =
+      start({"mesh", in("pipe.off"), "-o", in("out.vtu"), "--resolution", "8", "--accept-changes"});
   std::signal(SIGHUP, SIG_DFL);
   process.wait_for_main();
   process.send(SIGHUP);
@@ -164,8 +165,8 @@ TEST_F(Signals, AnIgnoredHangUpStaysIgnored) {
 TEST_F(Signals, AtManyMoments) {
   ASSERT_EQ(run("sample torus -o " + in("torus.off")).status, 0);
   const std::vector<std::string> call{
-      "mesh",        in("torus.off"), "-o",           in("out.msh"),  "--write-sdf",
-      in("out.vdb"), "--stats",       in("out.json"), "--resolution", "28"};
+      "mesh",    in("torus.off"), "-o",           in("out.msh"), "--write-sdf",     in("out.vdb"),
+      "--stats", in("out.json"),  "--resolution", "28",          "--accept-changes"};
   const auto begin = std::chrono::steady_clock::now();
   Process whole = start(call);
   ASSERT_EQ(whole.wait(), 0) << err();

@@ -88,7 +88,7 @@ TEST_F(Volumes, TheFieldsThatWereMeshed) {
   const std::string organs = mesh(path("organs.nrrd")) + cells + " --labels 1-3,5";
   ASSERT_EQ(run(organs + " --write-sdf " + path("fields.vdb")).status, 0);
   const auto first = nlohmann::json::parse(contents(path("s.json")))["result"]["materials"];
-  ASSERT_EQ(run(mesh(path("fields.vdb")) + cells).status, 0);
+  ASSERT_EQ(run(mesh(path("fields.vdb")) + cells + " --accept-changes").status, 0);
   const auto again = nlohmann::json::parse(contents(path("s.json")))["result"];
   ASSERT_EQ(again["materials"].size(), first.size());
   for (std::size_t m = 0; m < first.size(); ++m) {

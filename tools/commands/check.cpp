@@ -73,7 +73,7 @@ ExitStatus run_check(const CommandLine& line) {
     (void)read_tet_mesh(line.inputs.front(), {line.material_field});
   run.report.seconds_total = run.since_start.seconds();
   if (!line.stats.empty()) write_file_atomically(line.stats, stats_json(line, run.report) + "\n");
-  if (!line.quiet) print_notes(run.report);
+  if (!line.quiet) print_notes(notes_of(run.report));
   if (line.json)
     std::printf("%s\n", check_json(line, run.report, check).c_str());
   else if (!line.quiet)

@@ -6,6 +6,7 @@
 
 #include "common/formats/atomic_file.h"
 #include "common/formats/formats.h"
+#include "common/message_text.h"
 #include "tools/limiting_rules.h"
 #include "tools/report.h"
 #include "tools/stats_json.h"
@@ -108,12 +109,10 @@ void find_lost_labels(const CommandLine& line, RunReport& report) {
   const std::size_t kept = report.volume->labels.size(), all = kept + lost.size();
   std::string names;
   for (std::size_t i = 0; i < std::min(lost.size(), max_lost_named); ++i) {
-    char place[100];
-    std::snprintf(place, sizeof place, "(%g, %g, %g)", lost[i].place.x(), lost[i].place.y(),
-                  lost[i].place.z());
     names += (i ? ", " : "") + std::to_string(lost[i].tag) + " '" + lost[i].name + "' (" +
              std::to_string(lost[i].voxels) +
-             (lost[i].voxels == 1 ? " voxel at " : " voxels, the first at ") + place + ")";
+             (lost[i].voxels == 1 ? " voxel at " : " voxels, the first at ") + place_text(lost[i].place) +
+             ")";
   }
   if (lost.size() > max_lost_named) names += ", ...";
   const std::string rule = "--min-voxels " + std::to_string(line.min_voxels);
@@ -121,6 +120,57 @@ void find_lost_labels(const CommandLine& line, RunReport& report) {
       {"labels", static_cast<double>(all), static_cast<double>(kept), rule + ": " + names,
        "lost " + std::to_string(lost.size()) + " of " + std::to_string(all) + " labels: " + names +
            "; all their islands have fewer voxels than " + rule + " keeps; give a smaller number"});
+}
+
+/// Materials that are not the solid they are meant to be: a shortfall, or with --accept-changes a finding.
+void find_changed_solids(const CommandLine& line, const TetMesh& mesh, RunReport& report) {
+  if (!report.mesher) return;
+  report.fidelity = compare_solids(report.mesher->expected, mesh);
+  std::string text;
+  std::size_t same = 0;
+  bool dense_was_same = report.simplify.has_value();  // but for its counts, which simplifying keeps
+  for (const MaterialFidelity& f : report.fidelity) {
+    if (f.same()) {
+      ++same;
+      continue;
+    }
+    dense_was_same &=
+        f.same_counts() && is_same_volume(report.dense->materials[f.tag].volume, f.expected.volume);
+    text +=
+        (text.empty() ? "" : "; ") + std::string("'") + f.name + "' has " + f.difference +
+        (f.place ? ", the first at " + place_text(*f.place) : "") +
+        (f.by_surface ? "" : " (by the distances: the surface is open, intersects itself or meets another)");
+  }
+  if (text.empty()) return;
+  const std::size_t all = report.fidelity.size();
+  if (line.accept_changes) {
+    report.findings.push_back(
+        {report.inputs.front(),
+         {"of " + std::to_string(all) + " materials not the solid of the input: " + text,
+          all - same,
+          {},
+          "accepted"}});
+    return;
+  }
+  std::string thin;
+  for (const ThinPartReport& t : report.mesher->thin_parts)
+    thin += (thin.empty() ? "" : ", ") + (t.name.empty() ? "a gap" : "'" + t.name + "'") + " at " +
+            place_text(t.first);
+  report.shortfall.push_back({"fidelity", static_cast<double>(all), static_cast<double>(same),
+                              dense_was_same ? "the number of tets"
+                              : thin.empty() ? "the size of the cells"
+                                             : "what is thin for the cells: " + thin,
+                              "not the solid of the input: " + text + "; raise " +
+                                  (dense_was_same ? "--target-tets" : "--resolution") +
+                                  ", or take it as it is with --accept-changes"});
+}
+
+/// With --strict whatever is noted.
+void find_notes(const CommandLine& line, const std::vector<std::string>& notes, RunReport& report) {
+  if (!line.strict || notes.empty()) return;
+  report.shortfall.push_back({"notes", 0, static_cast<double>(notes.size()), "--strict",
+                              "--strict: " + std::to_string(notes.size()) +
+                                  (notes.size() == 1 ? " note: " : " notes, the first: ") + notes.front()});
 }
 
 void write_files(const TetMesh& mesh, const MaterialField* field, CommandRun& run) {
@@ -151,8 +201,11 @@ ExitStatus finish(const TetMesh& mesh, const MaterialField* field, CommandRun& r
     report.result = report.dense;  // the dense mesh is the result
   }
   find_lost_labels(run.line, report);
+  find_changed_solids(run.line, mesh, report);
+  const std::vector<std::string> notes = notes_of(report);
+  find_notes(run.line, notes, report);
   write_files(mesh, field, run);
-  if (!run.line.quiet) print_notes(report);
+  if (!run.line.quiet) print_notes(notes);
   if (!run.line.quiet) print_report(run.line, report);
   for (const Shortfall& s : report.shortfall) print_line(s.message);
   return report.shortfall.empty() ? ExitStatus::done : ExitStatus::short_of_request;
