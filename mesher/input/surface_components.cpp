@@ -191,13 +191,11 @@ void Patches::find_seams(const std::vector<Side>& sides) {
     std::stable_sort(here.begin(), here.end(),
                      [](const Seam& a, const Seam& b) { return a.patch < b.patch; });
     for (const Seam& s : here) {
-      if (s.patch == here.front().patch && &s == &here.front()) {
+      if (&s == &here.front() || s.patch != seams_.back().patch) {
         seams_.push_back(s);
-      } else if (s.patch == seams_.back().patch) {
+      } else {
         seams_.back().net += s.net;
         ++seams_.back().sides;
-      } else {
-        seams_.push_back(s);
       }
     }
     ++edges;
