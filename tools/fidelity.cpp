@@ -74,9 +74,12 @@ MaterialFidelity compare(const ExpectedSolid& expected, const SolidShape& result
   add_difference(f.difference, f.result.cavities, f.expected.cavities, "cavity", "cavities");
   if (!is_same_volume(f.result.volume, f.expected.volume)) {
     const double change = f.result.volume / f.expected.volume - 1;
-    char text[60];
-    std::snprintf(text, sizeof text, "volume %.3g %% %s", 100 * std::fabs(change),
-                  change > 0 ? "more" : "less");
+    char text[80];
+    if (f.expected.volume > 0)
+      std::snprintf(text, sizeof text, "volume %.3g %% %s", 100 * std::fabs(change),
+                    change > 0 ? "more" : "less");
+    else
+      std::snprintf(text, sizeof text, "volume %.6g instead of %.6g", f.result.volume, f.expected.volume);
     f.difference += (f.difference.empty() ? "" : ", ") + std::string(text);
   }
   f.place = first_difference(was, is);

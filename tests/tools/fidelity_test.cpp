@@ -36,6 +36,8 @@ TEST(Fidelity, ComparesVolumesAndCounts) {
   EXPECT_EQ(difference(expected({{.volume = v * 1.0099}})), "");
   EXPECT_EQ(difference(expected({{.volume = v / 0.98}})), "volume 2 % less");
   EXPECT_EQ(difference(expected({{.volume = v / 1.5}})), "volume 50 % more");
+  EXPECT_EQ(difference(expected({{.volume = 0}})),
+            "1 component instead of 0, 0 cavities instead of 1, volume 0.166667 instead of 0");
   EXPECT_EQ(difference(expected({{.volume = v, .handles = 2}})), "0 handles instead of 2");
   EXPECT_EQ(difference(expected({{.volume = v * 0.999}, {.volume = v * 0.001}})), "1 component instead of 2");
   EXPECT_EQ(difference(expected({{.volume = v * 1.001}, {.volume = v * -0.001}})), "0 cavities instead of 1");

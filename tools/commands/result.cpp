@@ -134,8 +134,9 @@ void find_changed_solids(const CommandLine& line, const TetMesh& mesh, RunReport
       ++same;
       continue;
     }
-    dense_was_same &=
-        f.same_counts() && is_same_volume(report.dense->materials[f.tag].volume, f.expected.volume);
+    const auto dense = report.dense->materials.find(f.tag);
+    dense_was_same &= f.same_counts() && dense != report.dense->materials.end() &&
+                      is_same_volume(dense->second.volume, f.expected.volume);
     text +=
         (text.empty() ? "" : "; ") + std::string("'") + f.name + "' has " + f.difference +
         (f.place ? ", the first at " + place_text(*f.place) : "") +
