@@ -64,8 +64,11 @@ struct MesherReport {
   std::size_t isolated_vertices = 0;  ///< parts and cavities of a single lattice point, which are left out
   std::vector<ThinPartReport> thin_parts;
   /// For each material of surfaces, in their order, what it is meant to be; not of layers and what they are
-  /// cut from, nor of what meets others where cells were refined between them.
+  /// cut from.
   std::vector<ExpectedSolid> expected;
+  /// Of these the ones for which neither surfaces nor distances say it: cells were refined, or all of it is
+  /// smaller than a cell.
+  std::vector<std::string> unknown;
   MesherEstimate estimate;          ///< from the input, see estimate_mesh()
   MesherEstimate lattice_estimate;  ///< from the regions of the lattice's points
   double seconds_sdf = 0, seconds_octree = 0, seconds_lattice = 0, seconds_move = 0, seconds_cut = 0;

@@ -62,26 +62,29 @@ void validate_materials_left(const MesherInput& input, const MaterialField& fiel
 }
 
 /// By the surfaces where they say it, else by the distances where the voxels show all of them.
-std::vector<ExpectedSolid> expected_materials(const MesherInput& input, const MaterialField& field,
-                                              const std::vector<MortonKey>& interface_voxels, bool refined) {
-  std::vector<ExpectedSolid> expected;
+void expect_materials(const MesherInput& input, const MaterialField& field,
+                      const std::vector<MortonKey>& interface_voxels, bool refined, MesherReport& report) {
   std::vector<std::optional<SolidShape>> solids = expected_solids(input);
-  const double cell = field.voxels().cell_size;
+  const double cell = field.voxels().cell_size, cell_volume = cell * cell * cell;
   for (std::size_t i = 0; i < solids.size(); ++i) {
     const MesherInput::Body& body = input.bodies[i];
     if (solids[i]) {
-      expected.push_back({body.name, body.tag, std::move(*solids[i]), true, 0});
+      report.expected.push_back({body.name, body.tag, std::move(*solids[i]), true, 0});
       continue;
     }
-    if (refined || (i == 0 && !input.layers.empty())) continue;
+    if (i == 0 && !input.layers.empty()) continue;
     const auto region = std::find_if(field.regions().begin() + 1, field.regions().end(),
                                      [&](const FieldRegion& r) { return r.tag == body.tag; });
-    expected.push_back(
-        {body.name, body.tag,
-         field_solid(field, interface_voxels, static_cast<RegionIndex>(region - field.regions().begin())),
-         false, cell * cell * cell});
+    SolidShape solid;
+    if (!refined)
+      solid =
+          field_solid(field, interface_voxels, static_cast<RegionIndex>(region - field.regions().begin()));
+    if (std::none_of(solid.shells.begin(), solid.shells.end(),
+                     [&](const SolidShell& s) { return s.volume >= cell_volume; }))
+      report.unknown.push_back(body.name);
+    else
+      report.expected.push_back({body.name, body.tag, std::move(solid), false, cell_volume});
   }
-  return expected;
 }
 
 void validate_outside_is_free(const MesherInput& input) {
@@ -134,7 +137,7 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   };
   add_thin(sheets.too_thin, true);
   add_thin(find_thin_parts(*field, interface_voxels), false);
-  report.expected = expected_materials(input, *field, interface_voxels, sheets.finer.refinement > 0);
+  expect_materials(input, *field, interface_voxels, sheets.finer.refinement > 0, report);
 
   return mesh_field(
       field, std::move(interface_voxels), std::move(sheets.finer), options, MemoryModel{}, std::move(report),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "common/error.h"
 #include "common/mesh/interfaces.h"
@@ -60,6 +61,7 @@ struct Remesher::Impl {
     rules.objective.shape = options.objective;
     renumber(numbers);
     find_copies();
+    keep_surfaces();
   }
 
   /// Compacts, and builds anew what goes with the whole mesh.
@@ -70,6 +72,9 @@ struct Remesher::Impl {
     mesh.reserve_twice();
     if (numbers) *numbers = {std::move(slots.points), std::move(slots.tets)};
     look_at_all();
+  }
+  void keep_surfaces() {
+    if (options.keep_surfaces) first_surfaces.emplace(mesh, options.reference);
   }
   void find_copies() {
     copies.clear();
@@ -112,6 +117,7 @@ struct Remesher::Impl {
   PointTree places;
   ChangeJournal journal;
   BlockRules rules;
+  std::optional<SurfaceProjection> first_surfaces;  ///< with RemesherOptions::keep_surfaces
   Neighbourhood near;
   std::vector<Field> point_fields, tet_fields;
   std::vector<std::array<Index, 2>> copies;  ///< points, and what was split off from them; ascending
@@ -176,8 +182,9 @@ RemeshChanges Remesher::Impl::call(const RemeshRegion& region, const RemeshAim& 
   journal.clear();
   if (tets.empty()) return {};
   const std::vector<Index> with_rim = near.tets_at(mesh, near.points_of(mesh, tets));
-  const SurfaceProjection projection = project_onto(near.points_of(mesh, with_rim));
-  rules.projection = &projection;
+  SurfaceProjection found;
+  if (!first_surfaces) found = project_onto(near.points_of(mesh, with_rim));
+  rules.projection = first_surfaces ? &*first_surfaces : &found;
   std::uint64_t operations = 0;
   int improved = 0;
   {
@@ -326,6 +333,7 @@ void Remesher::set_positions(std::span<const Vec3> positions) {
       mesh.set_position(p, mesh.space().to_working(positions[mesh.original(p)]));
   impl_->constrained.keep_patches();
   impl_->look_at_all();
+  impl_->keep_surfaces();
 }
 
 void Remesher::set_positions(std::span<const Index> points, std::span<const Vec3> positions) {
@@ -346,6 +354,8 @@ RemeshChanges Remesher::improve(const RemeshRegion& region) { return improve(reg
 RemeshChanges Remesher::improve(const RemeshRegion& region, const RemeshAim& aim) {
   if (!(aim.angle >= 0) || !(aim.leave_surface_angle >= 0))
     throw UsageError("the solid angles to improve to must be at least 0");
+  if (aim.min_tets > aim.max_tets || aim.target_tets > aim.max_tets)
+    throw UsageError("the largest number of tets must be at least the smallest and the usual one");
   return impl_->call(region, aim, [](RemeshRounds&) {});
 }
 

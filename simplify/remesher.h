@@ -35,6 +35,10 @@ struct RemesherOptions {
 
   /// What points of boundary and interfaces are projected onto; null: the surfaces that each call finds.
   const ReferenceSurface* reference = nullptr;
+  /// Points of surfaces are projected onto those that the mesh came with, or that the positions of all points
+  /// last made, by all calls: a tree of the whole surface. Else onto what each call finds, so that small
+  /// distances may add up.
+  bool keep_surfaces = false;
   SimplifyReport* report = nullptr;  ///< gets the rounds of improvement
   Progress* progress = nullptr;      ///< is told of them; what it cancels throws Interrupted
 };
@@ -151,7 +155,7 @@ class Remesher {
   void set_positions(std::span<const Index> points, std::span<const Vec3> positions);
 
   // They throw UsageError where the region lists tets that are not there, an angle of the aim is not a number
-  // or below 0, or the size is not above 0.
+  // or below 0, its counts contradict each other, or the size is not above 0.
 
   /// Makes the tets of the region well shaped that are not (RemesherOptions::min_solid_angle), also by points
   /// that come or go.

@@ -37,6 +37,8 @@ constexpr double polish_below = 0.2;
 constexpr int max_polish_rounds = 3;
 /// Rounds kept for that and for what comes after it.
 constexpr int max_last_rounds = 20;
+/// Of the poor tets, that a call of a Remesher must leave fewer than for another one.
+constexpr double min_call_gain = 0.95;
 /// Factors by which the count may change with ImproveOptions::free_count, so that detail is not lost by the
 /// way and no mesh grows for ever.
 constexpr double min_free = 0.8, max_free = 4;
@@ -144,6 +146,7 @@ TetMesh improve_poor_regions(TetMesh&& mesh, const ImproveOptions& options, std:
                                       .name = options.name,
                                       .batch_size = options.batch_size,
                                       .reference = options.reference,
+                                      .keep_surfaces = true,
                                       .report = report,
                                       .progress = progress});
   const double build = seconds_since(start);
@@ -151,12 +154,14 @@ TetMesh improve_poor_regions(TetMesh&& mesh, const ImproveOptions& options, std:
   for (const double angle : rising_bounds(std::min(options.only_below, first_bound(options.min_solid_angle)),
                                           options.only_below)) {
     const double bound = shape_quality_bound(options.objective, angle);
-    for (std::size_t fewest = std::numeric_limits<std::size_t>::max(); rounds > 0;) {
+    // The last bound gets what is left, each other one half of it.
+    const int kept = angle < options.only_below ? rounds / 2 : 0;
+    for (double fewest = std::numeric_limits<double>::infinity(); rounds > kept;) {
       std::vector<Index> poor;
       for (Index t = 0; t < remesher.tet_slots(); ++t)
         if (remesher.has_tet(t) && remesher.quality(t) <= bound) poor.push_back(t);
-      if (poor.empty() || poor.size() >= fewest) break;
-      fewest = poor.size();
+      if (poor.empty() || static_cast<double>(poor.size()) > min_call_gain * fewest) break;
+      fewest = static_cast<double>(poor.size());
       const RemeshChanges changes =
           remesher.improve(RemeshRegion::tets(std::move(poor)),
                            {.angle = angle,
@@ -165,7 +170,7 @@ TetMesh improve_poor_regions(TetMesh&& mesh, const ImproveOptions& options, std:
                             .min_tets = min_tets,
                             .max_tets = max_tets,
                             .brief = false,
-                            .max_rounds = rounds});
+                            .max_rounds = rounds - kept});
       rounds -= std::max(changes.rounds, 1);
     }
   }

@@ -24,7 +24,7 @@ struct MaterialFidelity {
   SolidNumbers expected, result;
   /// "256 handles instead of 0, volume 3.1 % less"; empty where the solid is the same.
   std::string difference;
-  std::optional<Vec3> place;  ///< of the largest shell that differs, input units
+  std::optional<Vec3> place;  ///< of the largest shell without a counterpart, input units
 
   bool same() const { return difference.empty(); }
   bool same_counts() const {

@@ -101,6 +101,11 @@ std::vector<std::string> notes_of(const RunReport& run) {
     notes.push_back(
         std::to_string(run.mesher->isolated_vertices) +
         " parts or cavities of a single lattice point (left out; a higher resolution keeps them)");
+  for (const std::string& name : run.mesher->unknown)
+    notes.push_back(
+        "'" + name +
+        "' was not compared with its input: its surface is open, intersects itself or meets another, "
+        "and cells of this size do not show it");
   for (const ThinPartReport& t : run.mesher->thin_parts)
     notes.push_back((t.name.empty() ? "a gap" : "'" + t.name + "'") + " is thinner than " +
                     (t.refined ? "the smallest cells can hold" : "two cells") + " at " +

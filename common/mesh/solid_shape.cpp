@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <compare>
+#include <cstdint>
+#include <utility>
 
 #include "common/mesh/disjoint_sets.h"
 #include "common/parallel/parallel_sort.h"
@@ -74,6 +76,7 @@ SolidShape solid_shape(std::span<const Vec3> points, std::span<const Triangle> t
 
   std::vector<Index> shell_of(triangles.size());
   std::vector<std::ptrdiff_t> euler;
+  std::vector<std::uint8_t> has_fan(points.size(), 0);
   for (Index t = 0; t < triangles.size(); ++t) {
     const Index root = chained.root(t);  // the first of them
     if (root == t) {
@@ -86,7 +89,11 @@ SolidShape solid_shape(std::span<const Vec3> points, std::span<const Triangle> t
     SolidShell& shell = shape.shells[shell_of[t]];
     ++shell.triangles;
     euler[shell_of[t]] += 1 - static_cast<std::ptrdiff_t>(edges[t]);
-    for (Index k = 0; k < 3; ++k) euler[shell_of[t]] += fans.is_root(3 * t + k);
+    for (Index k = 0; k < 3; ++k) {
+      if (!fans.is_root(3 * t + k)) continue;
+      ++euler[shell_of[t]];
+      shape.touches_itself |= std::exchange(has_fan[triangles[t][k]], std::uint8_t{1}) != 0;
+    }
     const Vec3 a = points[triangles[t][0]] - shell.place, b = points[triangles[t][1]] - shell.place,
                c = points[triangles[t][2]] - shell.place;
     shell.volume += a.dot(b.cross(c)) / 6;

@@ -22,6 +22,7 @@ struct SolidShape {
   /// False where some edge has not just two triangles wound opposite ways: then handles mean nothing, and
   /// parts that meet in such an edge count as separate.
   bool manifold = true;
+  bool touches_itself = false;     ///< in some point without a common edge
   std::vector<SolidShell> shells;  ///< in the order of their first triangles
 
   double volume() const;
@@ -32,7 +33,7 @@ struct SolidShape {
 
 /// The solid inside closed triangles wound outwards, which must not intersect: ids below the number of
 /// points. Points at which fans of triangles meet without a common edge count once for each fan. O(n log n),
-/// 60 bytes for each triangle; parallel but for the chaining of triangles. The result does not depend on the
+/// 120 bytes for each triangle; parallel but for the chaining of triangles. The result does not depend on the
 /// threads.
 SolidShape solid_shape(std::span<const Vec3> points, std::span<const Triangle> triangles);
 

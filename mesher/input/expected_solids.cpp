@@ -9,92 +9,99 @@ namespace tetwright {
 
 namespace {
 
-/// Parts whose place is asked for one by one, at most: each takes a look at every triangle.
-constexpr std::size_t max_parts = 64;
-
-bool is_clean(const RepairedSurface& s) { return s.closed == s.triangles.size() && !s.intersects_itself; }
+/// Queries of a surface above which a tree pays: each of the others takes a look at every triangle.
+constexpr std::size_t max_plain_queries = 16;
 
 bool boxes_meet(const RepairedSurface& a, const RepairedSurface& b) {
   return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
 }
 
-enum class Place { inside, outside, unclear };
-
-/// Where all parts of a solid lie, whose surface does not meet that of the other one.
-Place place_in(const RepairedSurface& other, const SolidShape& solid) {
-  if (solid.components() == 0 || solid.components() > max_parts) return Place::unclear;
-  std::optional<bool> inside;
-  for (const SolidShell& shell : solid.shells) {
-    if (shell.volume <= 0) continue;
-    const bool in = winding_number(other.points, other.triangles, shell.place) > 0.5;
-    if (inside.value_or(in) != in) return Place::unclear;
-    inside = in;
+/// Whether points off a closed surface are inside.
+class Inside {
+ public:
+  Inside(const RepairedSurface& surface, std::size_t queries) : surface_(surface) {
+    if (queries > max_plain_queries) tree_.emplace(surface.points, surface.triangles);
   }
-  return *inside ? Place::inside : Place::outside;
-}
-
-/// The surfaces one after the other.
-struct Joined {
-  std::vector<Vec3> points;
-  std::vector<Triangle> triangles;
-  void add(const RepairedSurface& s, bool turned) {
-    const auto first = static_cast<Index>(points.size());
-    points.insert(points.end(), s.points.begin(), s.points.end());
-    triangles.reserve(triangles.size() + s.triangles.size());
-    for (Triangle t : s.triangles) {
-      if (turned) std::swap(t[1], t[2]);
-      triangles.push_back({first + t[0], first + t[1], first + t[2]});
-    }
+  bool operator()(const Vec3& p) const {
+    return (tree_ ? tree_->winding_number(p) : winding_number(surface_.points, surface_.triangles, p)) > 0.5;
   }
+
+ private:
+  const RepairedSurface& surface_;
+  std::optional<SurfaceTree> tree_;
 };
 
-/// The solid of a body without `later` ones.
-std::optional<SolidShape> carved_solid(const RepairedSurface& body,
-                                       const std::vector<const RepairedSurface*>& later) {
-  Joined all;
-  all.add(body, false);
-  for (const RepairedSurface* l : later) all.add(*l, false);
-  if (!self_intersections(all.points, all.triangles).empty()) return {};
-  std::vector<SolidShape> solids;
-  solids.reserve(later.size());
-  for (const RepairedSurface* l : later) solids.push_back(solid_shape(l->points, l->triangles));
-  Joined carved;
-  carved.add(body, false);
-  for (std::size_t i = 0; i < later.size(); ++i) {
-    bool carves = true;  // by itself, rather than as a part of another one
-    for (std::size_t k = 0; k < later.size() && carves; ++k) {
-      if (k == i || !boxes_meet(*later[i], *later[k])) continue;
-      const Place place = place_in(*later[k], solids[i]);
-      if (place == Place::unclear) return {};
-      carves = place == Place::outside;
-    }
-    if (!carves) continue;
-    const Place place = place_in(body, solids[i]);
-    // One that is outside without meeting the body may still be all around it.
-    if (place == Place::unclear) return {};
-    if (place == Place::inside) carved.add(*later[i], true);
+/// Whether surfaces meet each other.
+bool meet(const RepairedSurface& body, const std::vector<const RepairedSurface*>& later) {
+  std::vector<Vec3> points = body.points;
+  std::vector<Triangle> triangles = body.triangles;
+  for (const RepairedSurface* l : later) {
+    const auto first = static_cast<Index>(points.size());
+    points.insert(points.end(), l->points.begin(), l->points.end());
+    for (const Triangle& t : l->triangles) triangles.push_back({first + t[0], first + t[1], first + t[2]});
   }
-  return solid_shape(carved.points, carved.triangles);
+  return !self_intersections(points, triangles).empty();
+}
+
+/// The solid of a body without `later` ones, whose surfaces do not meet: what of its shells is in none of
+/// them, and their shells inside it, wound the other way, that are in no other one.
+SolidShape carved_solid(const RepairedSurface& body, const SolidShape& solid,
+                        const std::vector<const RepairedSurface*>& later,
+                        const std::vector<SolidShape>& later_solids) {
+  std::size_t shells = solid.shells.size();
+  for (const SolidShape& s : later_solids) shells += s.shells.size();
+  std::vector<Inside> inside_later;
+  inside_later.reserve(later.size());
+  for (const RepairedSurface* l : later) inside_later.emplace_back(*l, shells);
+  const auto in_another = [&](const Vec3& p, std::size_t own) {
+    for (std::size_t k = 0; k < later.size(); ++k)
+      if (k != own && inside_later[k](p)) return true;
+    return false;
+  };
+  SolidShape carved;
+  for (const SolidShell& shell : solid.shells)
+    if (!in_another(shell.place, later.size())) carved.shells.push_back(shell);
+  const Inside inside_body(body, shells);
+  for (std::size_t i = 0; i < later.size(); ++i)
+    for (SolidShell shell : later_solids[i].shells) {
+      if (!inside_body(shell.place) || in_another(shell.place, i)) continue;
+      shell.volume = -shell.volume;
+      carved.shells.push_back(shell);
+    }
+  return carved;
+}
+
+/// Nothing where edges have not just two triangles, or points more than one fan of them.
+std::optional<SolidShape> clear_solid(const RepairedSurface& s) {
+  if (s.closed != s.triangles.size() || s.intersects_itself) return {};
+  SolidShape solid = solid_shape(s.points, s.triangles);
+  if (!solid.manifold || solid.touches_itself) return {};
+  return solid;
 }
 
 }  // namespace
 
 std::vector<std::optional<SolidShape>> expected_solids(const MesherInput& input) {
+  std::vector<std::optional<SolidShape>> own;
+  own.reserve(input.bodies.size());
+  for (const MesherInput::Body& body : input.bodies) own.push_back(clear_solid(body.surface));
   std::vector<std::optional<SolidShape>> solids(input.bodies.size());
   for (std::size_t i = 0; i < input.bodies.size(); ++i) {
     const RepairedSurface& body = input.bodies[i].surface;
-    if (i == 0 && !input.layers.empty()) continue;
+    if ((i == 0 && !input.layers.empty()) || !own[i]) continue;
     std::vector<const RepairedSurface*> later;
-    bool clean = is_clean(body);
-    for (std::size_t k = i + 1; k < input.bodies.size() && clean; ++k) {
+    std::vector<SolidShape> later_solids;
+    bool clear = true;
+    for (std::size_t k = i + 1; k < input.bodies.size() && clear; ++k) {
       const RepairedSurface& other = input.bodies[k].surface;
       if (!boxes_meet(body, other)) continue;
+      clear = own[k].has_value();
+      if (!clear) break;
       later.push_back(&other);
-      clean = is_clean(other);
+      later_solids.push_back(*own[k]);
     }
-    if (!clean) continue;
-    solids[i] = later.empty() ? solid_shape(body.points, body.triangles) : carved_solid(body, later);
-    if (solids[i] && !solids[i]->manifold) solids[i].reset();
+    if (!clear || (!later.empty() && meet(body, later))) continue;
+    solids[i] = carved_solid(body, *own[i], later, later_solids);
   }
   return solids;
 }

@@ -108,7 +108,10 @@ class ImprovementLoop {
                             ? 0
                             : kept_share * static_cast<double>(plan_.target_tets - plan_.min_tets);
     rules_.count.min = surgery_.count.min = plan_.min_tets + static_cast<std::size_t>(kept);
-    if (2 * mesh_.live_tets() > plan_.target_tets + plan_.max_tets) make_room(poor);
+    // More than halfway from the target to the upper bound, which may be the largest number there is.
+    if (2 * static_cast<double>(mesh_.live_tets()) >
+        static_cast<double>(plan_.target_tets) + static_cast<double>(plan_.max_tets))
+      make_room(poor);
     if (perturbs_) perturb(poor);
     if (stuck_) move_points_around(poor);
     std::vector<ListedTet> tries = worth_trying(poor);

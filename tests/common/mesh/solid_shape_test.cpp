@@ -87,6 +87,8 @@ TEST(SolidShape, PartsThatTouchInAPointAreTwo) {
       if (mesh.points[i] == seven) i = 7;
   const SolidShape shape = solid_shape(mesh.points, mesh.triangles);
   EXPECT_TRUE(shape.manifold);
+  EXPECT_TRUE(shape.touches_itself);
+  EXPECT_FALSE(solid_shape(other.points, other.triangles).touches_itself);
   EXPECT_EQ(shape.components(), 2u);
   EXPECT_EQ(shape.handles(), 0);
 }

@@ -42,6 +42,22 @@ TEST(ExpectedSolids, LaterBodiesCarveEarlierOnes) {
   expect_solid(solids[4], 1, 1, 0, 0);
 }
 
+TEST(ExpectedSolids, LaterBodiesCoverPartsAndCavities) {
+  const TriangleMesh second = make_box(Vec3(20, 0, 0), Vec3(21, 1, 1)),
+                     around = make_box(Vec3(19, -1, -1), Vec3(22, 2, 2));
+  const auto covered = expected_solids(make_input({joined(large, second), around}));
+  expect_solid(covered[0], 1000, 1, 0, 0);
+  const TriangleMesh cavity = turned_over(make_box(Vec3(2, 2, 2), Vec3(3, 3, 3))),
+                     filling = make_box(Vec3(1, 1, 1), Vec3(4, 4, 4));
+  const auto filled = expected_solids(make_input({joined(large, cavity), filling}));
+  expect_solid(filled[0], 1000 - 27, 1, 0, 1);
+  const TriangleMesh hollow =
+      joined(make_box(Vec3(1, 1, 1), Vec3(8, 8, 8)), turned_over(make_box(Vec3(3, 3, 3), Vec3(4, 4, 4))));
+  const auto nested = expected_solids(make_input({large, hollow, make_box(Vec3(2, 2, 2), Vec3(5, 5, 5))}));
+  expect_solid(nested[0], 1000 - 343, 1, 0, 1);
+  expect_solid(nested[1], 343 - 27, 1, 0, 1);
+}
+
 TEST(ExpectedSolids, NothingWhereSurfacesDoNotSay) {
   EXPECT_FALSE(expected_solids(make_input({punctured(make_sphere(1), 40)}))[0]);
   EXPECT_FALSE(expected_solids(make_input({joined(make_sphere(1), make_sphere(1, Vec3(1, 0, 0)))}))[0]);
