@@ -9,6 +9,7 @@
 #include "common/error.h"
 #include "common/geometry/box_tree.h"
 #include "common/geometry/predicates.h"
+#include "common/mesh/interfaces.h"
 #include "common/mesh/mesh_check.h"
 #include "common/mesh/topology.h"
 #include "common/parallel/parallel.h"
@@ -157,6 +158,43 @@ TEST(Remesher, ImprovesToAnAimWithinItsCountAndReports) {
   Remesher cancelled(input, options);
   progress.cancel();
   EXPECT_THROW(cancelled.improve(RemeshRegion::box(Vec3(0, 0, 0), Vec3(8, 8, 8))), Interrupted);
+}
+
+TEST(Remesher, KeepsToTheFirstSurfacesOverManyCalls) {
+  // A ball: a cube of tets whose shells are drawn to spheres.
+  constexpr int n = 8;
+  TetMesh ball = grid_mesh(n);
+  for (Vec3& p : ball.points) {
+    const Vec3 d = p - Vec3::Constant(n / 2);
+    if (d.norm() > 0) p = d * (d.cwiseAbs().maxCoeff() / d.norm());
+  }
+  jitter(ball, 3, 0.2);
+  ball.interfaces = find_interfaces(ball);
+  // The depth of the surface below the sphere, at its points and in the middle of its triangles.
+  const auto depth = [](const TetMesh& mesh, bool middles) {
+    double deepest = 0;
+    for (const InterfaceTriangle& t : mesh.interfaces) {
+      Vec3 middle = Vec3::Zero();
+      for (const Index i : t.ids) {
+        if (!middles) deepest = std::max(deepest, n / 2 - mesh.points[i].norm());
+        middle += mesh.points[i] / 3;
+      }
+      if (middles) deepest = std::max(deepest, n / 2 - middle.norm());
+    }
+    return deepest;
+  };
+  double kept_depth = 0, drifted = 0;
+  for (const bool keep : {true, false}) {
+    RemesherOptions options;
+    options.keep_surfaces = keep;
+    Remesher remesher(ball, options);
+    for (int call = 0; call < 12; ++call)
+      remesher.improve(RemeshRegion::box(Vec3::Constant(-n), Vec3::Constant(n)),
+                       {.angle = 0.5, .leave_surface_angle = 0, .max_rounds = 3});
+    (keep ? kept_depth : drifted) = depth(remesher.mesh(), false);
+  }
+  EXPECT_LE(kept_depth, 1.01 * depth(ball, true));
+  EXPECT_GT(drifted, kept_depth);
 }
 
 TEST(Remesher, CoarsensAndRefines) {

@@ -125,6 +125,8 @@ TEST(Fidelity, OpenSurfacesAreComparedWithTheirDistances) {
   EXPECT_EQ(a.status, 0) << a.err;
   const auto j = nlohmann::json::parse(contents(f / "s.json"))["fidelity"].at(0);
   EXPECT_EQ(j["against"], "distances");
+  EXPECT_TRUE(j["same"]);
+  EXPECT_GT(j["expected"]["volume"], 0);
   EXPECT_EQ(j["result"]["components"], 1);
 }
 

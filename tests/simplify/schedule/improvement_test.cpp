@@ -83,6 +83,18 @@ TEST(Improve, OnlyBelowLeavesTheRestAlone) {
   EXPECT_GT(kept, after.points.size() * 6 / 10);
 }
 
+TEST(Improve, AHigherOnlyBelowDoesMore) {
+  const TetMesh mesh = crooked(5);
+  std::size_t left = mesh.tets.size();
+  for (const double bound : {0.05, 0.2, 0.3}) {
+    ImproveOptions options;
+    options.only_below = bound;
+    const std::size_t below = mesh_statistics(improve(mesh, options), 0.3).below_count;
+    EXPECT_LT(below, left) << bound;
+    left = below;
+  }
+}
+
 TEST(Improve, ObjectivesAimAtWhatTheySay) {
   const TetMesh mesh = crooked(6);
   ImproveOptions options;
