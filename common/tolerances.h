@@ -33,9 +33,6 @@ inline constexpr double inverted_quality = 1e-9;
 
 // Distances, in voxels of the grid unless another unit is given.
 
-/// Surfaces whose longest side is below this many cells are refused at once: a lattice for them could not be
-/// laid out in exact numbers.
-inline constexpr double min_surface_size = 1e-6;
 /// Distances of grid points from a surface are at least this, so that every grid point has a sign.
 inline constexpr double smallest_distance = 1e-6;
 /// In lattice units: the distance of a point's own region is at least this much below all others, so that the

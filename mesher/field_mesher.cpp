@@ -11,6 +11,7 @@
 #include "common/parallel/parallel.h"
 #include "mesher/cut/cutting.h"
 #include "mesher/cut/point_mover.h"
+#include "mesher/cut/wall_restoring.h"
 #include "mesher/lattice/labelled_lattice.h"
 #include "mesher/lattice/lattice.h"
 #include "mesher/lattice/octree.h"
@@ -203,6 +204,15 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   CutMesh cut = cut_lattice(std::move(lattice));
   // A region with few lattice points may have vanished by moves or as an isolated vertex.
   validate_regions(regions_there(*field, cut.regions));
+  if (std::shared_ptr<const MaterialField> as_is = field->with_true_walls()) {
+    const ThickenedWalls left = restore_walls(cut, *field, *as_is);
+    if (left.points > 0) {
+      const double unit = field->frame().cell_size;
+      report.thickened = {left.points, left.max_offset * unit, left.thickness * unit,
+                          field->frame().to_input(left.place)};
+    }
+    field = std::move(as_is);
+  }
   result.mesh = to_input_units(std::move(cut), *field);
   report.seconds_cut = stages.seconds();
   if (progress) progress->throw_if_cancelled();

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "common/reference_surface.h"
 #include "common/tet_mesh.h"
 #include "mesher/distance/vdb_files.h"
+#include "mesher/domain/regions.h"
 #include "mesher/input/label_input.h"
 #include "mesher/input/mesher_input.h"
 
@@ -21,6 +23,11 @@ struct MesherOptions {
   bool uniform = false;   ///< finest cells everywhere instead of an octree
   /// The error that a coarser cell may have at an interface, finest cells; 0: no coarser cells at interfaces.
   double adaptivity = 0.05;
+  /// How many times cells are halved where walls and gaps of a surface are thin, 0 to 8; by default 3, and up
+  /// to 8 where that adds fewer tets than the mesh has anyway.
+  std::optional<int> max_refinement;
+  /// Gaps of a surface that are narrower are closed, and walls that are thinner left out; input units.
+  double min_gap = 0, min_thickness = 0;
   /// Mesh the outside too, in a box, as the material `outside` of tag 0.
   bool keep_outside = false;
   /// Memory that the caller needs afterwards for each dense tet, bytes; meshing is refused if that does not
@@ -35,6 +42,24 @@ struct ThinPartReport {
   Vec3 first = Vec3::Zero();  ///< one of the places, input units
   /// True if cells there were refined as far as possible: a sheet between two surfaces, or a thin label.
   bool refined = false;
+};
+
+/// Walls that are shown thicker than they are, since cells are too large for them.
+struct ThickenedWallsReport {
+  std::size_t points = 0;     ///< of the boundary that could not be moved back; the numbers of the worst:
+  double offset = 0;          ///< of one side, input units
+  double thickness = 0;       ///< that the wall has, input units
+  Vec3 place = Vec3::Zero();  ///< input units
+};
+
+/// Gaps of a surface that were closed, or walls that were left out: connected ones together.
+struct ClosedGapReport {
+  std::string name;           ///< of the material
+  bool gap = true;            ///< false: a wall that was left out
+  bool on_purpose = false;    ///< within min_gap or min_thickness
+  double width = 0;           ///< the smallest one, input units
+  double area = 0;            ///< input units squared
+  Vec3 place = Vec3::Zero();  ///< where it is smallest, input units
 };
 
 /// The solid that a material is meant to be.
@@ -63,6 +88,10 @@ struct MesherReport {
   std::size_t lattice_tets = 0;       ///< before cutting, without those far outside
   std::size_t isolated_vertices = 0;  ///< parts and cavities of a single lattice point, which are left out
   std::vector<ThinPartReport> thin_parts;
+  ThickenedWallsReport thickened;
+  std::vector<ClosedGapReport> closed_gaps;
+  /// Tets that fill thin walls with parallel sides in good shapes, about; 0 without any.
+  std::size_t filling_tets = 0;
   /// For each material of surfaces, in their order, what it is meant to be; not of layers and what they are
   /// cut from.
   std::vector<ExpectedSolid> expected;

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "common/error.h"
-#include "common/tolerances.h"
 #include "mesher/distance/body_field.h"
 #include "mesher/distance/field_solid.h"
 #include "mesher/distance/field_thickness.h"
@@ -18,6 +17,11 @@
 namespace tetwright {
 
 namespace {
+
+/// Tets that thin walls and gaps may add, or as many as there are without them.
+constexpr double max_added_tets = 8e6;
+/// So many are cheap whatever the rest of the mesh takes.
+constexpr double min_cheap_tets = 1e6;
 
 /// Throws InputError about a surface, of which nothing is left, that is not closed.
 void validate_encloses(const MesherInput::Body& body) {
@@ -110,9 +114,7 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   stages.begin("signed distances");
   report.cell_size = cell_size(input, options);
   if (options.keep_outside) validate_outside_is_free(input);
-  // So much smaller that no lattice could be laid out in numbers that are still exact; a little smaller is
-  // found out by the lattice itself.
-  if (longest_side(input) < report.cell_size * tolerance::min_surface_size) {
+  if (longest_side(input) < report.cell_size) {
     validate_encloses(input.bodies[0]);
     throw NothingToMeshError(
         input.bodies[0].file +
@@ -123,7 +125,15 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   validate_estimate(report.estimate);
   const GridFrame voxels =
       make_grid_frame(input.low, input.high, report.cell_size, options.uniform, options.keep_outside);
-  std::shared_ptr<const MaterialField> field = build_field(input, voxels, options.keep_outside, progress);
+  RefinementBudget budget;
+  budget.max_depth = options.max_refinement.value_or(default_wall_refinement);
+  budget.deeper_where_cheap = !options.max_refinement;
+  if (options.uniform) budget = {0, false, 0, 0};
+  budget.base_tets = std::max(min_cheap_tets, static_cast<double>(report.estimate.tets));
+  budget.max_tets = std::max(max_added_tets, budget.base_tets);
+  BodyField bodies = build_field(input, voxels, options.keep_outside,
+                                 {options.min_gap, options.min_thickness}, budget, progress);
+  const std::shared_ptr<const MaterialField> field = bodies.field;
   report.seconds_sdf = stages.seconds();
 
   stages.begin("octree");
@@ -136,7 +146,23 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
                                    p.places, voxels.to_input(p.first), refined});
   };
   add_thin(sheets.too_thin, true);
-  add_thin(find_thin_parts(*field, interface_voxels), false);
+  {
+    // Where distances come from the triangles the parts and gaps are reported otherwise.
+    std::vector<MortonKey> elsewhere = interface_voxels;
+    std::erase_if(elsewhere, [&](MortonKey key) {
+      const auto [x, y, z] = morton_decode(key);
+      return field->changes_walls(Vec3(x, y, z) + Vec3::Constant(0.5));
+    });
+    add_thin(find_thin_parts(*field, elsewhere), false);
+  }
+  report.filling_tets = static_cast<std::size_t>(bodies.filling_tets);
+  for (const auto& [body, wall] : bodies.changed)
+    if (wall.gap || wall.on_purpose)
+      report.closed_gaps.push_back({input.bodies[body].name, wall.gap, wall.on_purpose,
+                                    wall.thickness * report.cell_size,
+                                    wall.area * report.cell_size * report.cell_size,
+                                    voxels.to_input(wall.place)});
+  sheets.finer = combine(std::move(sheets.finer), std::move(bodies.finer));
   expect_materials(input, *field, interface_voxels, sheets.finer.refinement > 0, report);
 
   return mesh_field(

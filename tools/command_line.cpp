@@ -47,7 +47,10 @@ CLI::Option* add_whole_number(CLI::App& app, const std::string& name, Whole& to,
     if (error != std::errc() || end != text.data() + text.size() || value < low || value > high)
       throw CLI::ValidationError(name, "'" + text + "' is not a whole number from " + std::to_string(low) +
                                            " to " + std::to_string(high));
-    return static_cast<Whole>(value);
+    if constexpr (std::is_same_v<Whole, std::optional<int>>)
+      return Whole(static_cast<int>(value));
+    else
+      return static_cast<Whole>(value);
   };
   return add_parsed<Whole>(app, name, to, "N", parse, description);
 }
@@ -80,6 +83,22 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, double& to, cons
   return add_parsed<double>(
       app, name, to, "NUMBER",
       [name, range](const std::string& text) { return parse_number(name, text, range); }, description);
+}
+
+/// An option whose value is a length, in input units or as a share of the diagonal.
+CLI::Option* add_length(CLI::App& app, const std::string& name, LengthOption& to,
+                        const std::string& description) {
+  const auto parse = [name](const std::string& text) {
+    constexpr Range length{0, max_number, false, "a length above 0 in input units, or in percent of the diagonal, such as 0.2%"};
+    constexpr Range share{0, 100, false, "above 0 % and at most 100 % of the diagonal"};
+    if (!text.ends_with('%')) return LengthOption{parse_number(name, text, length), false};
+    try {
+      return LengthOption{parse_number(name, text.substr(0, text.size() - 1), share), true};
+    } catch (const CLI::ValidationError&) {
+      throw CLI::ValidationError(name, "'" + text + "' is not " + share.text);
+    }
+  };
+  return add_parsed<LengthOption>(app, name, to, "LENGTH", parse, description);
 }
 
 /// For defaults in the help, "0.05".
@@ -199,6 +218,15 @@ void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) 
              "Max displacement of a surface by coarser cells, in finest cells; 0: finest cells along all "
              "surfaces")
       ->default_str(short_text(c.adaptivity));
+  add_whole_number(app, "--max-refinement", c.max_refinement, 0, max_wall_refinement,
+                   "How many times cells are halved where walls and gaps of a surface are thin, 0 to 8 "
+                   "(default: 3, more where that takes few cells)");
+  add_length(app, "--min-gap", c.min_gap,
+             "Close gaps, tunnels and cavities of a surface that are narrower, input units or percent of the "
+             "diagonal");
+  add_length(app, "--min-thickness", c.min_thickness,
+             "Leave out walls and bridges of a surface that are thinner, input units or percent of the "
+             "diagonal");
   add_material_options(app, c);
   app.add_flag("--keep-outside", c.keep_outside,
                "Mesh the outside too, up to a box, as the material 'outside' with tag 0");

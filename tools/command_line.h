@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,14 @@ namespace tetwright {
 /// NAME=VALUE as given on the command line.
 struct NamedValue {
   std::string name, value;
+};
+
+/// A length as given on the command line.
+struct LengthOption {
+  double value = 0;      ///< input units, or percent of the diagonal of the inputs' bounding box
+  bool percent = false;
+
+  double in_input_units(double diagonal) const { return percent ? value / 100 * diagonal : value; }
 };
 
 enum class Command { prepare, mesh, simplify, improve, check, sample };
@@ -43,6 +52,8 @@ struct CommandLine {
   double voxel_size = 0;  ///< input units; 0: not given
   bool uniform = false;
   double adaptivity = 0.05;           ///< finest cells
+  std::optional<int> max_refinement;
+  LengthOption min_gap, min_thickness;
   std::vector<NamedValue> materials;  ///< after the positional inputs: name and file
   std::vector<NamedValue> layers;     ///< name and thickness (a number above 0, input units)
   NestedRule nested = NestedRule::automatic;

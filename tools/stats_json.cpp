@@ -152,6 +152,19 @@ void add_mesher_json(const MesherReport& m, nlohmann::json& dense) {
                                    {"places", t.places},
                                    {"first", place_json(t.first)},
                                    {"refined", t.refined}});
+  dense["filling_tets"] = m.filling_tets;
+  dense["thickened_walls"] = {{"points", m.thickened.points},
+                              {"offset", m.thickened.offset},
+                              {"thickness", m.thickened.thickness},
+                              {"place", place_json(m.thickened.place)}};
+  dense["closed_gaps"] = nlohmann::json::array();
+  for (const ClosedGapReport& g : m.closed_gaps)
+    dense["closed_gaps"].push_back({{"material", g.name},
+                                    {"kind", g.gap ? "gap" : "wall"},
+                                    {"on_purpose", g.on_purpose},
+                                    {"width", g.width},
+                                    {"area", g.area},
+                                    {"place", place_json(g.place)}});
 }
 
 nlohmann::json seconds_json(const RunReport& run) {

@@ -128,6 +128,22 @@ class BoxTree {
     return false;
   }
 
+  /// Calls `visit(position)` for all items in leaves such that `enter(box)` holds for their boxes and those of
+  /// all nodes above, in ascending order.
+  template <class Enter, class Visit>
+  void for_each_in(const Enter& enter, const Visit& visit) const {
+    for (std::size_t k = 0; k < nodes_.size();) {
+      const Node& node = nodes_[k];
+      if (!enter(node.box)) {
+        k = node.next;
+        continue;
+      }
+      if (is_leaf(node))
+        for (std::size_t i = node.begin; i < node.end; ++i) visit(i);
+      ++k;
+    }
+  }
+
   /// Calls `visit(leaf)` for the leaf `own` (a place in nodes()) and each later leaf whose box intersects its
   /// own: over all leaves, each pair once.
   template <class Visit>

@@ -5,8 +5,21 @@
 
 namespace tetwright {
 
-std::shared_ptr<const MaterialField> build_field(const MesherInput& input, const GridFrame& voxels,
-                                                 bool keep_outside, Progress* progress) {
+BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool keep_outside,
+                      const ThinWalls::Limits& limits, const RefinementBudget& budget, Progress* progress) {
+  BodyField result;
+  std::vector<std::shared_ptr<const LevelSet>> surfaces;
+  std::vector<ThinSurvey> surveys(input.bodies.size());
+  std::vector<ThinSurvey*> all;
+  for (std::size_t b = 0; b < input.bodies.size(); ++b) {
+    const RepairedSurface& surface = input.bodies[b].surface;
+    surfaces.push_back(LevelSet::of_surface(surface, voxels, progress));
+    surveys[b] = survey_thin_walls(
+        surface, *surfaces[b], voxels,
+        {limits.min_gap / voxels.cell_size, limits.min_thickness / voxels.cell_size}, progress);
+    all.push_back(&surveys[b]);
+  }
+  choose_depths(all, budget);
   std::vector<std::shared_ptr<const LevelSet>> level_sets;
   const auto add = [&](std::shared_ptr<const LevelSet> level_set) {
     level_sets.push_back(std::move(level_set));
@@ -17,7 +30,13 @@ std::shared_ptr<const MaterialField> build_field(const MesherInput& input, const
   for (std::size_t b = 0; b < input.bodies.size(); ++b) {
     const MesherInput::Body& body = input.bodies[b];
     const auto number = static_cast<std::uint16_t>(b);
-    const std::uint16_t surface = add(LevelSet::of_surface(body.surface, voxels, progress));
+    ThinWallPlan plan = plan_thin_walls(surveys[b]);
+    surveys[b] = {};
+    const std::uint16_t surface =
+        add(plan.walls ? LevelSet::with_walls(*surfaces[b], std::move(plan.walls)) : surfaces[b]);
+    result.finer = combine(std::move(result.finer), std::move(plan.finer));
+    result.filling_tets += plan.filling_tets;
+    for (const ChangedWall& w : plan.changed) result.changed.emplace_back(b, w);
     regions[outside_region].terms.push_back({surface, true, number});
     // Carves all earlier ones.
     for (std::size_t r = 1; r < regions.size(); ++r) regions[r].terms.push_back({surface, true, number});
@@ -26,7 +45,7 @@ std::shared_ptr<const MaterialField> build_field(const MesherInput& input, const
     if (b == 0)
       for (const MaterialLayer& layer : input.layers) {
         depth += layer.thickness;
-        auto inner_side = LevelSet::at_depth(body.surface, *level_sets[surface], depth / voxels.cell_size,
+        auto inner_side = LevelSet::at_depth(body.surface, *surfaces[b], depth / voxels.cell_size,
                                              voxels, progress);
         if (inner_side->interface_cells().empty())
           throw InputError(body.file, 0,
@@ -39,7 +58,9 @@ std::shared_ptr<const MaterialField> build_field(const MesherInput& input, const
       }
     regions.push_back({body.name, body.tag, {{outer, false, number}}});
   }
-  return std::make_shared<const LevelSetField>(voxels, std::move(level_sets), std::move(regions));
+  result.field =
+      std::make_shared<const LevelSetField>(voxels, std::move(level_sets), std::move(regions));
+  return result;
 }
 
 }  // namespace tetwright

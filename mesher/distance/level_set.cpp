@@ -10,7 +10,9 @@
 namespace tetwright {
 
 LevelSet::LevelSet(DistanceGrid grid, TriangleMesh caps, const std::array<int, 3>& cells)
-    : grid_(std::move(grid)), caps_(std::move(caps)), cells_(cells) {}
+    : grid_(std::make_shared<const DistanceGrid>(std::move(grid))),
+      caps_(std::make_shared<const TriangleMesh>(std::move(caps))),
+      cells_(cells) {}
 
 std::shared_ptr<const LevelSet> LevelSet::of_surface(const RepairedSurface& surface, const GridFrame& frame,
                                                      Progress* progress) {
@@ -27,12 +29,63 @@ std::shared_ptr<const LevelSet> LevelSet::of_surface(const RepairedSurface& surf
   return std::shared_ptr<const LevelSet>(new LevelSet(std::move(grid), std::move(caps), frame.cells));
 }
 
+std::shared_ptr<const LevelSet> LevelSet::with_walls(const LevelSet& level_set,
+                                                     std::shared_ptr<const ThinWalls> walls) {
+  DistanceGrid grid = level_set.grid_->copy();
+  const std::vector<MortonKey> voxels = walls->covered();
+  // Of the voxels around a grid point the one with the smallest cells decides.
+  struct Corner {
+    MortonKey point;
+    int depth;
+    bool operator<(const Corner& o) const { return point != o.point ? point < o.point : depth > o.depth; }
+  };
+  std::vector<Corner> corners = parallel_collect<Corner>(
+      0, voxels.size(), 512, [&](std::size_t begin, std::size_t end, std::vector<Corner>& out) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const std::array<int, 3> v = morton_decode(voxels[i]);
+          const int depth = walls->depth(v);
+          for (int k = 0; k < 8; ++k)
+            out.push_back({morton_encode(v[0] + (k & 1), v[1] + (k >> 1 & 1), v[2] + (k >> 2)), depth});
+        }
+      });
+  parallel_sort(corners);
+  corners.erase(std::unique(corners.begin(), corners.end(),
+                            [](const Corner& a, const Corner& b) { return a.point == b.point; }),
+                corners.end());
+  std::vector<float> values(corners.size());
+  parallel_for(0, corners.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto [x, y, z] = morton_decode(corners[i].point);
+      Vec3 unused;
+      values[i] =
+          static_cast<float>(walls->changed_distance(Vec3(x, y, z), corners[i].depth, unused));
+    }
+  });
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto [x, y, z] = morton_decode(corners[i].point);
+    const auto down = [](int a) { return a / leaf_side * leaf_side; };
+    const GridLeaf<float> leaf = grid.touch_leaf({down(x), down(y), down(z)});
+    leaf.activate(leaf.number(x, y, z), values[i]);
+  }
+  std::shared_ptr<LevelSet> changed(new LevelSet(std::move(grid), *level_set.caps_, level_set.cells_));
+  changed->walls_ = std::move(walls);
+  return changed;
+}
+
+std::shared_ptr<const LevelSet> LevelSet::with_true_walls(
+    const std::shared_ptr<const LevelSet>& level_set) {
+  if (!level_set->walls_) return level_set;
+  std::shared_ptr<LevelSet> as_is(new LevelSet(*level_set));
+  as_is->true_walls_ = true;
+  return as_is;
+}
+
 std::vector<MortonKey> LevelSet::interface_cells() const {
-  const std::vector<GridLeaf<const float>> leaves = grid_.leaves();
+  const std::vector<GridLeaf<const float>> leaves = grid_->leaves();
   constexpr int n = leaf_side + 1;
   std::vector<MortonKey> keys = parallel_collect<MortonKey>(
       0, leaves.size(), 64, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
-        DistanceGridReader reader(grid_);
+        DistanceGridReader reader(*grid_);
         for (std::size_t i = begin; i < end; ++i) {
           const auto& [ox, oy, oz] = leaves[i].origin;
           // Bit z of a row: the grid point is inside. A leaf that does not exist lies wholly on one side,
@@ -61,19 +114,27 @@ std::vector<MortonKey> LevelSet::interface_cells() const {
             }
         }
       });
-  parallel_sort(keys);
+  if (walls_) {
+    keys.insert(keys.end(), walls_->core().begin(), walls_->core().end());
+    parallel_sort_unique(keys);
+  } else {
+    parallel_sort(keys);
+  }
   return keys;
 }
 
 std::vector<LeafOrigin> LevelSet::leaves() const {
   std::vector<LeafOrigin> origins;
-  for (const GridLeaf<const float>& leaf : grid_.leaves()) origins.push_back(leaf.origin);
+  for (const GridLeaf<const float>& leaf : grid_->leaves()) origins.push_back(leaf.origin);
   std::sort(origins.begin(), origins.end());
   return origins;
 }
 
 LevelSetSampler::LevelSetSampler(const LevelSet& level_set)
-    : reader_(level_set.grid_), cells_(level_set.cells_) {}
+    : reader_(*level_set.grid_),
+      cells_(level_set.cells_),
+      walls_(level_set.walls_.get()),
+      true_walls_(level_set.true_walls_) {}
 
 double LevelSetSampler::at_node(int x, int y, int z) { return reader_.value(x, y, z); }
 
@@ -86,6 +147,10 @@ double LevelSetSampler::at(const Vec3& point, Vec3& gradient) {
   Eigen::Vector3i cell;
   for (int a = 0; a < 3; ++a)
     cell[a] = static_cast<int>(std::floor(std::clamp(point[a], 0.0, static_cast<double>(cells_[a]) - 0.5)));
+  if (walls_)
+    if (const int depth = walls_->depth({cell.x(), cell.y(), cell.z()}); depth >= 0)
+      return true_walls_ ? walls_->true_distance(point, depth, gradient)
+                         : walls_->changed_distance(point, depth, gradient);
   double v[8];
   reader_.corners(cell.x(), cell.y(), cell.z(), v);
   const Vec3 f = point - cell.cast<double>();

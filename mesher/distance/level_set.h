@@ -8,6 +8,7 @@
 #include "common/progress.h"
 #include "mesher/distance/narrow_band.h"
 #include "mesher/distance/openvdb_grids.h"
+#include "mesher/distance/thin_walls.h"
 #include "mesher/domain/grid_frame.h"
 #include "mesher/input/surface_repair.h"
 
@@ -35,7 +36,19 @@ class LevelSet {
   static std::shared_ptr<const LevelSet> at_depth(const RepairedSurface& surface, const LevelSet& boundary,
                                                   double depth, const GridFrame& frame, Progress* progress);
 
-  /// The voxels with corners on both sides, as ascending Morton keys of their lower corners.
+  /// The same with other distances near thin walls, which are in grid coordinates.
+  static std::shared_ptr<const LevelSet> with_walls(const LevelSet& level_set,
+                                                    std::shared_ptr<const ThinWalls> walls);
+  /// The same with thin walls as thick as they are; gaps that were closed and walls that were left out stay
+  /// so. Grid points keep their values. Shares the grid.
+  static std::shared_ptr<const LevelSet> with_true_walls(const std::shared_ptr<const LevelSet>& level_set);
+
+  /// Null if there are none.
+  const ThinWalls* walls() const { return walls_.get(); }
+  const TriangleMesh& caps() const { return *caps_; }
+  const DistanceGrid& grid() const { return *grid_; }
+
+  /// The voxels with corners on both sides or with thin walls, as ascending Morton keys of their lower corners.
   std::vector<MortonKey> interface_cells() const;
   /// The leaves that contain the band, ascending.
   std::vector<LeafOrigin> leaves() const;
@@ -43,9 +56,11 @@ class LevelSet {
  private:
   friend class LevelSetSampler;
   LevelSet(DistanceGrid grid, TriangleMesh caps, const std::array<int, 3>& cells);
-  DistanceGrid grid_;
-  TriangleMesh caps_;  ///< what closes the surface's holes, in grid coordinates
+  std::shared_ptr<const DistanceGrid> grid_;
+  std::shared_ptr<const TriangleMesh> caps_;  ///< what closes the surface's holes, in grid coordinates
   std::array<int, 3> cells_;
+  std::shared_ptr<const ThinWalls> walls_;
+  bool true_walls_ = false;
 };
 
 /// Evaluates a level set, in grid coordinates and voxels. Caches the leaf read last, so evaluating nearby
@@ -57,7 +72,7 @@ class LevelSetSampler {
 
   /// The distance at a grid point, clamped to level_set_band.
   double at_node(int x, int y, int z);
-  /// Trilinear interpolation between grid points.
+  /// Trilinear interpolation between grid points; near thin walls their distance.
   double at(const Vec3& point);
   /// The same with its gradient (per voxel; of length about 1 within the band).
   double at(const Vec3& point, Vec3& gradient);
@@ -65,6 +80,8 @@ class LevelSetSampler {
  private:
   DistanceGridReader reader_;
   std::array<int, 3> cells_;
+  const ThinWalls* walls_;
+  bool true_walls_;
 };
 
 }  // namespace tetwright

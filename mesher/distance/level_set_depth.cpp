@@ -94,7 +94,7 @@ std::shared_ptr<const LevelSet> LevelSet::at_depth(const RepairedSurface& surfac
 
 std::shared_ptr<const LevelSet> LevelSet::at_depth(const RepairedSurface& surface, const LevelSet& boundary,
                                                    double depth, const GridFrame& frame, Progress* progress) {
-  TriangleMesh all = boundary.caps_;
+  TriangleMesh all = *boundary.caps_;
   const auto shift = static_cast<Index>(all.points.size());
   for (const Vec3& p : surface.points) all.points.push_back(frame.to_grid(p));
   for (const auto& [a, b, c] : surface.triangles) all.triangles.push_back({a + shift, b + shift, c + shift});

@@ -26,6 +26,12 @@ std::vector<FieldRegion> names_of(const std::vector<LevelSetRegion>& regions) {
   return out;
 }
 
+std::array<int, 3> voxel_of(const Vec3& point) {
+  std::array<int, 3> voxel;
+  for (int a = 0; a < 3; ++a) voxel[a] = static_cast<int>(std::max(0.0, std::floor(point[a])));
+  return voxel;
+}
+
 }  // namespace
 
 class LevelSetField::Sampler final : public FieldSampler {
@@ -221,6 +227,30 @@ std::unique_ptr<FieldSampler> LevelSetField::sampler() const { return std::make_
 
 std::shared_ptr<const MaterialField> LevelSetField::refined(int refinement) const {
   return std::make_shared<LevelSetField>(voxels(), level_sets_, level_set_regions_, refinement);
+}
+
+std::shared_ptr<const MaterialField> LevelSetField::with_true_walls() const {
+  std::vector<std::shared_ptr<const LevelSet>> as_is;
+  for (const auto& level_set : level_sets_) as_is.push_back(LevelSet::with_true_walls(level_set));
+  if (as_is == level_sets_) return nullptr;
+  return std::make_shared<LevelSetField>(voxels(), std::move(as_is), level_set_regions_, refinement());
+}
+
+bool LevelSetField::changes_walls(const Vec3& point) const {
+  const Vec3 at = std::ldexp(1, -refinement()) * point;
+  return std::any_of(level_sets_.begin(), level_sets_.end(), [&](const auto& level_set) {
+    return level_set->walls() && level_set->walls()->depth(voxel_of(at)) >= 0;
+  });
+}
+
+double LevelSetField::parallel_thickness(const Vec3& point) const {
+  const Vec3 at = std::ldexp(1, -refinement()) * point;
+  double thinnest = HUGE_VAL;
+  for (const auto& level_set : level_sets_)
+    if (const ThinWalls* walls = level_set->walls())
+      if (const int depth = walls->depth(voxel_of(at)); depth >= 0)
+        thinnest = std::min(thinnest, walls->parallel_thickness(at, depth));
+  return std::ldexp(thinnest, refinement());
 }
 
 std::vector<LeafOrigin> LevelSetField::band_leaves(RegionIndex region) const {

@@ -38,6 +38,9 @@ class LevelSetField final : public MaterialField {
   std::vector<LeafOrigin> band_leaves(RegionIndex region) const override;
   bool knows_sheets() const override { return level_sets_.size() > 1; }
   bool is_certain(const Vec3&) const override { return false; }
+  std::shared_ptr<const MaterialField> with_true_walls() const override;
+  bool changes_walls(const Vec3& point) const override;
+  double parallel_thickness(const Vec3& point) const override;
 
   const std::vector<std::shared_ptr<const LevelSet>>& level_sets() const { return level_sets_; }
   const std::vector<RegionTerm>& terms(RegionIndex region) const { return level_set_regions_[region].terms; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -100,6 +101,13 @@ class MaterialField : public ReferenceSurface {
   /// True if sheets between level sets can be distinguished from other thin parts, see
   /// FieldSampler::thinnest_sheet().
   virtual bool knows_sheets() const = 0;
+  /// The field with thin walls as thick as they are, see thin_walls.h; null where nothing was thickened.
+  virtual std::shared_ptr<const MaterialField> with_true_walls() const { return nullptr; }
+  /// True where the distances of thin walls may have been changed.
+  virtual bool changes_walls(const Vec3&) const { return false; }
+  /// The thickness of a thin wall with parallel sides of which a side is near the point, or infinity; lattice
+  /// units.
+  virtual double parallel_thickness(const Vec3&) const { return HUGE_VAL; }
   /// True for points whose region is known exactly and guaranteed in the mesh; lattice points there are not
   /// moved.
   virtual bool is_certain(const Vec3& point) const = 0;

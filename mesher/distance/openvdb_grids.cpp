@@ -119,6 +119,10 @@ DistanceGrid DistanceGrid::from_vdb(VdbGrid& stored, const std::string& file) {
   return DistanceGrid(std::make_unique<Impl>(read_grid<openvdb::FloatGrid>(stored, file)));
 }
 
+DistanceGrid DistanceGrid::copy() const {
+  return DistanceGrid(std::make_unique<Impl>(impl_->grid->deepCopy()));
+}
+
 float DistanceGrid::background() const { return impl_->grid->background(); }
 
 bool DistanceGrid::has_both_signs() const {

@@ -65,6 +65,8 @@ class DistanceGrid {
   /// that begins with `file` if OpenVDB can't read it.
   static DistanceGrid from_vdb(VdbGrid& stored, const std::string& file);
 
+  DistanceGrid copy() const;
+
   float background() const;
   /// True if there are active values above and below 0.
   bool has_both_signs() const;

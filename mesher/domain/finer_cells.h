@@ -9,7 +9,7 @@
 
 namespace tetwright {
 
-/// Cells are at most this many levels smaller than a voxel.
+/// Cells are at most this many levels smaller than a voxel for sheets between surfaces and thin labels.
 inline constexpr int max_refinement = 3;
 
 /// Where the octree must have smaller cells than the interface alone asks for.

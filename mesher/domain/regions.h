@@ -17,6 +17,9 @@ inline constexpr const char* outside_name = "outside";
 /// Stands for the region of a point that is on an interface.
 inline constexpr RegionIndex on_interface = 0xffff;
 
+/// How many times cells are halved where walls and gaps of a surface are thin: by default, and at most.
+inline constexpr int default_wall_refinement = 3, max_wall_refinement = 8;
+
 /// The regions that meet at a point, ascending: two on an interface, three on a junction curve, four at a
 /// corner. More than four do not meet in general position; a lattice point where they appear to is not moved.
 class RegionSet {

@@ -9,7 +9,7 @@ namespace tetwright {
 namespace {
 
 /// Share by which the volume of a material may change.
-constexpr double volume_share = 0.015;
+constexpr double volume_share = 0.008;
 
 }  // namespace
 

@@ -44,8 +44,9 @@ std::string hash_of(const TetMesh& mesh) {
 }
 
 DenseMesh dense_surface(const TriangleMesh& surface, int resolution) {
-  return mesh_surfaces(make_mesher_input({{"body", 1, surface, "surface"}}), {.resolution = resolution},
-                       nullptr);
+  MesherOptions options;
+  options.resolution = resolution;
+  return mesh_surfaces(make_mesher_input({{"body", 1, surface, "surface"}}), options, nullptr);
 }
 
 DenseMesh dense_sample(const std::string& name, int resolution) {
@@ -63,7 +64,9 @@ DenseMesh dense_labels() {
         volume.labels.push_back(distance > 7 ? 0 : x + y < 20 ? 1 : 2);
       }
   const LabelInput labels = make_label_input(std::move(volume), "ball", {}, nullptr);
-  return mesh_labels(labels, {.voxel_size = default_cell_size(labels)}, nullptr);
+  MesherOptions options;
+  options.voxel_size = default_cell_size(labels);
+  return mesh_labels(labels, options, nullptr);
 }
 
 DenseMesh dense_bunny(int resolution) { return dense_surface(read_surface(TETWRIGHT_BUNNY), resolution); }

@@ -65,6 +65,9 @@ std::string rules_behind_count(const CommandLine& line, const RunReport& report,
                                double reached) {
   if (line.command == Command::improve)
     return "nothing: shapes were worth " + std::string(reached < asked ? "fewer" : "more") + " tets";
+  if (reached > asked && report.mesher && static_cast<double>(report.mesher->filling_tets) > asked)
+    return "walls so thin that fewer tets would be flat; ask for " +
+           std::to_string(report.mesher->filling_tets) + " or more, or leave them out with --min-thickness";
   if (reached > asked) return rules_limiting_count(*report.simplify, line.max_iterations);
   return static_cast<double>(report.dense->tets) < asked
              ? "the dense mesh, which has too few tets; raise --resolution"
@@ -166,6 +169,44 @@ void find_changed_solids(const CommandLine& line, const TetMesh& mesh, RunReport
                                   ", or take it as it is with --accept-changes"});
 }
 
+/// Walls that are too thick and gaps that are closed because cells are too large: a shortfall, or with
+/// --accept-changes a finding. What was asked for is a finding.
+void find_thin_walls(const CommandLine& line, RunReport& report) {
+  if (!report.mesher) return;
+  std::string text;
+  for (const ClosedGapReport& g : report.mesher->closed_gaps) {
+    char numbers[120];
+    std::snprintf(numbers, sizeof numbers, "%.3g wide, over an area of %.3g, narrowest at ", g.width, g.area);
+    const std::string what = "'" + g.name + "' " + numbers + place_text(g.place);
+    if (g.on_purpose)
+      report.findings.push_back(
+          {report.inputs.front(),
+           {(g.gap ? "gap of " : "wall of ") + what, 1, {}, g.gap ? "closed by --min-gap" : "left out by --min-thickness"}});
+    else
+      text += (text.empty() ? "" : "; ") + std::string("a gap of ") + what + " is closed";
+  }
+  const ThickenedWallsReport& t = report.mesher->thickened;
+  if (t.points > 0) {
+    char factor[120];
+    std::snprintf(factor, sizeof factor, "walls are up to %.3g times too thick (%.3g, not %.3g) at ",
+                  (t.thickness + 2 * t.offset) / t.thickness, t.thickness + 2 * t.offset, t.thickness);
+    text += (text.empty() ? "" : "; ") + std::string(factor) + std::to_string(t.points) +
+            " points of the boundary, most at " + place_text(t.place);
+  }
+  if (text.empty()) return;
+  if (line.accept_changes) {
+    report.findings.push_back(
+        {report.inputs.front(), {"thin place, too thin for cells: " + text, 1, {}, "accepted"}});
+    return;
+  }
+  report.shortfall.push_back({"thin_walls", 0,
+                              static_cast<double>(report.mesher->closed_gaps.size() + t.points),
+                              "the size of the cells",
+                              "too thin for cells: " + text +
+                                  "; raise --resolution or --max-refinement, or take it as it is with "
+                                  "--accept-changes"});
+}
+
 /// With --strict whatever is noted.
 void find_notes(const CommandLine& line, const std::vector<std::string>& notes, RunReport& report) {
   if (!line.strict || notes.empty()) return;
@@ -203,6 +244,7 @@ ExitStatus finish(const TetMesh& mesh, const MaterialField* field, CommandRun& r
   }
   find_lost_labels(run.line, report);
   find_changed_solids(run.line, mesh, report);
+  find_thin_walls(run.line, report);
   const std::vector<std::string> notes = notes_of(report);
   find_notes(run.line, notes, report);
   write_files(mesh, field, run);

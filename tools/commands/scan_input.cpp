@@ -54,6 +54,10 @@ bool is_volume(const CommandLine& line, std::optional<LabelVolume>& vdb_labels) 
   if (inputs.size() > 1 || line.inputs.empty())
     throw UsageError("a segmented volume must be the only input; leave out the others");
   if (!line.layers.empty()) throw UsageError("--layer is for surfaces, and the input is a segmented volume");
+  if (line.max_refinement || line.min_gap.value > 0 || line.min_thickness.value > 0)
+    throw UsageError(
+        "--max-refinement, --min-gap and --min-thickness are for surfaces, and the input is a segmented "
+        "volume");
   if (line.nested != NestedRule::automatic)
     throw UsageError("--nested is for surfaces, and the input is a segmented volume");
   return true;
@@ -149,6 +153,10 @@ MesherOptions common_options(const CommandLine& line) {
 
 DenseMesh mesh_input(const MesherInput& surfaces, const CommandLine& line, Progress* progress) {
   MesherOptions options = common_options(line);
+  const double diagonal = (surfaces.high - surfaces.low).norm();
+  options.max_refinement = line.max_refinement;
+  options.min_gap = line.min_gap.in_input_units(diagonal);
+  options.min_thickness = line.min_thickness.in_input_units(diagonal);
   if (!line.resolution && line.voxel_size == 0 && line.command == Command::prepare)
     options.resolution = resolution_for_target(surfaces, line.target_tets);
   return mesh_surfaces(surfaces, options, progress);

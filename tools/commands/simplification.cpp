@@ -1,5 +1,6 @@
 #include "tools/commands/simplification.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace tetwright {
@@ -7,6 +8,10 @@ namespace tetwright {
 TetMesh simplify_to_target(TetMesh mesh, const ReferenceSurface* surface, CommandRun& run) {
   SimplifyOptions options;
   options.target_tets = run.line.target_tets;
+  // Fewer tets than fill thin walls would be flat.
+  if (run.report.mesher)
+    options.target_tets =
+        std::max(options.target_tets, std::min(run.report.mesher->filling_tets, mesh.tets.size()));
   options.min_solid_angle = run.line.min_solid_angle;
   options.beta = run.line.beta;
   options.gamma = run.line.gamma;

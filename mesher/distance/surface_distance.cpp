@@ -1,0 +1,130 @@
+#include "mesher/distance/surface_distance.h"
+
+#include <cmath>
+#include <cstdint>
+
+#include "common/geometry/point_triangle.h"
+#include "common/geometry/ray_crossing.h"
+#include "common/parallel/parallel.h"
+#include "common/tolerances.h"
+#include "mesher/distance/hole_caps.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::size_t leaf_size = 4;
+/// Shrinking converges quadratically where walls are flat, as a rule within three steps.
+constexpr int max_shrinks = 16;
+/// Squared distances count as equal within this share of them: rounding leaves less.
+constexpr double tie = 1e-12;
+/// The ball has stopped shrinking when its radius changes by less than this share.
+constexpr double still = 1e-6;
+
+}  // namespace
+
+SurfaceDistance::SurfaceDistance(std::span<const Vec3> points, std::span<const Triangle> triangles,
+                                 std::size_t closed, const TriangleMesh& caps) {
+  const std::size_t surface = triangles.size(), count = surface + caps.triangles.size();
+  std::vector<std::array<Vec3, 3>> corners(count);
+  std::vector<Box3> boxes(count);
+  std::vector<Vec3> middles(count);  // times 3
+  parallel_for(0, count, 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        corners[t][k] =
+            t < surface ? points[triangles[t][k]] : caps.points[caps.triangles[t - surface][k]];
+        boxes[t].add(corners[t][k]);
+      }
+      middles[t] = corners[t][0] + corners[t][1] + corners[t][2];
+    }
+  });
+  const std::vector<Index> order = median_order(boxes, middles, leaf_size);
+  tree_ = BoxTree(count, leaf_size, [&](std::size_t i) { return boxes[order[i]]; });
+  triangles_.resize(count);
+  normals_.resize(count);
+  is_closed_.resize(count);
+  parallel_for(0, count, 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto& [a, b, c] = triangles_[i] = corners[order[i]];
+      const Vec3 normal = (b - a).cross(c - a);
+      const double length = normal.norm();
+      normals_[i] = length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero());
+      is_closed_[i] = order[i] < closed;
+    }
+  });
+  if (closed < surface) open_.emplace(points, triangles.subspan(closed));
+}
+
+std::optional<SurfacePlace> SurfaceDistance::nearest(const Vec3& point, double at_most) const {
+  std::size_t nearest = triangles_.size();
+  Vec3 place = point;
+  double squared_distance = at_most * at_most, alignment = 0;
+  tree_.nearest(point, squared_distance, tree_.all(), [&](std::size_t t, double best) {
+    if (normals_[t].isZero(0)) return best;
+    const auto& [a, b, c] = triangles_[t];
+    const Vec3 p = closest_point(point, a, b, c);
+    const double squared = (p - point).squaredNorm();
+    if (squared > squared_distance * (1 + tie)) return best;
+    const double aligned = std::abs(normals_[t].dot(p - point));
+    if (nearest < triangles_.size() && squared >= squared_distance * (1 - tie)) {
+      // Of equally near triangles the one that faces the point most, and of these the first, whatever way the
+      // tree is searched.
+      if (aligned < alignment || (aligned == alignment && t > nearest)) return best;
+    }
+    nearest = t;
+    place = p;
+    squared_distance = std::min(squared_distance, squared);
+    alignment = aligned;
+    return squared_distance * (1 + tie);
+  });
+  if (nearest == triangles_.size()) return std::nullopt;
+  return SurfacePlace{place, normals_[nearest]};
+}
+
+bool SurfaceDistance::inside(const Vec3& point) const {
+  int winding = 0;
+  tree_.for_each_in(
+      [&](const Box3& box) {
+        return box.low.x() <= point.x() && point.x() <= box.high.x() && box.low.y() <= point.y() &&
+               point.y() <= box.high.y() && box.low.z() <= point.z();
+      },
+      [&](std::size_t t) {
+        if (!is_closed_[t]) return;
+        const auto& [a, b, c] = triangles_[t];
+        const int crossing = vertical_crossing(a, b, c, point);
+        if (crossing != 0 && at_or_above(a, b, c, crossing, point)) winding += crossing;
+      });
+  if (!open_) return winding > 0;
+  static const Vec3 aside(tolerance::aside[0], tolerance::aside[1], tolerance::aside[2]);
+  return winding + open_->winding_number(point + aside) >= inside_winding;
+}
+
+double SurfaceDistance::thickness(const SurfacePlace& place, Side side, double facing,
+                                  double at_most) const {
+  const Vec3 direction = side == Side::gap ? place.normal : Vec3(-place.normal);
+  double radius = 0.5 * at_most;
+  for (int step = 0; step < max_shrinks && radius > 0; ++step) {
+    const Vec3 centre = place.point + radius * direction;
+    const double limit = radius * radius * (1 - still);
+    Vec3 wall = centre;
+    const double found = tree_.nearest(centre, limit, tree_.all(), [&](std::size_t t, double best) {
+      if (!(normals_[t].dot(place.normal) < -facing)) return best;
+      const auto& [a, b, c] = triangles_[t];
+      const Vec3 p = closest_point(centre, a, b, c);
+      const double squared = (p - centre).squaredNorm();
+      if (squared >= best) return best;
+      wall = p;
+      return squared;
+    });
+    if (!(found < limit)) break;
+    const Vec3 chord = wall - place.point;
+    const double along = chord.dot(direction);
+    const double next = along > 0 ? chord.squaredNorm() / (2 * along) : 0;
+    if (next >= radius * (1 - still)) break;
+    radius = next;
+  }
+  return 2 * radius;
+}
+
+}  // namespace tetwright

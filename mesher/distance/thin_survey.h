@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "common/geometry/morton.h"
+#include "common/progress.h"
+#include "mesher/distance/level_set.h"
+#include "mesher/distance/surface_distance.h"
+#include "mesher/distance/thin_walls.h"
+#include "mesher/domain/finer_cells.h"
+#include "mesher/input/surface_repair.h"
+
+namespace tetwright {
+
+/// The thin walls and gaps of one surface, measured on its triangles before any cell exists, by connected
+/// regions of voxels.
+struct ThinSurvey {
+  struct Region {
+    /// Dense tets that it takes if cells are halved so many times where it asks for it, predicted.
+    std::array<double, max_wall_refinement + 1> tets{};
+    int needed = 0;  ///< halvings that would show all of it
+    int depth = 0;   ///< halvings that it gets
+  };
+
+  std::shared_ptr<const SurfaceDistance> surface;  ///< in voxels; null if nothing is thin
+  ThinWalls::Limits limits;
+  std::vector<MortonKey> voxels;      ///< those with a thin wall or gap, ascending
+  std::vector<std::uint32_t> region;  ///< of each of them
+  std::vector<Region> regions;
+};
+
+/// Measures a surface: `level_set` is its own, `limits` in voxels. Takes little time where nothing is thin.
+/// Throws Interrupted.
+ThinSurvey survey_thin_walls(const RepairedSurface& surface, const LevelSet& level_set,
+                             const GridFrame& frame, const ThinWalls::Limits& limits, Progress* progress);
+
+/// What refinement may take.
+struct RefinementBudget {
+  int max_depth = default_wall_refinement;
+  /// Deeper than max_depth, up to max_wall_refinement, where it adds fewer tets than `base_tets`.
+  bool deeper_where_cheap = true;
+  double base_tets = 0;  ///< dense tets without refinement
+  double max_tets = 0;   ///< that all regions together may add
+};
+
+/// Chooses how deep each region is refined: whole regions, the cheapest first, none beyond the budget.
+void choose_depths(const std::vector<ThinSurvey*>& surveys, const RefinementBudget& budget);
+
+/// A region where walls are shown thicker than they are, or gaps are closed.
+struct ChangedWall {
+  bool gap = false;
+  double thickness = 0;  ///< the smallest there is, voxels
+  double least = 0;      ///< what the cells show, voxels
+  double area = 0;       ///< of one side, squared voxels
+  Vec3 place = Vec3::Zero();  ///< where it is thinnest, voxels
+  bool on_purpose = false;    ///< within --min-gap or --min-thickness
+};
+
+struct ThinWallPlan {
+  std::shared_ptr<const ThinWalls> walls;  ///< null if nothing is thin
+  FinerCells finer;
+  std::vector<ChangedWall> changed;
+  /// Tets that fill the walls with parallel sides in good shapes, about; fewer would have to be flat.
+  double filling_tets = 0;
+};
+
+/// The cells that the chosen depths ask for and the distances that go with them.
+ThinWallPlan plan_thin_walls(const ThinSurvey& survey);
+
+/// Cells of both.
+FinerCells combine(FinerCells a, FinerCells b);
+
+}  // namespace tetwright

@@ -1,0 +1,93 @@
+#include "mesher/distance/thin_walls.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/parallel/parallel_sort.h"
+#include "common/tolerances.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Cosine between the direction to the nearest place and its normal below which that place is the rim of a gap.
+constexpr double min_alignment = 0.7;
+
+}  // namespace
+
+void ThinWalls::cover(const std::array<int, 3>& voxel, int depth) {
+  std::uint8_t& at = blocks_[block_key(voxel)][place_in_block(voxel)];
+  at = std::max(at, static_cast<std::uint8_t>(depth + 1));
+}
+
+std::vector<MortonKey> ThinWalls::covered() const {
+  std::vector<MortonKey> keys;
+  for (const auto& [key, block] : blocks_) {
+    const std::array<int, 3> low = morton_decode(key);
+    for (int k = 0; k < leaf_points; ++k)
+      if (block[static_cast<std::size_t>(k)] > 0)
+        keys.push_back(morton_encode(low[0] * leaf_side + k / (leaf_side * leaf_side),
+                                     low[1] * leaf_side + k / leaf_side % leaf_side,
+                                     low[2] * leaf_side + k % leaf_side));
+  }
+  parallel_sort(keys);
+  return keys;
+}
+
+double ThinWalls::changed_distance(const Vec3& point, int depth, Vec3& gradient) const {
+  return distance(point, depth, true, gradient);
+}
+
+double ThinWalls::true_distance(const Vec3& point, int depth, Vec3& gradient) const {
+  return distance(point, depth, false, gradient);
+}
+
+double ThinWalls::parallel_thickness(const Vec3& point, int depth) const {
+  const double least = std::ldexp(least_cells, -depth);
+  const std::optional<SurfacePlace> place = surface_->nearest(point, 1);
+  if (!place) return HUGE_VAL;
+  const double wall = surface_->thickness(*place, SurfaceDistance::Side::wall, facing_to_report, least);
+  return wall < least ? wall : HUGE_VAL;
+}
+
+double ThinWalls::thickness_around(const SurfacePlace& place, SurfaceDistance::Side side,
+                                   double at_most) const {
+  const double thickness = surface_->thickness(place, side, facing_to_change, at_most);
+  if (thickness < at_most) return thickness;
+  const double sign = side == SurfaceDistance::Side::gap ? 1 : -1;
+  const Vec3 within = place.point + sign * 0.5 * at_most * place.normal;
+  const std::optional<SurfacePlace> beside = surface_->nearest(within, 0.5 * at_most);
+  return beside ? surface_->thickness(*beside, side, facing_to_change, at_most) : thickness;
+}
+
+double ThinWalls::distance(const Vec3& point, int depth, bool thicken, Vec3& gradient) const {
+  gradient = Vec3::Zero();
+  const double least = std::ldexp(least_cells, -depth);
+  const double close_below = std::max(least, limits_.min_gap), omit_below = limits_.min_thickness;
+  const double reach = std::max<double>(level_set_band, 0.5 * std::max(close_below, omit_below));
+  const bool inside = surface_->inside(point);
+  const std::optional<SurfacePlace> place = surface_->nearest(point, reach);
+  if (!place) return inside ? -level_set_band : level_set_band;
+  const Vec3 away = point - place->point;
+  const double size = away.norm();
+  // In front of a gap's mouth the nearest place is on its rim, and nothing is closed.
+  const bool beside = std::abs(place->normal.dot(away)) < min_alignment * size;
+  if (!inside && !beside) {
+    const double gap = thickness_around(*place, SurfaceDistance::Side::gap, close_below);
+    if (gap < close_below) return std::max<double>(-level_set_band, -0.5 * (close_below - gap));
+  }
+  const double sought = std::max(omit_below, thicken ? least : 0.0);
+  const double wall =
+      sought > 0 ? thickness_around(*place, SurfaceDistance::Side::wall, sought) : 0;
+  if (wall < omit_below) return std::min<double>(level_set_band, std::max(inside ? 0 : size, 0.5 * (omit_below - wall)));
+  double value = std::max(size, tolerance::smallest_distance);
+  gradient = size > tolerance::smallest_distance ? Vec3(away / size) : place->normal;
+  if (inside) {
+    value = -value;
+    if (size > tolerance::smallest_distance) gradient = -gradient;
+  }
+  if (thicken) value -= 0.5 * std::max(0.0, least - wall);
+  return std::clamp<double>(value, -level_set_band, level_set_band);
+}
+
+}  // namespace tetwright

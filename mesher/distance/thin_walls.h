@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "common/geometry/morton.h"
+#include "mesher/distance/narrow_band.h"
+#include "mesher/distance/surface_distance.h"
+#include "mesher/domain/finer_cells.h"
+#include "mesher/domain/grid_frame.h"
+
+namespace tetwright {
+
+/// Distances near the thin walls and gaps of one surface, in voxels.
+///
+/// Near them the distances come from the triangles, and the surface is changed so that nothing is thinner
+/// than a lattice can show: with c the nearest place of the surface, T the thickness of the wall behind it, G
+/// the width of the gap in front of it and `least` what the lattice shows,
+///
+///     outside, G < least:  -(least - G) / 2           the gap is closed
+///     else                 f - max(0, least - T) / 2  the wall is thickened
+///
+/// Both change continuously along a wall, so a wall or a gap is kept or closed whole and does not tear.
+/// Gaps below `min_gap` are closed and walls below `min_thickness` left out in the same way, whatever the
+/// lattice could show.
+///
+/// Immutable once made; all functions may be called concurrently.
+class ThinWalls {
+ public:
+  struct Limits {
+    double min_gap = 0, min_thickness = 0;  ///< voxels
+  };
+
+  ThinWalls(std::shared_ptr<const SurfaceDistance> surface, const Limits& limits)
+      : surface_(std::move(surface)), limits_(limits) {}
+
+  const SurfaceDistance& surface() const { return *surface_; }
+  const Limits& limits() const { return limits_; }
+
+  /// The voxels where distances come from here, and how many times cells are halved there.
+  void cover(const std::array<int, 3>& voxel, int depth);
+  /// How many times cells are halved at a voxel, or -1 where distances are not from here.
+  int depth(const std::array<int, 3>& voxel) const {
+    const auto block = blocks_.find(block_key(voxel));
+    return block == blocks_.end() ? -1 : block->second[place_in_block(voxel)] - 1;
+  }
+  /// The voxels that are covered, ascending Morton keys.
+  std::vector<MortonKey> covered() const;
+  /// Covered voxels that contain a thin wall or gap, ascending.
+  const std::vector<MortonKey>& core() const { return core_; }
+  void set_core(std::vector<MortonKey> core) { core_ = std::move(core); }
+
+  /// The signed distance at a point of a voxel that is covered, cut off at the band.
+  double changed_distance(const Vec3& point, int depth, Vec3& gradient) const;
+  /// The same of the surface as it is, except in gaps that were closed and walls that were left out.
+  double true_distance(const Vec3& point, int depth, Vec3& gradient) const;
+  /// The thickness of a wall with parallel sides that cells of this depth cannot show, of which a side is
+  /// within a voxel; else infinity.
+  double parallel_thickness(const Vec3& point, int depth) const;
+
+ private:
+  using Block = std::array<std::uint8_t, leaf_points>;  ///< depth + 1, or 0
+  static MortonKey block_key(const std::array<int, 3>& v) {
+    return morton_encode(v[0] / leaf_side, v[1] / leaf_side, v[2] / leaf_side);
+  }
+  static std::size_t place_in_block(const std::array<int, 3>& v) {
+    return static_cast<std::size_t>((v[0] % leaf_side * leaf_side + v[1] % leaf_side) * leaf_side +
+                                    v[2] % leaf_side);
+  }
+  /// The thickness at a place, also where it is on the narrow face at the rim of a wall or the end of a gap.
+  double thickness_around(const SurfacePlace& place, SurfaceDistance::Side side, double at_most) const;
+  double distance(const Vec3& point, int depth, bool thicken, Vec3& gradient) const;
+
+  std::shared_ptr<const SurfaceDistance> surface_;
+  Limits limits_;
+  std::unordered_map<MortonKey, Block> blocks_;
+  std::vector<MortonKey> core_;
+};
+
+/// Thinnest walls and gaps that a lattice shows, in its cells: wherever they run, a lattice point is inside.
+inline constexpr double least_cells = 1.25;
+/// Cosine of the angle to facing walls that counts for changing distances, for choosing cells, and for what
+/// the user is told: tips of wedges are thin whatever the cells.
+inline constexpr double facing_to_change = 0.3, facing_to_refine = 0.9, facing_to_report = 0.99;
+
+}  // namespace tetwright

@@ -1,0 +1,173 @@
+// Thin walls and gaps: kept whole, thickened or closed as a whole, refined within a budget.
+#include "mesher/distance/thin_survey.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/mesh/solid_shape.h"
+#include "mesher/mesher.h"
+#include "tests/mesher/fields.h"
+
+namespace tetwright::thin_survey_test {
+namespace {
+
+TriangleMesh turned(TriangleMesh mesh, int turn) {
+  const Eigen::AngleAxisd rotation(0.9 * turn, Vec3(1, turn, 3 - turn).normalized());
+  for (Vec3& p : mesh.points) p = rotation * p;
+  return mesh;
+}
+
+DenseMesh mesh_of(const TriangleMesh& surface, double cell, std::optional<int> refinement,
+                  double min_gap = 0, double min_thickness = 0) {
+  MesherOptions options;
+  options.voxel_size = cell;
+  options.max_refinement = refinement;
+  options.min_gap = min_gap;
+  options.min_thickness = min_thickness;
+  return mesh_surfaces(make_mesher_input({{"part", 1, surface, "part.ply"}}), options, nullptr);
+}
+
+struct Counts {
+  int components = 0, handles = 0;
+  double volume = 0;
+};
+Counts counts_of(const DenseMesh& dense) {
+  EXPECT_EQ(broken_promise(dense.mesh.points, dense.mesh.tets), "");
+  const SolidTopology t = solid_topology(dense.mesh.points, dense.mesh.tets);
+  // Without cavities all shells are boundaries of components.
+  EXPECT_EQ(t.boundary_components, t.components);
+  return {t.components, t.components - t.boundary_euler / 2, volume(dense.mesh.points, dense.mesh.tets)};
+}
+
+TriangleMesh plate(double thickness, int turn) {
+  return turned(make_box(Vec3(0, 0, 0), Vec3(16, 16, thickness)), turn);
+}
+TriangleMesh boxes(double gap, int turn) {
+  return turned(joined(make_box(Vec3(0, 0, 0), Vec3(8, 8, 8)), make_box(Vec3(8 + gap, 0, 0), Vec3(16, 8, 8))),
+                turn);
+}
+
+TEST(ThinWalls, PlatesOfAnyThinnessStayWholeInCellsOfAnySize) {
+  for (int turn = 0; turn < 3; ++turn)
+    for (const double thickness : {0.02, 0.4, 1.1, 1.3, 2.0}) {
+      const DenseMesh dense = mesh_of(plate(thickness, turn), 1, 0);
+      const Counts found = counts_of(dense);
+      EXPECT_EQ(found.components, 1) << thickness << " turned " << turn;
+      EXPECT_EQ(found.handles, 0) << thickness << " turned " << turn;
+      EXPECT_EQ(dense.report.refinement, 0);
+      // It is said where a wall is thicker than it should be, and only there.
+      if (thickness >= 1.25) {
+        EXPECT_EQ(dense.report.thickened.points, 0u) << thickness;
+      }
+      if (thickness < 0.5) {
+        EXPECT_GT(dense.report.thickened.points, 0u) << thickness;
+        EXPECT_NEAR(dense.report.thickened.thickness, thickness, 0.1 * thickness + 1e-9);
+      }
+    }
+}
+
+TEST(ThinWalls, SmallerCellsShowTheThicknessThatThereIs) {
+  for (int turn = 0; turn < 3; ++turn) {
+    const DenseMesh dense = mesh_of(plate(0.4, turn), 1, std::nullopt);
+    const Counts found = counts_of(dense);
+    EXPECT_EQ(found.components, 1);
+    EXPECT_EQ(found.handles, 0);
+    EXPECT_GE(dense.report.refinement, 2);
+    EXPECT_NEAR(found.volume, 16 * 16 * 0.4, 0.02 * 16 * 16 * 0.4);
+    EXPECT_EQ(dense.report.thickened.points, 0u);
+  }
+}
+
+TEST(ThinWalls, GapsAreKeptOrClosedWhole) {
+  for (int turn = 0; turn < 3; ++turn)
+    for (const double gap : {0.01, 0.3, 0.9, 1.3, 1.6})
+      for (const int refinement : {0, 3}) {
+        const DenseMesh dense = mesh_of(boxes(gap, turn), 1, refinement);
+        const Counts found = counts_of(dense);
+        const bool shown = gap * (1 << refinement) > 1.25;
+        EXPECT_EQ(found.components, shown ? 2 : 1) << gap << " turned " << turn << " refined " << refinement;
+        EXPECT_EQ(found.handles, 0) << gap << " turned " << turn << " refined " << refinement;
+        ASSERT_EQ(dense.report.closed_gaps.size(), shown ? 0u : 1u) << gap << " " << refinement;
+        if (shown) continue;
+        EXPECT_TRUE(dense.report.closed_gaps[0].gap);
+        EXPECT_FALSE(dense.report.closed_gaps[0].on_purpose);
+        EXPECT_NEAR(dense.report.closed_gaps[0].width, gap, 1e-6);
+        EXPECT_NEAR(dense.report.closed_gaps[0].area, 64, 24);
+      }
+}
+
+TEST(ThinWalls, WhatIsNotWantedGoesOnPurpose) {
+  const DenseMesh closed = mesh_of(boxes(1.6, 1), 0.5, std::nullopt, 2);
+  EXPECT_EQ(counts_of(closed).components, 1);
+  EXPECT_EQ(counts_of(closed).handles, 0);
+  ASSERT_EQ(closed.report.closed_gaps.size(), 1u);
+  EXPECT_TRUE(closed.report.closed_gaps[0].on_purpose);
+  // A fin of 0.5 on a box.
+  TriangleMesh fin = make_box(Vec3(0, 0, 0), Vec3(8, 8, 8));
+  fin = joined(fin, make_box(Vec3(9, 0, 0), Vec3(9.5, 8, 8)));
+  const DenseMesh without = mesh_of(fin, 0.4, std::nullopt, 0, 0.7);
+  EXPECT_EQ(counts_of(without).components, 1);
+  EXPECT_NEAR(counts_of(without).volume, 512, 6);
+  ASSERT_FALSE(without.report.closed_gaps.empty());
+  EXPECT_FALSE(without.report.closed_gaps[0].gap);
+  EXPECT_TRUE(without.report.closed_gaps[0].on_purpose);
+}
+
+TEST(ThinWalls, RefinementGoesWithTheThinArea) {
+  std::size_t before = 0;
+  for (const double size : {8.0, 16.0, 32.0}) {
+    const DenseMesh dense =
+        mesh_of(make_box(Vec3(0, 0, 0), Vec3(size, size, 0.5)), 1, std::nullopt);
+    const std::size_t tets = dense.mesh.tets.size();
+    if (before > 0) {
+      EXPECT_GT(tets, 3 * before);
+      EXPECT_LT(tets, 5 * before);
+    }
+    before = tets;
+  }
+}
+
+TEST(ThinWalls, NothingThinTakesNothing) {
+  const MesherInput input = make_input({make_box(Vec3(0, 0, 0), Vec3(8, 8, 8))});
+  const GridFrame frame = make_grid_frame(input.low, input.high, 0.5, false);
+  const auto level_set = LevelSet::of_surface(input.bodies[0].surface, frame, nullptr);
+  const ThinSurvey survey = survey_thin_walls(input.bodies[0].surface, *level_set, frame, {}, nullptr);
+  EXPECT_FALSE(survey.surface);
+  EXPECT_FALSE(plan_thin_walls(survey).walls);
+}
+
+ThinSurvey::Region region(double added, int needed) {
+  ThinSurvey::Region r;
+  for (int d = 0; d <= max_wall_refinement; ++d)
+    r.tets[static_cast<std::size_t>(d)] = d == 0 ? 0 : added * std::ldexp(1, 2 * (std::min(d, needed) - needed));
+  r.needed = needed;
+  return r;
+}
+
+TEST(ThinWalls, TheBudgetGoesToWholeRegionsTheCheapestFirst) {
+  ThinSurvey survey;
+  survey.regions = {region(900, 2), region(500, 3), region(100, 1), region(300, 6)};
+  choose_depths({&survey}, {3, true, 50, 1000});
+  EXPECT_EQ(survey.regions[2].depth, 1);
+  EXPECT_EQ(survey.regions[1].depth, 3);
+  EXPECT_EQ(survey.regions[3].depth, 4);  // deeper than 3 as far as that adds less than 50
+  EXPECT_EQ(survey.regions[0].depth, 1);  // 225 of the 900, as nearly all is spent
+  choose_depths({&survey}, {0, false, 50, 1000});
+  for (const ThinSurvey::Region& r : survey.regions) EXPECT_EQ(r.depth, 0);
+}
+
+TEST(ThinWalls, CellsOfTwoListsAreCombined) {
+  FinerCells a, b;
+  a.refinement = 2;
+  a.cells = {{}, {7}, {1}};
+  b.refinement = 1;
+  b.cells = {{}, {1, 3}};
+  const FinerCells both = combine(b, a);
+  EXPECT_EQ(both.refinement, 2);
+  EXPECT_EQ(both.cells, (std::vector<std::vector<MortonKey>>{{}, {7}, {1, 3}}));
+  EXPECT_EQ(combine({}, {}).refinement, 0);
+}
+
+}  // namespace
+}  // namespace tetwright::thin_survey_test
