@@ -158,10 +158,9 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   report.filling_tets = static_cast<std::size_t>(bodies.filling_tets);
   for (const auto& [body, wall] : bodies.changed)
     if (wall.gap || wall.on_purpose)
-      report.closed_gaps.push_back({input.bodies[body].name, wall.gap, wall.on_purpose,
-                                    wall.thickness * report.cell_size,
-                                    wall.area * report.cell_size * report.cell_size,
-                                    voxels.to_input(wall.place)});
+      report.closed_gaps.push_back(
+          {input.bodies[body].name, wall.gap, wall.on_purpose, wall.thickness * report.cell_size,
+           wall.area * report.cell_size * report.cell_size, voxels.to_input(wall.place)});
   sheets.finer = combine(std::move(sheets.finer), std::move(bodies.finer));
   expect_materials(input, *field, interface_voxels, sheets.finer.refinement > 0, report);
 

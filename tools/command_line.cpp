@@ -89,8 +89,9 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, double& to, cons
 CLI::Option* add_length(CLI::App& app, const std::string& name, LengthOption& to,
                         const std::string& description) {
   const auto parse = [name](const std::string& text) {
-    constexpr Range length{0, max_number, false, "a length above 0 in input units, or in percent of the diagonal, such as 0.2%"};
-    constexpr Range share{0, 100, false, "above 0 % and at most 100 % of the diagonal"};
+    constexpr Range length{0, max_number, false,
+                           "a length above 0 in input units, or in percent of the diagonal, such as 0.2%"};
+    constexpr Range share{0, 100, false, "a share above 0 % and at most 100 % of the diagonal"};
     if (!text.ends_with('%')) return LengthOption{parse_number(name, text, length), false};
     try {
       return LengthOption{parse_number(name, text.substr(0, text.size() - 1), share), true};

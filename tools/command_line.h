@@ -20,7 +20,7 @@ struct NamedValue {
 
 /// A length as given on the command line.
 struct LengthOption {
-  double value = 0;      ///< input units, or percent of the diagonal of the inputs' bounding box
+  double value = 0;  ///< input units, or percent of the diagonal of the inputs' bounding box
   bool percent = false;
 
   double in_input_units(double diagonal) const { return percent ? value / 100 * diagonal : value; }
@@ -51,7 +51,7 @@ struct CommandLine {
   int resolution = 0;     ///< 0: not given
   double voxel_size = 0;  ///< input units; 0: not given
   bool uniform = false;
-  double adaptivity = 0.05;           ///< finest cells
+  double adaptivity = 0.05;  ///< finest cells
   std::optional<int> max_refinement;
   LengthOption min_gap, min_thickness;
   std::vector<NamedValue> materials;  ///< after the positional inputs: name and file

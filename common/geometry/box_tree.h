@@ -128,8 +128,8 @@ class BoxTree {
     return false;
   }
 
-  /// Calls `visit(position)` for all items in leaves such that `enter(box)` holds for their boxes and those of
-  /// all nodes above, in ascending order.
+  /// Calls `visit(position)` for all items in leaves such that `enter(box)` holds for their boxes and those
+  /// of all nodes above, in ascending order.
   template <class Enter, class Visit>
   void for_each_in(const Enter& enter, const Visit& visit) const {
     for (std::size_t k = 0; k < nodes_.size();) {

@@ -45,8 +45,8 @@ BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool ke
     if (b == 0)
       for (const MaterialLayer& layer : input.layers) {
         depth += layer.thickness;
-        auto inner_side = LevelSet::at_depth(body.surface, *surfaces[b], depth / voxels.cell_size,
-                                             voxels, progress);
+        auto inner_side =
+            LevelSet::at_depth(body.surface, *surfaces[b], depth / voxels.cell_size, voxels, progress);
         if (inner_side->interface_cells().empty())
           throw InputError(body.file, 0,
                            "the layers down to '" + layer.name +
@@ -58,8 +58,7 @@ BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool ke
       }
     regions.push_back({body.name, body.tag, {{outer, false, number}}});
   }
-  result.field =
-      std::make_shared<const LevelSetField>(voxels, std::move(level_sets), std::move(regions));
+  result.field = std::make_shared<const LevelSetField>(voxels, std::move(level_sets), std::move(regions));
   return result;
 }
 

@@ -57,8 +57,7 @@ std::shared_ptr<const LevelSet> LevelSet::with_walls(const LevelSet& level_set,
     for (std::size_t i = begin; i < end; ++i) {
       const auto [x, y, z] = morton_decode(corners[i].point);
       Vec3 unused;
-      values[i] =
-          static_cast<float>(walls->changed_distance(Vec3(x, y, z), corners[i].depth, unused));
+      values[i] = static_cast<float>(walls->changed_distance(Vec3(x, y, z), corners[i].depth, unused));
     }
   });
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -72,8 +71,7 @@ std::shared_ptr<const LevelSet> LevelSet::with_walls(const LevelSet& level_set,
   return changed;
 }
 
-std::shared_ptr<const LevelSet> LevelSet::with_true_walls(
-    const std::shared_ptr<const LevelSet>& level_set) {
+std::shared_ptr<const LevelSet> LevelSet::with_true_walls(const std::shared_ptr<const LevelSet>& level_set) {
   if (!level_set->walls_) return level_set;
   std::shared_ptr<LevelSet> as_is(new LevelSet(*level_set));
   as_is->true_walls_ = true;

@@ -48,7 +48,8 @@ class LevelSet {
   const TriangleMesh& caps() const { return *caps_; }
   const DistanceGrid& grid() const { return *grid_; }
 
-  /// The voxels with corners on both sides or with thin walls, as ascending Morton keys of their lower corners.
+  /// The voxels with corners on both sides or with thin walls, as ascending Morton keys of their lower
+  /// corners.
   std::vector<MortonKey> interface_cells() const;
   /// The leaves that contain the band, ascending.
   std::vector<LeafOrigin> leaves() const;

@@ -22,6 +22,7 @@ constexpr double noticed = 0.1;
 
 std::vector<FieldRegion> names_of(const std::vector<LevelSetRegion>& regions) {
   std::vector<FieldRegion> out;
+  out.reserve(regions.size());
   for (const LevelSetRegion& r : regions) out.push_back({r.name, r.tag});
   return out;
 }

@@ -32,8 +32,7 @@ SurfaceDistance::SurfaceDistance(std::span<const Vec3> points, std::span<const T
   parallel_for(0, count, 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
-        corners[t][k] =
-            t < surface ? points[triangles[t][k]] : caps.points[caps.triangles[t - surface][k]];
+        corners[t][k] = t < surface ? points[triangles[t][k]] : caps.points[caps.triangles[t - surface][k]];
         boxes[t].add(corners[t][k]);
       }
       middles[t] = corners[t][0] + corners[t][1] + corners[t][2];
@@ -100,8 +99,7 @@ bool SurfaceDistance::inside(const Vec3& point) const {
   return winding + open_->winding_number(point + aside) >= inside_winding;
 }
 
-double SurfaceDistance::thickness(const SurfacePlace& place, Side side, double facing,
-                                  double at_most) const {
+double SurfaceDistance::thickness(const SurfacePlace& place, Side side, double facing, double at_most) const {
   const Vec3 direction = side == Side::gap ? place.normal : Vec3(-place.normal);
   double radius = 0.5 * at_most;
   for (int step = 0; step < max_shrinks && radius > 0; ++step) {

@@ -85,8 +85,8 @@ Vec3 middle_of(const Voxel& cell, int depth) {
 
 /// What is near a cell of 1/2^depth voxels.
 struct CellWalls {
-  bool near = false;  ///< the surface comes near the cell
-  bool gap = false;   ///< the thinnest is a gap
+  bool near = false;     ///< the surface comes near the cell
+  bool gap = false;      ///< the thinnest is a gap
   double thickness = 0;  ///< of the thinnest, or the limit
   SurfacePlace place;
 };
@@ -128,8 +128,7 @@ void descend(const SurfaceDistance& surface, const Voxel& cell, int depth, int m
   const bool thin = walls.thickness < enough;
   visit(cell, depth, walls, thin);
   if (!thin || depth == max_depth) return;
-  for (int k = 0; k < 8; ++k)
-    descend(surface, child(cell, k), depth + 1, max_depth, visit);
+  for (int k = 0; k < 8; ++k) descend(surface, child(cell, k), depth + 1, max_depth, visit);
 }
 
 /// The voxels and all around them, so many times.
@@ -200,8 +199,7 @@ void count_cells(ThinSurvey& survey) {
                       // Tips of wedges are thin whatever the cells: only walls that are parallel go deeper.
                       const double side = std::ldexp(1, -depth);
                       const double parallel =
-                          measure_nearest(*survey.surface, cell, depth, facing_to_report,
-                                          least_cells * side)
+                          measure_nearest(*survey.surface, cell, depth, facing_to_report, least_cells * side)
                               .thickness;
                       if (parallel < least_cells * side)
                         while (needed < max_wall_refinement && parallel < std::ldexp(least_cells, -needed))
@@ -231,7 +229,8 @@ void count_cells(ThinSurvey& survey) {
     region.needed = std::max(region.needed, c.needed);
     for (int d = c.depth; d <= max_wall_refinement; ++d) {
       const bool counted_below = c.depth < counted_depth && c.needed > c.depth && d > c.depth;
-      if (!counted_below) region.tets[d] += tets * std::ldexp(1, 2 * (std::min(d, std::max(c.needed, c.depth)) - c.depth));
+      if (!counted_below)
+        region.tets[d] += tets * std::ldexp(1, 2 * (std::min(d, std::max(c.needed, c.depth)) - c.depth));
     }
   }
 }
@@ -257,8 +256,8 @@ ThinSurvey survey_thin_walls(const RepairedSurface& surface, const LevelSet& lev
   parallel_for(0, points.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) points[i] = frame.to_grid(surface.points[i]);
   });
-  survey.surface = std::make_shared<const SurfaceDistance>(points, surface.triangles, surface.closed,
-                                                           level_set.caps());
+  survey.surface =
+      std::make_shared<const SurfaceDistance>(points, surface.triangles, surface.closed, level_set.caps());
   survey.voxels = parallel_collect<MortonKey>(
       0, suspects.size(), voxel_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -288,9 +287,8 @@ void choose_depths(const std::vector<ThinSurvey*>& surveys, const RefinementBudg
     if (budget.deeper_where_cheap)
       while (r->depth < r->needed && added(*r, r->depth + 1) <= budget.base_tets) ++r->depth;
   }
-  std::stable_sort(regions.begin(), regions.end(), [&](const auto* a, const auto* b) {
-    return added(*a, a->depth) < added(*b, b->depth);
-  });
+  std::stable_sort(regions.begin(), regions.end(),
+                   [&](const auto* a, const auto* b) { return added(*a, a->depth) < added(*b, b->depth); });
   double left = budget.max_tets;
   for (ThinSurvey::Region* r : regions) {
     while (r->depth > 0 && added(*r, r->depth) > left) --r->depth;
@@ -375,8 +373,7 @@ ThinWallPlan plan_thin_walls(const ThinSurvey& survey) {
                           survey.surface->thickness(*place, kind, facing_to_report, limit);
                       if (thickness < limit)
                         found[task].changes.push_back({region, kind == Side::gap, thickness < wanted,
-                                                       thickness, area_of(thickness),
-                                                       place->point});
+                                                       thickness, area_of(thickness), place->point});
                     }
                   });
         }
@@ -405,7 +402,12 @@ ThinWallPlan plan_thin_walls(const ThinSurvey& survey) {
   cells.insert(cells.end(), beside.begin(), beside.end());
   parallel_sort_unique(cells);
   for (const Cell& c : cells) plan.finer.refinement = std::max(plan.finer.refinement, c.depth + 1);
-  plan.finer.cells.resize(static_cast<std::size_t>(plan.finer.refinement) + 1);
+  // Nothing thin is left to cells larger than voxels: the last list.
+  plan.finer.cells.resize(static_cast<std::size_t>(plan.finer.refinement) + 2);
+  for (const MortonKey voxel : survey.voxels)
+    if (std::vector<MortonKey>& larger = plan.finer.cells.back();
+        larger.empty() || larger.back() != voxel >> 3)
+      larger.push_back(voxel >> 3);
   for (const Cell& c : cells)
     plan.finer.cells[static_cast<std::size_t>(plan.finer.refinement - c.depth)].push_back(c.key);
 
@@ -416,9 +418,8 @@ ThinWallPlan plan_thin_walls(const ThinSurvey& survey) {
     const bool same = !plan.changed.empty() && &c != changes.data() && (&c)[-1].region == c.region &&
                       (&c)[-1].gap == c.gap && (&c)[-1].on_purpose == c.on_purpose;
     if (!same)
-      plan.changed.push_back({c.gap, c.thickness,
-                              std::ldexp(least_cells, -survey.regions[c.region].depth), 0, c.place,
-                              c.on_purpose});
+      plan.changed.push_back({c.gap, c.thickness, std::ldexp(least_cells, -survey.regions[c.region].depth), 0,
+                              c.place, c.on_purpose});
     ChangedWall& w = plan.changed.back();
     w.area += c.area;
     if (c.thickness < w.thickness) w.thickness = c.thickness, w.place = c.place;

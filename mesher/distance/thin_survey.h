@@ -52,9 +52,9 @@ void choose_depths(const std::vector<ThinSurvey*>& surveys, const RefinementBudg
 /// A region where walls are shown thicker than they are, or gaps are closed.
 struct ChangedWall {
   bool gap = false;
-  double thickness = 0;  ///< the smallest there is, voxels
-  double least = 0;      ///< what the cells show, voxels
-  double area = 0;       ///< of one side, squared voxels
+  double thickness = 0;       ///< the smallest there is, voxels
+  double least = 0;           ///< what the cells show, voxels
+  double area = 0;            ///< of one side, squared voxels
   Vec3 place = Vec3::Zero();  ///< where it is thinnest, voxels
   bool on_purpose = false;    ///< within --min-gap or --min-thickness
 };

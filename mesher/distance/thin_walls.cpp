@@ -10,7 +10,8 @@ namespace tetwright {
 
 namespace {
 
-/// Cosine between the direction to the nearest place and its normal below which that place is the rim of a gap.
+/// Cosine between the direction to the nearest place and its normal below which that place is the rim of a
+/// gap.
 constexpr double min_alignment = 0.7;
 
 }  // namespace
@@ -72,21 +73,24 @@ double ThinWalls::distance(const Vec3& point, int depth, bool thicken, Vec3& gra
   const double size = away.norm();
   // In front of a gap's mouth the nearest place is on its rim, and nothing is closed.
   const bool beside = std::abs(place->normal.dot(away)) < min_alignment * size;
-  if (!inside && !beside) {
+  // Within a gap no place is farther from the nearest wall than half its width.
+  if (!inside && !beside && size <= 0.5 * close_below) {
     const double gap = thickness_around(*place, SurfaceDistance::Side::gap, close_below);
     if (gap < close_below) return std::max<double>(-level_set_band, -0.5 * (close_below - gap));
   }
-  const double sought = std::max(omit_below, thicken ? least : 0.0);
-  const double wall =
-      sought > 0 ? thickness_around(*place, SurfaceDistance::Side::wall, sought) : 0;
-  if (wall < omit_below) return std::min<double>(level_set_band, std::max(inside ? 0 : size, 0.5 * (omit_below - wall)));
+  // Farther away than lattice edges reach, values are not interpolated.
+  const bool near = size < std::ldexp(level_set_band, -depth);
+  const double sought = std::max(omit_below, thicken && near ? least : 0.0);
+  const double wall = sought > 0 ? thickness_around(*place, SurfaceDistance::Side::wall, sought) : 0;
+  if (wall < omit_below)
+    return std::min<double>(level_set_band, std::max(inside ? 0 : size, 0.5 * (omit_below - wall)));
   double value = std::max(size, tolerance::smallest_distance);
   gradient = size > tolerance::smallest_distance ? Vec3(away / size) : place->normal;
   if (inside) {
     value = -value;
     if (size > tolerance::smallest_distance) gradient = -gradient;
   }
-  if (thicken) value -= 0.5 * std::max(0.0, least - wall);
+  if (thicken && near) value -= 0.5 * std::max(0.0, least - wall);
   return std::clamp<double>(value, -level_set_band, level_set_band);
 }
 

@@ -67,8 +67,8 @@ class ThinWalls {
     return morton_encode(v[0] / leaf_side, v[1] / leaf_side, v[2] / leaf_side);
   }
   static std::size_t place_in_block(const std::array<int, 3>& v) {
-    return static_cast<std::size_t>((v[0] % leaf_side * leaf_side + v[1] % leaf_side) * leaf_side +
-                                    v[2] % leaf_side);
+    const int place = (v[0] % leaf_side * leaf_side + v[1] % leaf_side) * leaf_side + v[2] % leaf_side;
+    return static_cast<std::size_t>(place);
   }
   /// The thickness at a place, also where it is on the narrow face at the rim of a wall or the end of a gap.
   double thickness_around(const SurfacePlace& place, SurfaceDistance::Side side, double at_most) const;

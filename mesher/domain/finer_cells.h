@@ -15,7 +15,8 @@ inline constexpr int max_refinement = 3;
 /// Where the octree must have smaller cells than the interface alone asks for.
 struct FinerCells {
   int refinement = 0;  ///< levels below a voxel
-  /// The cells to be split: one ascending list for each level of a lattice refined that far.
+  /// The cells to be split: one ascending list for each level of a lattice refined that far, and possibly
+  /// one for cells of two voxels.
   std::vector<std::vector<MortonKey>> cells;
   int coarsest_interface_level = 2;  ///< see OctreeOptions
 };

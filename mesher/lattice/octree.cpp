@@ -187,6 +187,7 @@ Octree build_octree(const MaterialField& field, const OctreeOptions& options,
             if (has_split_neighbour(holding[i], size, failed)) out.push_back(holding[i]);
         });
     split.insert(split.end(), failed.begin(), failed.end());
+    split.insert(split.end(), sheets.begin(), sheets.end());
     return split;
   });
 }

@@ -108,6 +108,66 @@ TEST(Fidelity, TheProgramSaysWhereTheSolidIsAnotherOne) {
   EXPECT_EQ(stats()["shortfall"].at(0)["what"], "notes");
 }
 
+/// A plate of 10 x 10 and this thickness.
+void write_plate(const std::string& path, double thickness) {
+  std::ofstream out(path);
+  std::size_t first = 1;
+  write_box(out, first, Vec3(0, 0, 0), Vec3(10, 10, thickness));
+}
+
+TEST(Fidelity, ATargetThatCannotFillAPlateIsMissedAndNotThePlate) {
+  const TemporaryFolder f;
+  write_plate(f / "plate.obj", 0.5);
+  const std::string call = "prepare " + (f / "plate.obj") + " -o " + (f / "o.vtu") + " --stats " +
+                           (f / "s.json") + " --target-tets ";
+  Answer a = run(call + "100");
+  EXPECT_EQ(a.status, 1);
+  EXPECT_NE(a.err.find("walls so thin that fewer tets would be flat; ask for "), std::string::npos) << a.err;
+  auto stats = nlohmann::json::parse(contents(f / "s.json"));
+  const auto filling = stats["dense"]["filling_tets"].get<int>();
+  EXPECT_NEAR(filling, 0.66 * 100 / 0.25, 100);
+  EXPECT_NEAR(stats["result"]["tets"].get<double>(), filling, 0.03 * filling);
+  EXPECT_LT(stats["result"]["percent_below_threshold"].get<double>(), 3);
+  EXPECT_EQ(stats["fidelity"][0]["result"]["components"], 1);
+  EXPECT_EQ(stats["fidelity"][0]["result"]["handles"], 0);
+  EXPECT_EQ(run(call + std::to_string(2 * filling)).status, 0);
+}
+
+TEST(Fidelity, WhatStaysTooThickOrClosedIsSaidWithItsPlace) {
+  const TemporaryFolder f;
+  write_plate(f / "plate.obj", 0.02);
+  const std::string call = "mesh " + (f / "plate.obj") + " -o " + (f / "o.vtu") + " --stats " +
+                           (f / "s.json") + " --resolution 20 --max-refinement 0";
+  Answer a = run(call);
+  EXPECT_EQ(a.status, 1);
+  EXPECT_NE(a.err.find("too thin for cells: walls are up to "), std::string::npos) << a.err;
+  EXPECT_NE(a.err.find("raise --resolution or --max-refinement"), std::string::npos) << a.err;
+  auto stats = nlohmann::json::parse(contents(f / "s.json"));
+  EXPECT_GT(stats["dense"]["thickened_walls"]["points"], 0);
+  EXPECT_NEAR(stats["dense"]["thickened_walls"]["thickness"].get<double>(), 0.02, 1e-3);
+  EXPECT_EQ(stats["fidelity"][0]["result"]["components"], 1);
+  EXPECT_EQ(stats["fidelity"][0]["result"]["handles"], 0);
+  a = run(call + " --accept-changes");
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_NE(a.err.find("times too thick"), std::string::npos) << a.err;
+
+  write_boxes(f / "boxes.obj", 0.05);
+  const std::string boxes = "mesh " + (f / "boxes.obj") + " -o " + (f / "o.vtu") + " --stats " +
+                            (f / "s.json") + " --resolution 20";
+  a = run(boxes + " --max-refinement 0");
+  EXPECT_EQ(a.status, 1);
+  EXPECT_NE(a.err.find("a gap of 'boxes' 0.05 wide, over an area of "), std::string::npos) << a.err;
+  stats = nlohmann::json::parse(contents(f / "s.json"));
+  ASSERT_EQ(stats["dense"]["closed_gaps"].size(), 1U);
+  EXPECT_EQ(stats["dense"]["closed_gaps"][0]["kind"], "gap");
+  EXPECT_FALSE(stats["dense"]["closed_gaps"][0]["on_purpose"]);
+  // As asked: a note.
+  a = run(boxes + " --min-gap 5% --accept-changes");
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_NE(a.err.find("closed by --min-gap"), std::string::npos) << a.err;
+  EXPECT_EQ(nlohmann::json::parse(contents(f / "s.json"))["fidelity"][0]["result"]["components"], 1);
+}
+
 TEST(Fidelity, StrictIsQuietWhereThereIsNothingToNote) {
   const TemporaryFolder f;
   write_boxes(f / "boxes.obj", 0.5);

@@ -179,9 +179,11 @@ void find_thin_walls(const CommandLine& line, RunReport& report) {
     std::snprintf(numbers, sizeof numbers, "%.3g wide, over an area of %.3g, narrowest at ", g.width, g.area);
     const std::string what = "'" + g.name + "' " + numbers + place_text(g.place);
     if (g.on_purpose)
-      report.findings.push_back(
-          {report.inputs.front(),
-           {(g.gap ? "gap of " : "wall of ") + what, 1, {}, g.gap ? "closed by --min-gap" : "left out by --min-thickness"}});
+      report.findings.push_back({report.inputs.front(),
+                                 {(g.gap ? "gap of " : "wall of ") + what,
+                                  1,
+                                  {},
+                                  g.gap ? "closed by --min-gap" : "left out by --min-thickness"}});
     else
       text += (text.empty() ? "" : "; ") + std::string("a gap of ") + what + " is closed";
   }

@@ -19,16 +19,16 @@ void check_input_kinds(const CommandLine& line) {
   for (const std::string& file : input_files(line)) {
     const FileKind kind = file_kind(file);
     if (is_vdb(file) || kind == FileKind::surface || kind == FileKind::volume) continue;
-    const std::string read =
-        std::string(name_of(line.command)) + " reads surfaces (" + known_extensions(FileKind::surface) +
-        "), level sets (.vdb) and segmented volumes (" + known_extensions(FileKind::volume) + " .vdb)";
+    std::string read = name_of(line.command);
+    read += " reads surfaces (" + known_extensions(FileKind::surface) +
+            "), level sets (.vdb) and segmented volumes (" + known_extensions(FileKind::volume) + " .vdb)";
     if (kind == FileKind::tet_mesh)
       throw UsageError(file + " is a tet mesh, which 'tetwright simplify' and 'tetwright improve' take; " +
                        read);
     const std::string extension = std::filesystem::path(file).extension().string();
-    throw UsageError(file + ": " +
-                     (extension.empty() ? "no extension" : "unknown extension '" + extension + "'") + "; " +
-                     read);
+    std::string message = file + ": ";
+    message += extension.empty() ? "no extension" : "unknown extension '" + extension + "'";
+    throw UsageError(message + "; " + read);
   }
 }
 

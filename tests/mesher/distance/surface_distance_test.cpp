@@ -31,9 +31,8 @@ TEST(SurfaceDistance, InsideIsExactOnGridPlanesToo) {
   EXPECT_FALSE(box.inside(Vec3(2, 2, -1e-12)));
   EXPECT_FALSE(box.inside(Vec3(2, 2, 1 + 1e-12)));
   // A box within a box, wound inwards: a cavity.
-  const SurfaceDistance hollow =
-      distance_of(joined(make_box(Vec3(0, 0, 0), Vec3(3, 3, 3)),
-                         turned_over(make_box(Vec3(1, 1, 1), Vec3(2, 2, 2)))));
+  const SurfaceDistance hollow = distance_of(
+      joined(make_box(Vec3(0, 0, 0), Vec3(3, 3, 3)), turned_over(make_box(Vec3(1, 1, 1), Vec3(2, 2, 2)))));
   EXPECT_FALSE(hollow.inside(Vec3(1.5, 1.5, 1.5)));
   EXPECT_TRUE(hollow.inside(Vec3(0.5, 1.5, 1.5)));
 }
@@ -55,8 +54,8 @@ TEST(SurfaceDistance, NearestPlaceOfManyPoints) {
 
 TEST(SurfaceDistance, ThicknessOfWallsAndGapsInAnyDirection) {
   for (const bool turn : {false, true}) {
-    TriangleMesh two = joined(make_box(Vec3(0, 0, 0), Vec3(10, 10, 0.3)),
-                              make_box(Vec3(0, 0, 0.5), Vec3(10, 10, 3)));
+    TriangleMesh two =
+        joined(make_box(Vec3(0, 0, 0), Vec3(10, 10, 0.3)), make_box(Vec3(0, 0, 0.5), Vec3(10, 10, 3)));
     if (turn) two = turned(two);
     const SurfaceDistance distance = distance_of(two);
     const Vec3 up = turn ? Vec3(turned({{Vec3(0, 0, 1)}, {}}).points[0]) : Vec3(0, 0, 1);

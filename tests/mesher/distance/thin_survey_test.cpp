@@ -18,8 +18,8 @@ TriangleMesh turned(TriangleMesh mesh, int turn) {
   return mesh;
 }
 
-DenseMesh mesh_of(const TriangleMesh& surface, double cell, std::optional<int> refinement,
-                  double min_gap = 0, double min_thickness = 0) {
+DenseMesh mesh_of(const TriangleMesh& surface, double cell, std::optional<int> refinement, double min_gap = 0,
+                  double min_thickness = 0) {
   MesherOptions options;
   options.voxel_size = cell;
   options.max_refinement = refinement;
@@ -117,8 +117,7 @@ TEST(ThinWalls, WhatIsNotWantedGoesOnPurpose) {
 TEST(ThinWalls, RefinementGoesWithTheThinArea) {
   std::size_t before = 0;
   for (const double size : {8.0, 16.0, 32.0}) {
-    const DenseMesh dense =
-        mesh_of(make_box(Vec3(0, 0, 0), Vec3(size, size, 0.5)), 1, std::nullopt);
+    const DenseMesh dense = mesh_of(make_box(Vec3(0, 0, 0), Vec3(size, size, 0.5)), 1, std::nullopt);
     const std::size_t tets = dense.mesh.tets.size();
     if (before > 0) {
       EXPECT_GT(tets, 3 * before);
@@ -140,7 +139,8 @@ TEST(ThinWalls, NothingThinTakesNothing) {
 ThinSurvey::Region region(double added, int needed) {
   ThinSurvey::Region r;
   for (int d = 0; d <= max_wall_refinement; ++d)
-    r.tets[static_cast<std::size_t>(d)] = d == 0 ? 0 : added * std::ldexp(1, 2 * (std::min(d, needed) - needed));
+    r.tets[static_cast<std::size_t>(d)] =
+        d == 0 ? 0 : added * std::ldexp(1, 2 * (std::min(d, needed) - needed));
   r.needed = needed;
   return r;
 }

@@ -30,7 +30,8 @@ TEST(ConstrainedMesh, FreezesAndBoundsVolumesAsAsked) {
   }
   EXPECT_EQ(frozen, 56u);  // of 4^3 points all but 2^3
   const double volume = open.mesh.total_volume();
-  const std::vector<VolumeChange> tenth{{0, 0.1 * volume}}, some{{0, 0.007 * volume}}, more{{0, 0.009 * volume}};
+  const std::vector<VolumeChange> tenth{{0, 0.1 * volume}}, some{{0, 0.007 * volume}},
+      more{{0, 0.009 * volume}};
   EXPECT_TRUE(open.ledger.allows(tenth));
   EXPECT_FALSE(bounded.ledger.allows(tenth));
   EXPECT_FALSE(bounded.ledger.allows(more));
