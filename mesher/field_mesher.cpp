@@ -137,6 +137,17 @@ double finest_cell_size(const MesherOptions& options, double longest_side, doubl
   return h;
 }
 
+int max_possible_refinement(const GridFrame& frame, double max_coordinate) {
+  // As make_grid_frame() requires.
+  constexpr double max_cells = 1 << 18;
+  const double cells = *std::max_element(frame.cells.begin(), frame.cells.end());
+  int depth = 0;
+  while (depth < max_wall_refinement && std::ldexp(cells, depth + 1) <= max_cells &&
+         max_coordinate * 0x1p-52 <= std::ldexp(frame.cell_size, -depth - 1) * cell_share_of_rounding)
+    ++depth;
+  return depth;
+}
+
 MesherEstimate estimate_of(const MeshSize& size, const MemoryModel& memory, const MesherOptions& options) {
   const double lattice =
       options.uniform ? uniform_bytes_per_lattice_tet * size.lattice + uniform_bytes_per_leaf * size.leaves

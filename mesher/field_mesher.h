@@ -40,6 +40,10 @@ class Stages {
 double finest_cell_size(const MesherOptions& options, double longest_side, double max_coordinate,
                         const std::string& file);
 
+/// How many times cells of this frame can be halved so that the lattice can be numbered and coordinates of
+/// this size still tell its points apart.
+int max_possible_refinement(const GridFrame& frame, double max_coordinate);
+
 /// Meshes a field: builds the octree and the lattice, moves points, cuts tets, and transforms the result to
 /// input units. To be called within the stage "octree".
 ///

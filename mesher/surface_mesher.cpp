@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/error.h"
+#include "common/message_text.h"
 #include "mesher/distance/body_field.h"
 #include "mesher/distance/field_solid.h"
 #include "mesher/distance/field_thickness.h"
@@ -91,6 +92,24 @@ void expect_materials(const MesherInput& input, const MaterialField& field,
   }
 }
 
+/// What is closed or left out is measured cell by cell around each place of the surface.
+void validate_limits(const MesherOptions& options, double cell) {
+  constexpr double max_cells = 24;
+  for (const auto& [name, limit] :
+       {std::pair("gap", options.min_gap), std::pair("thickness", options.min_thickness)}) {
+    if (!(limit >= 0 && std::isfinite(limit)))
+      throw UsageError("the min " + std::string(name) + " must be 0 or more, not " + short_number(limit));
+    if (limit > max_cells * cell)
+      throw UsageError("a min " + std::string(name) + " of " + short_number(limit) + " is " +
+                       short_number(limit / cell) + " finest cells; at most " + short_number(max_cells) +
+                       " are possible: use a lower resolution or a smaller min " + name);
+  }
+  if (options.max_refinement &&
+      !(*options.max_refinement >= 0 && *options.max_refinement <= max_wall_refinement))
+    throw UsageError("the max refinement must be from 0 to " + std::to_string(max_wall_refinement) +
+                     ", not " + std::to_string(*options.max_refinement));
+}
+
 void validate_outside_is_free(const MesherInput& input) {
   const auto taken = [](const std::string& name, MaterialTag tag) {
     if (name == outside_name || tag == outside_tag)
@@ -123,12 +142,14 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   report.resolution = static_cast<int>(std::ceil(longest_side(input) / report.cell_size - 0.5));
   report.estimate = estimate_mesh(input, options);
   validate_estimate(report.estimate);
+  validate_limits(options, report.cell_size);
   const GridFrame voxels =
       make_grid_frame(input.low, input.high, report.cell_size, options.uniform, options.keep_outside);
   RefinementBudget budget;
   budget.max_depth = options.max_refinement.value_or(default_wall_refinement);
   budget.deeper_where_cheap = !options.max_refinement;
-  if (options.uniform) budget = {0, false, 0, 0};
+  if (options.uniform) budget.max_depth = 0, budget.deeper_where_cheap = false;
+  budget.max_possible = max_possible_refinement(voxels, largest_coordinate(input));
   budget.base_tets = std::max(min_cheap_tets, static_cast<double>(report.estimate.tets));
   budget.max_tets = std::max(max_added_tets, budget.base_tets);
   BodyField bodies = build_field(input, voxels, options.keep_outside,

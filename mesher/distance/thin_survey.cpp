@@ -283,9 +283,10 @@ void choose_depths(const std::vector<ThinSurvey*>& surveys, const RefinementBudg
   // What a region adds at a depth that is enough for it, or as deep as it may go.
   const auto added = [](const ThinSurvey::Region& r, int depth) { return r.tets[depth] - r.tets[0]; };
   for (ThinSurvey::Region* r : regions) {
-    r->depth = std::min(r->needed, budget.max_depth);
+    const int needed = std::min(r->needed, budget.max_possible);
+    r->depth = std::min(needed, budget.max_depth);
     if (budget.deeper_where_cheap)
-      while (r->depth < r->needed && added(*r, r->depth + 1) <= budget.base_tets) ++r->depth;
+      while (r->depth < needed && added(*r, r->depth + 1) <= budget.base_tets) ++r->depth;
   }
   std::stable_sort(regions.begin(), regions.end(),
                    [&](const auto* a, const auto* b) { return added(*a, a->depth) < added(*b, b->depth); });

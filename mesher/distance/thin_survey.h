@@ -40,6 +40,7 @@ ThinSurvey survey_thin_walls(const RepairedSurface& surface, const LevelSet& lev
 /// What refinement may take.
 struct RefinementBudget {
   int max_depth = default_wall_refinement;
+  int max_possible = max_wall_refinement;  ///< of the lattice
   /// Deeper than max_depth, up to max_wall_refinement, where it adds fewer tets than `base_tets`.
   bool deeper_where_cheap = true;
   double base_tets = 0;  ///< dense tets without refinement

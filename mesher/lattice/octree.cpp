@@ -163,7 +163,7 @@ Octree build_octree(const MaterialField& field, const OctreeOptions& options,
       progress->update(static_cast<double>(level) / (frame.root_level + 1));
     }
     const auto place = static_cast<std::size_t>(level);
-    const std::vector<MortonKey> sheets = place < thin.size() ? thin[place] : std::vector<MortonKey>();
+    std::vector<MortonKey> sheets = place < thin.size() ? thin[place] : std::vector<MortonKey>();
     if (level <= voxel_level) return sheets;
     for (MortonKey& key : holding) key >>= 3;
     holding.erase(std::unique(holding.begin(), holding.end()), holding.end());

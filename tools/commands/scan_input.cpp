@@ -20,15 +20,17 @@ void check_input_kinds(const CommandLine& line) {
     const FileKind kind = file_kind(file);
     if (is_vdb(file) || kind == FileKind::surface || kind == FileKind::volume) continue;
     std::string read = name_of(line.command);
-    read += " reads surfaces (" + known_extensions(FileKind::surface) +
-            "), level sets (.vdb) and segmented volumes (" + known_extensions(FileKind::volume) + " .vdb)";
+    read.append(" reads surfaces (").append(known_extensions(FileKind::surface));
+    read.append("), level sets (.vdb) and segmented volumes (").append(known_extensions(FileKind::volume));
+    read.append(" .vdb)");
     if (kind == FileKind::tet_mesh)
-      throw UsageError(file + " is a tet mesh, which 'tetwright simplify' and 'tetwright improve' take; " +
-                       read);
+      throw UsageError(
+          std::string(file)
+              .append(" is a tet mesh, which 'tetwright simplify' and 'tetwright improve' take; ")
+              .append(read));
     const std::string extension = std::filesystem::path(file).extension().string();
-    std::string message = file + ": ";
-    message += extension.empty() ? "no extension" : "unknown extension '" + extension + "'";
-    throw UsageError(message + "; " + read);
+    const std::string what = extension.empty() ? "no extension" : "unknown extension '" + extension + "'";
+    throw UsageError(std::string(file).append(": ").append(what).append("; ").append(read));
   }
 }
 

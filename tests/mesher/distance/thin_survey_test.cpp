@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "common/mesh/solid_shape.h"
+#include "common/error.h"
 #include "mesher/mesher.h"
 #include "tests/mesher/fields.h"
 
@@ -44,7 +44,7 @@ TriangleMesh plate(double thickness, int turn) {
   return turned(make_box(Vec3(0, 0, 0), Vec3(16, 16, thickness)), turn);
 }
 TriangleMesh boxes(double gap, int turn) {
-  return turned(joined(make_box(Vec3(0, 0, 0), Vec3(8, 8, 8)), make_box(Vec3(8 + gap, 0, 0), Vec3(16, 8, 8))),
+  return turned(joined(make_box(Vec3(0, 0, 0), Vec3(5, 5, 5)), make_box(Vec3(5 + gap, 0, 0), Vec3(9, 5, 5))),
                 turn);
 }
 
@@ -93,7 +93,7 @@ TEST(ThinWalls, GapsAreKeptOrClosedWhole) {
         EXPECT_TRUE(dense.report.closed_gaps[0].gap);
         EXPECT_FALSE(dense.report.closed_gaps[0].on_purpose);
         EXPECT_NEAR(dense.report.closed_gaps[0].width, gap, 1e-6);
-        EXPECT_NEAR(dense.report.closed_gaps[0].area, 64, 24);
+        EXPECT_NEAR(dense.report.closed_gaps[0].area, 25, 12);
       }
 }
 
@@ -114,9 +114,17 @@ TEST(ThinWalls, WhatIsNotWantedGoesOnPurpose) {
   EXPECT_TRUE(without.report.closed_gaps[0].on_purpose);
 }
 
+TEST(ThinWalls, LimitsOutOfRangeAreRefused) {
+  const TriangleMesh box = make_box(Vec3(0, 0, 0), Vec3(8, 8, 8));
+  EXPECT_THROW(mesh_of(box, 0.1, std::nullopt, 3), UsageError);
+  EXPECT_THROW(mesh_of(box, 0.1, std::nullopt, 0, 3), UsageError);
+  EXPECT_THROW(mesh_of(box, 1, std::nullopt, -1), UsageError);
+  EXPECT_THROW(mesh_of(box, 1, 9), UsageError);
+}
+
 TEST(ThinWalls, RefinementGoesWithTheThinArea) {
   std::size_t before = 0;
-  for (const double size : {8.0, 16.0, 32.0}) {
+  for (const double size : {6.0, 12.0, 24.0}) {
     const DenseMesh dense = mesh_of(make_box(Vec3(0, 0, 0), Vec3(size, size, 0.5)), 1, std::nullopt);
     const std::size_t tets = dense.mesh.tets.size();
     if (before > 0) {
@@ -148,13 +156,15 @@ ThinSurvey::Region region(double added, int needed) {
 TEST(ThinWalls, TheBudgetGoesToWholeRegionsTheCheapestFirst) {
   ThinSurvey survey;
   survey.regions = {region(900, 2), region(500, 3), region(100, 1), region(300, 6)};
-  choose_depths({&survey}, {3, true, 50, 1000});
+  choose_depths({&survey}, {3, max_wall_refinement, true, 50, 1000});
   EXPECT_EQ(survey.regions[2].depth, 1);
   EXPECT_EQ(survey.regions[1].depth, 3);
   EXPECT_EQ(survey.regions[3].depth, 4);  // deeper than 3 as far as that adds less than 50
   EXPECT_EQ(survey.regions[0].depth, 1);  // 225 of the 900, as nearly all is spent
-  choose_depths({&survey}, {0, false, 50, 1000});
+  choose_depths({&survey}, {0, max_wall_refinement, false, 50, 1000});
   for (const ThinSurvey::Region& r : survey.regions) EXPECT_EQ(r.depth, 0);
+  choose_depths({&survey}, {3, 2, true, 50, 1e9});
+  EXPECT_EQ(survey.regions[1].depth, 2);
 }
 
 TEST(ThinWalls, CellsOfTwoListsAreCombined) {
