@@ -55,6 +55,8 @@ inline constexpr double coinciding_cells = 1e-6;
 
 /// A point is on an interface if it is this near, in voxels: far below the accuracy of the distances.
 inline constexpr double on_interface = 1e-3;
+/// The same in lattice units, where cells are far smaller than voxels.
+inline constexpr double on_interface_of_cell = 1e-2;
 /// Below this squared slope of a distance (1 far from ridges) steps along it are not scaled up further.
 inline constexpr double min_squared_slope = 1e-3;
 /// The shortest vector of a convex hull is found if the next step is less than this share of the way.

@@ -94,7 +94,7 @@ void expect_materials(const MesherInput& input, const MaterialField& field,
 
 /// What is closed or left out is measured cell by cell around each place of the surface.
 void validate_limits(const MesherOptions& options, double cell) {
-  constexpr double max_cells = 24;
+  constexpr double max_cells = 16;
   for (const auto& [name, limit] :
        {std::pair("gap", options.min_gap), std::pair("thickness", options.min_thickness)}) {
     if (!(limit >= 0 && std::isfinite(limit)))

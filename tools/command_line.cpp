@@ -235,7 +235,9 @@ void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) 
                "Where the mesh has not the volume, components, handles or cavities of the surfaces: a note "
                "instead of status 1");
   add_strict(app, c);
-  app.add_option("--write-sdf", c.write_sdf, "Write the meshed signed distances to this .vdb file")
+  app.add_option(
+         "--write-sdf", c.write_sdf,
+         "Write the meshed signed distances to this .vdb file, thin walls as thick as cells show them")
       ->type_name("FILE");
 }
 

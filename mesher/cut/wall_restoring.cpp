@@ -23,6 +23,9 @@ constexpr int passes = 3;
 /// tan(0.1 sr / 2).
 constexpr double min_tangent = 0.05004170837553879;
 
+/// Lattice units: half of what is thickened at most, and as much for a point that was moved on from there.
+constexpr double max_step = 1.25;
+
 struct Move {
   Index point;
   Vec3 from, step;
@@ -43,7 +46,8 @@ std::vector<Move> find_moves(const CutMesh& mesh, const MaterialField& field, co
           Vec3 gradient;
           const double off = owned->between((*both)[0], (*both)[1], mesh.points[p], gradient);
           const double slope = gradient.squaredNorm();
-          if (!(slope > 0)) continue;
+          // No wall was thickened by more; a longer step comes from where distances have no slope.
+          if (!(std::abs(off) < max_step * std::sqrt(slope))) continue;
           out.push_back({static_cast<Index>(p), mesh.points[p], -gradient * (off / slope)});
         }
       });

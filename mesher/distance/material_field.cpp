@@ -35,7 +35,8 @@ bool FieldSampler::project(const RegionSet& regions, Vec3& point) {
   // Damping (Levenberg 1944): on one side of a junction curve two of the distances may be the same function,
   // so their difference has no slope there and must not contribute to the step.
   const double damping = 0.01 * min_slope_ * min_slope_;
-  const double enough = tolerance::on_interface * per_voxel_;
+  // The accuracy of distances, which is that of voxels; small cells need a small share of their own size.
+  const double enough = std::min(tolerance::on_interface * per_voxel_, tolerance::on_interface_of_cell);
   const int equations = regions.size() - 1;
   if (equations < 1) return false;
   Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> slopes(equations, 3);

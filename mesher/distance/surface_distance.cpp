@@ -16,15 +16,19 @@ namespace {
 constexpr std::size_t leaf_size = 4;
 /// Shrinking converges quadratically where walls are flat, as a rule within three steps.
 constexpr int max_shrinks = 16;
-/// Squared distances count as equal within this share of them: rounding leaves less.
-constexpr double tie = 1e-12;
+/// Squared distances count as equal within this share of them: rounding of coordinates leaves less down to a
+/// thousandth of a voxel.
+constexpr double tie = 1e-9;
+/// How far in front of and behind a place its sides are looked up, voxels.
+constexpr double beside = 1e-4;
 /// The ball has stopped shrinking when its radius changes by less than this share.
 constexpr double still = 1e-6;
 
 }  // namespace
 
 SurfaceDistance::SurfaceDistance(std::span<const Vec3> points, std::span<const Triangle> triangles,
-                                 std::size_t closed, const TriangleMesh& caps) {
+                                 std::size_t closed, const TriangleMesh& caps, bool intersects_itself)
+    : intersects_itself_(intersects_itself) {
   const std::size_t surface = triangles.size(), count = surface + caps.triangles.size();
   std::vector<std::array<Vec3, 3>> corners(count);
   std::vector<Box3> boxes(count);
@@ -99,29 +103,46 @@ bool SurfaceDistance::inside(const Vec3& point) const {
   return winding + open_->winding_number(point + aside) >= inside_winding;
 }
 
+std::optional<SurfacePlace> SurfaceDistance::nearest_facing(const Vec3& point, const Vec3& normal,
+                                                            double facing, double below,
+                                                            bool in_front) const {
+  const double limit = below * below;
+  SurfacePlace wall;
+  const double found = tree_.nearest(point, limit, tree_.all(), [&](std::size_t t, double best) {
+    if (!(normals_[t].dot(normal) < -facing)) return best;
+    const auto& [a, b, c] = triangles_[t];
+    if (in_front && (point - a).dot(normals_[t]) < 0) return best;
+    const Vec3 p = closest_point(point, a, b, c);
+    const double squared = (p - point).squaredNorm();
+    if (squared >= best) return best;
+    wall = {p, normals_[t]};
+    return squared;
+  });
+  if (!(found < limit)) return std::nullopt;
+  return wall;
+}
+
+bool SurfaceDistance::is_boundary(const SurfacePlace& place) const {
+  if (!intersects_itself_) return true;
+  return inside(place.point - beside * place.normal) && !inside(place.point + beside * place.normal);
+}
+
 double SurfaceDistance::thickness(const SurfacePlace& place, Side side, double facing, double at_most) const {
   const Vec3 direction = side == Side::gap ? place.normal : Vec3(-place.normal);
   double radius = 0.5 * at_most;
+  std::optional<SurfacePlace> wall;
   for (int step = 0; step < max_shrinks && radius > 0; ++step) {
-    const Vec3 centre = place.point + radius * direction;
-    const double limit = radius * radius * (1 - still);
-    Vec3 wall = centre;
-    const double found = tree_.nearest(centre, limit, tree_.all(), [&](std::size_t t, double best) {
-      if (!(normals_[t].dot(place.normal) < -facing)) return best;
-      const auto& [a, b, c] = triangles_[t];
-      const Vec3 p = closest_point(centre, a, b, c);
-      const double squared = (p - centre).squaredNorm();
-      if (squared >= best) return best;
-      wall = p;
-      return squared;
-    });
-    if (!(found < limit)) break;
-    const Vec3 chord = wall - place.point;
+    const std::optional<SurfacePlace> nearer =
+        nearest_facing(place.point + radius * direction, place.normal, facing, radius * (1 - still));
+    if (!nearer) break;
+    wall = nearer;
+    const Vec3 chord = wall->point - place.point;
     const double along = chord.dot(direction);
     const double next = along > 0 ? chord.squaredNorm() / (2 * along) : 0;
     if (next >= radius * (1 - still)) break;
     radius = next;
   }
+  if (wall && !(is_boundary(place) && is_boundary(*wall))) return at_most;
   return 2 * radius;
 }
 

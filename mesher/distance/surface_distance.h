@@ -25,9 +25,10 @@ struct SurfacePlace {
 class SurfaceDistance {
  public:
   /// The surface's points, its triangles, of which the first `closed` are those of closed components, and
-  /// the caps of its holes, which count for distances only. All in one unit, that of all results.
+  /// the caps of its holes, which count for distances only. All in one unit, that of all results. Where the
+  /// surface `intersects_itself` parts of it are inside others and no walls.
   SurfaceDistance(std::span<const Vec3> points, std::span<const Triangle> triangles, std::size_t closed,
-                  const TriangleMesh& caps);
+                  const TriangleMesh& caps, bool intersects_itself);
 
   /// The nearest place within `at_most`; of equally near ones that on the triangle that faces the point most.
   std::optional<SurfacePlace> nearest(const Vec3& point, double at_most) const;
@@ -43,12 +44,21 @@ class SurfaceDistance {
   /// below -`facing`, so neither the flanks of a convex edge nor noise count.
   double thickness(const SurfacePlace& place, Side side, double facing, double at_most) const;
 
+  /// The place nearest to a point on walls that face `normal`, see thickness(), nearer than `below`; with
+  /// `in_front` only on those that the point is in front of.
+  std::optional<SurfacePlace> nearest_facing(const Vec3& point, const Vec3& normal, double facing,
+                                             double below, bool in_front = false) const;
+
  private:
+  /// False for a place of a self-intersecting surface with the inside on both sides.
+  bool is_boundary(const SurfacePlace& place) const;
+
   BoxTree tree_;
   std::vector<std::array<Vec3, 3>> triangles_;  ///< in the order of the tree
   std::vector<Vec3> normals_;                   ///< unit; zero for triangles without area
   std::vector<std::uint8_t> is_closed_;         ///< of a closed component
   std::optional<SurfaceTree> open_;
+  bool intersects_itself_;
 };
 
 }  // namespace tetwright

@@ -40,10 +40,6 @@ constexpr double cells_per_area = 2 * half_diagonal;
 
 std::array<int, 3> sum(const Voxel& a, int dx, int dy, int dz) { return {a[0] + dx, a[1] + dy, a[2] + dz}; }
 
-double exact_limit(const ThinWalls::Limits& limits) {
-  return std::max({exact_below, limits.min_gap, limits.min_thickness});
-}
-
 /// The voxels that may hold a surface, by the distances of their corners.
 std::vector<MortonKey> surface_voxels(const LevelSet& level_set) {
   const std::vector<GridLeaf<const float>> leaves = level_set.grid().leaves();
@@ -86,20 +82,26 @@ Vec3 middle_of(const Voxel& cell, int depth) {
 /// What is near a cell of 1/2^depth voxels.
 struct CellWalls {
   bool near = false;     ///< the surface comes near the cell
-  bool gap = false;      ///< the thinnest is a gap
-  double thickness = 0;  ///< of the thinnest, or the limit
-  SurfacePlace place;
+  bool thin = false;     ///< something there is below its limit
+  bool gap = false;      ///< a gap rather than a wall
+  double thickness = 0;  ///< of the thinnest
+};
+
+/// Up to which thickness walls and gaps count.
+struct SideLimits {
+  double wall, gap;
 };
 
 /// At the place of the surface that is nearest to a cell's middle.
 CellWalls measure_nearest(const SurfaceDistance& surface, const Voxel& cell, int depth, double facing,
-                          double limit) {
+                          const SideLimits& limits) {
   const std::optional<SurfacePlace> place =
       surface.nearest(middle_of(cell, depth), half_diagonal * std::ldexp(1, -depth));
   if (!place) return {};
-  const double wall = surface.thickness(*place, Side::wall, facing, limit),
-               gap = surface.thickness(*place, Side::gap, facing, limit);
-  return {true, gap < wall, std::min(gap, wall), *place};
+  const double wall = surface.thickness(*place, Side::wall, facing, limits.wall),
+               gap = surface.thickness(*place, Side::gap, facing, limits.gap);
+  const bool thin_wall = wall < limits.wall, thin_gap = gap < limits.gap;
+  return {true, thin_wall || thin_gap, thin_gap && (!thin_wall || gap < wall), std::min(gap, wall)};
 }
 
 Voxel child(const Voxel& cell, int k) {
@@ -108,11 +110,11 @@ Voxel child(const Voxel& cell, int k) {
 
 /// The same, and where nothing is thin there, at the eighths of the cell: near rims and corners it holds
 /// several faces.
-CellWalls measure(const SurfaceDistance& surface, const Voxel& cell, int depth, double facing, double limit) {
-  CellWalls found = measure_nearest(surface, cell, depth, facing, limit);
-  for (int k = 0; k < 8 && found.near && found.thickness >= limit; ++k)
-    if (const CellWalls part = measure_nearest(surface, child(cell, k), depth + 1, facing, limit);
-        part.near && part.thickness < limit)
+CellWalls measure(const SurfaceDistance& surface, const Voxel& cell, int depth, double facing,
+                  const SideLimits& limits) {
+  CellWalls found = measure_nearest(surface, cell, depth, facing, limits);
+  for (int k = 0; k < 8 && found.near && !found.thin; ++k)
+    if (const CellWalls part = measure_nearest(surface, child(cell, k), depth + 1, facing, limits); part.thin)
       found = part;
   return found;
 }
@@ -123,16 +125,16 @@ template <class Visit>
 void descend(const SurfaceDistance& surface, const Voxel& cell, int depth, int max_depth,
              const Visit& visit) {
   const double side = std::ldexp(1, -depth), enough = least_cells * side;
-  const CellWalls walls = measure(surface, cell, depth, facing_to_refine, enough);
+  const CellWalls walls = measure(surface, cell, depth, facing_to_refine, {enough, enough});
   if (!walls.near) return;
-  const bool thin = walls.thickness < enough;
+  const bool thin = walls.thin;
   visit(cell, depth, walls, thin);
   if (!thin || depth == max_depth) return;
   for (int k = 0; k < 8; ++k) descend(surface, child(cell, k), depth + 1, max_depth, visit);
 }
 
 /// The voxels and all around them, so many times.
-std::vector<MortonKey> dilated(std::vector<MortonKey> voxels, int times) {
+std::vector<MortonKey> dilated(std::vector<MortonKey> voxels, int times, const std::array<int, 3>& cells) {
   for (int i = 0; i < times; ++i) {
     voxels = parallel_collect<MortonKey>(
         0, voxels.size(), voxel_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
@@ -140,7 +142,9 @@ std::vector<MortonKey> dilated(std::vector<MortonKey> voxels, int times) {
             const Voxel at = morton_decode(voxels[v]);
             for (int k = 0; k < 27; ++k) {
               const Voxel next = sum(at, k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-              if (next[0] >= 0 && next[1] >= 0 && next[2] >= 0) out.push_back(morton_encode(next));
+              bool in_box = true;
+              for (std::size_t a = 0; a < 3; ++a) in_box &= next[a] >= 0 && next[a] < cells[a];
+              if (in_box) out.push_back(morton_encode(next));
             }
           }
         });
@@ -156,6 +160,12 @@ int covered_around(const ThinWalls::Limits& limits) {
 
 /// Puts voxels of which the covered surroundings meet into one region.
 void find_regions(ThinSurvey& survey) {
+  // What is closed or left out on purpose is changed far around: all at one depth, so that nothing jumps.
+  if (covered_around(survey.limits) > 1) {
+    survey.region.assign(survey.voxels.size(), 0);
+    survey.regions.resize(1);
+    return;
+  }
   struct Claim {
     MortonKey voxel;
     Index owner;
@@ -164,7 +174,7 @@ void find_regions(ThinSurvey& survey) {
   std::vector<Claim> claims = parallel_collect<Claim>(
       0, survey.voxels.size(), voxel_grain, [&](std::size_t begin, std::size_t end, std::vector<Claim>& out) {
         for (std::size_t v = begin; v < end; ++v)
-          for (const MortonKey key : dilated({survey.voxels[v]}, 1))
+          for (const MortonKey key : dilated({survey.voxels[v]}, 1, survey.cells))
             out.push_back({key, static_cast<Index>(v)});
       });
   parallel_sort(claims);
@@ -198,11 +208,12 @@ void count_cells(ThinSurvey& survey) {
                     if (thin && depth == counted_depth) {
                       // Tips of wedges are thin whatever the cells: only walls that are parallel go deeper.
                       const double side = std::ldexp(1, -depth);
-                      const double parallel =
-                          measure_nearest(*survey.surface, cell, depth, facing_to_report, least_cells * side)
-                              .thickness;
-                      if (parallel < least_cells * side)
-                        while (needed < max_wall_refinement && parallel < std::ldexp(least_cells, -needed))
+                      const CellWalls parallel =
+                          measure_nearest(*survey.surface, cell, depth, facing_to_report,
+                                          {least_cells * side, least_cells * side});
+                      if (parallel.thin)
+                        while (needed < max_wall_refinement &&
+                               parallel.thickness < std::ldexp(least_cells, -needed))
                           ++needed;
                       else
                         needed = depth;
@@ -241,13 +252,15 @@ ThinSurvey survey_thin_walls(const RepairedSurface& surface, const LevelSet& lev
                              const GridFrame& frame, const ThinWalls::Limits& limits, Progress* progress) {
   ThinSurvey survey;
   survey.limits = limits;
-  const double limit = exact_limit(limits);
+  survey.cells = frame.cells;
+  const SideLimits exact{std::max(exact_below, limits.min_thickness), std::max(exact_below, limits.min_gap)};
   const std::vector<MortonKey> all = surface_voxels(level_set);
   const std::vector<MortonKey> suspects = parallel_collect<MortonKey>(
       0, all.size(), voxel_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
         LevelSetSampler sampler(level_set);
         for (std::size_t i = begin; i < end; ++i)
-          if (may_be_thin(sampler, middle_of(morton_decode(all[i]), 0), limit)) out.push_back(all[i]);
+          if (may_be_thin(sampler, middle_of(morton_decode(all[i]), 0), std::max(exact.wall, exact.gap)))
+            out.push_back(all[i]);
       });
   if (progress) progress->throw_if_cancelled();
   if (suspects.empty()) return survey;
@@ -256,14 +269,13 @@ ThinSurvey survey_thin_walls(const RepairedSurface& surface, const LevelSet& lev
   parallel_for(0, points.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) points[i] = frame.to_grid(surface.points[i]);
   });
-  survey.surface =
-      std::make_shared<const SurfaceDistance>(points, surface.triangles, surface.closed, level_set.caps());
+  survey.surface = std::make_shared<const SurfaceDistance>(points, surface.triangles, surface.closed,
+                                                           level_set.caps(), surface.intersects_itself);
   survey.voxels = parallel_collect<MortonKey>(
       0, suspects.size(), voxel_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
         for (std::size_t i = begin; i < end; ++i) {
-          const CellWalls walls =
-              measure(*survey.surface, morton_decode(suspects[i]), 0, facing_to_change, limit);
-          if (walls.near && walls.thickness < limit) out.push_back(suspects[i]);
+          if (measure(*survey.surface, morton_decode(suspects[i]), 0, facing_to_change, exact).thin)
+            out.push_back(suspects[i]);
         }
       });
   if (survey.voxels.empty()) {
@@ -307,7 +319,7 @@ ThinWallPlan plan_thin_walls(const ThinSurvey& survey) {
     for (std::size_t v = 0; v < survey.voxels.size(); ++v)
       by_depth[survey.regions[survey.region[v]].depth].push_back(survey.voxels[v]);
     for (int depth = 0; depth <= max_wall_refinement; ++depth)
-      for (const MortonKey key : dilated(std::move(by_depth[depth]), around))
+      for (const MortonKey key : dilated(std::move(by_depth[depth]), around, survey.cells))
         walls->cover(morton_decode(key), depth);
   }
   walls->set_core(survey.voxels);

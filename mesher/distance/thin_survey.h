@@ -27,6 +27,7 @@ struct ThinSurvey {
 
   std::shared_ptr<const SurfaceDistance> surface;  ///< in voxels; null if nothing is thin
   ThinWalls::Limits limits;
+  std::array<int, 3> cells{};         ///< of the frame
   std::vector<MortonKey> voxels;      ///< those with a thin wall or gap, ascending
   std::vector<std::uint32_t> region;  ///< of each of them
   std::vector<Region> regions;

@@ -13,6 +13,11 @@ namespace {
 /// Cosine between the direction to the nearest place and its normal below which that place is the rim of a
 /// gap.
 constexpr double min_alignment = 0.7;
+/// Minus the cosine between the directions to two walls from a point between them: in front of the mouth of a
+/// wide gap it falls.
+constexpr double min_opposition = 0.95;
+/// The narrow face at a corner of a rim is beside another narrow face.
+constexpr int max_steps_beside = 2;
 
 }  // namespace
 
@@ -51,14 +56,29 @@ double ThinWalls::parallel_thickness(const Vec3& point, int depth) const {
   return wall < least ? wall : HUGE_VAL;
 }
 
-double ThinWalls::thickness_around(const SurfacePlace& place, SurfaceDistance::Side side,
-                                   double at_most) const {
-  const double thickness = surface_->thickness(place, side, facing_to_change, at_most);
-  if (thickness < at_most) return thickness;
+double ThinWalls::thickness_around(SurfacePlace& place, SurfaceDistance::Side side, double at_most) const {
   const double sign = side == SurfaceDistance::Side::gap ? 1 : -1;
-  const Vec3 within = place.point + sign * 0.5 * at_most * place.normal;
-  const std::optional<SurfacePlace> beside = surface_->nearest(within, 0.5 * at_most);
-  return beside ? surface_->thickness(*beside, side, facing_to_change, at_most) : thickness;
+  SurfacePlace at = place;
+  for (int step = 0;; ++step) {
+    const double thickness = surface_->thickness(at, side, facing_to_change, at_most);
+    if (thickness < at_most) {
+      place = at;
+      return thickness;
+    }
+    if (step == max_steps_beside) return at_most;
+    const std::optional<SurfacePlace> beside =
+        surface_->nearest(at.point + sign * 0.5 * at_most * at.normal, 0.5 * at_most);
+    if (!beside) return at_most;
+    at = *beside;
+  }
+}
+
+bool ThinWalls::is_between(const Vec3& point, const Vec3& normal, double width) const {
+  const auto behind = surface_->nearest_facing(point, -normal, facing_to_change, width, true),
+             ahead = surface_->nearest_facing(point, normal, facing_to_change, width, true);
+  if (!behind || !ahead) return false;
+  const Vec3 a = behind->point - point, b = ahead->point - point;
+  return a.dot(b) <= -min_opposition * a.norm() * b.norm();
 }
 
 double ThinWalls::distance(const Vec3& point, int depth, bool thicken, Vec3& gradient) const {
@@ -72,16 +92,21 @@ double ThinWalls::distance(const Vec3& point, int depth, bool thicken, Vec3& gra
   const Vec3 away = point - place->point;
   const double size = away.norm();
   // In front of a gap's mouth the nearest place is on its rim, and nothing is closed.
-  const bool beside = std::abs(place->normal.dot(away)) < min_alignment * size;
+  // On the surface there is no direction to it but rounding.
+  const bool beside =
+      size > tolerance::smallest_distance && std::abs(place->normal.dot(away)) < min_alignment * size;
   // Within a gap no place is farther from the nearest wall than half its width.
   if (!inside && !beside && size <= 0.5 * close_below) {
-    const double gap = thickness_around(*place, SurfaceDistance::Side::gap, close_below);
-    if (gap < close_below) return std::max<double>(-level_set_band, -0.5 * (close_below - gap));
+    SurfacePlace side = *place;
+    const double gap = thickness_around(side, SurfaceDistance::Side::gap, close_below);
+    if (gap < close_below && (size <= 0.5 * least || is_between(point, side.normal, close_below)))
+      return std::max<double>(-level_set_band, -0.5 * (close_below - gap));
   }
   // Farther away than lattice edges reach, values are not interpolated.
   const bool near = size < std::ldexp(level_set_band, -depth);
   const double sought = std::max(omit_below, thicken && near ? least : 0.0);
-  const double wall = sought > 0 ? thickness_around(*place, SurfaceDistance::Side::wall, sought) : 0;
+  SurfacePlace side = *place;
+  const double wall = sought > 0 ? thickness_around(side, SurfaceDistance::Side::wall, sought) : 0;
   if (wall < omit_below)
     return std::min<double>(level_set_band, std::max(inside ? 0 : size, 0.5 * (omit_below - wall)));
   double value = std::max(size, tolerance::smallest_distance);

@@ -71,7 +71,10 @@ class ThinWalls {
     return static_cast<std::size_t>(place);
   }
   /// The thickness at a place, also where it is on the narrow face at the rim of a wall or the end of a gap.
-  double thickness_around(const SurfacePlace& place, SurfaceDistance::Side side, double at_most) const;
+  /// `place` becomes the one that it was measured at.
+  double thickness_around(SurfacePlace& place, SurfaceDistance::Side side, double at_most) const;
+  /// Whether a point lies between a wall of this normal and one that faces it, both nearer than `width`.
+  bool is_between(const Vec3& point, const Vec3& normal, double width) const;
   double distance(const Vec3& point, int depth, bool thicken, Vec3& gradient) const;
 
   std::shared_ptr<const SurfaceDistance> surface_;

@@ -99,7 +99,7 @@ TEST(CommandLine, NumbersOutOfRangeNameOptionValueAndRange) {
   check(mesh, "--threads", {"0", "1025", "-1", "two"}, "whole number from 1 to 1024");
   check(mesh, "--seed", {"-1", "1.5", "18446744073709551616"}, "whole number from 0 to 18446744073709551615");
   check(mesh, "--max-refinement", {"9", "-1", "1.5"}, "whole number from 0 to 8");
-  check(mesh, "--min-gap", {"0", "-1", "nan", "wide", "%"}, "");
+  check(mesh, "--min-gap", {"0", "-1", "nan", "wide"}, "length above 0 in input units");
   check(mesh, "--min-thickness", {"101%", "0%", "-1%"}, "share above 0 % and at most 100 % of the diagonal");
   check(mesh, "--resolution", {"3", "4097", "64.0"}, "whole number from 4 to 4096");
   check(mesh, "--voxel-size", {"0", "-1", "nan", "inf", "1e400", "small", "1mm"}, "number above 0");

@@ -163,7 +163,7 @@ TEST(Fidelity, WhatStaysTooThickOrClosedIsSaidWithItsPlace) {
   EXPECT_EQ(stats["dense"]["closed_gaps"][0]["kind"], "gap");
   EXPECT_FALSE(stats["dense"]["closed_gaps"][0]["on_purpose"]);
   // As asked: a note.
-  a = run(boxes + " --min-gap 5% --accept-changes");
+  a = run(boxes + " --min-gap 5%");
   EXPECT_EQ(a.status, 0) << a.err;
   EXPECT_NE(a.err.find("closed by --min-gap"), std::string::npos) << a.err;
   EXPECT_EQ(nlohmann::json::parse(contents(f / "s.json"))["fidelity"][0]["result"]["components"], 1);

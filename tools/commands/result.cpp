@@ -147,13 +147,15 @@ void find_changed_solids(const CommandLine& line, const TetMesh& mesh, RunReport
   }
   if (text.empty()) return;
   const std::size_t all = report.fidelity.size();
-  if (line.accept_changes) {
+  const bool on_purpose = std::any_of(report.mesher->closed_gaps.begin(), report.mesher->closed_gaps.end(),
+                                      [](const ClosedGapReport& g) { return g.on_purpose; });
+  if (line.accept_changes || on_purpose) {
     report.findings.push_back(
         {report.inputs.front(),
          {"of " + std::to_string(all) + " materials not the solid of the input: " + text,
           all - same,
           {},
-          "accepted"}});
+          line.accept_changes ? "accepted" : "as --min-gap and --min-thickness ask"}});
     return;
   }
   std::string thin;
@@ -201,12 +203,12 @@ void find_thin_walls(const CommandLine& line, RunReport& report) {
         {report.inputs.front(), {"thin place, too thin for cells: " + text, 1, {}, "accepted"}});
     return;
   }
-  report.shortfall.push_back({"thin_walls", 0,
-                              static_cast<double>(report.mesher->closed_gaps.size() + t.points),
-                              "the size of the cells",
-                              "too thin for cells: " + text +
-                                  "; raise --resolution or --max-refinement, or take it as it is with "
-                                  "--accept-changes"});
+  const bool finer = !line.uniform && line.max_refinement.value_or(0) < max_wall_refinement;
+  report.shortfall.push_back(
+      {"thin_walls", 0, static_cast<double>(report.mesher->closed_gaps.size() + t.points),
+       "the size of the cells",
+       "too thin for cells: " + text + "; raise --resolution" + (finer ? " or --max-refinement" : "") +
+           ", or take it as it is with --accept-changes"});
 }
 
 /// With --strict whatever is noted.

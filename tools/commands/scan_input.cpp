@@ -155,6 +155,11 @@ MesherOptions common_options(const CommandLine& line) {
 
 DenseMesh mesh_input(const MesherInput& surfaces, const CommandLine& line, Progress* progress) {
   MesherOptions options = common_options(line);
+  if (line.uniform && line.max_refinement.value_or(0) > 0)
+    throw UsageError("--uniform has cells of one size; leave out --max-refinement, or --uniform");
+  if (!line.layers.empty() && line.min_thickness.value > 0)
+    throw UsageError(
+        "--min-thickness leaves out walls of surfaces without layers; leave out --layer, or --min-thickness");
   const double diagonal = (surfaces.high - surfaces.low).norm();
   options.max_refinement = line.max_refinement;
   options.min_gap = line.min_gap.in_input_units(diagonal);

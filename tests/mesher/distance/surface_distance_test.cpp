@@ -14,7 +14,7 @@ namespace {
 using Side = SurfaceDistance::Side;
 
 SurfaceDistance distance_of(const TriangleMesh& mesh) {
-  return {mesh.points, mesh.triangles, mesh.triangles.size(), {}};
+  return {mesh.points, mesh.triangles, mesh.triangles.size(), {}, false};
 }
 
 /// Turned about no axis of the grid.

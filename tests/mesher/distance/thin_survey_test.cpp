@@ -106,12 +106,52 @@ TEST(ThinWalls, WhatIsNotWantedGoesOnPurpose) {
   // A fin of 0.5 on a box.
   TriangleMesh fin = make_box(Vec3(0, 0, 0), Vec3(8, 8, 8));
   fin = joined(fin, make_box(Vec3(9, 0, 0), Vec3(9.5, 8, 8)));
+  EXPECT_EQ(counts_of(mesh_of(fin, 0.4, std::nullopt)).components, 2);
   const DenseMesh without = mesh_of(fin, 0.4, std::nullopt, 0, 0.7);
   EXPECT_EQ(counts_of(without).components, 1);
   EXPECT_NEAR(counts_of(without).volume, 512, 6);
   ASSERT_FALSE(without.report.closed_gaps.empty());
   EXPECT_FALSE(without.report.closed_gaps[0].gap);
   EXPECT_TRUE(without.report.closed_gaps[0].on_purpose);
+}
+
+/// A U of 3 x 3 x 3 with a slot of 1 x 3 x 2 that is open above and at both ends.
+TriangleMesh u_profile() {
+  const std::array<std::array<double, 2>, 8> outline{
+      {{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}}};
+  TriangleMesh u;
+  for (const double y : {0.0, 3.0})
+    for (const auto& [x, z] : outline) u.points.emplace_back(x, y, z);
+  const auto add = [&](Index a, Index b, Index c, Index d) {
+    u.triangles.push_back({a, b, c});
+    u.triangles.push_back({a, c, d});
+  };
+  for (Index k = 0; k < 8; ++k) add(k, (k + 1) % 8, (k + 1) % 8 + 8, k + 8);
+  for (const auto& [a, b, c, d] : {std::array<Index, 4>{0, 5, 4, 1}, {0, 7, 6, 5}, {1, 4, 3, 2}}) {
+    add(a, b, c, d);
+    add(d + 8, c + 8, b + 8, a + 8);
+  }
+  return enclosed_volume(u) < 0 ? turned_over(u) : u;
+}
+
+TEST(ThinWalls, AClosedSlotEndsAtItsMouth) {
+  ASSERT_NEAR(enclosed_volume(u_profile()), 21, 1e-12);
+  for (const int turn : {0, 1}) {
+    const DenseMesh dense = mesh_of(turned(u_profile(), turn), 0.1, std::nullopt, 1.2);
+    const Counts found = counts_of(dense);
+    EXPECT_EQ(found.components, 1);
+    EXPECT_EQ(found.handles, 0);
+    EXPECT_NEAR(found.volume, 27, 0.5);  // a flat lid over mouth and ends
+  }
+}
+
+TEST(ThinWalls, OverlappingPartsAreNoThinWalls) {
+  const TriangleMesh overlap =
+      joined(make_box(Vec3(0, 0, 0), Vec3(8, 8, 8)), make_box(Vec3(7.8, 1, 1), Vec3(15, 7, 7)));
+  const DenseMesh dense = mesh_of(overlap, 0.5, std::nullopt, 0, 0.4);
+  EXPECT_EQ(counts_of(dense).components, 1);
+  EXPECT_NEAR(counts_of(dense).volume, 512 + 7 * 36, 8);
+  EXPECT_EQ(dense.report.refinement, 0);
 }
 
 TEST(ThinWalls, LimitsOutOfRangeAreRefused) {
