@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <utility>
 
 #include "common/geometry/surface_tree.h"
@@ -61,6 +62,8 @@ DistanceGrid::DistanceGrid(double background) : impl_(new Impl{static_cast<float
 DistanceGrid::~DistanceGrid() = default;
 DistanceGrid::DistanceGrid(DistanceGrid&&) noexcept = default;
 DistanceGrid& DistanceGrid::operator=(DistanceGrid&&) noexcept = default;
+
+DistanceGrid DistanceGrid::copy() const { return DistanceGrid(std::make_unique<Impl>(*impl_)); }
 
 DistanceGrid DistanceGrid::unsigned_distances(std::span<const Vec3> points,
                                               std::span<const Triangle> triangles, Progress*) {
