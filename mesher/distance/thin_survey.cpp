@@ -124,7 +124,7 @@ CellWalls measure(const SurfaceDistance& surface, const Voxel& cell, int depth, 
 template <class Visit>
 void descend(const SurfaceDistance& surface, const Voxel& cell, int depth, int max_depth,
              const Visit& visit) {
-  const double side = std::ldexp(1, -depth), enough = least_cells * side;
+  const double side = std::ldexp(1, -depth), enough = min_shown_cells * side;
   const CellWalls walls = measure(surface, cell, depth, facing_to_refine, {enough, enough});
   if (!walls.near) return;
   const bool thin = walls.thin;
@@ -210,10 +210,10 @@ void count_cells(ThinSurvey& survey) {
                       const double side = std::ldexp(1, -depth);
                       const CellWalls parallel =
                           measure_nearest(*survey.surface, cell, depth, facing_to_report,
-                                          {least_cells * side, least_cells * side});
+                                          {min_shown_cells * side, min_shown_cells * side});
                       if (parallel.thin)
                         while (needed < max_wall_refinement &&
-                               parallel.thickness < std::ldexp(least_cells, -needed))
+                               parallel.thickness < std::ldexp(min_shown_cells, -needed))
                           ++needed;
                       else
                         needed = depth;
@@ -352,7 +352,7 @@ ThinWallPlan plan_thin_walls(const ThinSurvey& survey) {
              ++v) {
           const std::uint32_t region = survey.region[v];
           const int max_depth = survey.regions[region].depth;
-          const double least = std::ldexp(least_cells, -max_depth);
+          const double min_shown = std::ldexp(min_shown_cells, -max_depth);
           descend(*survey.surface, morton_decode(survey.voxels[v]), 0, max_depth,
                   [&](const Voxel& cell, int depth, const CellWalls&, bool thin) {
                     if (thin && depth < max_depth) found[task].cells.push_back({depth, morton_encode(cell)});
@@ -375,13 +375,13 @@ ThinWallPlan plan_thin_walls(const ThinSurvey& survey) {
                     const double wall =
                         survey.surface->thickness(*place, Side::wall, facing_to_report, exact_below);
                     if (wall < exact_below) {
-                      const double shown = std::max({wall, least, survey.limits.min_thickness});
+                      const double shown = std::max({wall, min_shown, survey.limits.min_thickness});
                       found[task].filling += filling_tets_per_area * area_of(wall) / (shown * shown);
                     }
                     for (const Side kind : {Side::wall, Side::gap}) {
                       const double wanted =
                           kind == Side::gap ? survey.limits.min_gap : survey.limits.min_thickness;
-                      const double limit = std::max(least, wanted);
+                      const double limit = std::max(min_shown, wanted);
                       const double thickness =
                           survey.surface->thickness(*place, kind, facing_to_report, limit);
                       if (thickness < limit)
@@ -431,14 +431,15 @@ ThinWallPlan plan_thin_walls(const ThinSurvey& survey) {
     const bool same = !plan.changed.empty() && &c != changes.data() && (&c)[-1].region == c.region &&
                       (&c)[-1].gap == c.gap && (&c)[-1].on_purpose == c.on_purpose;
     if (!same)
-      plan.changed.push_back({c.gap, c.thickness, std::ldexp(least_cells, -survey.regions[c.region].depth), 0,
-                              c.place, c.on_purpose});
+      plan.changed.push_back({c.gap, c.thickness,
+                              std::ldexp(min_shown_cells, -survey.regions[c.region].depth), 0, c.place,
+                              c.on_purpose});
     ChangedWall& w = plan.changed.back();
     w.area += c.area;
     if (c.thickness < w.thickness) w.thickness = c.thickness, w.place = c.place;
   }
   // What is smaller than a finest cell is noise of what merely comes near.
-  std::erase_if(plan.changed, [](const ChangedWall& w) { return w.area < w.least * w.least; });
+  std::erase_if(plan.changed, [](const ChangedWall& w) { return w.area < w.min_shown * w.min_shown; });
   plan.walls = walls;
   return plan;
 }

@@ -55,7 +55,7 @@ void choose_depths(const std::vector<ThinSurvey*>& surveys, const RefinementBudg
 struct ChangedWall {
   bool gap = false;
   double thickness = 0;       ///< the smallest there is, voxels
-  double least = 0;           ///< what the cells show, voxels
+  double min_shown = 0;       ///< what the cells show, voxels
   double area = 0;            ///< of one side, squared voxels
   Vec3 place = Vec3::Zero();  ///< where it is thinnest, voxels
   bool on_purpose = false;    ///< within --min-gap or --min-thickness

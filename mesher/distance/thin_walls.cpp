@@ -49,11 +49,11 @@ double ThinWalls::true_distance(const Vec3& point, int depth, Vec3& gradient) co
 }
 
 double ThinWalls::parallel_thickness(const Vec3& point, int depth) const {
-  const double least = std::ldexp(least_cells, -depth);
+  const double min_shown = std::ldexp(min_shown_cells, -depth);
   const std::optional<SurfacePlace> place = surface_->nearest(point, 1);
   if (!place) return HUGE_VAL;
-  const double wall = surface_->thickness(*place, SurfaceDistance::Side::wall, facing_to_report, least);
-  return wall < least ? wall : HUGE_VAL;
+  const double wall = surface_->thickness(*place, SurfaceDistance::Side::wall, facing_to_report, min_shown);
+  return wall < min_shown ? wall : HUGE_VAL;
 }
 
 double ThinWalls::thickness_around(SurfacePlace& place, SurfaceDistance::Side side, double at_most) const {
@@ -83,8 +83,8 @@ bool ThinWalls::is_between(const Vec3& point, const Vec3& normal, double width) 
 
 double ThinWalls::distance(const Vec3& point, int depth, bool thicken, Vec3& gradient) const {
   gradient = Vec3::Zero();
-  const double least = std::ldexp(least_cells, -depth);
-  const double close_below = std::max(least, limits_.min_gap), omit_below = limits_.min_thickness;
+  const double min_shown = std::ldexp(min_shown_cells, -depth);
+  const double close_below = std::max(min_shown, limits_.min_gap), omit_below = limits_.min_thickness;
   const double reach = std::max<double>(level_set_band, 0.5 * std::max(close_below, omit_below));
   const bool inside = surface_->inside(point);
   const std::optional<SurfacePlace> place = surface_->nearest(point, reach);
@@ -99,12 +99,12 @@ double ThinWalls::distance(const Vec3& point, int depth, bool thicken, Vec3& gra
   if (!inside && !beside && size <= 0.5 * close_below) {
     SurfacePlace side = *place;
     const double gap = thickness_around(side, SurfaceDistance::Side::gap, close_below);
-    if (gap < close_below && (size <= 0.5 * least || is_between(point, side.normal, close_below)))
+    if (gap < close_below && (size <= 0.5 * min_shown || is_between(point, side.normal, close_below)))
       return std::max<double>(-level_set_band, -0.5 * (close_below - gap));
   }
   // Farther away than lattice edges reach, values are not interpolated.
   const bool near = size < std::ldexp(level_set_band, -depth);
-  const double sought = std::max(omit_below, thicken && near ? least : 0.0);
+  const double sought = std::max(omit_below, thicken && near ? min_shown : 0.0);
   SurfacePlace side = *place;
   const double wall = sought > 0 ? thickness_around(side, SurfaceDistance::Side::wall, sought) : 0;
   if (wall < omit_below)
@@ -115,7 +115,7 @@ double ThinWalls::distance(const Vec3& point, int depth, bool thicken, Vec3& gra
     value = -value;
     if (size > tolerance::smallest_distance) gradient = -gradient;
   }
-  if (thicken && near) value -= 0.5 * std::max(0.0, least - wall);
+  if (thicken && near) value -= 0.5 * std::max(0.0, min_shown - wall);
   return std::clamp<double>(value, -level_set_band, level_set_band);
 }
 

@@ -18,10 +18,10 @@ namespace tetwright {
 ///
 /// Near them the distances come from the triangles, and the surface is changed so that nothing is thinner
 /// than a lattice can show: with c the nearest place of the surface, T the thickness of the wall behind it, G
-/// the width of the gap in front of it and `least` what the lattice shows,
+/// the width of the gap in front of it and `min_shown` the thinnest that the lattice shows,
 ///
-///     outside, G < least:  -(least - G) / 2           the gap is closed
-///     else                 f - max(0, least - T) / 2  the wall is thickened
+///     outside, G < min_shown:  -(min_shown - G) / 2           the gap is closed
+///     else                 f - max(0, min_shown - T) / 2  the wall is thickened
 ///
 /// Both change continuously along a wall, so a wall or a gap is kept or closed whole and does not tear.
 /// Gaps below `min_gap` are closed and walls below `min_thickness` left out in the same way, whatever the
@@ -84,7 +84,7 @@ class ThinWalls {
 };
 
 /// Thinnest walls and gaps that a lattice shows, in its cells: wherever they run, a lattice point is inside.
-inline constexpr double least_cells = 1.25;
+inline constexpr double min_shown_cells = 1.25;
 /// Cosine of the angle to facing walls that counts for changing distances, for choosing cells, and for what
 /// the user is told: tips of wedges are thin whatever the cells.
 inline constexpr double facing_to_change = 0.3, facing_to_refine = 0.9, facing_to_report = 0.99;
