@@ -51,6 +51,10 @@ inline constexpr double box_distance = 1e-6;
 /// Cells and voxels that differ by less than this coincide, or only touch.
 inline constexpr double coinciding_cells = 1e-6;
 
+/// In working coordinates of the simplifier, where points are on a lattice of 2^-30: this far from a plane
+/// they are on it.
+inline constexpr double flat_patch = 0x1p-28;
+
 // Steps and iterations.
 
 /// A point is on an interface if it is this near, in voxels: far below the accuracy of the distances.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/features/surface_patches.h"
 #include "common/mesh/solid_shape.h"
 #include "common/progress.h"
 #include "common/reference_surface.h"
@@ -28,6 +29,8 @@ struct MesherOptions {
   std::optional<int> max_refinement;
   /// Gaps of a surface that are narrower are closed, and walls that are thinner left out; input units.
   double min_gap = 0, min_thickness = 0;
+  /// Which edges of the surfaces stay sharp.
+  FeatureAngle feature_angle;
   /// Mesh the outside too, in a box, as the material `outside` of tag 0.
   bool keep_outside = false;
   /// Memory that the caller needs afterwards for each dense tet, bytes; meshing is refused if that does not
@@ -80,6 +83,22 @@ struct MesherEstimate {
   std::size_t bytes = 0;  ///< of memory at the peak, the program and its libraries among them
 };
 
+/// The patches of a surface.
+struct FeatureReport {
+  std::string name;      ///< of the material
+  SurfacePatches found;  ///< without the list of the triangles
+};
+
+/// Creases and corners of the surfaces in the mesh.
+struct CreaseReport {
+  std::size_t points = 0;           ///< that stand for creases and corners
+  std::size_t off = 0;              ///< of these, not on them
+  double max_distance = 0;          ///< of one of these, input units
+  Vec3 place = Vec3::Zero();        ///< where that one is
+  std::size_t lost_corners = 0;     ///< corners without a point
+  Vec3 lost_corner = Vec3::Zero();  ///< one of them
+};
+
 struct MesherReport {
   double cell_size = 0;               ///< edge of a finest cell (a voxel), input units
   int resolution = 0;                 ///< finest cells along the longest side
@@ -98,8 +117,10 @@ struct MesherReport {
   /// Of these the ones for which neither surfaces nor distances say it: cells were refined, or all of it is
   /// smaller than a cell.
   std::vector<std::string> unknown;
-  MesherEstimate estimate;          ///< from the input, see estimate_mesh()
-  MesherEstimate lattice_estimate;  ///< from the regions of the lattice's points
+  std::vector<FeatureReport> features;  ///< of each surface, in their order
+  std::optional<CreaseReport> creases;  ///< if there are any
+  MesherEstimate estimate;              ///< from the input, see estimate_mesh()
+  MesherEstimate lattice_estimate;      ///< from the regions of the lattice's points
   double seconds_sdf = 0, seconds_octree = 0, seconds_lattice = 0, seconds_move = 0, seconds_cut = 0;
 };
 

@@ -7,6 +7,7 @@
 
 #include "common/error.h"
 #include "common/message_text.h"
+#include "mesher/cut/crease_fitting.h"
 #include "mesher/distance/body_field.h"
 #include "mesher/distance/field_solid.h"
 #include "mesher/distance/field_thickness.h"
@@ -110,6 +111,22 @@ void validate_limits(const MesherOptions& options, double cell) {
                      ", not " + std::to_string(*options.max_refinement));
 }
 
+/// A patch that is smaller is none: cells do not show it.
+constexpr double min_patch_cells = 8;
+
+/// The patches of all bodies; the report gets their numbers.
+std::vector<SurfacePatches> patches_of(const MesherInput& input, const MesherOptions& options, double cell,
+                                       MesherReport& report) {
+  std::vector<SurfacePatches> patches;
+  for (const MesherInput::Body& body : input.bodies) {
+    patches.push_back(find_patches(body.surface.points, body.surface.triangles,
+                                   {options.feature_angle, min_patch_cells * cell * cell}, {}, body.file));
+    report.features.push_back({body.name, patches.back()});
+    report.features.back().found.patches = {};
+  }
+  return patches;
+}
+
 void validate_outside_is_free(const MesherInput& input) {
   const auto taken = [](const std::string& name, MaterialTag tag) {
     if (name == outside_name || tag == outside_tag)
@@ -185,9 +202,16 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   sheets.finer = combine(std::move(sheets.finer), std::move(bodies.finer));
   expect_materials(input, *field, interface_voxels, sheets.finer.refinement > 0, report);
 
-  return mesh_field(
+  const std::vector<SurfacePatches> patches = patches_of(input, options, report.cell_size, report);
+  DenseMesh dense = mesh_field(
       field, std::move(interface_voxels), std::move(sheets.finer), options, MemoryModel{}, std::move(report),
       stages, [&](const std::vector<std::uint8_t>& there) { validate_materials_left(input, *field, there); });
+  if (std::any_of(patches.begin(), patches.end(), [](const SurfacePatches& p) { return p.any(); })) {
+    stages.begin("creases");
+    dense.report.creases = fit_creases(dense.mesh, FeatureSurface(input, patches), dense.report.cell_size);
+    dense.report.seconds_cut += stages.seconds();
+  }
+  return dense;
 }
 
 }  // namespace tetwright

@@ -71,6 +71,7 @@ struct Remesher::Impl {
     mesh.compact(spare, spare, &slots);
     mesh.reserve_twice();
     if (numbers) *numbers = {std::move(slots.points), std::move(slots.tets)};
+    diagonal = mesh.diagonal();
     look_at_all();
   }
   void keep_surfaces() {
@@ -117,6 +118,7 @@ struct Remesher::Impl {
   PointTree places;
   ChangeJournal journal;
   BlockRules rules;
+  double diagonal = 0;                              ///< when points were last numbered
   std::optional<SurfaceProjection> first_surfaces;  ///< with RemesherOptions::keep_surfaces
   Neighbourhood near;
   std::vector<Field> point_fields, tet_fields;
@@ -184,7 +186,7 @@ RemeshChanges Remesher::Impl::call(const RemeshRegion& region, const RemeshAim& 
   const std::vector<Index> with_rim = near.tets_at(mesh, near.points_of(mesh, tets));
   SurfaceProjection found;
   if (!first_surfaces) found = project_onto(near.points_of(mesh, with_rim));
-  rules.projection = first_surfaces ? &*first_surfaces : &found;
+  rules.project_onto(first_surfaces ? *first_surfaces : found, diagonal);
   std::uint64_t operations = 0;
   int improved = 0;
   {

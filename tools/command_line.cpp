@@ -2,9 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
-#include <charconv>
-#include <cmath>
-#include <cstdlib>
 #include <iostream>
 #include <limits>
 #include <map>
@@ -13,6 +10,7 @@
 #include "common/samples.h"
 #include "tools/label_ranges.h"
 #include "tools/nearest_word.h"
+#include "tools/option_values.h"
 
 namespace tetwright {
 
@@ -24,89 +22,6 @@ constexpr std::uint64_t max_rounds = 10'000;
 constexpr std::uint64_t max_threads_option = 1024;
 /// More voxels than any volume has.
 constexpr std::uint64_t max_min_voxels = 1'000'000'000'000'000'000;
-/// The solid angle of a vertex of the regular tet, steradians: no tet has a larger smallest one.
-constexpr double max_solid_angle = 0.5513;
-
-template <class Value>
-CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& to, const char* type,
-                        std::function<Value(const std::string&)> parse, const std::string& description) {
-  return app
-      .add_option_function<std::string>(
-          name, [&to, parse](const std::string& text) { to = parse(text); }, description)
-      ->type_name(type);
-}
-
-/// An option whose value is a whole number from `low` to `high`. Not the parser's own conversion, which takes
-/// numbers with a leading 0 for octal and lets negative ones wrap around.
-template <class Whole>
-CLI::Option* add_whole_number(CLI::App& app, const std::string& name, Whole& to, std::uint64_t low,
-                              std::uint64_t high, const std::string& description) {
-  const auto parse = [name, low, high](const std::string& text) {
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || value < low || value > high)
-      throw CLI::ValidationError(name, "'" + text + "' is not a whole number from " + std::to_string(low) +
-                                           " to " + std::to_string(high));
-    if constexpr (std::is_same_v<Whole, std::optional<int>>)
-      return Whole(static_cast<int>(value));
-    else
-      return static_cast<Whole>(value);
-  };
-  return add_parsed<Whole>(app, name, to, "N", parse, description);
-}
-
-/// The numbers that an option accepts.
-struct Range {
-  double low, high;
-  bool low_included;
-  const char* text;  ///< for messages
-
-  bool contains(double x) const { return (low_included ? x >= low : x > low) && x <= high; }
-};
-constexpr double max_number = std::numeric_limits<double>::max();
-constexpr Range positive{0, max_number, false, "a number above 0"};
-constexpr Range not_negative{0, max_number, true, "a number of at least 0"};
-constexpr Range solid_angle{0, max_solid_angle, true, "a solid angle from 0 to 0.5513, the regular tet's"};
-
-/// Throws unless all of the text is a number within the range; no range contains nan or inf.
-double parse_number(const std::string& option, const std::string& text, const Range& range) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != 0 || !range.contains(value))
-    throw CLI::ValidationError(option, "'" + text + "' is not " + range.text);
-  return value;
-}
-
-/// An option whose value is a number within `range`.
-CLI::Option* add_number(CLI::App& app, const std::string& name, double& to, const Range& range,
-                        const std::string& description) {
-  return add_parsed<double>(
-      app, name, to, "NUMBER",
-      [name, range](const std::string& text) { return parse_number(name, text, range); }, description);
-}
-
-/// An option whose value is a length, in input units or as a share of the diagonal.
-CLI::Option* add_length(CLI::App& app, const std::string& name, LengthOption& to,
-                        const std::string& description) {
-  const auto parse = [name](const std::string& text) {
-    constexpr Range length{0, max_number, false,
-                           "a length above 0 in input units, or in percent of the diagonal, such as 0.2%"};
-    constexpr Range share{0, 100, false, "a share above 0 % and at most 100 % of the diagonal"};
-    if (!text.ends_with('%')) return LengthOption{parse_number(name, text, length), false};
-    try {
-      return LengthOption{parse_number(name, text.substr(0, text.size() - 1), share), true};
-    } catch (const CLI::ValidationError&) {
-      throw CLI::ValidationError(name, "'" + text + "' is not " + share.text);
-    }
-  };
-  return add_parsed<LengthOption>(app, name, to, "LENGTH", parse, description);
-}
-
-/// For defaults in the help, "0.05".
-std::string short_text(double value) {
-  std::array<char, 32> buffer{};
-  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
-}
 
 void add_common(CLI::App& app, CommandLine& c) {
   add_whole_number(app, "--threads", c.threads, 1, max_threads_option,
@@ -125,13 +40,6 @@ void add_seed(CLI::App& app, CommandLine& c) {
 
 void add_output(CLI::App& app, CommandLine& c, const char* formats) {
   app.add_option("-o,--output", c.output, formats)->required()->type_name("FILE");
-}
-
-NamedValue split_named(const std::string& text, const char* option, const char* value) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-    throw CLI::ValidationError(option, "'" + text + "' is not NAME=" + value);
-  return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
 /// Options of segmented volumes.
@@ -229,6 +137,7 @@ void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) 
              "Leave out walls and bridges of a surface that are thinner, input units or percent of the "
              "diagonal");
   add_material_options(app, c);
+  add_feature_angle(app, c.feature_angle);
   app.add_flag("--keep-outside", c.keep_outside,
                "Mesh the outside too, up to a box, as the material 'outside' with tag 0");
   app.add_flag("--accept-changes", c.accept_changes,
@@ -345,6 +254,7 @@ void add_simplify(CLI::App& app, CommandLine& c) {
   add_output(app, c, mesh_out);
   add_simplifying(app, c);
   add_fix_boundary(app, c);
+  add_feature_angle(app, c.feature_angle);
   add_strict(app, c);
   add_material_field(app, c);
   add_common(app, c);
@@ -363,6 +273,7 @@ void add_improve(CLI::App& app, CommandLine& c) {
                "Let the number of tets become what good shapes need, instead of keeping it within 5 %");
   add_shaping(app, c, "Max number of rounds, 1 to 10000");
   add_fix_boundary(app, c);
+  add_feature_angle(app, c.feature_angle);
   add_strict(app, c);
   add_material_field(app, c);
   add_common(app, c);

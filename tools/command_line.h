@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/features/surface_patches.h"
 #include "common/types.h"
 #include "mesher/mesher.h"
 #include "simplify/simplify.h"
@@ -67,6 +68,8 @@ struct CommandLine {
   bool outside_label_given = false;
   std::size_t min_voxels = 8;  ///< min size of an island that is kept
   bool min_voxels_given = false;
+
+  FeatureAngle feature_angle;
 
   bool accept_changes = false;  ///< another solid than the input's is a note
   bool strict = false;          ///< a note is a shortfall

@@ -43,6 +43,34 @@ std::string volume_line(const VolumeReport& v) {
   return printable(line);
 }
 
+/// "features of 'part': 12 patches, since edges turn like those of a part".
+std::string feature_line(const FeatureReport& f) {
+  using Verdict = SurfacePatches::Verdict;
+  const auto loose = [&] {
+    return text("%.2g %% of the edges over 15 degrees and ", 100 * f.found.loose_ends_low) +
+           text("%.2g %% of those over 35 are loose ends", 100 * f.found.loose_ends_high);
+  };
+  std::string line = "features of '" + f.name + "': ";
+  switch (f.found.verdict) {
+    case Verdict::off:
+      line += "not looked for";
+      break;
+    case Verdict::smooth:
+      line += "none; no edge turns far enough";
+      break;
+    case Verdict::scan:
+      line += "none; its edges look like those of a scan (" + loose() + ")";
+      break;
+    case Verdict::staircase:
+      line += "none; its edges look like those of voxels";
+      break;
+    case Verdict::part:
+      line += text("%zu patches with sharp edges between them", f.found.count);
+      break;
+  }
+  return printable(line);
+}
+
 }  // namespace
 
 void print_report(const CommandLine& line, const RunReport& run) {
@@ -71,6 +99,12 @@ void print_report(const CommandLine& line, const RunReport& run) {
       [](const MeshStatistics& m) { return text("%.1f - %.1f", m.min_dihedral, m.max_dihedral); });
   std::printf("\n");
   if (run.volume) std::printf("%s\n", volume_line(*run.volume).c_str());
+  for (const FeatureReport& f : run.mesher ? run.mesher->features : run.features)
+    std::printf("%s\n", feature_line(f).c_str());
+  if (run.mesher && run.mesher->creases)
+    std::printf("creases: %zu points, %zu of them off by up to %.3g; corners lost: %zu\n",
+                run.mesher->creases->points, run.mesher->creases->off, run.mesher->creases->max_distance,
+                run.mesher->creases->lost_corners);
   if (run.mesher)
     std::printf("resolution %d (cells of %.4g), ", run.mesher->resolution, run.mesher->cell_size);
   std::printf("%.2f s: read %.2f", run.seconds_total, run.seconds_read);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/features/surface_patches.h"
 #include "common/mesh/mesh_check.h"
 #include "common/mesh/mesh_statistics.h"
 #include "mesher/mesher.h"
@@ -54,6 +55,7 @@ struct RunReport {
   std::vector<InputFinding> findings;
   std::optional<MesherReport> mesher;
   std::optional<MeshStatistics> dense, result;
+  std::vector<FeatureReport> features;
   std::vector<MaterialFidelity> fidelity;
   std::map<MaterialTag, std::string> material_names;
   std::optional<SimplifyReport> simplify;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "common/geometry/morton.h"
-#include "common/geometry/point_triangle.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "simplify/mesh/local_numbers.h"
@@ -12,8 +10,11 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t leaf_items = 4;
 constexpr std::size_t projection_grain = 4096;
+
+ProjectionTree::Kind kind_of(RegionId first, RegionId second, PatchId patch) {
+  return {std::min(first, second), std::max(first, second), patch};
+}
 
 /// Points of the mesh that are used, numbered anew.
 class PointCopies {
@@ -34,71 +35,20 @@ class PointCopies {
 
 }  // namespace
 
-ProjectionTree::ProjectionTree(std::vector<Vec3> points, std::vector<Item> items)
-    : points_(std::move(points)), items_(std::move(items)) {
-  if (items_.empty()) return;
-  Vec3 low = points_.front(), high = low;
-  for (const Vec3& p : points_) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const MortonGrid grid(low, high);
-  struct Key {
-    std::uint64_t morton;
-    std::uint32_t item;
-  };
-  std::vector<Key> keys(items_.size());
-  parallel_for(0, keys.size(), projection_grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Triangle& c = items_[i].corners;
-      keys[i] = {grid.key((points_[c[0]] + points_[c[1]] + points_[c[2]]) / 3),
-                 static_cast<std::uint32_t>(i)};
-    }
-  });
-  parallel_sort(keys, [](const Key& a, const Key& b) {
-    return a.morton != b.morton ? a.morton < b.morton : a.item < b.item;
-  });
-  std::vector<Item> sorted(items_.size());
-  for (std::size_t i = 0; i < keys.size(); ++i) sorted[i] = items_[keys[i].item];
-  items_ = std::move(sorted);
-
-  tree_ = BoxTree(items_.size(), leaf_items, [&](std::size_t i) {
-    Box3 box;
-    for (Index corner : items_[i].corners) box.add(points_[corner]);
-    return box;
-  });
-}
-
-std::optional<Vec3> ProjectionTree::nearest(const Vec3& p, RegionId first, RegionId second, PatchId patch,
-                                            double max_distance) const {
-  if (first > second) std::swap(first, second);
-  std::optional<Vec3> found;
-  tree_.nearest(p, max_distance * max_distance, tree_.all(), [&](std::size_t i, double best) {
-    const Item& item = items_[i];
-    if (item.first != first || item.second != second || item.patch != patch) return best;
-    const Vec3 q =
-        closest_point(p, points_[item.corners[0]], points_[item.corners[1]], points_[item.corners[2]]);
-    const double d = (q - p).squaredNorm();
-    if (d > best || (d == best && found)) return best;
-    found = q;
-    return d;
-  });
-  return found;
-}
-
 SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector<InterfaceFace>& faces,
                                      const ReferenceSurface* given,
                                      const std::function<bool(Index)>& complete)
-    : given_(given), mesh_(&mesh) {
-  if (!given) {
+    : has_patches_(
+          std::any_of(faces.begin(), faces.end(), [](const InterfaceFace& f) { return f.patch != 0; })),
+      given_(has_patches_ ? nullptr : given),
+      mesh_(&mesh) {
+  if (!given_) {
     PointCopies points(mesh);
     std::vector<ProjectionTree::Item> triangles;
     triangles.reserve(faces.size());
     for (const InterfaceFace& f : faces)
       triangles.push_back({{points.number(f.ids[0]), points.number(f.ids[1]), points.number(f.ids[2])},
-                           std::min(f.inside, f.across),
-                           std::max(f.inside, f.across),
-                           f.patch});
+                           kind_of(f.inside, f.across, f.patch)});
     surfaces_ = ProjectionTree(std::move(points.points), std::move(triangles));
   }
   // The edges with other than two of the triangles, or with two of different patches: junction curves, and
@@ -125,7 +75,7 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
     const auto p = static_cast<Index>(edges[i].key >> 32), q = static_cast<Index>(edges[i].key);
     if ((j - i != 2 || edges[i].patch != edges[i + 1].patch) && complete(p) && complete(q)) {
       const Index a = points.number(p), b = points.number(q);
-      segments.push_back({{a, b, b}, 0, 0, 0});
+      segments.push_back({{a, b, b}, {}});
     }
     i = j;
   }
@@ -135,14 +85,14 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
     for (Index p : {s.corners[0], s.corners[1]}) ++degrees[p];
   std::vector<ProjectionTree::Item> corners;
   for (Index p = 0; p < degrees.size(); ++p)
-    if (degrees[p] != 2) corners.push_back({{p, p, p}, 0, 0, 0});
+    if (degrees[p] != 2) corners.push_back({{p, p, p}, {}});
   corners_ = ProjectionTree(points.points, std::move(corners));
   curves_ = ProjectionTree(std::move(points.points), std::move(segments));
 }
 
 std::optional<Vec3> SurfaceProjection::onto_surface(const Vec3& p, RegionId first, RegionId second,
                                                     PatchId patch, double max_distance) const {
-  if (!given_) return surfaces_.nearest(p, first, second, patch, max_distance);
+  if (!given_) return surfaces_.nearest(p, kind_of(first, second, patch), max_distance);
   const auto tag = [&](RegionId r) -> MaterialOrOutside {
     if (r == outside_id) return {};
     return mesh_->tag(r);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/error.h"
+#include "common/geometry/box_tree.h"
 #include "common/geometry/predicates.h"
 #include "common/mesh/face_buckets.h"
 #include "common/parallel/parallel.h"
@@ -139,6 +140,13 @@ double EditableMesh::total_volume() const {
       if (tets_[t].points[0] != no_index) sum += signed_volume(static_cast<Index>(t));
     return sum;
   });
+}
+
+double EditableMesh::diagonal() const {
+  Box3 box;
+  for (std::size_t p = 0; p < positions_.size(); ++p)
+    if (incident_tets_[p] != no_index) box.add(positions_[p]);
+  return (box.high - box.low).norm();
 }
 
 bool EditableMesh::all_positive() const {

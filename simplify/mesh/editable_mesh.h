@@ -179,6 +179,8 @@ class EditableMesh {
   double signed_volume(Index t) const;
   /// In working coordinates cubed; flat and negative tets count as they are.
   double total_volume() const;
+  /// Of the bounding box of the living points, working coordinates.
+  double diagonal() const;
   /// Whether all tets are positive, by exact sign.
   bool all_positive() const;
   /// Every invariant of the links: neighbours mutual, incident_tets right, faces equal, live count right. For

@@ -1,6 +1,53 @@
 #include "simplify/operations/block_rules.h"
 
+#include <algorithm>
+
 namespace tetwright {
+
+namespace {
+
+/// How far a segment of a crease may stray from the creases of the input, as a share of the diagonal.
+constexpr double max_crease_share = 0.0005;
+/// Where on a segment its distance from the creases is looked at.
+constexpr double segment_samples[] = {0.25, 0.5, 0.75};
+
+/// The largest distance of the samples from the creases, or infinity where one is farther than `at_most`.
+double crease_distance(const SurfaceProjection& projection, const Vec3& p, const Vec3& q, double at_most) {
+  double largest = 0;
+  for (const double s : segment_samples) {
+    const Vec3 at = p + s * (q - p);
+    const auto on = projection.onto_curve(at, at_most);
+    if (!on) return std::numeric_limits<double>::infinity();
+    largest = std::max(largest, (*on - at).norm());
+  }
+  return largest;
+}
+
+}  // namespace
+
+void BlockRules::project_onto(const SurfaceProjection& surfaces, double diagonal) {
+  projection = &surfaces;
+  max_crease_distance = surfaces.has_patches() ? max_crease_share * diagonal : 0;
+}
+
+bool near_crease(const BlockRules& rules, const Star& star, std::size_t first, const Vec3& to,
+                 std::optional<std::size_t> second) {
+  double bound = rules.max_crease_distance;
+  const auto fits = [&] {
+    return crease_distance(*rules.projection, star.positions[first], to, bound) <= bound &&
+           (!second || crease_distance(*rules.projection, to, star.positions[*second], bound) <= bound);
+  };
+  if (fits()) return true;
+  // No farther than what there is.
+  const double unbounded = (star.positions[first] - star.centre_position).norm();
+  for (std::size_t p = 0; p < star.points.size(); ++p)
+    if (star.edge_dimension(p) == 1)
+      if (const double d =
+              crease_distance(*rules.projection, star.positions[p], star.centre_position, unbounded);
+          d <= unbounded)
+        bound = std::max(bound, d);
+  return bound > rules.max_crease_distance && fits();
+}
 
 bool near_reference(const BlockRules& rules, const SurfaceGrid::Added& t, RegionId inside, RegionId across) {
   if (!rules.projection || !(rules.max_distance > 0)) return true;

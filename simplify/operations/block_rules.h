@@ -3,10 +3,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "simplify/constraints/surface_grid.h"
 #include "simplify/constraints/surface_projection.h"
 #include "simplify/mesh/editable_mesh.h"
+#include "simplify/mesh/star.h"
 #include "simplify/operations/objective.h"
 
 namespace tetwright {
@@ -46,9 +48,13 @@ struct BlockRules {
   /// How far the centre of a new interface triangle may be from the reference (needs `projection`); 0: not
   /// checked. Unlike E it does not add up over several operations.
   double max_distance = 0;
+  /// The mesh has patches (needs `projection`): points move on them and along the creases between them, and
+  /// nowhere else where they are flat. A segment of a crease strays from the creases as they came by no more
+  /// than this, or than those did that it replaces; 0: no patches.
+  double max_crease_distance = 0;
   /// Points of interfaces, junction curves and corners may leave them by up to max_distance (or as far as
-  /// they are away already) where that improves the shapes (needs `projection`); those where patches meet
-  /// stay.
+  /// they are away already) where that improves the shapes (needs `projection`); those where patches meet,
+  /// and those of flat patches, stay.
   bool leave_surface = false;
   /// All tets are positive, and no boundary or interface triangles meet but in what they share: then the mesh
   /// covers no place twice, and where the centre lies within a material, a collapse that leaves positive tets
@@ -58,11 +64,19 @@ struct BlockRules {
   /// What points of interfaces and junction curves are projected onto; null: they stay in planes of constant
   /// volume.
   const SurfaceProjection* projection = nullptr;
+
+  /// Sets `projection`, and what keeps patches where there are some. `diagonal` of the mesh's bounding box.
+  void project_onto(const SurfaceProjection& surfaces, double diagonal);
 };
 
 /// Whether an added interface triangle stays near the reference, as far as the rules ask for it. `inside` and
 /// `across` are the regions that it separates.
 bool near_reference(const BlockRules& rules, const SurfaceGrid::Added& t, RegionId inside, RegionId across);
+
+/// Whether the segments of a crease that end in the star's centre may become one from its neighbour at local
+/// number `first` to `to`, and with `second` another one from there.
+bool near_crease(const BlockRules& rules, const Star& star, std::size_t first, const Vec3& to,
+                 std::optional<std::size_t> second = {});
 
 /// The objective's value for a tet.
 float quality_of(const EditableMesh& mesh, const BlockRules& rules, const Tet& t);

@@ -53,6 +53,10 @@ bool surface_edit(Workspace& ws, const BlockRules& rules, std::size_t b) {
   const Star& star = ws.star;
   SurfaceGrid::Edit& edit = ws.proposal.edit;
   edit.clear();
+  if (rules.max_crease_distance > 0 && star.creases && star.edge_dimension(b) == 1)
+    for (std::size_t p = 0; p < star.points.size(); ++p)
+      if (p != b && star.edge_dimension(p) == 1 && !near_crease(rules, star, p, star.positions[b]))
+        return false;
   for (const Star::InterfaceTriangle& s : star.interface_triangles) {
     const Triangle ids{star.centre, star.points[s.first], star.points[s.second]};
     const Vec3 &p = star.positions[s.first], &q = star.positions[s.second];

@@ -90,13 +90,25 @@ Outcome rate(Star& star, const BlockRules& rules, const Vec3& to, float limit, s
   return Outcome::done;
 }
 
+/// Whether a point where patches meet stays near its crease at `to`.
+bool stays_near_crease(const Star& star, const BlockRules& rules, const Vec3& to) {
+  if (!(rules.max_crease_distance > 0) || !star.creases) return true;
+  std::optional<std::size_t> first;
+  for (std::size_t p = 0; p < star.points.size(); ++p) {
+    if (star.edge_dimension(p) != 1) continue;
+    if (first) return near_crease(rules, star, *first, to, p);
+    first = p;
+  }
+  return true;
+}
+
 /// Proposes the move where the surface allows it; `qualities` are those at `to`.
 Outcome move_to(Workspace& ws, const BlockRules& rules, const Vec3& to, const std::vector<float>& qualities) {
   Star& star = ws.star;
   Proposal& proposal = ws.proposal;
   proposal.edit.clear();
   if (!star.interface_triangles.empty()) {
-    if (!surface_edit(ws, rules, to)) return Outcome::surface_error;
+    if (!surface_edit(ws, rules, to) || !stays_near_crease(star, rules, to)) return Outcome::surface_error;
     if (!ws.grid.test(proposal.edit)) return Outcome::self_intersection;
   }
   proposal.volumes = star.volume_changes(to - star.centre_position);
@@ -163,9 +175,23 @@ void sort_by_quality(Star& star) {
   });
 }
 
-/// Whether the centre may leave its surface or curve a little; points where patches meet never do.
+/// Whether all interface triangles at the centre are in one plane.
+bool is_flat(const Star& star) {
+  const Vec3 normal = star.gradients.front().change.normalized();
+  return std::all_of(star.interface_triangles.begin(), star.interface_triangles.end(),
+                     [&](const Star::InterfaceTriangle& s) {
+                       const auto off = [&](std::size_t p) {
+                         return std::fabs(normal.dot(star.positions[p] - star.centre_position));
+                       };
+                       return std::max(off(s.first), off(s.second)) <= tolerance::flat_patch;
+                     });
+}
+
+/// Whether the centre may leave its surface or curve a little; points where patches meet never do, nor those
+/// of a flat patch. Gradients must be computed.
 bool may_leave(const Star& star, const BlockRules& rules) {
-  return rules.leave_surface && rules.projection && !star.creases;
+  return rules.leave_surface && rules.projection && !star.creases &&
+         !(rules.max_crease_distance > 0 && !star.interface_triangles.empty() && is_flat(star));
 }
 
 /// The search for a better position of a star's centre.
@@ -220,6 +246,8 @@ class PlacementSearch {
       if (const auto on = nearest(star_.centre_position, reach_)) {
         const Vec3 normal = star_.gradients.front().change.normalized();
         offset_ = normal * normal.dot(star_.centre_position - *on);
+        // Rounding, which would add up.
+        if (rules_.max_crease_distance > 0 && offset_.norm() <= tolerance::flat_patch) offset_.setZero();
       }
     max_distance_ = rules_.max_distance;
     // A point of dimension 0 that is no end or branching of a curve (two interfaces that touch there) has no
@@ -374,7 +402,16 @@ Outcome smooth(Workspace& ws, const BlockRules& rules) {
   Outcome refusal = Outcome::quality;
   float worst;
   for (int i = 0; i < step_halvings; ++i, step *= 0.5) {
-    const Vec3 to = ws.mesh.snap(star.centre_position + step);
+    Vec3 to = star.centre_position + step;
+    if (rules.max_crease_distance > 0 && dimension < 3) {
+      const Star::InterfaceTriangle& s = star.interface_triangles.front();
+      const double reach = projection_reach * shortest_edge(star);
+      const auto on = dimension == 2 ? rules.projection->onto_surface(to, s.inside, s.across, s.patch, reach)
+                                     : rules.projection->onto_curve(to, reach);
+      if (!on) continue;
+      to = *on;
+    }
+    to = ws.mesh.snap(to);
     refusal = rate(star, rules, to, limit, qualities, worst);
     if (refusal != Outcome::done) continue;
     refusal = move_to(ws, rules, to, qualities);
@@ -386,8 +423,9 @@ Outcome smooth(Workspace& ws, const BlockRules& rules) {
 Outcome optimise(Workspace& ws, const BlockRules& rules) {
   Star& star = ws.star;
   const int dimension = star.dimension();
-  if (star.frozen || (dimension == 0 && !may_leave(star, rules))) return Outcome::material_rule;
+  if (star.frozen) return Outcome::material_rule;
   star.compute_gradients();
+  if (dimension == 0 && !may_leave(star, rules)) return Outcome::material_rule;
   Placement& place = ws.placement;
   if (!find_place(ws, rules, dimension, min_smoothing_gain * star.worst, place)) return Outcome::quality;
   return move_to(ws, rules, place.position, place.qualities);
@@ -397,6 +435,7 @@ Outcome fit_to_surface(Workspace& ws, const BlockRules& rules, float floor) {
   Star& star = ws.star;
   if (!rules.projection || star.frozen || star.dimension() != 2) return Outcome::no_candidate;
   star.compute_gradients();
+  if (rules.max_crease_distance > 0 && is_flat(star)) return Outcome::no_candidate;
   const Vec3 normal = star.gradients.front().change.normalized();
   double weights = 0, pull = 0;
   const double reach = fit_reach * shortest_edge(star);

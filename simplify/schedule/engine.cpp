@@ -31,6 +31,8 @@ Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, P
   rules.objective.quality = TetQuality::for_target(mesh_.total_volume(), options.target_tets, options.beta);
   rules.objective.shape = options.objective;
   rules.gamma = options.gamma;
+  // Patches are kept from the first collapse on; without them shapes alone need surfaces.
+  if (projection_.has_patches()) rules.project_onto(projection_, mesh_.diagonal());
 }
 
 TetMesh Engine::take() && {
@@ -102,7 +104,7 @@ float Engine::cutoff(double percent) const {
 void Engine::begin_improvement() {
   rules.objective.kind = Objective::Kind::shape;
   rules.accept_worse = 0;
-  rules.projection = &projection_;
+  rules.project_onto(projection_, mesh_.diagonal());
   compact();
   rate_all();
 }

@@ -142,6 +142,7 @@ MesherOptions common_options(const CommandLine& line) {
   options.uniform = line.uniform;
   options.adaptivity = line.adaptivity;
   options.keep_outside = line.keep_outside;
+  options.feature_angle = line.feature_angle;
   if (line.resolution) options.resolution = line.resolution;
   // Measured: the simplifier's tets with all that belongs to them; the text of a file, which is held in
   // memory beside the mesh.

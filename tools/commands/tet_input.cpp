@@ -54,6 +54,11 @@ TetInput read_tets(CommandRun& run) {
     input.mesh.point_fields.clear();
     input.mesh.cell_fields.clear();
   }
+  if (run.line.feature_angle.rule != FeatureAngle::Rule::off) {
+    run.report.features.push_back(
+        {file_stem(file), find_mesh_patches(input.mesh, run.line.feature_angle, file)});
+    run.report.features.back().found.patches = {};
+  }
   run.report.seconds_read = watch.seconds();
   if (run.line.target_tets > input.mesh.tets.size())
     throw UsageError("--target-tets " + std::to_string(run.line.target_tets) + " is above the " +

@@ -1,0 +1,351 @@
+#include "common/features/surface_patches.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "common/error.h"
+#include "common/mesh/disjoint_sets.h"
+#include "common/mesh/interfaces.h"
+#include "common/parallel/parallel_sort.h"
+#include "common/portable_math.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr double degree = 3.14159265358979323846 / 180;
+
+// Angles and shares found on 11 parts, 6 prints and 13 scans, and 55 more files.
+constexpr double automatic_angle = 35;   ///< degrees
+constexpr double low_share = 15.0 / 35;  ///< of the angle: edges that turn less never are borders
+constexpr double min_sharp_share = 0.5;  ///< of a border's length turns by more than the angle
+constexpr double max_loose_low = 0.09;   ///< parts have up to 0.07, scans that pass the other test 0.10
+constexpr double max_loose_high = 0.2;   ///< parts have up to 0.10, scans that pass the other test 0.43
+constexpr double corner_turn = 45;       ///< degrees
+/// A staircase has many patches, each of few triangles.
+constexpr std::size_t min_staircase_patches = 256;
+constexpr std::size_t max_staircase_triangles = 4;
+constexpr std::size_t max_patches = 0xffff;
+
+/// The side of an edge that a triangle is on.
+struct EdgeUse {
+  std::uint64_t key;  ///< both ends, the smaller one above
+  std::uint32_t group;
+  Index triangle;
+  bool ascending;  ///< whether the triangle runs from the smaller end to the larger one
+
+  bool same_edge(const EdgeUse& o) const { return key == o.key && group == o.group; }
+};
+
+/// An edge between two triangles of a group.
+struct InnerEdge {
+  std::array<Index, 2> ends, triangles;
+  double length;
+  double turn;  ///< radians, 0 to pi; 0 where a triangle has no area
+};
+
+std::array<Index, 2> ends_of(std::uint64_t key) {
+  return {static_cast<Index>(key >> 32), static_cast<Index>(key)};
+}
+
+std::vector<EdgeUse> edge_uses(std::span<const Triangle> triangles, std::span<const std::uint32_t> groups) {
+  std::vector<EdgeUse> uses;
+  uses.reserve(3 * triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index p = triangles[t][k], q = triangles[t][(k + 1) % 3];
+      uses.push_back({std::uint64_t{std::min(p, q)} << 32 | std::max(p, q), groups.empty() ? 0 : groups[t],
+                      static_cast<Index>(t), p < q});
+    }
+  parallel_sort(uses, [](const EdgeUse& x, const EdgeUse& y) {
+    if (x.key != y.key) return x.key < y.key;
+    return x.group != y.group ? x.group < y.group : x.triangle < y.triangle;
+  });
+  return uses;
+}
+
+std::vector<InnerEdge> inner_edges(std::span<const Vec3> points, std::span<const Triangle> triangles,
+                                   std::span<const std::uint32_t> groups) {
+  std::vector<Vec3> normals(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const Vec3 a = points[triangles[t][0]];
+    const Vec3 n = (points[triangles[t][1]] - a).cross(points[triangles[t][2]] - a);
+    const double length = n.norm();
+    normals[t] = length > 0 ? Vec3(n / length) : Vec3(Vec3::Zero());
+  }
+  const std::vector<EdgeUse> uses = edge_uses(triangles, groups);
+  std::vector<InnerEdge> edges;
+  edges.reserve(uses.size() / 2);
+  for (std::size_t i = 0; i < uses.size();) {
+    std::size_t j = i + 1;
+    while (j < uses.size() && uses[j].same_edge(uses[i])) ++j;
+    const std::size_t count = j - i;
+    if (count == 2 && uses[i].ascending != uses[i + 1].ascending) {
+      const std::array<Index, 2> ends = ends_of(uses[i].key);
+      const Vec3 &m = normals[uses[i].triangle], &n = normals[uses[i + 1].triangle];
+      const double turn =
+          m.isZero(0) || n.isZero(0) ? 0 : 2 * portable_atan2_upper((m - n).norm(), (m + n).norm());
+      edges.push_back(
+          {ends, {uses[i].triangle, uses[i + 1].triangle}, (points[ends[1]] - points[ends[0]]).norm(), turn});
+    }
+    i = j;
+  }
+  return edges;
+}
+
+std::vector<double> triangle_areas(std::span<const Vec3> points, std::span<const Triangle> triangles) {
+  std::vector<double> areas;
+  areas.reserve(triangles.size());
+  for (const auto& [a, b, c] : triangles)
+    areas.push_back((points[b] - points[a]).cross(points[c] - points[a]).norm() / 2);
+  return areas;
+}
+
+/// The share of the edges that turn by more than the angle at which a chain of such edges ends.
+double loose_ends(const std::vector<InnerEdge>& edges, std::size_t point_count, double angle) {
+  std::vector<std::uint32_t> degrees(point_count, 0);
+  std::size_t sharp = 0;
+  for (const InnerEdge& e : edges)
+    if (e.turn > angle) {
+      ++sharp;
+      for (const Index p : e.ends) ++degrees[p];
+    }
+  const auto loose = std::count(degrees.begin(), degrees.end(), 1U);
+  return sharp == 0 ? 0 : static_cast<double>(loose) / static_cast<double>(sharp);
+}
+
+/// Parts of a surface that are merged across the border that turns least.
+class PatchMerger {
+ public:
+  PatchMerger(std::vector<double> areas, const std::vector<InnerEdge>& edges, double angle)
+      : sets_(areas.size()), areas_(std::move(areas)) {
+    for (const InnerEdge& e : edges)
+      if (e.turn <= low_share * angle) sets_.unite(e.triangles[0], e.triangles[1]);
+    for (Index t = 0; t < areas_.size(); ++t)
+      if (const Index root = sets_.root(t); root != t) areas_[root] += areas_[t];
+    for (const InnerEdge& e : edges) {
+      const Index a = sets_.root(e.triangles[0]), b = sets_.root(e.triangles[1]);
+      if (a == b) continue;
+      for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)})
+        borders_[from][to].add({e.length, e.turn > angle ? e.length : 0});
+    }
+  }
+
+  /// The part of each triangle: the number of one of its triangles.
+  std::vector<Index> merged(double min_area) {
+    for (const auto& [a, neighbours] : borders_)
+      for (const auto& [b, border] : neighbours)
+        if (a < b) queue_.insert({border.sharp_share(), a, b});
+    while (!queue_.empty() && queue_.begin()->share < min_sharp_share) {
+      const Queued weakest = *queue_.begin();
+      merge(weakest.a, weakest.b);
+    }
+    merge_small(min_area);
+    std::vector<Index> parts(sets_.size());
+    for (std::size_t t = 0; t < parts.size(); ++t) parts[t] = sets_.root(static_cast<Index>(t));
+    return parts;
+  }
+
+ private:
+  struct Border {
+    double length = 0, sharp = 0;
+    void add(const Border& o) {
+      length += o.length;
+      sharp += o.sharp;
+    }
+    double sharp_share() const { return length > 0 ? sharp / length : 0; }
+  };
+  struct Queued {
+    double share;
+    Index a, b;  ///< a < b
+    bool operator<(const Queued& o) const {
+      if (share != o.share) return share < o.share;
+      return a != o.a ? a < o.a : b < o.b;
+    }
+  };
+
+  /// Patches below `min_area`, the smallest first, go to the neighbour with the weakest border.
+  void merge_small(double min_area) {
+    std::set<std::pair<double, Index>> small;
+    const auto list = [&](Index part) {
+      if (areas_[part] < min_area && !borders_[part].empty()) small.insert({areas_[part], part});
+    };
+    if (min_area > 0)
+      for (const auto& [part, neighbours] : borders_)
+        if (areas_[part] < min_area && !neighbours.empty()) small.insert({areas_[part], part});
+    while (!small.empty()) {
+      const Index part = small.begin()->second;
+      small.erase(small.begin());
+      if (sets_.root(part) != part || borders_[part].empty()) continue;
+      const auto weakest =
+          std::min_element(borders_[part].begin(), borders_[part].end(), [](const auto& x, const auto& y) {
+            if (x.second.sharp_share() != y.second.sharp_share())
+              return x.second.sharp_share() < y.second.sharp_share();
+            return x.second.length != y.second.length ? x.second.length > y.second.length : x.first < y.first;
+          });
+      const Index other = weakest->first;
+      merge(part, other);
+      small.erase({areas_[other], other});
+      list(sets_.root(part));
+    }
+  }
+
+  static Queued queued(Index a, Index b, const Border& border) {
+    return {border.sharp_share(), std::min(a, b), std::max(a, b)};
+  }
+
+  void merge(Index a, Index b) {
+    sets_.unite(a, b);
+    const Index kept = sets_.root(a), gone = kept == a ? b : a;
+    areas_[kept] += areas_[gone];
+    const std::map<Index, Border> moved = std::move(borders_[gone]);
+    borders_.erase(gone);
+    for (const auto& [other, border] : moved) {
+      queue_.erase(queued(gone, other, border));
+      borders_[other].erase(gone);
+      if (other == kept) continue;
+      Border& joined = borders_[kept][other];
+      queue_.erase(queued(kept, other, joined));
+      joined.add(border);
+      borders_[other][kept] = joined;
+      queue_.insert(queued(kept, other, joined));
+    }
+  }
+
+  DisjointSets sets_;
+  std::vector<double> areas_;                         ///< of each part, by its root
+  std::map<Index, std::map<Index, Border>> borders_;  ///< from each part, to each neighbour
+  std::set<Queued> queue_;
+};
+
+/// Numbers parts in the order of their first triangles.
+void number_parts(const std::vector<Index>& parts, const std::string& file, SurfacePatches& result) {
+  std::vector<std::uint32_t> numbers(parts.size(), no_index);
+  std::uint32_t count = 0;
+  for (const Index p : parts)
+    if (numbers[p] == no_index) numbers[p] = count++;
+  if (count > max_patches)
+    throw InputError(file, 0,
+                     "its creases cut it into " + std::to_string(count) + " patches, and " +
+                         std::to_string(max_patches) +
+                         " are possible; use a larger --feature-angle, or --feature-angle off");
+  result.count = std::max(count, 1U);
+  for (std::size_t t = 0; t < parts.size(); ++t)
+    result.patches[t] = static_cast<std::uint16_t>(numbers[parts[t]]);
+}
+
+/// The parts of each group, as if no edge were a crease.
+std::vector<Index> whole_groups(std::span<const std::uint32_t> groups) {
+  std::map<std::uint32_t, Index> firsts;
+  std::vector<Index> parts(groups.size());
+  for (std::size_t t = 0; t < groups.size(); ++t)
+    parts[t] = firsts.emplace(groups[t], static_cast<Index>(t)).first->second;
+  return parts;
+}
+
+}  // namespace
+
+SurfacePatches find_patches(std::span<const Vec3> points, std::span<const Triangle> triangles,
+                            const PatchOptions& options, std::span<const std::uint32_t> groups,
+                            const std::string& file) {
+  const FeatureAngle& angle = options.angle;
+  using Rule = FeatureAngle::Rule;
+  using Verdict = SurfacePatches::Verdict;
+  SurfacePatches result;
+  result.patches.assign(triangles.size(), 0);
+  std::vector<Index> parts = groups.empty() ? std::vector<Index>(triangles.size(), 0) : whole_groups(groups);
+  if (angle.rule != Rule::off && !triangles.empty()) {
+    const std::vector<InnerEdge> edges = inner_edges(points, triangles, groups);
+    const bool automatic = angle.rule == Rule::automatic;
+    const double sharp = (automatic ? automatic_angle : angle.degrees) * degree;
+    result.loose_ends_low = loose_ends(edges, points.size(), low_share * automatic_angle * degree);
+    result.loose_ends_high = loose_ends(edges, points.size(), automatic_angle * degree);
+    if (std::none_of(edges.begin(), edges.end(), [&](const InnerEdge& e) { return e.turn > sharp; })) {
+      result.verdict = Verdict::smooth;
+    } else if (automatic &&
+               (result.loose_ends_low > max_loose_low || result.loose_ends_high > max_loose_high)) {
+      result.verdict = Verdict::scan;
+    } else {
+      std::vector<Index> merged =
+          PatchMerger(triangle_areas(points, triangles), edges, sharp).merged(options.min_area);
+      const std::size_t count = std::set<Index>(merged.begin(), merged.end()).size();
+      if (automatic && count >= min_staircase_patches && count * max_staircase_triangles > triangles.size()) {
+        result.verdict = Verdict::staircase;
+      } else {
+        result.verdict = Verdict::part;
+        parts = std::move(merged);
+      }
+    }
+  }
+  number_parts(parts, file, result);
+  return result;
+}
+
+SurfacePatches find_mesh_patches(TetMesh& mesh, const FeatureAngle& angle, const std::string& file) {
+  if (mesh.interfaces.empty()) mesh.interfaces = find_interfaces(mesh);
+  std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> groups;
+  triangles.reserve(mesh.interfaces.size());
+  groups.reserve(mesh.interfaces.size());
+  std::map<std::pair<MaterialPair, std::uint16_t>, std::uint32_t> numbers;
+  for (const InterfaceTriangle& t : mesh.interfaces) {
+    triangles.push_back(t.ids);
+    groups.push_back(numbers.emplace(std::pair(t.pair(), t.patch), static_cast<std::uint32_t>(numbers.size()))
+                         .first->second);
+  }
+  SurfacePatches result = find_patches(mesh.points, triangles, {angle, 0}, groups, file);
+  for (std::size_t i = 0; i < triangles.size(); ++i) mesh.interfaces[i].patch = result.patches[i];
+  number_patches_by_pair(mesh.interfaces);
+  return result;
+}
+
+void number_patches_by_pair(std::vector<InterfaceTriangle>& interfaces) {
+  std::map<MaterialPair, std::map<std::uint16_t, std::uint16_t>> of_pair;
+  for (InterfaceTriangle& t : interfaces) {
+    auto& known = of_pair[t.pair()];
+    t.patch = known.emplace(t.patch, static_cast<std::uint16_t>(known.size())).first->second;
+  }
+}
+
+SurfaceCreases find_creases(std::span<const Vec3> points, std::span<const Triangle> triangles,
+                            std::span<const std::uint16_t> patches) {
+  SurfaceCreases creases;
+  const std::vector<EdgeUse> uses = edge_uses(triangles, {});
+  for (std::size_t i = 0; i < uses.size();) {
+    std::size_t j = i;
+    std::set<std::uint16_t> here;
+    for (; j < uses.size() && uses[j].key == uses[i].key; ++j) here.insert(patches[uses[j].triangle]);
+    for (auto p = here.begin(); p != here.end(); ++p)
+      for (auto q = std::next(p); q != here.end(); ++q)
+        creases.segments.push_back({ends_of(uses[i].key), {*p, *q}});
+    i = j;
+  }
+  struct AtPoint {
+    std::size_t count = 0;
+    std::array<std::uint16_t, 2> patches{};
+    std::array<Index, 2> others{};
+    bool mixed = false;
+  };
+  std::map<Index, AtPoint> at_points;
+  for (const SurfaceCreases::Segment& s : creases.segments)
+    for (std::size_t k = 0; k < 2; ++k) {
+      AtPoint& at = at_points[s.ends[k]];
+      if (at.count == 0) at.patches = s.patches;
+      at.mixed |= at.patches != s.patches;
+      if (at.count < 2) at.others[at.count] = s.ends[1 - k];
+      ++at.count;
+    }
+  for (const auto& [p, at] : at_points) {
+    bool corner = at.count != 2 || at.mixed;
+    if (!corner) {
+      const Vec3 u = (points[p] - points[at.others[0]]).normalized(),
+                 v = (points[at.others[1]] - points[p]).normalized();
+      corner = 2 * portable_atan2_upper((u - v).norm(), (u + v).norm()) > corner_turn * degree;
+    }
+    if (corner) creases.corners.push_back(p);
+  }
+  return creases;
+}
+
+}  // namespace tetwright

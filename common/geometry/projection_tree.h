@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/geometry/box_tree.h"
+#include "common/geometry/point_triangle.h"
+#include "common/types.h"
+
+namespace tetwright {
+
+/// Triangles, segments and points (triangles with equal corners) of several kinds for nearest-point queries:
+/// a tree of boxes over them in Morton order, four to a leaf.
+class ProjectionTree {
+ public:
+  /// What items and queries have in common; what the numbers mean is the caller's.
+  using Kind = std::array<std::uint32_t, 3>;
+  struct Item {
+    Triangle corners;  ///< indices into the points given
+    Kind kind;
+  };
+  struct Hit {
+    Vec3 point;        ///< on the item
+    std::size_t item;  ///< of items()
+  };
+  ProjectionTree() = default;
+  ProjectionTree(std::vector<Vec3> points, std::vector<Item> items);
+
+  bool empty() const { return items_.empty(); }
+  /// In the order of the tree.
+  const std::vector<Item>& items() const { return items_; }
+  const Vec3& corner(const Item& item, int k) const { return points_[item.corners[k]]; }
+
+  /// The nearest point on the items for which `accepts(item)` holds, if it is nearer than `max_distance`.
+  /// Safe to call concurrently.
+  template <class Accepts>
+  std::optional<Hit> nearest_of(const Vec3& p, double max_distance, const Accepts& accepts) const {
+    std::optional<Hit> found;
+    tree_.nearest(p, max_distance * max_distance, tree_.all(), [&](std::size_t i, double best) {
+      const Item& item = items_[i];
+      if (!accepts(item)) return best;
+      const Vec3 q = closest_point(p, corner(item, 0), corner(item, 1), corner(item, 2));
+      const double d = (q - p).squaredNorm();
+      if (d > best || (d == best && found)) return best;
+      found = Hit{q, i};
+      return d;
+    });
+    return found;
+  }
+  /// The same of the items of a kind.
+  std::optional<Vec3> nearest(const Vec3& p, const Kind& kind, double max_distance) const {
+    const auto hit = nearest_of(p, max_distance, [&](const Item& item) { return item.kind == kind; });
+    if (!hit) return {};
+    return hit->point;
+  }
+
+ private:
+  std::vector<Vec3> points_;
+  std::vector<Item> items_;
+  BoxTree tree_;
+};
+
+}  // namespace tetwright

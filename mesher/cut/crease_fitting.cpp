@@ -1,0 +1,251 @@
+#include "mesher/cut/crease_fitting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/geometry/quality.h"
+#include "common/mesh/interfaces.h"
+#include "common/parallel/parallel.h"
+#include "common/parallel/parallel_sort.h"
+#include "mesher/cut/crease_labels.h"
+#include "mesher/cut/joint_moves.h"
+
+namespace tetwright {
+
+namespace {
+
+using Kind = FeatureLabel::Kind;
+
+constexpr std::size_t point_grain = 512, tet_grain = 1 << 13;
+/// How far a point may be from where it belongs, cells.
+constexpr double target_reach = 4;
+/// What tets must keep in each pass, shares of tangent_of_poor_tet: shapes first, then exact creases.
+constexpr double pass_floors[] = {1, 1, 0.5, 0.5, 0.2, 0.2, 0.05, 0.05};
+/// Steps that points around are tried at, in the mean edge there.
+constexpr double room_steps[] = {0.4, 0.2, 0.1, 0.05};
+constexpr int room_sweeps = 2;
+/// Points nearer than this are where they belong, in cells: rounding.
+constexpr double arrived = 1e-12;
+
+/// Moves the points of a mesh to where their labels say.
+class Fitter {
+ public:
+  Fitter(TetMesh& mesh, const FeatureSurface& surface, const CreaseLabels& labels, double cell)
+      : mesh_(mesh), surface_(surface), labels_(labels), cell_(cell) {}
+
+  void run() {
+    for (const double floor : pass_floors) {
+      std::vector<PointMove> moves = remaining_moves();
+      if (moves.empty()) return;
+      move_jointly(mesh_.points, mesh_.tets, moves, floor * tangent_of_poor_tet);
+      make_room(remaining_moves());
+    }
+    std::vector<PointMove> moves = remaining_moves();
+    move_jointly(mesh_.points, mesh_.tets, moves,
+                 pass_floors[std::size(pass_floors) - 1] * tangent_of_poor_tet);
+  }
+
+  CreaseReport result() const {
+    CreaseReport fit;
+    for (const Index p : labels_.points()) {
+      const Kind kind = labels_.of(p).kind;
+      if (kind != Kind::crease && kind != Kind::corner) continue;
+      ++fit.points;
+      const auto target = place_of(p, mesh_.points[p]);
+      const double distance = target ? (*target - mesh_.points[p]).norm() : target_reach * cell_;
+      if (distance <= arrived * cell_ * 1e3) continue;
+      ++fit.off;
+      if (distance <= fit.max_distance) continue;
+      fit.max_distance = distance;
+      fit.place = mesh_.points[p];
+    }
+    fit.lost_corners = labels_.lost_corners().size();
+    if (fit.lost_corners > 0) fit.lost_corner = surface_.corners()[labels_.lost_corners().front()].point;
+    return fit;
+  }
+
+ private:
+  /// Where a point that is at `at` belongs.
+  std::optional<Vec3> place_of(Index p, const Vec3& at) const {
+    const FeatureLabel& label = labels_.of(p);
+    const FeatureSurface::Patch* patches = label.patches.begin();
+    switch (label.kind) {
+      case Kind::none:
+        return {};
+      case Kind::patch:
+        if (const auto place = surface_.onto_patch(at, patches[0], target_reach * cell_)) return place->point;
+        return {};
+      case Kind::crease:
+        return surface_.onto_crease(at, {patches[0], patches[1]}, target_reach * cell_);
+      case Kind::corner:
+        return surface_.corners()[label.corner].point;
+    }
+    return {};
+  }
+
+  std::vector<PointMove> remaining_moves() const {
+    const std::vector<Index>& points = labels_.points();
+    return parallel_collect<PointMove>(0, points.size(), point_grain,
+                                       [&](std::size_t begin, std::size_t end, std::vector<PointMove>& out) {
+                                         for (std::size_t i = begin; i < end; ++i) {
+                                           const Vec3& at = mesh_.points[points[i]];
+                                           const auto target = place_of(points[i], at);
+                                           if (target && (*target - at).norm() > arrived * cell_)
+                                             out.push_back({points[i], at, *target - at});
+                                         }
+                                       });
+  }
+
+  double tangent_of(const Tet& t) const {
+    return min_solid_angle_tangent(mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]],
+                                   mesh_.points[t[3]]);
+  }
+
+  /// Moves the points around those that have not arrived to where the worst tet at them is better.
+  void make_room(const std::vector<PointMove>& waiting) {
+    std::vector<std::uint8_t> role(mesh_.points.size(), 0);  // 1: waits, 2: is beside one that does
+    for (const PointMove& m : waiting) role[m.point] = 1;
+    const auto tets_with = [&](std::uint8_t wanted) {
+      return parallel_collect<Index>(0, mesh_.tets.size(), tet_grain,
+                                     [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+                                       for (std::size_t t = begin; t < end; ++t)
+                                         if (std::any_of(mesh_.tets[t].begin(), mesh_.tets[t].end(),
+                                                         [&](Index p) { return role[p] == wanted; }))
+                                           out.push_back(static_cast<Index>(t));
+                                     });
+    };
+    std::vector<Index> beside;
+    for (const Index t : tets_with(1))
+      for (const Index p : mesh_.tets[t])
+        if (role[p] == 0 && is_movable(p)) {
+          role[p] = 2;
+          beside.push_back(p);
+        }
+    std::sort(beside.begin(), beside.end());
+    std::vector<Index> number(mesh_.points.size(), no_index);
+    for (std::size_t i = 0; i < beside.size(); ++i) number[beside[i]] = static_cast<Index>(i);
+    std::vector<std::vector<Index>> stars(beside.size());
+    for (const Index t : tets_with(2))
+      for (const Index p : mesh_.tets[t])
+        if (number[p] != no_index) stars[number[p]].push_back(t);
+    for (int sweep = 0; sweep < room_sweeps; ++sweep)
+      for (std::size_t i = 0; i < beside.size(); ++i) find_better_place(beside[i], stars[i]);
+  }
+
+  bool is_movable(Index p) const {
+    const Kind kind = labels_.of(p).kind;
+    return kind == Kind::patch || kind == Kind::crease || !labels_.on_boundary(p);
+  }
+
+  void find_better_place(Index p, const std::vector<Index>& star) {
+    Vec3& at = mesh_.points[p];
+    const auto worst_at = [&](const Vec3& place, Index* worst_tet) {
+      at = place;
+      double worst = std::numeric_limits<double>::infinity();
+      for (const Index t : star)
+        if (const double tangent = tangent_of(mesh_.tets[t]); tangent < worst) {
+          worst = tangent;
+          if (worst_tet) *worst_tet = t;
+        }
+      return worst;
+    };
+    const Vec3 from = at;
+    Index worst_tet = star.front();
+    double best = worst_at(from, &worst_tet);
+    if (best >= tangent_of_poor_tet) return;
+    Vec3 centre = Vec3::Zero();
+    double edges = 0, count = 0;
+    for (const Index t : star)
+      for (const Index q : mesh_.tets[t]) {
+        if (q == p) continue;
+        centre += mesh_.points[q];
+        edges += (mesh_.points[q] - from).norm();
+        ++count;
+      }
+    const double edge = edges / count;
+    // Away from the face of the worst tet that the point is too near to, or to the middle.
+    const Tet& t = mesh_.tets[worst_tet];
+    const auto slot = static_cast<std::size_t>(std::find(t.begin(), t.end(), p) - t.begin());
+    const auto& face = tet_faces[slot];
+    const Vec3& a = mesh_.points[t[face[0]]];
+    const Vec3 out = (mesh_.points[t[face[1]]] - a).cross(mesh_.points[t[face[2]]] - a);
+    Vec3 best_place = from;
+    for (const Vec3& direction : {Vec3(-out.normalized()), Vec3((centre / count - from).normalized())}) {
+      if (!direction.allFinite()) continue;
+      for (const double step : room_steps) {
+        Vec3 place = from + step * edge * direction;
+        if (labels_.on_boundary(p)) {
+          const auto on = place_of(p, place);
+          if (!on) continue;
+          place = *on;
+        }
+        if (const double worst = worst_at(place, nullptr); worst > best) {
+          best = worst;
+          best_place = place;
+        }
+      }
+    }
+    at = best_place;
+  }
+
+  TetMesh& mesh_;
+  const FeatureSurface& surface_;
+  const CreaseLabels& labels_;
+  double cell_;
+};
+
+/// The patch of a face: the one that its points have in common; of several, or of none, the one that lies
+/// most like it.
+FeatureSurface::Patch patch_of(const TetMesh& mesh, const InterfaceTriangle& t, const CreaseLabels& labels,
+                               const FeatureSurface& surface, double cell) {
+  PatchSet candidates;
+  bool first = true;
+  for (const Index p : t.ids) {
+    const FeatureLabel& label = labels.of(p);
+    if (label.kind == Kind::none) continue;
+    candidates = first ? label.patches : candidates.common(label.patches);
+    first = false;
+  }
+  if (candidates.size() == 1) return *candidates.begin();
+  if (candidates.size() == 0)
+    for (const Index p : t.ids)
+      for (const FeatureSurface::Patch patch : labels.of(p).patches) candidates.insert(patch);
+  const Vec3 &a = mesh.points[t.ids[0]], &b = mesh.points[t.ids[1]], &c = mesh.points[t.ids[2]];
+  const Vec3 centre = (a + b + c) / 3, normal = (b - a).cross(c - a).normalized();
+  if (candidates.size() == 0) {
+    const auto place = surface.nearest(centre, target_reach * cell, t.other ? nullptr : &normal);
+    return place ? place->patch : FeatureSurface::Patch{0};
+  }
+  FeatureSurface::Patch best = *candidates.begin();
+  double most = -std::numeric_limits<double>::infinity();
+  for (const FeatureSurface::Patch patch : candidates) {
+    const auto place = surface.onto_patch(centre, patch, target_reach * cell);
+    if (!place) continue;
+    const double alike = normal.dot(place->normal) - (place->point - centre).norm() / cell;
+    if (alike > most) {
+      most = alike;
+      best = patch;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+CreaseReport fit_creases(TetMesh& mesh, const FeatureSurface& surface, double cell) {
+  const CreaseLabels labels(mesh, surface, cell);
+  Fitter fitter(mesh, surface, labels, cell);
+  fitter.run();
+  std::vector<std::uint8_t> boundary(mesh.points.size(), 0);
+  for (const Index p : labels.points()) boundary[p] = 1;
+  mesh.interfaces = find_interfaces(mesh, &boundary);
+  parallel_for(0, mesh.interfaces.size(), point_grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      mesh.interfaces[i].patch = patch_of(mesh, mesh.interfaces[i], labels, surface, cell);
+  });
+  number_patches_by_pair(mesh.interfaces);
+  return fitter.result();
+}
+
+}  // namespace tetwright

@@ -1,0 +1,330 @@
+#include "mesher/cut/crease_labels.h"
+
+#include <cmath>
+#include <map>
+
+#include "common/parallel/parallel.h"
+#include "common/parallel/parallel_sort.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::size_t point_grain = 512, tet_grain = 1 << 13;
+/// How far a boundary point may be from the surface, cells.
+constexpr double surface_reach = 2;
+/// How far a corner may be from the point that stands for it, cells.
+constexpr double corner_reach = 1.5;
+/// How far a crease may be from an edge that crosses it, in edges: the tip of a wedge of 30 degrees is two
+/// edges from its chamfer.
+constexpr double crease_reach = 2.5;
+/// Of a crossed edge the end goes to the crease that has at most this share of the way.
+constexpr double max_snap = 0.5;
+/// New points stay this share of an edge away from its ends.
+constexpr double min_split = 0.2;
+constexpr int crossing_steps = 3;
+constexpr int max_rounds = 4;
+
+}  // namespace
+
+/// Where an edge crosses a crease.
+struct CreaseLabels::Crossing {
+  Index u, v;
+  double share;  ///< of the way from u to v
+  FeatureSurface::PatchPair patches;
+};
+
+CreaseLabels::CreaseLabels(TetMesh& mesh, const FeatureSurface& surface, double cell)
+    : mesh_(mesh), surface_(surface), cell_(cell) {
+  number_boundary();
+  label_points();
+  smooth_labels();
+  take_corners();
+  track(crossing_edges());
+  snap_points();
+  resolve_rest();
+}
+
+template <class Visit>
+void CreaseLabels::for_neighbours(Index number, const Visit& visit) const {
+  for (const Index t : triangles_at_[number])
+    for (const Index p : mesh_.interfaces[t].ids)
+      if (p != points_[number]) visit(p);
+}
+
+void CreaseLabels::number_boundary() {
+  number_.assign(mesh_.points.size(), no_index);
+  for (const InterfaceTriangle& t : mesh_.interfaces)
+    for (const Index p : t.ids)
+      if (number_[p] == no_index) {
+        number_[p] = static_cast<Index>(points_.size());
+        points_.push_back(p);
+      }
+  labels_.resize(points_.size());
+  triangles_at_.resize(points_.size());
+  tets_at_.resize(points_.size());
+  for (std::size_t t = 0; t < mesh_.interfaces.size(); ++t)
+    for (const Index p : mesh_.interfaces[t].ids) triangles_at_[number_[p]].push_back(static_cast<Index>(t));
+}
+
+void CreaseLabels::label_points() {
+  parallel_for(0, points_.size(), point_grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::vector<Index>& around = triangles_at_[i];
+      const InterfaceTriangle& first = mesh_.interfaces[around.front()];
+      Vec3 normal = Vec3::Zero();
+      bool one_pair = true;
+      for (const Index t : around) {
+        const InterfaceTriangle& face = mesh_.interfaces[t];
+        one_pair &= face.pair() == first.pair();
+        const Vec3& a = mesh_.points[face.ids[0]];
+        normal += (mesh_.points[face.ids[1]] - a).cross(mesh_.points[face.ids[2]] - a);
+      }
+      if (!one_pair) continue;
+      normal.normalize();
+      // Of two materials either may be the body.
+      const auto place =
+          surface_.nearest(mesh_.points[points_[i]], surface_reach * cell_, first.other ? nullptr : &normal);
+      if (place) labels_[i] = {Kind::patch, {place->patch}, no_index};
+    }
+  });
+}
+
+void CreaseLabels::smooth_labels() {
+  // A point whose neighbours all belong to other patches would be a patch of its own.
+  std::vector<FeatureLabel> smoothed = labels_;
+  for (Index i = 0; i < points_.size(); ++i) {
+    if (labels_[i].kind != Kind::patch) continue;
+    std::map<FeatureSurface::Patch, std::size_t> counts;
+    bool alone = true;
+    for_neighbours(i, [&](Index p) {
+      const FeatureLabel& other = labels_[number_[p]];
+      if (other.kind != Kind::patch) return;
+      ++counts[*other.patches.begin()];
+      alone &= !other.patches.meets(labels_[i].patches);
+    });
+    if (!alone || counts.empty()) continue;
+    const auto most = std::max_element(counts.begin(), counts.end(),
+                                       [](const auto& x, const auto& y) { return x.second < y.second; });
+    if (surface_.onto_patch(mesh_.points[points_[i]], most->first, cell_))
+      smoothed[i].patches = {most->first};
+  }
+  labels_ = std::move(smoothed);
+}
+
+bool CreaseLabels::crosses(Index u, Index v) const {
+  const FeatureLabel &a = labels_[number_[u]], &b = labels_[number_[v]];
+  return a.kind != Kind::none && b.kind != Kind::none && !a.patches.meets(b.patches);
+}
+
+std::vector<std::array<Index, 2>> CreaseLabels::crossing_edges() const {
+  std::vector<std::array<Index, 2>> edges;
+  for (const InterfaceTriangle& t : mesh_.interfaces)
+    for (int k = 0; k < 3; ++k) {
+      const Index u = t.ids[k], v = t.ids[(k + 1) % 3];
+      if (crosses(u, v)) edges.push_back({std::min(u, v), std::max(u, v)});
+    }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+void CreaseLabels::take_corners() {
+  if (surface_.corners().empty()) return;
+  // Of triangles whose points belong to three patches one goes to the corner, where two patches have a kink
+  // one of those that crease crosses; else the nearest of these patches.
+  std::vector<Vec3> positions;
+  std::vector<ProjectionTree::Item> items;
+  for (Index i = 0; i < points_.size(); ++i) {
+    positions.push_back(mesh_.points[points_[i]]);
+    if (labels_[i].kind == Kind::patch) items.push_back({{i, i, i}, {i, 0, 0}});
+  }
+  const ProjectionTree tree(std::move(positions), std::move(items));
+  for (Index c = 0; c < surface_.corners().size(); ++c) {
+    const FeatureSurface::Corner& corner = surface_.corners()[c];
+    PatchSet meeting;
+    for (const FeatureSurface::Patch p : corner.patches) meeting.insert(p);
+    const auto fits = [&](const ProjectionTree::Item& item, std::size_t min_patches) {
+      const FeatureLabel& own = labels_[item.kind[0]];
+      if (own.kind != Kind::patch || !own.patches.meets(meeting)) return false;
+      if (min_patches == 1) return true;
+      const auto& around = triangles_at_[item.kind[0]];
+      return std::any_of(around.begin(), around.end(), [&](Index t) {
+        PatchSet of_triangle;
+        for (const Index p : mesh_.interfaces[t].ids)
+          if (labels_[number_[p]].kind == Kind::patch)
+            of_triangle.insert(*labels_[number_[p]].patches.begin());
+        return of_triangle.common(meeting).size() >= min_patches;
+      });
+    };
+    bool found = false;
+    for (std::size_t min_patches : {std::size_t{3}, std::size_t{2}, std::size_t{1}}) {
+      const auto hit =
+          tree.nearest_of(corner.point, corner_reach * cell_,
+                          [&](const ProjectionTree::Item& item) { return fits(item, min_patches); });
+      if (!hit) continue;
+      labels_[tree.items()[hit->item].kind[0]] = {Kind::corner, meeting, c};
+      found = true;
+      break;
+    }
+    if (!found) lost_corners_.push_back(c);
+  }
+}
+
+std::optional<CreaseLabels::Crossing> CreaseLabels::find_crossing(Index u, Index v) const {
+  const PatchSet &a = labels_[number_[u]].patches, &b = labels_[number_[v]].patches;
+  const Vec3 &p = mesh_.points[u], &q = mesh_.points[v];
+  const Vec3 along = q - p;
+  Crossing crossing{u, v, 0.5, {}};
+  for (int i = 0; i < crossing_steps; ++i) {
+    const auto place = surface_.nearest_crease(
+        p + crossing.share * along, crease_reach * along.norm(), [&](const FeatureSurface::PatchPair& pair) {
+          return (a.contains(pair[0]) && b.contains(pair[1])) || (a.contains(pair[1]) && b.contains(pair[0]));
+        });
+    if (!place) return {};
+    crossing.share = std::clamp((place->point - p).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    crossing.patches = place->patches;
+  }
+  return crossing;
+}
+
+bool CreaseLabels::may_snap(Index point, const PatchSet& patches) const {
+  const auto& around = triangles_at_[number_[point]];
+  return std::none_of(around.begin(), around.end(), [&](Index t) {
+    // Three points of one crease would make the triangle flat.
+    PatchSet shared = patches;
+    for (const Index p : mesh_.interfaces[t].ids)
+      if (p != point) shared = shared.common(labels_[number_[p]].patches);
+    return shared.size() > 1;
+  });
+}
+
+void CreaseLabels::snap_points() {
+  struct Snap {
+    double share;
+    Index point, other;
+    FeatureSurface::PatchPair patches;
+  };
+  const std::vector<std::array<Index, 2>> edges = crossing_edges();
+  std::vector<Snap> snaps = parallel_collect<Snap>(
+      0, edges.size(), point_grain, [&](std::size_t begin, std::size_t end, std::vector<Snap>& out) {
+        for (std::size_t e = begin; e < end; ++e) {
+          const auto [u, v] = edges[e];
+          const std::optional<Crossing> c = find_crossing(u, v);
+          if (!c) continue;
+          if (labels_[number_[u]].kind == Kind::patch && c->share <= max_snap)
+            out.push_back({c->share, u, v, c->patches});
+          if (labels_[number_[v]].kind == Kind::patch && 1 - c->share <= max_snap)
+            out.push_back({1 - c->share, v, u, c->patches});
+        }
+      });
+  std::sort(snaps.begin(), snaps.end(), [](const Snap& x, const Snap& y) {
+    if (x.share != y.share) return x.share < y.share;
+    return x.point != y.point ? x.point < y.point : x.other < y.other;
+  });
+  for (const Snap& s : snaps) {
+    const PatchSet patches{s.patches[0], s.patches[1]};
+    if (label(s.point).kind != Kind::patch || !crosses(s.point, s.other) || !may_snap(s.point, patches))
+      continue;
+    label(s.point) = {Kind::crease, patches, no_index};
+  }
+}
+
+void CreaseLabels::resolve_rest() {
+  for (int round = 0; round < max_rounds; ++round) {
+    const std::vector<std::array<Index, 2>> edges = crossing_edges();
+    if (edges.empty()) return;
+    for (const auto& [u, v] : edges) {
+      if (!crosses(u, v)) continue;
+      const std::optional<Crossing> c = find_crossing(u, v);
+      if (!c) continue;
+      const PatchSet patches{c->patches[0], c->patches[1]};
+      const bool u_is_nearer = c->share <= 0.5;
+      const Index near = u_is_nearer ? u : v;
+      if (label(near).kind == Kind::patch && label(near).patches.meets(patches) && may_snap(near, patches))
+        label(near) = {Kind::crease, patches, no_index};
+      else
+        split(*c);
+    }
+  }
+}
+
+void CreaseLabels::track(const std::vector<std::array<Index, 2>>& edges) {
+  // Points may be moved to creases, so that other edges at them cross one: of these the other ends.
+  std::vector<std::uint8_t> tracked(points_.size(), 0);
+  for (const auto& edge : edges)
+    for (const Index p : edge) {
+      tracked[number_[p]] = 1;
+      for_neighbours(number_[p], [&](Index q) { tracked[number_[q]] = 1; });
+    }
+  const std::vector<Index> tets = parallel_collect<Index>(
+      0, mesh_.tets.size(), tet_grain, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+        for (std::size_t t = begin; t < end; ++t)
+          if (std::any_of(mesh_.tets[t].begin(), mesh_.tets[t].end(),
+                          [&](Index p) { return number_[p] != no_index && tracked[number_[p]]; }))
+            out.push_back(static_cast<Index>(t));
+      });
+  for (const Index t : tets)
+    for (const Index p : mesh_.tets[t])
+      if (number_[p] != no_index && tracked[number_[p]]) tets_at_[number_[p]].push_back(t);
+}
+
+void CreaseLabels::split(const Crossing& crossing) {
+  const auto [u, v, share, patches] = crossing;
+  // Tracked are all points near creases, so at least one end is.
+  const Index known = tets_at_[number_[u]].empty() ? v : u;
+  std::vector<Index> tets, triangles;
+  for (const Index t : tets_at_[number_[known]])
+    if (const Tet& c = mesh_.tets[t];
+        std::find(c.begin(), c.end(), u) != c.end() && std::find(c.begin(), c.end(), v) != c.end())
+      tets.push_back(t);
+  if (tets.empty()) return;
+  for (const Index t : triangles_at_[number_[u]])
+    if (const Triangle& c = mesh_.interfaces[t].ids; std::find(c.begin(), c.end(), v) != c.end())
+      triangles.push_back(t);
+  const auto middle = static_cast<Index>(mesh_.points.size());
+  const double s = std::clamp(share, min_split, 1 - min_split);
+  mesh_.points.push_back(mesh_.points[u] + s * (mesh_.points[v] - mesh_.points[u]));
+  const auto number = static_cast<Index>(points_.size());
+  number_.push_back(number);
+  points_.push_back(middle);
+  labels_.push_back({Kind::crease, {patches[0], patches[1]}, no_index});
+  triangles_at_.emplace_back();
+  tets_at_.emplace_back();
+  // Each one keeps u and leaves v to a new one.
+  for (const Index t : tets) {
+    const auto added = static_cast<Index>(mesh_.tets.size());
+    Tet second = mesh_.tets[t];
+    std::replace(second.begin(), second.end(), u, middle);
+    std::replace(mesh_.tets[t].begin(), mesh_.tets[t].end(), v, middle);
+    mesh_.tets.push_back(second);
+    mesh_.materials.push_back(mesh_.materials[t]);
+    for (const Index p : second) {
+      if (number_[p] == no_index) continue;
+      std::vector<Index>& at = tets_at_[number_[p]];
+      if (p == v) {
+        if (!at.empty()) std::replace(at.begin(), at.end(), t, added);
+      } else if (p == middle) {
+        at.push_back(t);
+        at.push_back(added);
+      } else if (!at.empty()) {
+        at.push_back(added);
+      }
+    }
+  }
+  for (const Index t : triangles) {
+    const auto added = static_cast<Index>(mesh_.interfaces.size());
+    InterfaceTriangle second = mesh_.interfaces[t];
+    std::replace(second.ids.begin(), second.ids.end(), u, middle);
+    Triangle& first = mesh_.interfaces[t].ids;
+    std::replace(first.begin(), first.end(), v, middle);
+    mesh_.interfaces.push_back(second);
+    std::replace(triangles_at_[number_[v]].begin(), triangles_at_[number_[v]].end(), t, added);
+    triangles_at_[number].push_back(t);
+    triangles_at_[number].push_back(added);
+    for (const Index p : second.ids)
+      if (p != v && p != middle) triangles_at_[number_[p]].push_back(added);
+  }
+}
+
+}  // namespace tetwright

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/tet_mesh.h"
+#include "mesher/cut/feature_surface.h"
+
+namespace tetwright {
+
+/// Patches that a boundary point belongs to, ascending; of a corner with more of them the first few.
+class PatchSet {
+ public:
+  static constexpr std::size_t capacity = 7;
+
+  PatchSet() = default;
+  PatchSet(std::initializer_list<FeatureSurface::Patch> patches) {
+    for (const FeatureSurface::Patch p : patches) insert(p);
+  }
+  void insert(FeatureSurface::Patch p) {
+    if (size_ == capacity || contains(p)) return;
+    items_[size_++] = p;
+    std::sort(items_.begin(), items_.begin() + size_);
+  }
+  std::size_t size() const { return size_; }
+  const FeatureSurface::Patch* begin() const { return items_.data(); }
+  const FeatureSurface::Patch* end() const { return items_.data() + size_; }
+  bool contains(FeatureSurface::Patch p) const { return std::find(begin(), end(), p) != end(); }
+  bool meets(const PatchSet& o) const {
+    return std::any_of(begin(), end(), [&](FeatureSurface::Patch p) { return o.contains(p); });
+  }
+  PatchSet common(const PatchSet& o) const {
+    PatchSet both;
+    for (const FeatureSurface::Patch p : *this)
+      if (o.contains(p)) both.insert(p);
+    return both;
+  }
+
+ private:
+  std::uint8_t size_ = 0;
+  std::array<FeatureSurface::Patch, capacity> items_{};
+};
+
+/// What a point of the boundary stands for.
+struct FeatureLabel {
+  enum class Kind : std::uint8_t {
+    none,    ///< where more than two regions meet, or nothing of the surface is near
+    patch,   ///< one patch
+    crease,  ///< two patches
+    corner
+  };
+  Kind kind = Kind::none;
+  PatchSet patches;
+  Index corner = no_index;  ///< of FeatureSurface::corners()
+};
+
+/// The labels of the points of a dense mesh's boundary, such that, as far as can be, the three points of each
+/// face have a patch in common: then edges between faces of different patches follow creases.
+class CreaseLabels {
+ public:
+  /// Labels the points of `mesh.interfaces`; edges that cross a crease far from both ends get a point, so
+  /// that tets, points and interfaces are added. `cell`: see fit_creases().
+  CreaseLabels(TetMesh& mesh, const FeatureSurface& surface, double cell);
+
+  /// Kind none for points that are not on the boundary.
+  const FeatureLabel& of(Index point) const {
+    static const FeatureLabel none;
+    return number_[point] == no_index ? none : labels_[number_[point]];
+  }
+  bool on_boundary(Index point) const { return number_[point] != no_index; }
+  /// Points of the boundary, by number.
+  const std::vector<Index>& points() const { return points_; }
+  /// Corners that no point stands for, ascending.
+  const std::vector<Index>& lost_corners() const { return lost_corners_; }
+
+ private:
+  using Kind = FeatureLabel::Kind;
+  struct Crossing;
+
+  void number_boundary();
+  void label_points();
+  void smooth_labels();
+  void take_corners();
+  void snap_points();
+  void resolve_rest();
+  bool crosses(Index u, Index v) const;
+  std::vector<std::array<Index, 2>> crossing_edges() const;
+  std::optional<Crossing> find_crossing(Index u, Index v) const;
+  bool may_snap(Index point, const PatchSet& patches) const;
+  void split(const Crossing& crossing);
+  void track(const std::vector<std::array<Index, 2>>& edges);
+  template <class Visit>
+  void for_neighbours(Index number, const Visit& visit) const;
+  FeatureLabel& label(Index point) { return labels_[number_[point]]; }
+
+  TetMesh& mesh_;
+  const FeatureSurface& surface_;
+  double cell_;
+  std::vector<Index> number_;                     ///< of each point among points_; no_index: inside
+  std::vector<Index> points_;                     ///< of the boundary
+  std::vector<FeatureLabel> labels_;              ///< by number
+  std::vector<std::vector<Index>> triangles_at_;  ///< by number: of mesh_.interfaces
+  std::vector<std::vector<Index>> tets_at_;       ///< by number: tets, where they are tracked
+  std::vector<Index> lost_corners_;
+};
+
+}  // namespace tetwright

@@ -1,0 +1,77 @@
+#include "mesher/cut/feature_surface.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace tetwright {
+
+namespace {
+
+/// Triangles whose normals have a smaller cosine face the other way.
+constexpr double min_facing = -0.5;
+
+}  // namespace
+
+FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches) {
+  std::vector<Vec3> points, crease_points;
+  std::vector<ProjectionTree::Item> triangles, segments;
+  std::size_t first_patch = 0;
+  for (std::size_t b = 0; b < input.bodies.size(); ++b) {
+    const RepairedSurface& surface = input.bodies[b].surface;
+    const auto first = static_cast<Index>(points.size());
+    const auto patch_of = [&](std::uint16_t local) { return static_cast<Patch>(first_patch + local); };
+    points.insert(points.end(), surface.points.begin(), surface.points.end());
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+      const Triangle& c = surface.triangles[t];
+      triangles.push_back(
+          {{first + c[0], first + c[1], first + c[2]}, {patch_of(patches[b].patches[t]), 0, 0}});
+    }
+    const SurfaceCreases found = find_creases(surface.points, surface.triangles, patches[b].patches);
+    std::map<Index, std::set<Patch>> at_corners;
+    for (const Index c : found.corners) at_corners[c] = {};
+    for (const SurfaceCreases::Segment& s : found.segments) {
+      segments.push_back({{first + s.ends[0], first + s.ends[1], first + s.ends[1]},
+                          {patch_of(s.patches[0]), patch_of(s.patches[1]), 0}});
+      for (const Index end : s.ends)
+        if (const auto corner = at_corners.find(end); corner != at_corners.end())
+          for (const std::uint16_t p : s.patches) corner->second.insert(patch_of(p));
+    }
+    for (const auto& [c, meeting] : at_corners)
+      corners_.push_back({surface.points[c], {meeting.begin(), meeting.end()}});
+    first_patch += patches[b].count;
+  }
+  creases_ = ProjectionTree(points, std::move(segments));
+  triangles_ = ProjectionTree(std::move(points), std::move(triangles));
+  normals_.reserve(triangles_.items().size());
+  for (const ProjectionTree::Item& item : triangles_.items()) {
+    const Vec3& a = triangles_.corner(item, 0);
+    const Vec3 n = (triangles_.corner(item, 1) - a).cross(triangles_.corner(item, 2) - a);
+    const double length = n.norm();
+    normals_.push_back(length > 0 ? Vec3(n / length) : Vec3(Vec3::Zero()));
+  }
+}
+
+std::optional<FeatureSurface::Place> FeatureSurface::nearest(const Vec3& p, double at_most,
+                                                             const Vec3* facing) const {
+  const auto hit = triangles_.nearest_of(p, at_most, [&](const ProjectionTree::Item& item) {
+    return !facing ||
+           normals_[static_cast<std::size_t>(&item - triangles_.items().data())].dot(*facing) >= min_facing;
+  });
+  if (!hit) return {};
+  return Place{hit->point, normals_[hit->item], static_cast<Patch>(triangles_.items()[hit->item].kind[0])};
+}
+
+std::optional<FeatureSurface::Place> FeatureSurface::onto_patch(const Vec3& p, Patch patch,
+                                                                double at_most) const {
+  const auto hit = triangles_.nearest_of(
+      p, at_most, [&](const ProjectionTree::Item& item) { return item.kind[0] == patch; });
+  if (!hit) return {};
+  return Place{hit->point, normals_[hit->item], patch};
+}
+
+std::optional<Vec3> FeatureSurface::onto_crease(const Vec3& p, const PatchPair& pair, double at_most) const {
+  return creases_.nearest(p, {pair[0], pair[1], 0}, at_most);
+}
+
+}  // namespace tetwright

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/features/surface_patches.h"
+#include "common/geometry/projection_tree.h"
+#include "common/types.h"
+#include "mesher/input/mesher_input.h"
+
+namespace tetwright {
+
+/// The surfaces of an input with their patches, creases and corners, for nearest places. Input units; all
+/// functions may be called concurrently.
+class FeatureSurface {
+ public:
+  using Patch = std::uint16_t;
+  /// Two patches that meet in a crease, ascending.
+  using PatchPair = std::array<Patch, 2>;
+  struct Place {
+    Vec3 point;
+    Vec3 normal;  ///< unit, out of its body
+    Patch patch;
+  };
+  struct CreasePlace {
+    Vec3 point;
+    PatchPair patches;
+  };
+  struct Corner {
+    Vec3 point;
+    std::vector<Patch> patches;  ///< that meet there, ascending
+  };
+
+  /// `patches[b]` are those of body b; they are numbered from 0 on, body by body.
+  FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches);
+
+  /// The nearest place within `at_most`; with `facing` only on triangles whose normal is not opposite to it.
+  std::optional<Place> nearest(const Vec3& p, double at_most, const Vec3* facing = nullptr) const;
+  /// The nearest place of a patch.
+  std::optional<Place> onto_patch(const Vec3& p, Patch patch, double at_most) const;
+  /// The nearest place of the creases between two patches.
+  std::optional<Vec3> onto_crease(const Vec3& p, const PatchPair& pair, double at_most) const;
+  /// The nearest place of the creases for which `accepts(pair)` holds.
+  template <class Accepts>
+  std::optional<CreasePlace> nearest_crease(const Vec3& p, double at_most, const Accepts& accepts) const {
+    const auto pair_of = [](const ProjectionTree::Item& item) {
+      return PatchPair{static_cast<Patch>(item.kind[0]), static_cast<Patch>(item.kind[1])};
+    };
+    const auto hit = creases_.nearest_of(
+        p, at_most, [&](const ProjectionTree::Item& item) { return accepts(pair_of(item)); });
+    if (!hit) return {};
+    return CreasePlace{hit->point, pair_of(creases_.items()[hit->item])};
+  }
+  const std::vector<Corner>& corners() const { return corners_; }
+
+ private:
+  ProjectionTree triangles_, creases_;
+  std::vector<Vec3> normals_;  ///< of the items of triangles_
+  std::vector<Corner> corners_;
+};
+
+}  // namespace tetwright
