@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "common/types.h"
@@ -27,6 +28,19 @@ class ReferenceSurface {
   /// distance.
   virtual std::optional<Vec3> project(const Vec3& point, MaterialOrOutside first, MaterialOrOutside second,
                                       double max_distance) const = 0;
+
+  /// Whether it knows the patches of the mesh's interfaces, by their numbers, with the creases and corners
+  /// where they meet. If so, what is asked for below is exact; else nothing is found.
+  virtual bool has_patches() const { return false; }
+  /// The nearest point of a patch within `max_distance` (input units).
+  virtual std::optional<Vec3> onto_patch(const Vec3& /*point*/, std::uint16_t /*patch*/,
+                                         double /*max_distance*/) const {
+    return {};
+  }
+  /// The same of the creases between any patches.
+  virtual std::optional<Vec3> onto_crease(const Vec3& /*point*/, double /*max_distance*/) const { return {}; }
+  /// The same of corners.
+  virtual std::optional<Vec3> onto_corner(const Vec3& /*point*/, double /*max_distance*/) const { return {}; }
 };
 
 }  // namespace tetwright

@@ -228,6 +228,7 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   report.seconds_cut = stages.seconds();
   if (progress) progress->throw_if_cancelled();
 
+  result.reference = field;
   result.field = std::move(field);
   result.report = std::move(report);
   return result;

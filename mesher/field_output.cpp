@@ -6,8 +6,6 @@
 
 namespace tetwright {
 
-const ReferenceSurface& reference_surface(const MaterialField& field) { return field; }
-
 void write_fields(const MaterialField& field, const std::string& path, OutputFiles* files) {
   const std::shared_ptr<const MaterialField> on_voxels = field.refined(0);
   std::vector<LevelSetSource> sources;

@@ -129,7 +129,10 @@ class OutputFiles;
 
 struct DenseMesh {
   TetMesh mesh;  ///< input units, with interface triangles; README.md lists its invariants
-  std::shared_ptr<const MaterialField> field;  ///< the signed distances it was cut from, a ReferenceSurface
+  std::shared_ptr<const MaterialField> field;  ///< the signed distances it was cut from
+  /// What simplify() takes as its reference: the field, or where surfaces have creases a surface that knows
+  /// them and the field.
+  std::shared_ptr<const ReferenceSurface> reference;
   MesherReport report;
 };
 
@@ -138,10 +141,6 @@ struct DenseMesh {
 /// smallest other one. With `files` it appears when these are committed (see atomic_file.h). Throws
 /// OutputError.
 void write_fields(const MaterialField& field, const std::string& path, OutputFiles* files = nullptr);
-
-/// The interface of the field that simplify() takes as its reference. Refers to `field`, which must outlive
-/// it.
-const ReferenceSurface& reference_surface(const MaterialField& field);
 
 /// What mesh_surfaces() would take, from samples of the surfaces, in some tenths of a second: mostly within
 /// 25 %, see mesher/README.md. Throws UsageError and InputError as mesh_surfaces() does.

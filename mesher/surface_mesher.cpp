@@ -208,7 +208,9 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
       stages, [&](const std::vector<std::uint8_t>& there) { validate_materials_left(input, *field, there); });
   if (std::any_of(patches.begin(), patches.end(), [](const SurfacePatches& p) { return p.any(); })) {
     stages.begin("creases");
-    dense.report.creases = fit_creases(dense.mesh, FeatureSurface(input, patches), dense.report.cell_size);
+    const auto features = std::make_shared<const FeatureSurface>(input, patches, dense.field);
+    dense.report.creases = fit_creases(dense.mesh, *features, dense.report.cell_size);
+    dense.reference = features;
     dense.report.seconds_cut += stages.seconds();
   }
   return dense;

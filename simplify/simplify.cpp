@@ -119,6 +119,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
                                .fast = false,
                                .brief = false,
                                .max_rounds = max_closing_rounds};
+    engine.fit_creases();
     fit(engine, closing_fit_sweeps, quality_at(engine, plan.angle));
     WholeMesh whole(engine);
     improve_area(tools_of(engine), whole, plan, 1);

@@ -74,10 +74,9 @@ class Fitter {
       case Kind::none:
         return {};
       case Kind::patch:
-        if (const auto place = surface_.onto_patch(at, patches[0], target_reach * cell_)) return place->point;
-        return {};
+        return surface_.onto_patch(at, patches[0], target_reach * cell_);
       case Kind::crease:
-        return surface_.onto_crease(at, {patches[0], patches[1]}, target_reach * cell_);
+        return surface_.onto_crease_between(at, {patches[0], patches[1]}, target_reach * cell_);
       case Kind::corner:
         return surface_.corners()[label.corner].point;
     }
@@ -220,7 +219,7 @@ FeatureSurface::Patch patch_of(const TetMesh& mesh, const InterfaceTriangle& t, 
   FeatureSurface::Patch best = *candidates.begin();
   double most = -std::numeric_limits<double>::infinity();
   for (const FeatureSurface::Patch patch : candidates) {
-    const auto place = surface.onto_patch(centre, patch, target_reach * cell);
+    const auto place = surface.nearest_of_patch(centre, patch, target_reach * cell);
     if (!place) continue;
     const double alike = normal.dot(place->normal) - (place->point - centre).norm() / cell;
     if (alike > most) {
@@ -244,7 +243,6 @@ CreaseReport fit_creases(TetMesh& mesh, const FeatureSurface& surface, double ce
     for (std::size_t i = begin; i < end; ++i)
       mesh.interfaces[i].patch = patch_of(mesh, mesh.interfaces[i], labels, surface, cell);
   });
-  number_patches_by_pair(mesh.interfaces);
   return fitter.result();
 }
 

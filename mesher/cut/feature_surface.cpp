@@ -13,7 +13,9 @@ constexpr double min_facing = -0.5;
 
 }  // namespace
 
-FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches) {
+FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches,
+                               std::shared_ptr<const MaterialField> field)
+    : field_(std::move(field)) {
   std::vector<Vec3> points, crease_points;
   std::vector<ProjectionTree::Item> triangles, segments;
   std::size_t first_patch = 0;
@@ -42,6 +44,13 @@ FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<Surfa
     first_patch += patches[b].count;
   }
   creases_ = ProjectionTree(points, std::move(segments));
+  std::vector<Vec3> corner_places;
+  std::vector<ProjectionTree::Item> corner_items;
+  for (Index c = 0; c < corners_.size(); ++c) {
+    corner_places.push_back(corners_[c].point);
+    corner_items.push_back({{c, c, c}, {}});
+  }
+  corner_points_ = ProjectionTree(std::move(corner_places), std::move(corner_items));
   triangles_ = ProjectionTree(std::move(points), std::move(triangles));
   normals_.reserve(triangles_.items().size());
   for (const ProjectionTree::Item& item : triangles_.items()) {
@@ -62,15 +71,28 @@ std::optional<FeatureSurface::Place> FeatureSurface::nearest(const Vec3& p, doub
   return Place{hit->point, normals_[hit->item], static_cast<Patch>(triangles_.items()[hit->item].kind[0])};
 }
 
-std::optional<FeatureSurface::Place> FeatureSurface::onto_patch(const Vec3& p, Patch patch,
-                                                                double at_most) const {
+std::optional<FeatureSurface::Place> FeatureSurface::nearest_of_patch(const Vec3& p, Patch patch,
+                                                                      double at_most) const {
   const auto hit = triangles_.nearest_of(
       p, at_most, [&](const ProjectionTree::Item& item) { return item.kind[0] == patch; });
   if (!hit) return {};
   return Place{hit->point, normals_[hit->item], patch};
 }
 
-std::optional<Vec3> FeatureSurface::onto_crease(const Vec3& p, const PatchPair& pair, double at_most) const {
+std::optional<Vec3> FeatureSurface::onto_patch(const Vec3& point, Patch patch, double max_distance) const {
+  const auto place = nearest_of_patch(point, patch, max_distance);
+  if (!place) return {};
+  return place->point;
+}
+
+std::optional<Vec3> FeatureSurface::onto_crease(const Vec3& point, double max_distance) const {
+  const auto place = nearest_crease(point, max_distance, [](const PatchPair&) { return true; });
+  if (!place) return {};
+  return place->point;
+}
+
+std::optional<Vec3> FeatureSurface::onto_crease_between(const Vec3& p, const PatchPair& pair,
+                                                        double at_most) const {
   return creases_.nearest(p, {pair[0], pair[1], 0}, at_most);
 }
 

@@ -2,19 +2,22 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "common/features/surface_patches.h"
 #include "common/geometry/projection_tree.h"
+#include "common/reference_surface.h"
 #include "common/types.h"
+#include "mesher/distance/material_field.h"
 #include "mesher/input/mesher_input.h"
 
 namespace tetwright {
 
 /// The surfaces of an input with their patches, creases and corners, for nearest places. Input units; all
 /// functions may be called concurrently.
-class FeatureSurface {
+class FeatureSurface : public ReferenceSurface {
  public:
   using Patch = std::uint16_t;
   /// Two patches that meet in a crease, ascending.
@@ -33,15 +36,31 @@ class FeatureSurface {
     std::vector<Patch> patches;  ///< that meet there, ascending
   };
 
-  /// `patches[b]` are those of body b; they are numbered from 0 on, body by body.
-  FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches);
+  /// `patches[b]` are those of body b; they are numbered from 0 on, body by body. `field` answers for what
+  /// has no patches.
+  FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches,
+                 std::shared_ptr<const MaterialField> field);
+
+  double signed_distance(const Vec3& point, MaterialTag material) const override {
+    return field_->signed_distance(point, material);
+  }
+  std::optional<Vec3> project(const Vec3& point, MaterialOrOutside first, MaterialOrOutside second,
+                              double max_distance) const override {
+    return field_->project(point, first, second, max_distance);
+  }
+  bool has_patches() const override { return true; }
+  std::optional<Vec3> onto_patch(const Vec3& point, Patch patch, double max_distance) const override;
+  std::optional<Vec3> onto_crease(const Vec3& point, double max_distance) const override;
+  std::optional<Vec3> onto_corner(const Vec3& point, double max_distance) const override {
+    return corner_points_.nearest(point, {}, max_distance);
+  }
 
   /// The nearest place within `at_most`; with `facing` only on triangles whose normal is not opposite to it.
   std::optional<Place> nearest(const Vec3& p, double at_most, const Vec3* facing = nullptr) const;
-  /// The nearest place of a patch.
-  std::optional<Place> onto_patch(const Vec3& p, Patch patch, double at_most) const;
+  /// The same of one patch.
+  std::optional<Place> nearest_of_patch(const Vec3& p, Patch patch, double at_most) const;
   /// The nearest place of the creases between two patches.
-  std::optional<Vec3> onto_crease(const Vec3& p, const PatchPair& pair, double at_most) const;
+  std::optional<Vec3> onto_crease_between(const Vec3& p, const PatchPair& pair, double at_most) const;
   /// The nearest place of the creases for which `accepts(pair)` holds.
   template <class Accepts>
   std::optional<CreasePlace> nearest_crease(const Vec3& p, double at_most, const Accepts& accepts) const {
@@ -56,7 +75,8 @@ class FeatureSurface {
   const std::vector<Corner>& corners() const { return corners_; }
 
  private:
-  ProjectionTree triangles_, creases_;
+  std::shared_ptr<const MaterialField> field_;
+  ProjectionTree triangles_, creases_, corner_points_;
   std::vector<Vec3> normals_;  ///< of the items of triangles_
   std::vector<Corner> corners_;
 };

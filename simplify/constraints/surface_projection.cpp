@@ -40,7 +40,8 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
                                      const std::function<bool(Index)>& complete)
     : has_patches_(
           std::any_of(faces.begin(), faces.end(), [](const InterfaceFace& f) { return f.patch != 0; })),
-      given_(has_patches_ ? nullptr : given),
+      given_patches_(has_patches_ && given && given->has_patches()),
+      given_(has_patches_ && !given_patches_ ? nullptr : given),
       mesh_(&mesh) {
   if (!given_) {
     PointCopies points(mesh);
@@ -73,7 +74,9 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
     std::size_t j = i + 1;
     while (j < edges.size() && edges[j].key == edges[i].key) ++j;
     const auto p = static_cast<Index>(edges[i].key >> 32), q = static_cast<Index>(edges[i].key);
-    if ((j - i != 2 || edges[i].patch != edges[i + 1].patch) && complete(p) && complete(q)) {
+    // A given surface knows the creases itself.
+    if ((j - i != 2 || (!given_patches_ && edges[i].patch != edges[i + 1].patch)) && complete(p) &&
+        complete(q)) {
       const Index a = points.number(p), b = points.number(q);
       segments.push_back({{a, b, b}, {}});
     }
@@ -97,10 +100,32 @@ std::optional<Vec3> SurfaceProjection::onto_surface(const Vec3& p, RegionId firs
     if (r == outside_id) return {};
     return mesh_->tag(r);
   };
-  const auto place = given_->project(mesh_->space().to_input(p), tag(first), tag(second),
-                                     max_distance / mesh_->space().scale());
+  const WorkingSpace& space = mesh_->space();
+  const auto place =
+      given_patches_
+          ? given_->onto_patch(space.to_input(p), patch, max_distance / space.scale())
+          : given_->project(space.to_input(p), tag(first), tag(second), max_distance / space.scale());
   if (!place) return {};
-  return mesh_->space().to_working(*place);
+  return space.to_working(*place);
+}
+
+std::optional<Vec3> SurfaceProjection::onto_curve(const Vec3& p, double max_distance) const {
+  return nearer(p, curves_.nearest(p, {}, max_distance), max_distance, &ReferenceSurface::onto_crease);
+}
+
+std::optional<Vec3> SurfaceProjection::onto_corner(const Vec3& p, double max_distance) const {
+  return nearer(p, corners_.nearest(p, {}, max_distance), max_distance, &ReferenceSurface::onto_corner);
+}
+
+std::optional<Vec3> SurfaceProjection::nearer(
+    const Vec3& p, const std::optional<Vec3>& own, double max_distance,
+    std::optional<Vec3> (ReferenceSurface::*onto)(const Vec3&, double) const) const {
+  if (!given_patches_) return own;
+  const WorkingSpace& space = mesh_->space();
+  const double limit = own ? (*own - p).norm() : max_distance;
+  const auto place = (given_->*onto)(space.to_input(p), limit / space.scale());
+  if (!place) return own;
+  return space.to_working(*place);
 }
 
 }  // namespace tetwright

@@ -17,7 +17,7 @@ class SurfaceProjection {
  public:
   SurfaceProjection() = default;
   /// Copies what it needs: the mesh may change afterwards. `given` may be null and must outlive this; where
-  /// faces have patches the mesh as it came serves instead, since a given one knows none.
+  /// faces have patches and it knows none, the mesh as it came serves instead.
   SurfaceProjection(const EditableMesh& mesh, const ReferenceSurface* given)
       : SurfaceProjection(mesh, mesh.interface_faces(), given, [](Index) { return true; }) {}
   /// Of these faces alone. `complete`: whether all interface faces at a point are among them; junction curves
@@ -32,17 +32,18 @@ class SurfaceProjection {
   std::optional<Vec3> onto_surface(const Vec3& p, RegionId first, RegionId second, PatchId patch,
                                    double max_distance) const;
   /// The nearest point of a junction curve within `max_distance`; safe concurrently.
-  std::optional<Vec3> onto_curve(const Vec3& p, double max_distance) const {
-    return curves_.nearest(p, {}, max_distance);
-  }
+  std::optional<Vec3> onto_curve(const Vec3& p, double max_distance) const;
   /// The same of a point where junction curves end or branch.
-  std::optional<Vec3> onto_corner(const Vec3& p, double max_distance) const {
-    return corners_.nearest(p, {}, max_distance);
-  }
+  std::optional<Vec3> onto_corner(const Vec3& p, double max_distance) const;
 
  private:
+  /// The nearer one of `own` and what a given surface with patches answers.
+  std::optional<Vec3> nearer(const Vec3& p, const std::optional<Vec3>& own, double max_distance,
+                             std::optional<Vec3> (ReferenceSurface::*onto)(const Vec3&, double) const) const;
+
   ProjectionTree surfaces_, curves_, corners_;
   bool has_patches_ = false;
+  bool given_patches_ = false;  ///< `given_` knows creases and corners
   const ReferenceSurface* given_ = nullptr;
   const EditableMesh* mesh_ = nullptr;
 };

@@ -431,6 +431,26 @@ Outcome optimise(Workspace& ws, const BlockRules& rules) {
   return move_to(ws, rules, place.position, place.qualities);
 }
 
+Outcome fit_to_crease(Workspace& ws, const BlockRules& rules, float floor) {
+  Star& star = ws.star;
+  if (!star.creases || star.frozen) return Outcome::no_candidate;
+  const int dimension = star.dimension();
+  const double reach = fit_reach * shortest_edge(star);
+  const Vec3& c = star.centre_position;
+  const auto on = dimension == 1   ? rules.projection->onto_curve(c, reach)
+                  : dimension == 0 ? rules.projection->onto_corner(c, reach)
+                                   : std::nullopt;
+  if (!on) return Outcome::no_candidate;
+  const Vec3 to = ws.mesh.snap(*on);
+  if ((to - c).norm() <= tolerance::flat_patch) return Outcome::no_candidate;
+  star.compute_gradients();
+  std::vector<float>& qualities = ws.qualities;
+  qualities.resize(star.tets.size());
+  float worst;
+  const Outcome o = rate(star, rules, to, std::min(floor, star.worst * 0.999f), qualities, worst);
+  return o == Outcome::done ? move_to(ws, rules, to, qualities) : o;
+}
+
 Outcome fit_to_surface(Workspace& ws, const BlockRules& rules, float floor) {
   Star& star = ws.star;
   if (!rules.projection || star.frozen || star.dimension() != 2) return Outcome::no_candidate;

@@ -30,4 +30,9 @@ Outcome optimise(Workspace& ws, const BlockRules& rules);
 /// stay above `floor` or hardly get worse. Same answers; no_candidate for other points.
 Outcome fit_to_surface(Workspace& ws, const BlockRules& rules, float floor);
 
+/// Moves the centre of the gathered star, if it lies where patches meet, to the crease or the corner that it
+/// stands for, unless it is there: places come before shapes, as long as the worst tet stays above `floor` or
+/// hardly gets worse. Same answers; no_candidate for other points.
+Outcome fit_to_crease(Workspace& ws, const BlockRules& rules, float floor);
+
 }  // namespace tetwright

@@ -4,10 +4,13 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <limits>
 #include <utility>
 
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
+#include "common/tolerances.h"
+#include "simplify/operations/collapse.h"
 #include "simplify/operations/smoothing.h"
 
 namespace tetwright {
@@ -20,6 +23,8 @@ constexpr double compact_above = 0.3;
 /// Free slots left for operations that add, as shares of what is alive: with more of them the arrays grow.
 constexpr std::size_t spare_share = 16;
 constexpr std::size_t min_spare = 4096;
+/// What fitting to creases must leave of tets, by any objective: shapes recover.
+constexpr float crease_floor = 1e-4f;
 
 }  // namespace
 
@@ -176,6 +181,54 @@ std::vector<Index> Engine::interface_points() const {
     for (int f = 0; f < 4; ++f)
       if (f != k && mesh_.link(t, f).is_interface()) return true;
     return false;
+  });
+}
+
+std::vector<Index> Engine::points_off_creases() const {
+  // By point: the smallest and the largest patch of its boundary faces.
+  constexpr std::uint32_t no_patch = 0xffffffff;
+  std::vector<std::uint32_t> smallest(mesh_.point_slots(), no_patch), largest(mesh_.point_slots(), 0);
+  std::vector<std::uint8_t> third(mesh_.point_slots(), 0);  // whether it has more than these
+  for (std::size_t i = 0; i < mesh_.tet_slots(); ++i) {
+    const auto t = static_cast<Index>(i);
+    if (mesh_.dead(t)) continue;
+    for (int f = 0; f < 4; ++f) {
+      const FaceLink link = mesh_.link(t, f);
+      if (!link.is_outside()) continue;
+      for (const Index p : face_of(mesh_.points(t), f)) {
+        const std::uint32_t patch = link.patch();
+        const std::uint32_t low = smallest[p], high = largest[p];
+        third[p] |= low != no_patch && low != high && patch != low && patch != high;
+        smallest[p] = std::min(low, patch);
+        largest[p] = std::max(high, patch);
+      }
+    }
+  }
+  return parallel_collect<Index>(0, smallest.size(), slot_grain,
+                                 [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+                                   for (std::size_t p = begin; p < end; ++p) {
+                                     if (smallest[p] == no_patch || smallest[p] == largest[p]) continue;
+                                     // Nearly all are where they belong.
+                                     const Vec3& at = mesh_.position(static_cast<Index>(p));
+                                     if (!(third[p] ? projection_.onto_corner(at, tolerance::flat_patch)
+                                                    : projection_.onto_curve(at, tolerance::flat_patch)))
+                                       out.push_back(static_cast<Index>(p));
+                                   }
+                                 });
+}
+
+void Engine::fit_creases() {
+  if (!projection_.has_patches()) return;
+  BlockRules fitting = rules;
+  fitting.max_error = std::numeric_limits<double>::infinity();
+  fitting.good_enough = crease_floor;
+  runner_.each_star(points_off_creases(), Operation::fit, [&](Workspace& ws) {
+    const Outcome moved = fit_to_crease(ws, fitting, crease_floor);
+    if (moved == Outcome::done || moved == Outcome::no_candidate || ws.star.dimension() != 1) return moved;
+    for (std::size_t b = 0; b < ws.star.points.size(); ++b)
+      if (ws.star.edge_dimension(b) == 1 && collapse_onto(ws, fitting, b) == Outcome::done)
+        return Outcome::done;
+    return moved;
   });
 }
 

@@ -67,11 +67,16 @@ class Engine {
 
   /// fit_to_surface() for all interface points.
   void fit_interfaces(float floor);
+  /// fit_to_crease() for all boundary points that are off their crease or corner; what cannot go there is
+  /// collapsed along its crease.
+  void fit_creases();
 
  private:
   /// The points for which mark(tet, place in it) holds for some tet.
   template <class Mark>
   std::vector<Index> marked_points(const Mark& mark) const;
+  /// The points of the boundary where two patches meet off any crease, or three off any corner.
+  std::vector<Index> points_off_creases() const;
   /// The living tets that pass the test, in the order of the curve.
   template <class Test>
   std::vector<ListedTet> tets_where(const Test& test) const;

@@ -95,6 +95,7 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options) {
     rules.accept_worse = first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
     const float limit = engine.cutoff(percent);
     it.cutoff = portable_cbrt(limit);
+    engine.fit_creases();
     collapse_block(engine, limit, loop_target);
     const std::size_t collapsed = mesh.live_tets();
     const double removed = 1 - static_cast<double>(collapsed) / static_cast<double>(it.tets_before);

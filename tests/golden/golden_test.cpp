@@ -76,7 +76,7 @@ TetMesh simplified(const DenseMesh& dense, std::size_t target, Schedule schedule
   SimplifyOptions options;
   options.target_tets = target;
   options.schedule = schedule;
-  options.reference = &reference_surface(*dense.field);
+  options.reference = dense.reference.get();
   return simplify(dense.mesh, options);
 }
 

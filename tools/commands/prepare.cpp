@@ -13,8 +13,10 @@ ExitStatus run_prepare(const CommandLine& line) {
   CommandRun run(line);
   check_output_paths(line);
   DenseMesh dense = make_dense_mesh(read_scan(run), run);
-  const TetMesh mesh = simplify_to_target(std::move(dense.mesh), &reference_surface(*dense.field), run);
-  if (line.write_sdf.empty()) dense.field.reset();  // memory that writing the mesh needs
+  const TetMesh mesh = simplify_to_target(std::move(dense.mesh), dense.reference.get(), run);
+  // Memory that writing the mesh needs.
+  dense.reference.reset();
+  if (line.write_sdf.empty()) dense.field.reset();
   return finish(mesh, dense.field.get(), run);
 }
 

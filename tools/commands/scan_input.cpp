@@ -201,7 +201,10 @@ DenseMesh make_dense_mesh(ScanInput input, CommandRun& run) {
   const Stopwatch watch;
   DenseMesh dense =
       std::visit([&](const auto& scan) { return mesh_input(scan, run.line, &run.progress); }, input);
-  if (run.line.command == Command::mesh && run.line.write_sdf.empty()) dense.field.reset();
+  if (run.line.command == Command::mesh) {
+    dense.reference.reset();
+    if (run.line.write_sdf.empty()) dense.field.reset();
+  }
   run.report.mesher = dense.report;
   run.report.seconds_mesh = watch.seconds();
   input = {};  // gigabytes of a large volume
