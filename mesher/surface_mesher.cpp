@@ -12,6 +12,7 @@
 #include "mesher/distance/field_solid.h"
 #include "mesher/distance/field_thickness.h"
 #include "mesher/distance/material_field.h"
+#include "mesher/distance/narrow_patches.h"
 #include "mesher/field_mesher.h"
 #include "mesher/input/expected_solids.h"
 #include "mesher/mesh_estimate.h"
@@ -112,7 +113,7 @@ void validate_limits(const MesherOptions& options, double cell) {
 }
 
 /// A patch that is smaller is none: cells do not show it.
-constexpr double min_patch_cells = 8;
+constexpr double min_patch_cells = 1;
 
 /// The patches of all bodies; the report gets their numbers.
 std::vector<SurfacePatches> patches_of(const MesherInput& input, const MesherOptions& options, double cell,
@@ -200,9 +201,14 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
           {input.bodies[body].name, wall.gap, wall.on_purpose, wall.thickness * report.cell_size,
            wall.area * report.cell_size * report.cell_size, voxels.to_input(wall.place)});
   sheets.finer = combine(std::move(sheets.finer), std::move(bodies.finer));
+  const std::vector<SurfacePatches> patches = patches_of(input, options, report.cell_size, report);
+  for (std::size_t b = 0; b < input.bodies.size(); ++b)
+    sheets.finer =
+        combine(std::move(sheets.finer),
+                find_narrow_patches(input.bodies[b].surface, patches[b], voxels,
+                                    std::min(budget.max_depth, budget.max_possible), budget.base_tets));
   expect_materials(input, *field, interface_voxels, sheets.finer.refinement > 0, report);
 
-  const std::vector<SurfacePatches> patches = patches_of(input, options, report.cell_size, report);
   DenseMesh dense = mesh_field(
       field, std::move(interface_voxels), std::move(sheets.finer), options, MemoryModel{}, std::move(report),
       stages, [&](const std::vector<std::uint8_t>& there) { validate_materials_left(input, *field, there); });

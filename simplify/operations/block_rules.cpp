@@ -7,7 +7,7 @@ namespace tetwright {
 namespace {
 
 /// How far a segment of a crease may stray from the creases of the input, as a share of the diagonal.
-constexpr double max_crease_share = 0.0005;
+constexpr double max_crease_share = 0.001;
 /// Where on a segment its distance from the creases is looked at.
 constexpr double segment_samples[] = {0.25, 0.5, 0.75};
 

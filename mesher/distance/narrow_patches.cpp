@@ -1,0 +1,113 @@
+#include "mesher/distance/narrow_patches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/geometry/projection_tree.h"
+#include "common/parallel/parallel.h"
+#include "common/parallel/parallel_sort.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::size_t segment_grain = 256;
+/// Cells that the width of a patch should have.
+constexpr double cells_to_width = 2;
+/// Creases that are nearer to each other than this share of their distance from a corner do not just meet in
+/// it.
+constexpr double corner_share = 0.4;
+/// Distance of places that are looked at along a crease, voxels.
+constexpr double place_distance = 0.5;
+/// Dense tets for each cell that is split, about: half of its eight parts are inside.
+constexpr double tets_of_split = 42;
+
+struct Narrow {
+  Vec3 place;  ///< voxels
+  int depth;   ///< halvings that it needs
+};
+
+struct Split {
+  int depth;  ///< of the cell
+  MortonKey key;
+  bool operator==(const Split&) const = default;
+  bool operator<(const Split& o) const { return depth != o.depth ? depth < o.depth : key < o.key; }
+};
+
+std::vector<Narrow> narrow_places(const RepairedSurface& surface, const SurfacePatches& patches,
+                                  const GridFrame& frame, int max_depth) {
+  const SurfaceCreases creases = find_creases(surface.points, surface.triangles, patches.patches);
+  std::vector<Vec3> points;
+  points.reserve(surface.points.size());
+  for (const Vec3& p : surface.points) points.push_back(frame.to_grid(p));
+  std::vector<ProjectionTree::Item> segments, corners;
+  for (const SurfaceCreases::Segment& s : creases.segments)
+    segments.push_back({{s.ends[0], s.ends[1], s.ends[1]}, {s.patches[0], s.patches[1], 0}});
+  for (const Index c : creases.corners) corners.push_back({{c, c, c}, {}});
+  const ProjectionTree segment_tree(points, std::move(segments)), corner_tree(points, std::move(corners));
+  return parallel_collect<Narrow>(
+      0, creases.segments.size(), segment_grain,
+      [&](std::size_t begin, std::size_t end, std::vector<Narrow>& out) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const auto& [ends, own] = creases.segments[i];
+          const Vec3 &a = points[ends[0]], &b = points[ends[1]];
+          const auto places = static_cast<int>(std::ceil((b - a).norm() / place_distance));
+          for (int k = 0; k <= places; ++k) {
+            const Vec3 at = a + (b - a) * (static_cast<double>(k) / std::max(places, 1));
+            const auto other =
+                segment_tree.nearest_of(at, cells_to_width, [&](const ProjectionTree::Item& item) {
+                  const std::uint32_t p = item.kind[0], q = item.kind[1];
+                  if (p == own[0] && q == own[1]) return false;
+                  return p == own[0] || p == own[1] || q == own[0] || q == own[1];
+                });
+            if (!other) continue;
+            const double width = (other->point - at).norm();
+            if (corner_tree.nearest_of(at, width / corner_share, [](const auto&) { return true; })) continue;
+            // Creases that touch there are a corner, too.
+            if (!(width > 0)) continue;
+            out.push_back(
+                {at, std::min(max_depth, static_cast<int>(std::ceil(std::log2(cells_to_width / width))))});
+          }
+        }
+      });
+}
+
+}  // namespace
+
+FinerCells find_narrow_patches(const RepairedSurface& surface, const SurfacePatches& patches,
+                               const GridFrame& frame, int max_depth, double max_tets) {
+  if (!patches.any() || max_depth <= 0) return {};
+  const std::vector<Narrow> places = narrow_places(surface, patches, frame, max_depth);
+  for (; max_depth > 0; --max_depth) {
+    std::vector<Split> splits;
+    for (const Narrow& n : places)
+      for (int depth = 0; depth < std::min(n.depth, max_depth); ++depth) {
+        const Vec3 cell = n.place * std::ldexp(1, depth);
+        for (int k = 0; k < 27; ++k) {
+          const Vec3 next = cell + Vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+          splits.push_back({depth, morton_encode({static_cast<int>(std::max(0.0, next.x())),
+                                                  static_cast<int>(std::max(0.0, next.y())),
+                                                  static_cast<int>(std::max(0.0, next.z()))})});
+        }
+      }
+    std::sort(splits.begin(), splits.end());
+    splits.erase(std::unique(splits.begin(), splits.end()), splits.end());
+    if (splits.empty()) return {};
+    if (tets_of_split * static_cast<double>(splits.size()) > max_tets) continue;
+    FinerCells finer;
+    finer.refinement = splits.back().depth + 1;
+    finer.cells.resize(static_cast<std::size_t>(finer.refinement) + 2);
+    for (const Split& s : splits) {
+      finer.cells[static_cast<std::size_t>(finer.refinement - s.depth)].push_back(s.key);
+      // Cells of two voxels must be split for that.
+      if (s.depth == 0) finer.cells.back().push_back(s.key >> 3);
+    }
+    std::vector<MortonKey>& larger = finer.cells.back();
+    larger.erase(std::unique(larger.begin(), larger.end()), larger.end());
+    return finer;
+  }
+  return {};
+}
+
+}  // namespace tetwright
