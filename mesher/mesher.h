@@ -89,16 +89,6 @@ struct FeatureReport {
   SurfacePatches found;  ///< without the list of the triangles
 };
 
-/// Creases and corners of the surfaces in the mesh.
-struct CreaseReport {
-  std::size_t points = 0;           ///< that stand for creases and corners
-  std::size_t off = 0;              ///< of these, not on them
-  double max_distance = 0;          ///< of one of these, input units
-  Vec3 place = Vec3::Zero();        ///< where that one is
-  std::size_t lost_corners = 0;     ///< corners without a point
-  Vec3 lost_corner = Vec3::Zero();  ///< one of them
-};
-
 struct MesherReport {
   double cell_size = 0;               ///< edge of a finest cell (a voxel), input units
   int resolution = 0;                 ///< finest cells along the longest side
@@ -118,7 +108,7 @@ struct MesherReport {
   /// smaller than a cell.
   std::vector<std::string> unknown;
   std::vector<FeatureReport> features;  ///< of each surface, in their order
-  std::optional<CreaseReport> creases;  ///< if there are any
+  CreaseCurves creases;                 ///< of all of them
   MesherEstimate estimate;              ///< from the input, see estimate_mesh()
   MesherEstimate lattice_estimate;      ///< from the regions of the lattice's points
   double seconds_sdf = 0, seconds_octree = 0, seconds_lattice = 0, seconds_move = 0, seconds_cut = 0;

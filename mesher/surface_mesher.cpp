@@ -115,7 +115,7 @@ void validate_limits(const MesherOptions& options, double cell) {
 /// A patch that is smaller is none: cells do not show it.
 constexpr double min_patch_cells = 1;
 
-/// The patches of all bodies; the report gets their numbers.
+/// The patches of all bodies; the report gets their numbers and creases.
 std::vector<SurfacePatches> patches_of(const MesherInput& input, const MesherOptions& options, double cell,
                                        MesherReport& report) {
   std::vector<SurfacePatches> patches;
@@ -124,6 +124,9 @@ std::vector<SurfacePatches> patches_of(const MesherInput& input, const MesherOpt
                                    {options.feature_angle, min_patch_cells * cell * cell}, {}, body.file));
     report.features.push_back({body.name, patches.back()});
     report.features.back().found.patches = {};
+    if (patches.back().any())
+      report.creases.add(find_creases(body.surface.points, body.surface.triangles, patches.back().patches),
+                         body.surface.points);
   }
   return patches;
 }
@@ -215,7 +218,7 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   if (std::any_of(patches.begin(), patches.end(), [](const SurfacePatches& p) { return p.any(); })) {
     stages.begin("creases");
     const auto features = std::make_shared<const FeatureSurface>(input, patches, dense.field);
-    dense.report.creases = fit_creases(dense.mesh, *features, dense.report.cell_size);
+    fit_creases(dense.mesh, *features, dense.report.cell_size);
     dense.reference = features;
     dense.report.seconds_cut += stages.seconds();
   }

@@ -99,12 +99,13 @@ void print_report(const CommandLine& line, const RunReport& run) {
       [](const MeshStatistics& m) { return text("%.1f - %.1f", m.min_dihedral, m.max_dihedral); });
   std::printf("\n");
   if (run.volume) std::printf("%s\n", volume_line(*run.volume).c_str());
-  for (const FeatureReport& f : run.mesher ? run.mesher->features : run.features)
-    std::printf("%s\n", feature_line(f).c_str());
-  if (run.mesher && run.mesher->creases)
-    std::printf("creases: %zu points, %zu of them off by up to %.3g; corners lost: %zu\n",
-                run.mesher->creases->points, run.mesher->creases->off, run.mesher->creases->max_distance,
-                run.mesher->creases->lost_corners);
+  for (const FeatureReport& f : run.features) std::printf("%s\n", feature_line(f).c_str());
+  if (run.crease_fidelity) {
+    const CreaseFidelity& c = *run.crease_fidelity;
+    std::printf("creases within %.2g %% of the diagonal, 99 %% of them within %.2g %%; %zu of %zu corners\n",
+                100 * c.max_distance / c.diagonal, 100 * c.p99_distance / c.diagonal,
+                c.corners - c.lost_corners, c.corners);
+  }
   if (run.mesher)
     std::printf("resolution %d (cells of %.4g), ", run.mesher->resolution, run.mesher->cell_size);
   std::printf("%.2f s: read %.2f", run.seconds_total, run.seconds_read);
@@ -130,6 +131,12 @@ std::vector<std::string> notes_of(const RunReport& run) {
     line += std::to_string(f.finding.count) + " " + f.finding.what + " (" + f.finding.done + ")";
   }
   if (!line.empty()) notes.push_back(line);
+  for (const FeatureReport& f : run.features)
+    if (f.found.dropped > 0)
+      notes.push_back(
+          "'" + f.name + "' has " + std::to_string(f.found.dropped) +
+          " patches between sharp edges that are smaller than a cell (their edges are not kept; a "
+          "higher resolution keeps them)");
   if (!run.mesher) return notes;
   if (run.mesher->isolated_vertices > 0)
     notes.push_back(

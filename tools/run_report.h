@@ -11,6 +11,7 @@
 #include "common/mesh/mesh_statistics.h"
 #include "mesher/mesher.h"
 #include "simplify/simplify.h"
+#include "tools/crease_fidelity.h"
 #include "tools/fidelity.h"
 
 namespace tetwright {
@@ -55,7 +56,9 @@ struct RunReport {
   std::vector<InputFinding> findings;
   std::optional<MesherReport> mesher;
   std::optional<MeshStatistics> dense, result;
-  std::vector<FeatureReport> features;
+  std::vector<FeatureReport> features;  ///< of each surface, or of the tet mesh
+  CreaseCurves creases;                 ///< of all of them
+  std::optional<CreaseFidelity> crease_fidelity;
   std::vector<MaterialFidelity> fidelity;
   std::map<MaterialTag, std::string> material_names;
   std::optional<SimplifyReport> simplify;

@@ -138,6 +138,29 @@ nlohmann::json fidelity_json(const std::vector<MaterialFidelity>& all) {
   return j;
 }
 
+nlohmann::json features_json(const std::vector<FeatureReport>& all) {
+  static constexpr const char* verdicts[] = {"off", "smooth", "scan", "staircase", "part"};
+  nlohmann::json j = nlohmann::json::array();
+  for (const FeatureReport& f : all)
+    j.push_back({{"name", f.name},
+                 {"verdict", verdicts[static_cast<std::size_t>(f.found.verdict)]},
+                 {"patches", f.found.count},
+                 {"dropped_patches", f.found.dropped},
+                 {"loose_ends", {f.found.loose_ends_low, f.found.loose_ends_high}}});
+  return j;
+}
+
+nlohmann::json creases_json(const CreaseFidelity& c) {
+  return {{"length", c.length},
+          {"max_distance", c.max_distance},
+          {"p99_distance", c.p99_distance},
+          {"place", place_json(c.place)},
+          {"corners", c.corners},
+          {"lost_corners", c.lost_corners},
+          {"max_corner_distance", c.max_corner_distance},
+          {"same", c.same()}};
+}
+
 /// Adds to the statistics of the dense mesh how it was made.
 void add_mesher_json(const MesherReport& m, nlohmann::json& dense) {
   dense["cell_size"] = m.cell_size;
@@ -215,6 +238,8 @@ std::string stats_json(const CommandLine& line, const RunReport& run) {
   j["result"] =
       run.result ? mesh_json(*run.result, run.material_names, line.min_solid_angle) : nlohmann::json();
   if (run.mesher && !run.volume) j["fidelity"] = fidelity_json(run.fidelity);
+  if (!run.features.empty()) j["features"] = features_json(run.features);
+  if (run.crease_fidelity) j["creases"] = creases_json(*run.crease_fidelity);
   j["iterations"] = nlohmann::json::array();
   if (run.simplify)
     for (const IterationReport& it : run.simplify->iterations) j["iterations"].push_back(iteration_json(it));

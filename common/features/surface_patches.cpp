@@ -133,6 +133,8 @@ class PatchMerger {
   }
 
   /// The part of each triangle: the number of one of its triangles.
+  /// How many went to a neighbour because they are small.
+  std::size_t dropped() const { return dropped_; }
   std::vector<Index> merged(double min_area) {
     for (const auto& [a, neighbours] : borders_)
       for (const auto& [b, border] : neighbours)
@@ -185,6 +187,7 @@ class PatchMerger {
             return x.second.length != y.second.length ? x.second.length > y.second.length : x.first < y.first;
           });
       const Index other = weakest->first;
+      ++dropped_;
       merge(part, other);
       small.erase({areas_[other], other});
       list(sets_.root(part));
@@ -214,7 +217,8 @@ class PatchMerger {
   }
 
   DisjointSets sets_;
-  std::vector<double> areas_;                         ///< of each part, by its root
+  std::vector<double> areas_;  ///< of each part, by its root
+  std::size_t dropped_ = 0;
   std::map<Index, std::map<Index, Border>> borders_;  ///< from each part, to each neighbour
   std::set<Queued> queue_;
 };
@@ -267,13 +271,14 @@ SurfacePatches find_patches(std::span<const Vec3> points, std::span<const Triang
                (result.loose_ends_low > max_loose_low || result.loose_ends_high > max_loose_high)) {
       result.verdict = Verdict::scan;
     } else {
-      std::vector<Index> merged =
-          PatchMerger(triangle_areas(points, triangles), edges, sharp).merged(options.min_area);
+      PatchMerger merger(triangle_areas(points, triangles), edges, sharp);
+      std::vector<Index> merged = merger.merged(options.min_area);
       const std::size_t count = std::set<Index>(merged.begin(), merged.end()).size();
       if (automatic && count >= min_staircase_patches && count * max_staircase_triangles > triangles.size()) {
         result.verdict = Verdict::staircase;
       } else {
         result.verdict = Verdict::part;
+        result.dropped = merger.dropped();
         parts = std::move(merged);
       }
     }
@@ -346,6 +351,33 @@ SurfaceCreases find_creases(std::span<const Vec3> points, std::span<const Triang
     if (corner) creases.corners.push_back(p);
   }
   return creases;
+}
+
+void CreaseCurves::add(const SurfaceCreases& creases, std::span<const Vec3> surface_points) {
+  std::map<Index, Index> numbers;
+  for (const SurfaceCreases::Segment& s : creases.segments) {
+    std::array<Index, 2> ends;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto [known, added] = numbers.emplace(s.ends[k], static_cast<Index>(points.size()));
+      if (added) points.push_back(surface_points[s.ends[k]]);
+      ends[k] = known->second;
+    }
+    segments.push_back(ends);
+  }
+  for (const Index c : creases.corners) corners.push_back(surface_points[c]);
+}
+
+CreaseCurves mesh_creases(const TetMesh& mesh) {
+  std::map<MaterialPair, std::pair<std::vector<Triangle>, std::vector<std::uint16_t>>> by_pair;
+  for (const InterfaceTriangle& t : mesh.interfaces) {
+    auto& [triangles, patches] = by_pair[t.pair()];
+    triangles.push_back(t.ids);
+    patches.push_back(t.patch);
+  }
+  CreaseCurves curves;
+  for (const auto& [pair, faces] : by_pair)
+    curves.add(find_creases(mesh.points, faces.first, faces.second), mesh.points);
+  return curves;
 }
 
 }  // namespace tetwright

@@ -44,6 +44,7 @@ struct SurfacePatches {
   /// verdict is part or groups were given.
   std::vector<std::uint16_t> patches;
   std::size_t count = 1;
+  std::size_t dropped = 0;  ///< smaller than PatchOptions::min_area: they went to neighbours
   /// Shares of the edges that turn by more than 15 and 35 degrees at which a chain of them ends.
   double loose_ends_low = 0, loose_ends_high = 0;
 
@@ -94,5 +95,17 @@ struct SurfaceCreases {
 /// patches.
 SurfaceCreases find_creases(std::span<const Vec3> points, std::span<const Triangle> triangles,
                             std::span<const std::uint16_t> patches);
+
+/// Creases and corners by themselves, to be compared with.
+struct CreaseCurves {
+  std::vector<Vec3> points;
+  std::vector<std::array<Index, 2>> segments;  ///< indices into points
+  std::vector<Vec3> corners;
+
+  void add(const SurfaceCreases& creases, std::span<const Vec3> surface_points);
+};
+
+/// Those of the boundary and the interfaces of a mesh, between the patches of each pair of materials.
+CreaseCurves mesh_creases(const TetMesh& mesh);
 
 }  // namespace tetwright

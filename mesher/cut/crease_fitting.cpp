@@ -46,8 +46,8 @@ class Fitter {
                  pass_floors[std::size(pass_floors) - 1] * tangent_of_poor_tet);
   }
 
-  CreaseReport result() const {
-    CreaseReport fit;
+  CreaseFit result() const {
+    CreaseFit fit;
     for (const Index p : labels_.points()) {
       const Kind kind = labels_.of(p).kind;
       if (kind != Kind::crease && kind != Kind::corner) continue;
@@ -232,7 +232,7 @@ FeatureSurface::Patch patch_of(const TetMesh& mesh, const InterfaceTriangle& t, 
 
 }  // namespace
 
-CreaseReport fit_creases(TetMesh& mesh, const FeatureSurface& surface, double cell) {
+CreaseFit fit_creases(TetMesh& mesh, const FeatureSurface& surface, double cell) {
   const CreaseLabels labels(mesh, surface, cell);
   Fitter fitter(mesh, surface, labels, cell);
   fitter.run();

@@ -1,10 +1,21 @@
 #pragma once
 
+#include <cstddef>
+
 #include "common/tet_mesh.h"
 #include "mesher/cut/feature_surface.h"
-#include "mesher/mesher.h"
 
 namespace tetwright {
+
+/// Creases and corners of the surfaces in the mesh.
+struct CreaseFit {
+  std::size_t points = 0;           ///< that stand for creases and corners
+  std::size_t off = 0;              ///< of these, not on them
+  double max_distance = 0;          ///< of one of these, input units
+  Vec3 place = Vec3::Zero();        ///< where that one is
+  std::size_t lost_corners = 0;     ///< corners without a point
+  Vec3 lost_corner = Vec3::Zero();  ///< one of them
+};
 
 /// Gives the boundary faces of a dense mesh the patches of the surface that it was made of, and moves it onto
 /// the surface so that edges follow the creases and points stand at the corners. `cell` is the size of the
@@ -18,6 +29,6 @@ namespace tetwright {
 ///
 /// Points where materials other than one and outside meet keep to the junction curves they are on. The same
 /// result for any number of threads.
-CreaseReport fit_creases(TetMesh& mesh, const FeatureSurface& surface, double cell);
+CreaseFit fit_creases(TetMesh& mesh, const FeatureSurface& surface, double cell);
 
 }  // namespace tetwright

@@ -22,6 +22,9 @@ constexpr double crease_reach = 2.5;
 constexpr double max_snap = 0.5;
 /// New points stay this share of an edge away from its ends.
 constexpr double min_split = 0.2;
+/// A point with only creases around belongs to the patch on their other side if that is as near as this,
+/// cells: what a level set knows of a surface near its creases.
+constexpr double island_reach = 0.35;
 constexpr int crossing_steps = 3;
 constexpr int max_rounds = 4;
 
@@ -43,6 +46,7 @@ CreaseLabels::CreaseLabels(TetMesh& mesh, const FeatureSurface& surface, double 
   track(crossing_edges());
   snap_points();
   resolve_rest();
+  dissolve_islands();
 }
 
 template <class Visit>
@@ -246,6 +250,27 @@ void CreaseLabels::resolve_rest() {
       else
         split(*c);
     }
+  }
+}
+
+void CreaseLabels::dissolve_islands() {
+  for (Index i = 0; i < points_.size(); ++i) {
+    if (labels_[i].kind != Kind::patch) continue;
+    PatchSet shared;
+    bool first = true, alone = true;
+    for_neighbours(i, [&](Index p) {
+      const FeatureLabel& other = labels_[number_[p]];
+      alone &= other.kind == Kind::crease || other.kind == Kind::corner;
+      shared = first ? other.patches : shared.common(other.patches);
+      first = false;
+    });
+    if (!alone) continue;
+    for (const FeatureSurface::Patch patch : shared)
+      if (!labels_[i].patches.contains(patch) &&
+          surface_.onto_patch(mesh_.points[points_[i]], patch, island_reach * cell_)) {
+        labels_[i].patches = {patch};
+        break;
+      }
   }
 }
 

@@ -85,6 +85,7 @@ class CreaseLabels {
   void take_corners();
   void snap_points();
   void resolve_rest();
+  void dissolve_islands();
   bool crosses(Index u, Index v) const;
   std::vector<std::array<Index, 2>> crossing_edges() const;
   std::optional<Crossing> find_crossing(Index u, Index v) const;

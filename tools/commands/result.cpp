@@ -211,6 +211,32 @@ void find_thin_walls(const CommandLine& line, RunReport& report) {
            ", or take it as it is with --accept-changes"});
 }
 
+/// Creases and corners that are not where they are in the input: a shortfall, or with --accept-changes a
+/// finding.
+void find_changed_creases(const CommandLine& line, const TetMesh& mesh, RunReport& report) {
+  if (report.creases.segments.empty()) return;
+  report.crease_fidelity = compare_creases(report.creases, mesh);
+  const CreaseFidelity& c = *report.crease_fidelity;
+  if (c.same()) return;
+  char distance[80];
+  std::snprintf(distance, sizeof distance, "%.3g (%.2g %% of the diagonal)", c.max_distance,
+                100 * c.max_distance / c.diagonal);
+  std::string text = std::string("creases are off by up to ") + distance + " at " + place_text(c.place);
+  if (c.lost_corners > 0)
+    text += ", and " + std::to_string(c.lost_corners) + " of " + std::to_string(c.corners) +
+            " corners are lost, the first at " + place_text(c.lost_corner);
+  if (line.accept_changes) {
+    report.findings.push_back({report.inputs.front(), {"place where " + text, 1, {}, "accepted"}});
+    return;
+  }
+  const bool of_tets = !report.mesher;
+  report.shortfall.push_back({"creases", 0, c.max_distance,
+                              report.simplify ? "the number of tets" : "the size of the cells",
+                              text + "; raise " + (report.simplify ? "--target-tets" : "--resolution") +
+                                  (of_tets ? ", or leave sharp edges alone with --feature-angle off"
+                                           : ", or take it as it is with --accept-changes")});
+}
+
 /// With --strict whatever is noted.
 void find_notes(const CommandLine& line, const std::vector<std::string>& notes, RunReport& report) {
   if (!line.strict || notes.empty()) return;
@@ -249,6 +275,7 @@ ExitStatus finish(const TetMesh& mesh, const MaterialField* field, CommandRun& r
   find_lost_labels(run.line, report);
   find_changed_solids(run.line, mesh, report);
   find_thin_walls(run.line, report);
+  find_changed_creases(run.line, mesh, report);
   const std::vector<std::string> notes = notes_of(report);
   find_notes(run.line, notes, report);
   write_files(mesh, field, run);

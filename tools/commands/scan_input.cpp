@@ -205,7 +205,9 @@ DenseMesh make_dense_mesh(ScanInput input, CommandRun& run) {
     dense.reference.reset();
     if (run.line.write_sdf.empty()) dense.field.reset();
   }
-  run.report.mesher = dense.report;
+  run.report.features = dense.report.features;
+  run.report.creases = std::move(dense.report.creases);
+  run.report.mesher = std::move(dense.report);
   run.report.seconds_mesh = watch.seconds();
   input = {};  // gigabytes of a large volume
   run.report.dense = mesh_statistics(dense.mesh, run.line.min_solid_angle);

@@ -58,6 +58,7 @@ TetInput read_tets(CommandRun& run) {
     run.report.features.push_back(
         {file_stem(file), find_mesh_patches(input.mesh, run.line.feature_angle, file)});
     run.report.features.back().found.patches = {};
+    run.report.creases = mesh_creases(input.mesh);
   }
   run.report.seconds_read = watch.seconds();
   if (run.line.target_tets > input.mesh.tets.size())
