@@ -12,7 +12,6 @@
 #include "mesher/distance/field_solid.h"
 #include "mesher/distance/field_thickness.h"
 #include "mesher/distance/material_field.h"
-#include "mesher/distance/narrow_patches.h"
 #include "mesher/field_mesher.h"
 #include "mesher/input/expected_solids.h"
 #include "mesher/mesh_estimate.h"
@@ -173,8 +172,14 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   budget.max_possible = max_possible_refinement(voxels, largest_coordinate(input));
   budget.base_tets = std::max(min_cheap_tets, static_cast<double>(report.estimate.tets));
   budget.max_tets = std::max(max_added_tets, budget.base_tets);
-  BodyField bodies = build_field(input, voxels, options.keep_outside,
-                                 {options.min_gap, options.min_thickness}, budget, progress);
+  const std::vector<SurfacePatches> patches = patches_of(input, options, report.cell_size, report);
+  std::vector<NarrowPatches> narrow;
+  for (std::size_t b = 0; b < input.bodies.size(); ++b)
+    narrow.push_back(find_narrow_patches(input.bodies[b].surface, patches[b], voxels,
+                                         std::min(budget.max_depth, budget.max_possible), budget.base_tets));
+  BodyField bodies =
+      build_field(input, voxels, options.keep_outside, {options.min_gap, options.min_thickness}, budget,
+                  std::move(narrow), progress);
   const std::shared_ptr<const MaterialField> field = bodies.field;
   report.seconds_sdf = stages.seconds();
 
@@ -204,12 +209,6 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
           {input.bodies[body].name, wall.gap, wall.on_purpose, wall.thickness * report.cell_size,
            wall.area * report.cell_size * report.cell_size, voxels.to_input(wall.place)});
   sheets.finer = combine(std::move(sheets.finer), std::move(bodies.finer));
-  const std::vector<SurfacePatches> patches = patches_of(input, options, report.cell_size, report);
-  for (std::size_t b = 0; b < input.bodies.size(); ++b)
-    sheets.finer =
-        combine(std::move(sheets.finer),
-                find_narrow_patches(input.bodies[b].surface, patches[b], voxels,
-                                    std::min(budget.max_depth, budget.max_possible), budget.base_tets));
   expect_materials(input, *field, interface_voxels, sheets.finer.refinement > 0, report);
 
   DenseMesh dense = mesh_field(

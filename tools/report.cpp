@@ -62,7 +62,7 @@ std::string feature_line(const FeatureReport& f) {
       line += "none; its edges look like those of a scan (" + loose() + ")";
       break;
     case Verdict::staircase:
-      line += "none; its edges look like those of voxels";
+      line += "none; its edges look like those of voxels (--feature-angle DEGREES keeps them)";
       break;
     case Verdict::part:
       line += text("%zu patches with sharp edges between them", f.found.count);

@@ -23,9 +23,10 @@ constexpr double min_sharp_share = 0.5;  ///< of a border's length turns by more
 constexpr double max_loose_low = 0.09;   ///< parts have up to 0.07, scans that pass the other test 0.10
 constexpr double max_loose_high = 0.2;   ///< parts have up to 0.10, scans that pass the other test 0.43
 constexpr double corner_turn = 45;       ///< degrees
-/// A staircase has many patches, each of few triangles.
+/// A staircase has many patches, each of few triangles; or its sharp edges are those of equal boxes.
 constexpr std::size_t min_staircase_patches = 256;
 constexpr std::size_t max_staircase_triangles = 4;
+constexpr double same_length = 1e-3, right_angle = 90 * degree, same_angle = 1 * degree;
 constexpr std::size_t max_patches = 0xffff;
 
 /// The side of an edge that a triangle is on.
@@ -113,6 +114,20 @@ double loose_ends(const std::vector<InnerEdge>& edges, std::size_t point_count, 
     }
   const auto loose = std::count(degrees.begin(), degrees.end(), 1U);
   return sharp == 0 ? 0 : static_cast<double>(loose) / static_cast<double>(sharp);
+}
+
+/// Whether all edges that turn by more than the angle do so by 90 degrees and have one of three lengths.
+bool are_of_boxes(const std::vector<InnerEdge>& edges, double angle) {
+  std::vector<double> lengths;
+  for (const InnerEdge& e : edges) {
+    if (e.turn <= angle) continue;
+    if (std::abs(e.turn - right_angle) > same_angle) return false;
+    if (std::none_of(lengths.begin(), lengths.end(),
+                     [&](double l) { return std::abs(l - e.length) <= same_length * l; }))
+      lengths.push_back(e.length);
+    if (lengths.size() > 3) return false;
+  }
+  return true;
 }
 
 /// Parts of a surface that are merged across the border that turns least.
@@ -274,7 +289,8 @@ SurfacePatches find_patches(std::span<const Vec3> points, std::span<const Triang
       PatchMerger merger(triangle_areas(points, triangles), edges, sharp);
       std::vector<Index> merged = merger.merged(options.min_area);
       const std::size_t count = std::set<Index>(merged.begin(), merged.end()).size();
-      if (automatic && count >= min_staircase_patches && count * max_staircase_triangles > triangles.size()) {
+      if (automatic && count >= min_staircase_patches &&
+          (count * max_staircase_triangles > triangles.size() || are_of_boxes(edges, sharp))) {
         result.verdict = Verdict::staircase;
       } else {
         result.verdict = Verdict::part;

@@ -36,7 +36,7 @@ struct SurfacePatches {
     off,        ///< not looked for
     smooth,     ///< no edge turns far enough
     scan,       ///< edges turn far, but what they make up ends anywhere: noise
-    staircase,  ///< next to every edge is a crease, as on the faces of voxels
+    staircase,  ///< creases nearly everywhere, as on the faces of voxels
     part        ///< there are creases
   };
   Verdict verdict = Verdict::off;

@@ -76,7 +76,7 @@ class Fitter {
       case Kind::patch:
         return surface_.onto_patch(at, patches[0], target_reach * cell_);
       case Kind::crease:
-        return surface_.onto_crease_between(at, {patches[0], patches[1]}, target_reach * cell_);
+        return surface_.onto_crease_between(at, label.crease, target_reach * cell_);
       case Kind::corner:
         return surface_.corners()[label.corner].point;
     }

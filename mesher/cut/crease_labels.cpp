@@ -26,6 +26,8 @@ constexpr double min_split = 0.2;
 /// cells: what a level set knows of a surface near its creases.
 constexpr double island_reach = 0.35;
 constexpr int crossing_steps = 3;
+/// Creases with patches between them that are narrower than this, cells, become one.
+constexpr double narrow_reach = 0.3;
 constexpr int max_rounds = 4;
 
 }  // namespace
@@ -34,7 +36,9 @@ constexpr int max_rounds = 4;
 struct CreaseLabels::Crossing {
   Index u, v;
   double share;  ///< of the way from u to v
-  FeatureSurface::PatchPair patches;
+  FeatureSurface::PatchPair crease;
+  PatchSet patches;  ///< that meet there
+  FeatureLabel label() const { return {Kind::crease, patches, no_index, crease}; }
 };
 
 CreaseLabels::CreaseLabels(TetMesh& mesh, const FeatureSurface& surface, double cell)
@@ -89,7 +93,7 @@ void CreaseLabels::label_points() {
       // Of two materials either may be the body.
       const auto place =
           surface_.nearest(mesh_.points[points_[i]], surface_reach * cell_, first.other ? nullptr : &normal);
-      if (place) labels_[i] = {Kind::patch, {place->patch}, no_index};
+      if (place) labels_[i] = {Kind::patch, {place->patch}, no_index, {}};
     }
   });
 }
@@ -167,7 +171,7 @@ void CreaseLabels::take_corners() {
           tree.nearest_of(corner.point, corner_reach * cell_,
                           [&](const ProjectionTree::Item& item) { return fits(item, min_patches); });
       if (!hit) continue;
-      labels_[tree.items()[hit->item].kind[0]] = {Kind::corner, meeting, c};
+      labels_[tree.items()[hit->item].kind[0]] = {Kind::corner, meeting, c, {}};
       found = true;
       break;
     }
@@ -179,15 +183,39 @@ std::optional<CreaseLabels::Crossing> CreaseLabels::find_crossing(Index u, Index
   const PatchSet &a = labels_[number_[u]].patches, &b = labels_[number_[v]].patches;
   const Vec3 &p = mesh_.points[u], &q = mesh_.points[v];
   const Vec3 along = q - p;
-  Crossing crossing{u, v, 0.5, {}};
-  for (int i = 0; i < crossing_steps; ++i) {
-    const auto place = surface_.nearest_crease(
-        p + crossing.share * along, crease_reach * along.norm(), [&](const FeatureSurface::PatchPair& pair) {
-          return (a.contains(pair[0]) && b.contains(pair[1])) || (a.contains(pair[1]) && b.contains(pair[0]));
-        });
-    if (!place) return {};
-    crossing.share = std::clamp((place->point - p).dot(along) / along.squaredNorm(), 0.0, 1.0);
-    crossing.patches = place->patches;
+  Crossing crossing{u, v, 0.5, {}, {}};
+  using Pair = FeatureSurface::PatchPair;
+  const auto find = [&](const auto& accepts) {
+    for (int i = 0; i < crossing_steps; ++i) {
+      const auto place =
+          surface_.nearest_crease(p + crossing.share * along, crease_reach * along.norm(), accepts);
+      if (!place) return false;
+      crossing.share = std::clamp((place->point - p).dot(along) / along.squaredNorm(), 0.0, 1.0);
+      crossing.crease = place->patches;
+      crossing.patches = {place->patches[0], place->patches[1]};
+    }
+    return true;
+  };
+  if (find([&](const Pair& pair) {
+        return (a.contains(pair[0]) && b.contains(pair[1])) || (a.contains(pair[1]) && b.contains(pair[0]));
+      }))
+    return crossing;
+  // Between the two there may be patches too narrow for cells: their creases become one.
+  if (!find([&](const Pair& pair) {
+        return a.contains(pair[0]) || a.contains(pair[1]) || b.contains(pair[0]) || b.contains(pair[1]);
+      }))
+    return {};
+  const auto at =
+      surface_.onto_crease_between(p + crossing.share * along, crossing.crease, surface_reach * cell_);
+  if (!at) return {};
+  while (!(crossing.patches.meets(a) && crossing.patches.meets(b))) {
+    const std::size_t known = crossing.patches.size();
+    const auto next = surface_.nearest_crease(*at, narrow_reach * cell_, [&](const Pair& pair) {
+      return crossing.patches.contains(pair[0]) != crossing.patches.contains(pair[1]);
+    });
+    if (!next) return {};
+    for (const FeatureSurface::Patch patch : next->patches) crossing.patches.insert(patch);
+    if (crossing.patches.size() == known) return {};
   }
   return crossing;
 }
@@ -207,7 +235,7 @@ void CreaseLabels::snap_points() {
   struct Snap {
     double share;
     Index point, other;
-    FeatureSurface::PatchPair patches;
+    FeatureLabel label;
   };
   const std::vector<std::array<Index, 2>> edges = crossing_edges();
   std::vector<Snap> snaps = parallel_collect<Snap>(
@@ -217,9 +245,9 @@ void CreaseLabels::snap_points() {
           const std::optional<Crossing> c = find_crossing(u, v);
           if (!c) continue;
           if (labels_[number_[u]].kind == Kind::patch && c->share <= max_snap)
-            out.push_back({c->share, u, v, c->patches});
+            out.push_back({c->share, u, v, c->label()});
           if (labels_[number_[v]].kind == Kind::patch && 1 - c->share <= max_snap)
-            out.push_back({1 - c->share, v, u, c->patches});
+            out.push_back({1 - c->share, v, u, c->label()});
         }
       });
   std::sort(snaps.begin(), snaps.end(), [](const Snap& x, const Snap& y) {
@@ -227,10 +255,10 @@ void CreaseLabels::snap_points() {
     return x.point != y.point ? x.point < y.point : x.other < y.other;
   });
   for (const Snap& s : snaps) {
-    const PatchSet patches{s.patches[0], s.patches[1]};
-    if (label(s.point).kind != Kind::patch || !crosses(s.point, s.other) || !may_snap(s.point, patches))
+    if (label(s.point).kind != Kind::patch || !crosses(s.point, s.other) ||
+        !may_snap(s.point, s.label.patches))
       continue;
-    label(s.point) = {Kind::crease, patches, no_index};
+    label(s.point) = s.label;
   }
 }
 
@@ -242,11 +270,11 @@ void CreaseLabels::resolve_rest() {
       if (!crosses(u, v)) continue;
       const std::optional<Crossing> c = find_crossing(u, v);
       if (!c) continue;
-      const PatchSet patches{c->patches[0], c->patches[1]};
       const bool u_is_nearer = c->share <= 0.5;
       const Index near = u_is_nearer ? u : v;
-      if (label(near).kind == Kind::patch && label(near).patches.meets(patches) && may_snap(near, patches))
-        label(near) = {Kind::crease, patches, no_index};
+      if (label(near).kind == Kind::patch && label(near).patches.meets(c->patches) &&
+          may_snap(near, c->patches))
+        label(near) = c->label();
       else
         split(*c);
     }
@@ -295,7 +323,7 @@ void CreaseLabels::track(const std::vector<std::array<Index, 2>>& edges) {
 }
 
 void CreaseLabels::split(const Crossing& crossing) {
-  const auto [u, v, share, patches] = crossing;
+  const Index u = crossing.u, v = crossing.v;
   // Tracked are all points near creases, so at least one end is.
   const Index known = tets_at_[number_[u]].empty() ? v : u;
   std::vector<Index> tets, triangles;
@@ -308,12 +336,12 @@ void CreaseLabels::split(const Crossing& crossing) {
     if (const Triangle& c = mesh_.interfaces[t].ids; std::find(c.begin(), c.end(), v) != c.end())
       triangles.push_back(t);
   const auto middle = static_cast<Index>(mesh_.points.size());
-  const double s = std::clamp(share, min_split, 1 - min_split);
+  const double s = std::clamp(crossing.share, min_split, 1 - min_split);
   mesh_.points.push_back(mesh_.points[u] + s * (mesh_.points[v] - mesh_.points[u]));
   const auto number = static_cast<Index>(points_.size());
   number_.push_back(number);
   points_.push_back(middle);
-  labels_.push_back({Kind::crease, {patches[0], patches[1]}, no_index});
+  labels_.push_back(crossing.label());
   triangles_at_.emplace_back();
   tets_at_.emplace_back();
   // Each one keeps u and leaves v to a new one.

@@ -54,6 +54,8 @@ struct FeatureLabel {
   Kind kind = Kind::none;
   PatchSet patches;
   Index corner = no_index;  ///< of FeatureSurface::corners()
+  /// Of a crease: of two that are so near to each other that one point stands for both, the nearer one.
+  FeatureSurface::PatchPair crease{};
 };
 
 /// The labels of the points of a dense mesh's boundary, such that, as far as can be, the three points of each

@@ -6,7 +6,8 @@
 namespace tetwright {
 
 BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool keep_outside,
-                      const ThinWalls::Limits& limits, const RefinementBudget& budget, Progress* progress) {
+                      const ThinWalls::Limits& limits, const RefinementBudget& budget,
+                      std::vector<NarrowPatches> narrow, Progress* progress) {
   BodyField result;
   std::vector<std::shared_ptr<const LevelSet>> surfaces;
   std::vector<ThinSurvey> surveys(input.bodies.size());
@@ -14,9 +15,16 @@ BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool ke
   for (std::size_t b = 0; b < input.bodies.size(); ++b) {
     const RepairedSurface& surface = input.bodies[b].surface;
     surfaces.push_back(LevelSet::of_surface(surface, voxels, progress));
-    surveys[b] = survey_thin_walls(
-        surface, *surfaces[b], voxels,
-        {limits.min_gap / voxels.cell_size, limits.min_thickness / voxels.cell_size}, progress);
+    surveys[b] =
+        survey_thin_walls(surface, *surfaces[b], voxels,
+                          {limits.min_gap / voxels.cell_size, limits.min_thickness / voxels.cell_size},
+                          narrow[b].voxels, progress);
+    // Where walls are thin the survey alone chooses cells: it changes distances for just these.
+    if (!surveys[b].voxels.empty()) {
+      narrow[b] = {};
+      surveys[b].exact = {};
+    }
+    result.finer = combine(std::move(result.finer), std::move(narrow[b].finer));
     all.push_back(&surveys[b]);
   }
   choose_depths(all, budget);

@@ -75,8 +75,8 @@ std::vector<Narrow> narrow_places(const RepairedSurface& surface, const SurfaceP
 
 }  // namespace
 
-FinerCells find_narrow_patches(const RepairedSurface& surface, const SurfacePatches& patches,
-                               const GridFrame& frame, int max_depth, double max_tets) {
+NarrowPatches find_narrow_patches(const RepairedSurface& surface, const SurfacePatches& patches,
+                                  const GridFrame& frame, int max_depth, double max_tets) {
   if (!patches.any() || max_depth <= 0) return {};
   const std::vector<Narrow> places = narrow_places(surface, patches, frame, max_depth);
   for (; max_depth > 0; --max_depth) {
@@ -95,17 +95,20 @@ FinerCells find_narrow_patches(const RepairedSurface& surface, const SurfacePatc
     splits.erase(std::unique(splits.begin(), splits.end()), splits.end());
     if (splits.empty()) return {};
     if (tets_of_split * static_cast<double>(splits.size()) > max_tets) continue;
-    FinerCells finer;
+    NarrowPatches narrow;
+    FinerCells& finer = narrow.finer;
     finer.refinement = splits.back().depth + 1;
     finer.cells.resize(static_cast<std::size_t>(finer.refinement) + 2);
     for (const Split& s : splits) {
       finer.cells[static_cast<std::size_t>(finer.refinement - s.depth)].push_back(s.key);
       // Cells of two voxels must be split for that.
-      if (s.depth == 0) finer.cells.back().push_back(s.key >> 3);
+      if (s.depth > 0) continue;
+      finer.cells.back().push_back(s.key >> 3);
+      narrow.voxels.push_back(s.key);
     }
     std::vector<MortonKey>& larger = finer.cells.back();
     larger.erase(std::unique(larger.begin(), larger.end()), larger.end());
-    return finer;
+    return narrow;
   }
   return {};
 }

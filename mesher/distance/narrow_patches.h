@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "common/features/surface_patches.h"
 #include "mesher/domain/finer_cells.h"
 #include "mesher/domain/grid_frame.h"
@@ -7,10 +9,16 @@
 
 namespace tetwright {
 
+/// Where patches are narrow.
+struct NarrowPatches {
+  FinerCells finer;
+  std::vector<MortonKey> voxels;  ///< of which cells are smaller, ascending: their distances must be exact
+};
+
 /// Where a patch is so narrow that cells would not show both its creases: cells there are halved until its
 /// width has two of them, at most `max_depth` times and as long as that adds no more than about `max_tets`
 /// dense tets (else nowhere so deep). Near a corner, where creases meet, a patch ends and is not narrow.
-FinerCells find_narrow_patches(const RepairedSurface& surface, const SurfacePatches& patches,
-                               const GridFrame& frame, int max_depth, double max_tets);
+NarrowPatches find_narrow_patches(const RepairedSurface& surface, const SurfacePatches& patches,
+                                  const GridFrame& frame, int max_depth, double max_tets);
 
 }  // namespace tetwright

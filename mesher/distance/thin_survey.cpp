@@ -249,7 +249,8 @@ void count_cells(ThinSurvey& survey) {
 }  // namespace
 
 ThinSurvey survey_thin_walls(const RepairedSurface& surface, const LevelSet& level_set,
-                             const GridFrame& frame, const ThinWalls::Limits& limits, Progress* progress) {
+                             const GridFrame& frame, const ThinWalls::Limits& limits,
+                             std::vector<MortonKey> exact_voxels, Progress* progress) {
   ThinSurvey survey;
   survey.limits = limits;
   survey.cells = frame.cells;
@@ -263,7 +264,8 @@ ThinSurvey survey_thin_walls(const RepairedSurface& surface, const LevelSet& lev
             out.push_back(all[i]);
       });
   if (progress) progress->throw_if_cancelled();
-  if (suspects.empty()) return survey;
+  survey.exact = std::move(exact_voxels);
+  if (suspects.empty() && survey.exact.empty()) return survey;
 
   std::vector<Vec3> points(surface.points.size());
   parallel_for(0, points.size(), 4096, [&](std::size_t begin, std::size_t end) {
@@ -279,7 +281,7 @@ ThinSurvey survey_thin_walls(const RepairedSurface& surface, const LevelSet& lev
         }
       });
   if (survey.voxels.empty()) {
-    survey.surface = nullptr;
+    if (survey.exact.empty()) survey.surface = nullptr;
     return survey;
   }
   if (progress) progress->throw_if_cancelled();
@@ -321,6 +323,8 @@ ThinWallPlan plan_thin_walls(const ThinSurvey& survey) {
     for (int depth = 0; depth <= max_wall_refinement; ++depth)
       for (const MortonKey key : dilated(std::move(by_depth[depth]), around, survey.cells))
         walls->cover(morton_decode(key), depth);
+    for (const MortonKey key : dilated(survey.exact, 1, survey.cells))
+      if (walls->depth(morton_decode(key)) < 0) walls->cover(morton_decode(key), 0);
   }
   walls->set_core(survey.voxels);
 

@@ -31,12 +31,15 @@ struct ThinSurvey {
   std::vector<MortonKey> voxels;      ///< those with a thin wall or gap, ascending
   std::vector<std::uint32_t> region;  ///< of each of them
   std::vector<Region> regions;
+  std::vector<MortonKey> exact;  ///< voxels whose distances come from the triangles, whatever is in them
 };
 
-/// Measures a surface: `level_set` is its own, `limits` in voxels. Takes little time where nothing is thin.
-/// Throws Interrupted.
+/// Measures a surface: `level_set` is its own, `limits` in voxels, `exact` are voxels whose
+/// cells are smaller for other reasons, ascending. Takes little time where nothing is thin. Throws
+/// Interrupted.
 ThinSurvey survey_thin_walls(const RepairedSurface& surface, const LevelSet& level_set,
-                             const GridFrame& frame, const ThinWalls::Limits& limits, Progress* progress);
+                             const GridFrame& frame, const ThinWalls::Limits& limits,
+                             std::vector<MortonKey> exact, Progress* progress);
 
 /// What refinement may take.
 struct RefinementBudget {

@@ -179,7 +179,7 @@ TEST(ThinWalls, NothingThinTakesNothing) {
   const MesherInput input = make_input({make_box(Vec3(0, 0, 0), Vec3(8, 8, 8))});
   const GridFrame frame = make_grid_frame(input.low, input.high, 0.5, false);
   const auto level_set = LevelSet::of_surface(input.bodies[0].surface, frame, nullptr);
-  const ThinSurvey survey = survey_thin_walls(input.bodies[0].surface, *level_set, frame, {}, nullptr);
+  const ThinSurvey survey = survey_thin_walls(input.bodies[0].surface, *level_set, frame, {}, {}, nullptr);
   EXPECT_FALSE(survey.surface);
   EXPECT_FALSE(plan_thin_walls(survey).walls);
 }

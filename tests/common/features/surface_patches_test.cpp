@@ -1,0 +1,200 @@
+#include "common/features/surface_patches.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <optional>
+#include <set>
+
+#include "common/error.h"
+#include "common/mesh/interfaces.h"
+#include "common/random.h"
+#include "tests/common/features/parts.h"
+#include "tests/mesher/test_surfaces.h"
+#include "tests/simplify/meshes.h"
+
+namespace tetwright::surface_patches_test {
+namespace {
+
+using Verdict = SurfacePatches::Verdict;
+constexpr FeatureAngle automatic{};
+constexpr FeatureAngle off{FeatureAngle::Rule::off, 0};
+constexpr FeatureAngle degrees(double angle) { return {FeatureAngle::Rule::degrees, angle}; }
+
+SurfacePatches patches_of(const TriangleMesh& s, const FeatureAngle& angle = automatic, double min_area = 0) {
+  return find_patches(s.points, s.triangles, {angle, min_area}, {}, "s.off");
+}
+
+SurfaceCreases creases_of(const TriangleMesh& s, const FeatureAngle& angle = automatic) {
+  return find_creases(s.points, s.triangles, patches_of(s, angle).patches);
+}
+
+TriangleMesh noisy_sphere() {
+  TriangleMesh sphere = make_sphere(1);
+  Random random(3);
+  for (Vec3& p : sphere.points) p *= 1 + 0.05 * (random.uniform() - 0.5);
+  return sphere;
+}
+
+TEST(SurfacePatches, OfACubeAreItsSides) {
+  const TriangleMesh cube = turned(unit_cube());
+  const SurfacePatches found = patches_of(cube);
+  EXPECT_EQ(found.verdict, Verdict::part);
+  EXPECT_EQ(found.count, 6U);
+  EXPECT_EQ(found.dropped, 0U);
+  // Numbered by their first triangles; triangles of one patch have one normal.
+  EXPECT_EQ(found.patches.front(), 0);
+  std::vector<std::optional<Vec3>> normals(6);
+  for (std::size_t t = 0; t < cube.triangles.size(); ++t) {
+    const auto& [a, b, c] = cube.triangles[t];
+    const Vec3 n = (cube.points[b] - cube.points[a]).cross(cube.points[c] - cube.points[a]).normalized();
+    std::optional<Vec3>& known = normals[found.patches[t]];
+    if (!known) known = n;
+    EXPECT_LT((*known - n).norm(), 1e-12);
+  }
+  const SurfaceCreases creases = creases_of(cube);
+  EXPECT_EQ(creases.segments.size(), 12U);
+  EXPECT_EQ(creases.corners.size(), 8U);
+}
+
+TEST(SurfacePatches, KeepConcaveEdges) {
+  const SurfaceCreases creases = creases_of(turned(l_block()));
+  EXPECT_EQ(creases.segments.size(), 18U);
+  EXPECT_EQ(creases.corners.size(), 12U);
+}
+
+TEST(SurfacePatches, HoldTheFacetsOfACylinderTogether) {
+  // By 30 degrees turn the edges between twelve facets, by 90 the rims.
+  for (const int facets : {12, 64}) {
+    const TriangleMesh s = turned(cylinder(facets));
+    EXPECT_EQ(patches_of(s).count, 3U) << facets;
+    const SurfaceCreases creases = creases_of(s);
+    EXPECT_EQ(creases.segments.size(), static_cast<std::size_t>(2 * facets));
+    EXPECT_TRUE(creases.corners.empty());
+  }
+  // A prism of six facets is none.
+  EXPECT_EQ(patches_of(cylinder(6)).count, 8U);
+  // An angle that is given decides.
+  EXPECT_EQ(patches_of(cylinder(12), degrees(20)).count, 14U);
+  EXPECT_EQ(patches_of(cylinder(12), degrees(100)).count, 1U);
+}
+
+TEST(SurfacePatches, AreNotLookedForOnScans) {
+  EXPECT_EQ(patches_of(make_sphere(1)).verdict, Verdict::smooth);
+  const TriangleMesh scan = noisy_sphere();
+  const SurfacePatches found = patches_of(scan);
+  EXPECT_EQ(found.verdict, Verdict::scan);
+  EXPECT_FALSE(found.any());
+  EXPECT_GT(found.loose_ends_high, 0.2);
+  EXPECT_EQ(found.patches, std::vector<std::uint16_t>(scan.triangles.size(), 0));
+  // Who gives an angle has looked at it.
+  EXPECT_EQ(patches_of(scan, degrees(30)).verdict, Verdict::part);
+  EXPECT_EQ(patches_of(unit_cube(), off).verdict, Verdict::off);
+  EXPECT_FALSE(patches_of(unit_cube(), off).any());
+}
+
+TEST(SurfacePatches, LeaveOutCreasesThatFadeOut) {
+  // A square of which a corner is bent up: the bend ends in the middle.
+  TriangleMesh s;
+  constexpr int n = 8;
+  for (int y = 0; y <= n; ++y)
+    for (int x = 0; x <= n; ++x) s.points.emplace_back(x, y, x < 4 && y == 0 ? 0.0 : x < 4 ? 0.0 : 0.0);
+  for (Vec3& p : s.points)
+    if (p.x() > 4) p.z() = (p.x() - 4) * std::max(0.0, 1 - p.y() / 4);
+  for (Index y = 0; y < n; ++y)
+    for (Index x = 0; x < n; ++x) {
+      const Index a = y * (n + 1) + x;
+      s.triangles.push_back({a, a + 1, a + n + 2});
+      s.triangles.push_back({a, a + n + 2, a + n + 1});
+    }
+  EXPECT_EQ(patches_of(s, degrees(35)).count, 1U);
+}
+
+TEST(SurfacePatches, SmallOnesGoToTheirNeighbours) {
+  // A step of 0.02 around a cylinder's rim: its top is a ring of area 0.06.
+  TriangleMesh s = unit_cube();
+  // A square bump of 0.01 on the side z = 1, which replaces nothing: only its walls and lid are looked at.
+  const TriangleMesh bump =
+      extruded({{0.4, 0.4}, {0.41, 0.4}, {0.41, 0.41}, {0.4, 0.41}}, {0.405, 0.405}, 0.01);
+  s = joined(s, bump);
+  EXPECT_EQ(patches_of(s).count, 12U);
+  const SurfacePatches without = patches_of(s, automatic, 0.01);
+  EXPECT_EQ(without.dropped, 5U);
+  EXPECT_EQ(without.count, 7U);
+}
+
+TEST(SurfacePatches, StayWithinGroups) {
+  const TriangleMesh s = make_sphere(1);
+  std::vector<std::uint32_t> groups;
+  for (const Triangle& t : s.triangles)
+    groups.push_back(s.points[t[0]].z() + s.points[t[1]].z() + s.points[t[2]].z() > 0 ? 7 : 3);
+  const SurfacePatches found = find_patches(s.points, s.triangles, {off, 0}, groups, "s.off");
+  EXPECT_EQ(found.count, 2U);
+  for (std::size_t t = 0; t < groups.size(); ++t)
+    EXPECT_EQ(found.patches[t] == found.patches[0], groups[t] == groups[0]);
+  const SurfaceCreases creases = find_creases(s.points, s.triangles, found.patches);
+  EXPECT_EQ(creases.segments.size(), 64U);  // the equator
+  EXPECT_TRUE(creases.corners.empty());
+}
+
+TEST(SurfacePatches, AreAtMost65535) {
+  TriangleMesh s = make_sphere(1, Vec3::Zero(), 7);
+  Random random(1);
+  for (Vec3& p : s.points) p *= 1 + 0.1 * (random.uniform() - 0.5);
+  try {
+    (void)patches_of(s, degrees(1));
+    FAIL() << "no error";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("--feature-angle"), std::string::npos) << e.what();
+  }
+}
+
+TEST(SurfacePatches, KinksAreCorners) {
+  // The rim of the L's top is one crease between the top and a wall that goes all around.
+  const TriangleMesh s = l_block();
+  std::vector<std::uint16_t> patches;
+  for (const Triangle& t : s.triangles) {
+    const double z = s.points[t[0]].z() + s.points[t[1]].z() + s.points[t[2]].z();
+    patches.push_back(z == 0 ? 0 : z == 3 ? 1 : 2);
+  }
+  EXPECT_EQ(find_creases(s.points, s.triangles, patches).corners.size(), 12U);
+}
+
+TEST(MeshPatches, AreNumberedForEachPairOfMaterials) {
+  TetMesh mesh =
+      grid_mesh({4, 4, 4}, [](int x, int, int) { return std::optional<MaterialTag>(x < 2 ? 1 : 2); });
+  const SurfacePatches found = find_mesh_patches(mesh, automatic, "m.vtu");
+  EXPECT_EQ(found.verdict, Verdict::part);
+  EXPECT_EQ(found.count, 11U);  // five sides each, and the interface
+  std::map<MaterialPair, std::set<std::uint16_t>> numbers;
+  for (const InterfaceTriangle& t : mesh.interfaces) numbers[t.pair()].insert(t.patch);
+  EXPECT_EQ(numbers.at({1, std::nullopt}), (std::set<std::uint16_t>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(numbers.at({2, std::nullopt}), (std::set<std::uint16_t>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(numbers.at({1, 2}), std::set<std::uint16_t>{0});
+  // Eight edges of 4 x 4 sides that no junction curve is, of four or two.
+  const CreaseCurves curves = mesh_creases(mesh);
+  EXPECT_EQ(curves.segments.size(), 8U * 4 + 8U * 2);
+}
+
+TEST(MeshPatches, KeepThoseThatAreThere) {
+  TetMesh mesh = grid_mesh(3);
+  mesh.interfaces = find_interfaces(mesh);
+  for (InterfaceTriangle& t : mesh.interfaces) t.patch = mesh.points[t.ids[0]].z() < 1 ? 5 : 0;
+  (void)find_mesh_patches(mesh, off, "m.vtu");
+  std::set<std::uint16_t> numbers;
+  for (const InterfaceTriangle& t : mesh.interfaces) numbers.insert(t.patch);
+  EXPECT_EQ(numbers.size(), 2U);
+}
+
+TEST(MeshPatches, OfVoxelsAreNone) {
+  // Balls of cubes: next to each edge turns by 90 degrees.
+  TetMesh mesh = grid_mesh({24, 24, 24}, [](int x, int y, int z) -> std::optional<MaterialTag> {
+    if ((Vec3(x, y, z) - Vec3::Constant(11.5)).norm() < 11) return 1;
+    return {};
+  });
+  EXPECT_EQ(find_mesh_patches(mesh, automatic, "m.vtu").verdict, Verdict::staircase);
+  for (const InterfaceTriangle& t : mesh.interfaces) EXPECT_EQ(t.patch, 0);
+}
+
+}  // namespace
+}  // namespace tetwright::surface_patches_test
