@@ -32,8 +32,9 @@ class ReferenceSurface {
   /// Whether it knows the patches of the mesh's interfaces, by their numbers, with the creases and corners
   /// where they meet. If so, what is asked for below is exact; else nothing is found.
   virtual bool has_patches() const { return false; }
-  /// The nearest point of a patch within `max_distance` (input units).
-  virtual std::optional<Vec3> onto_patch(const Vec3& /*point*/, std::uint16_t /*patch*/,
+  /// The nearest point of a patch of the interface between two regions within `max_distance` (input units).
+  virtual std::optional<Vec3> onto_patch(const Vec3& /*point*/, MaterialOrOutside /*first*/,
+                                         MaterialOrOutside /*second*/, std::uint16_t /*patch*/,
                                          double /*max_distance*/) const {
     return {};
   }

@@ -111,18 +111,28 @@ void validate_limits(const MesherOptions& options, double cell) {
                      ", not " + std::to_string(*options.max_refinement));
 }
 
+/// Tets that fill a thin wall in good shapes where its rims stay sharp, times what they are else.
+constexpr double filling_with_creases = 1.5;
 /// A patch that is smaller is none: cells do not show it.
-constexpr double min_patch_cells = 1;
+constexpr double min_patch_cells = 8;
 
 /// The patches of all bodies; the report gets their numbers and creases.
 std::vector<SurfacePatches> patches_of(const MesherInput& input, const MesherOptions& options, double cell,
                                        MesherReport& report) {
+  constexpr std::size_t max_patches = 0xfffe;  // beside that of faces on no surface
+  std::size_t count = 0;
   std::vector<SurfacePatches> patches;
   for (const MesherInput::Body& body : input.bodies) {
     patches.push_back(find_patches(body.surface.points, body.surface.triangles,
                                    {options.feature_angle, min_patch_cells * cell * cell}, {}, body.file));
     report.features.push_back({body.name, patches.back()});
     report.features.back().found.patches = {};
+    count += patches.back().count;
+    if (count > max_patches)
+      throw InputError(
+          body.file, 0,
+          "the surfaces have more than " + std::to_string(max_patches) +
+              " patches between sharp edges; use a larger --feature-angle, or --feature-angle off");
     if (patches.back().any())
       report.creases.add(find_creases(body.surface.points, body.surface.triangles, patches.back().patches),
                          body.surface.points);
@@ -202,7 +212,8 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
     });
     add_thin(find_thin_parts(*field, elsewhere), false);
   }
-  report.filling_tets = static_cast<std::size_t>(bodies.filling_tets);
+  report.filling_tets = static_cast<std::size_t>(
+      bodies.filling_tets * (report.creases.segments.empty() ? 1 : filling_with_creases));
   for (const auto& [body, wall] : bodies.changed)
     if (wall.gap || wall.on_purpose)
       report.closed_gaps.push_back(

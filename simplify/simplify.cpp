@@ -28,6 +28,8 @@ constexpr double closing_margin = 1.27;
 /// up to 30 degrees). In the closing that would move the surface a quarter farther.
 constexpr double improve_margin = 1.5;
 constexpr int closing_fit_sweeps = 1;
+/// Sweeps of fit_to_crease() before it.
+constexpr int crease_sweeps = 3;
 /// Share of the tets below the bound above which improve() begins in bulk. Scans and what programs make of
 /// them have up to 32 % below 0.15 sr at first, and the rounds alone end them in half the time.
 constexpr double bulk_before = 0.4;
@@ -119,7 +121,8 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
                                .fast = false,
                                .brief = false,
                                .max_rounds = max_closing_rounds};
-    engine.fit_creases();
+    // Where a point has arrived its neighbours may have more room.
+    for (int i = 0; i < crease_sweeps; ++i) engine.fit_creases();
     fit(engine, closing_fit_sweeps, quality_at(engine, plan.angle));
     WholeMesh whole(engine);
     improve_area(tools_of(engine), whole, plan, 1);

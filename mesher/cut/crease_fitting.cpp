@@ -74,7 +74,9 @@ class Fitter {
       case Kind::none:
         return {};
       case Kind::patch:
-        return surface_.onto_patch(at, patches[0], target_reach * cell_);
+        if (const auto place = surface_.nearest_of_patch(at, patches[0], target_reach * cell_))
+          return place->point;
+        return {};
       case Kind::crease:
         return surface_.onto_crease_between(at, label.crease, target_reach * cell_);
       case Kind::corner:
@@ -198,6 +200,8 @@ class Fitter {
 /// most like it.
 FeatureSurface::Patch patch_of(const TetMesh& mesh, const InterfaceTriangle& t, const CreaseLabels& labels,
                                const FeatureSurface& surface, double cell) {
+  const std::optional<std::size_t> body = surface.body_of(t);
+  if (!body) return surface.no_patch();
   PatchSet candidates;
   bool first = true;
   for (const Index p : t.ids) {
@@ -213,8 +217,8 @@ FeatureSurface::Patch patch_of(const TetMesh& mesh, const InterfaceTriangle& t, 
   const Vec3 &a = mesh.points[t.ids[0]], &b = mesh.points[t.ids[1]], &c = mesh.points[t.ids[2]];
   const Vec3 centre = (a + b + c) / 3, normal = (b - a).cross(c - a).normalized();
   if (candidates.size() == 0) {
-    const auto place = surface.nearest(centre, target_reach * cell, t.other ? nullptr : &normal);
-    return place ? place->patch : FeatureSurface::Patch{0};
+    const auto place = surface.nearest(centre, *body, target_reach * cell, t.other ? nullptr : &normal);
+    return place ? place->patch : surface.no_patch();
   }
   FeatureSurface::Patch best = *candidates.begin();
   double most = -std::numeric_limits<double>::infinity();

@@ -88,11 +88,12 @@ void CreaseLabels::label_points() {
         const Vec3& a = mesh_.points[face.ids[0]];
         normal += (mesh_.points[face.ids[1]] - a).cross(mesh_.points[face.ids[2]] - a);
       }
-      if (!one_pair) continue;
+      const std::optional<std::size_t> body = surface_.body_of(first);
+      if (!one_pair || !body) continue;
       normal.normalize();
       // Of two materials either may be the body.
-      const auto place =
-          surface_.nearest(mesh_.points[points_[i]], surface_reach * cell_, first.other ? nullptr : &normal);
+      const auto place = surface_.nearest(mesh_.points[points_[i]], *body, surface_reach * cell_,
+                                          first.other ? nullptr : &normal);
       if (place) labels_[i] = {Kind::patch, {place->patch}, no_index, {}};
     }
   });
@@ -114,7 +115,7 @@ void CreaseLabels::smooth_labels() {
     if (!alone || counts.empty()) continue;
     const auto most = std::max_element(counts.begin(), counts.end(),
                                        [](const auto& x, const auto& y) { return x.second < y.second; });
-    if (surface_.onto_patch(mesh_.points[points_[i]], most->first, cell_))
+    if (surface_.nearest_of_patch(mesh_.points[points_[i]], most->first, cell_))
       smoothed[i].patches = {most->first};
   }
   labels_ = std::move(smoothed);
@@ -148,10 +149,22 @@ void CreaseLabels::take_corners() {
     if (labels_[i].kind == Kind::patch) items.push_back({{i, i, i}, {i, 0, 0}});
   }
   const ProjectionTree tree(std::move(positions), std::move(items));
+  struct Taken {
+    Index corner, number;
+  };
+  std::vector<Taken> taken;
   for (Index c = 0; c < surface_.corners().size(); ++c) {
     const FeatureSurface::Corner& corner = surface_.corners()[c];
     PatchSet meeting;
     for (const FeatureSurface::Patch p : corner.patches) meeting.insert(p);
+    // Two points would not fit beside each other.
+    const auto beside = std::find_if(taken.begin(), taken.end(), [&](const Taken& t) {
+      return (surface_.corners()[t.corner].point - corner.point).norm() < narrow_reach * cell_;
+    });
+    if (beside != taken.end()) {
+      for (const FeatureSurface::Patch p : corner.patches) labels_[beside->number].patches.insert(p);
+      continue;
+    }
     const auto fits = [&](const ProjectionTree::Item& item, std::size_t min_patches) {
       const FeatureLabel& own = labels_[item.kind[0]];
       if (own.kind != Kind::patch || !own.patches.meets(meeting)) return false;
@@ -171,7 +184,9 @@ void CreaseLabels::take_corners() {
           tree.nearest_of(corner.point, corner_reach * cell_,
                           [&](const ProjectionTree::Item& item) { return fits(item, min_patches); });
       if (!hit) continue;
-      labels_[tree.items()[hit->item].kind[0]] = {Kind::corner, meeting, c, {}};
+      const Index number = tree.items()[hit->item].kind[0];
+      labels_[number] = {Kind::corner, meeting, c, {}};
+      taken.push_back({c, number});
       found = true;
       break;
     }
@@ -295,7 +310,7 @@ void CreaseLabels::dissolve_islands() {
     if (!alone) continue;
     for (const FeatureSurface::Patch patch : shared)
       if (!labels_[i].patches.contains(patch) &&
-          surface_.onto_patch(mesh_.points[points_[i]], patch, island_reach * cell_)) {
+          surface_.nearest_of_patch(mesh_.points[points_[i]], patch, island_reach * cell_)) {
         labels_[i].patches = {patch};
         break;
       }

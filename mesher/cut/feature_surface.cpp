@@ -19,15 +19,17 @@ FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<Surfa
   std::vector<Vec3> points, crease_points;
   std::vector<ProjectionTree::Item> triangles, segments;
   std::size_t first_patch = 0;
+  for (const MaterialLayer& layer : input.layers) bodies_[layer.tag] = 0;
   for (std::size_t b = 0; b < input.bodies.size(); ++b) {
+    bodies_[input.bodies[b].tag] = b;
     const RepairedSurface& surface = input.bodies[b].surface;
     const auto first = static_cast<Index>(points.size());
     const auto patch_of = [&](std::uint16_t local) { return static_cast<Patch>(first_patch + local); };
     points.insert(points.end(), surface.points.begin(), surface.points.end());
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
       const Triangle& c = surface.triangles[t];
-      triangles.push_back(
-          {{first + c[0], first + c[1], first + c[2]}, {patch_of(patches[b].patches[t]), 0, 0}});
+      triangles.push_back({{first + c[0], first + c[1], first + c[2]},
+                           {patch_of(patches[b].patches[t]), static_cast<std::uint32_t>(b), 0}});
     }
     const SurfaceCreases found = find_creases(surface.points, surface.triangles, patches[b].patches);
     std::map<Index, std::set<Patch>> at_corners;
@@ -43,6 +45,7 @@ FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<Surfa
       corners_.push_back({surface.points[c], {meeting.begin(), meeting.end()}});
     first_patch += patches[b].count;
   }
+  no_patch_ = static_cast<Patch>(first_patch);
   creases_ = ProjectionTree(points, std::move(segments));
   std::vector<Vec3> corner_places;
   std::vector<ProjectionTree::Item> corner_items;
@@ -61,9 +64,22 @@ FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<Surfa
   }
 }
 
-std::optional<FeatureSurface::Place> FeatureSurface::nearest(const Vec3& p, double at_most,
+std::optional<std::size_t> FeatureSurface::body_of(const InterfaceTriangle& face) const {
+  const auto find = [&](MaterialOrOutside material) -> std::optional<std::size_t> {
+    const auto body = material ? bodies_.find(*material) : bodies_.end();
+    if (body == bodies_.end()) return {};
+    return body->second;
+  };
+  const std::optional<std::size_t> first = find(face.material), second = find(face.other);
+  if (!first || !second) return first ? first : second;
+  if (*first == *second) return {};
+  return std::max(*first, *second);
+}
+
+std::optional<FeatureSurface::Place> FeatureSurface::nearest(const Vec3& p, std::size_t body, double at_most,
                                                              const Vec3* facing) const {
   const auto hit = triangles_.nearest_of(p, at_most, [&](const ProjectionTree::Item& item) {
+    if (item.kind[1] != body) return false;
     return !facing ||
            normals_[static_cast<std::size_t>(&item - triangles_.items().data())].dot(*facing) >= min_facing;
   });
@@ -79,7 +95,10 @@ std::optional<FeatureSurface::Place> FeatureSurface::nearest_of_patch(const Vec3
   return Place{hit->point, normals_[hit->item], patch};
 }
 
-std::optional<Vec3> FeatureSurface::onto_patch(const Vec3& point, Patch patch, double max_distance) const {
+std::optional<Vec3> FeatureSurface::onto_patch(const Vec3& point, MaterialOrOutside first,
+                                               MaterialOrOutside second, Patch patch,
+                                               double max_distance) const {
+  if (patch == no_patch_) return field_->project(point, first, second, max_distance);
   const auto place = nearest_of_patch(point, patch, max_distance);
   if (!place) return {};
   return place->point;

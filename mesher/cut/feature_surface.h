@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -9,6 +11,7 @@
 #include "common/features/surface_patches.h"
 #include "common/geometry/projection_tree.h"
 #include "common/reference_surface.h"
+#include "common/tet_mesh.h"
 #include "common/types.h"
 #include "mesher/distance/material_field.h"
 #include "mesher/input/mesher_input.h"
@@ -49,14 +52,23 @@ class FeatureSurface : public ReferenceSurface {
     return field_->project(point, first, second, max_distance);
   }
   bool has_patches() const override { return true; }
-  std::optional<Vec3> onto_patch(const Vec3& point, Patch patch, double max_distance) const override;
+  std::optional<Vec3> onto_patch(const Vec3& point, MaterialOrOutside first, MaterialOrOutside second,
+                                 Patch patch, double max_distance) const override;
   std::optional<Vec3> onto_crease(const Vec3& point, double max_distance) const override;
   std::optional<Vec3> onto_corner(const Vec3& point, double max_distance) const override {
     return corner_points_.nearest(point, {}, max_distance);
   }
 
-  /// The nearest place within `at_most`; with `facing` only on triangles whose normal is not opposite to it.
-  std::optional<Place> nearest(const Vec3& p, double at_most, const Vec3* facing = nullptr) const;
+  /// The body whose surface a face between materials is on: later bodies carve earlier ones, so that it is
+  /// the later one of both; nothing between layers of one body and at the box of an outside that is meshed,
+  /// too.
+  std::optional<std::size_t> body_of(const InterfaceTriangle& face) const;
+  /// The nearest place of a body within `at_most`; with `facing` only on triangles whose normal is not
+  /// opposite to it.
+  std::optional<Place> nearest(const Vec3& p, std::size_t body, double at_most,
+                               const Vec3* facing = nullptr) const;
+  /// The patch of faces that are on no surface: the field answers for them.
+  Patch no_patch() const { return no_patch_; }
   /// The same of one patch.
   std::optional<Place> nearest_of_patch(const Vec3& p, Patch patch, double at_most) const;
   /// The nearest place of the creases between two patches.
@@ -76,6 +88,8 @@ class FeatureSurface : public ReferenceSurface {
 
  private:
   std::shared_ptr<const MaterialField> field_;
+  Patch no_patch_ = 0;
+  std::map<MaterialTag, std::size_t> bodies_;  ///< of each material and layer
   ProjectionTree triangles_, creases_, corner_points_;
   std::vector<Vec3> normals_;  ///< of the items of triangles_
   std::vector<Corner> corners_;

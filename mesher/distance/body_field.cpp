@@ -11,6 +11,7 @@ BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool ke
   BodyField result;
   std::vector<std::shared_ptr<const LevelSet>> surfaces;
   std::vector<ThinSurvey> surveys(input.bodies.size());
+  narrow.resize(input.bodies.size());
   std::vector<ThinSurvey*> all;
   for (std::size_t b = 0; b < input.bodies.size(); ++b) {
     const RepairedSurface& surface = input.bodies[b].surface;

@@ -22,8 +22,8 @@ struct BodyField {
   double filling_tets = 0;  ///< of all bodies, see ThinWallPlan
 };
 
-/// `limits` in input units; `narrow` of each body. Throws InputError for layers thicker than the body,
-/// Interrupted.
+/// `limits` in input units; `narrow` of each body, or empty. Throws InputError for layers thicker than the
+/// body, Interrupted.
 BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool keep_outside,
                       const ThinWalls::Limits& limits, const RefinementBudget& budget,
                       std::vector<NarrowPatches> narrow, Progress* progress);

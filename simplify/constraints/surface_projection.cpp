@@ -101,10 +101,10 @@ std::optional<Vec3> SurfaceProjection::onto_surface(const Vec3& p, RegionId firs
     return mesh_->tag(r);
   };
   const WorkingSpace& space = mesh_->space();
-  const auto place =
-      given_patches_
-          ? given_->onto_patch(space.to_input(p), patch, max_distance / space.scale())
-          : given_->project(space.to_input(p), tag(first), tag(second), max_distance / space.scale());
+  const auto place = given_patches_ ? given_->onto_patch(space.to_input(p), tag(first), tag(second), patch,
+                                                         max_distance / space.scale())
+                                    : given_->project(space.to_input(p), tag(first), tag(second),
+                                                      max_distance / space.scale());
   if (!place) return {};
   return space.to_working(*place);
 }

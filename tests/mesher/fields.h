@@ -24,7 +24,7 @@ inline std::shared_ptr<const MaterialField> make_field(const std::vector<Triangl
                                                        const std::vector<double>& layers = {},
                                                        bool uniform = false) {
   const MesherInput input = make_input(surfaces, layers);
-  return build_field(input, make_grid_frame(input.low, input.high, cell, uniform), false, {}, {}, nullptr)
+  return build_field(input, make_grid_frame(input.low, input.high, cell, uniform), false, {}, {}, {}, nullptr)
       .field;
 }
 

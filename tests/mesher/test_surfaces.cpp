@@ -173,6 +173,11 @@ double volume(const std::vector<Vec3>& points, const std::vector<Tet>& tets) {
   return sum;
 }
 
+std::vector<InterfaceTriangle> without_patches(std::vector<InterfaceTriangle> interfaces) {
+  for (InterfaceTriangle& t : interfaces) t.patch = 0;
+  return interfaces;
+}
+
 std::string broken_promise(const std::vector<Vec3>& points, const std::vector<Tet>& tets) {
   std::vector<char> used(points.size(), 0);
   for (const Tet& t : tets) {

@@ -32,6 +32,9 @@ TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
 double enclosed_volume(const TriangleMesh& mesh);
 double volume(const std::vector<Vec3>& points, const std::vector<Tet>& tets);
 
+/// The same faces, each of patch 0.
+std::vector<InterfaceTriangle> without_patches(std::vector<InterfaceTriangle> interfaces);
+
 /// What is wrong with a dense mesh, in words; empty if every promise of mesher/README.md holds. Checks exact
 /// signs, faces in one or two tets, the boundary closed and manifold at edges and points, one connected star
 /// at each point, no unused point.

@@ -125,6 +125,12 @@ void find_lost_labels(const CommandLine& line, RunReport& report) {
            "; all their islands have fewer voxels than " + rule + " keeps; give a smaller number"});
 }
 
+/// Whether --min-gap or --min-thickness have changed something.
+bool changed_on_purpose(const RunReport& report) {
+  return report.mesher && std::any_of(report.mesher->closed_gaps.begin(), report.mesher->closed_gaps.end(),
+                                      [](const ClosedGapReport& g) { return g.on_purpose; });
+}
+
 /// Materials that are not the solid they are meant to be: a shortfall, or with --accept-changes a finding.
 void find_changed_solids(const CommandLine& line, const TetMesh& mesh, RunReport& report) {
   if (!report.mesher) return;
@@ -147,8 +153,7 @@ void find_changed_solids(const CommandLine& line, const TetMesh& mesh, RunReport
   }
   if (text.empty()) return;
   const std::size_t all = report.fidelity.size();
-  const bool on_purpose = std::any_of(report.mesher->closed_gaps.begin(), report.mesher->closed_gaps.end(),
-                                      [](const ClosedGapReport& g) { return g.on_purpose; });
+  const bool on_purpose = changed_on_purpose(report);
   if (line.accept_changes || on_purpose) {
     report.findings.push_back(
         {report.inputs.front(),
@@ -225,8 +230,12 @@ void find_changed_creases(const CommandLine& line, const TetMesh& mesh, RunRepor
   if (c.lost_corners > 0)
     text += ", and " + std::to_string(c.lost_corners) + " of " + std::to_string(c.corners) +
             " corners are lost, the first at " + place_text(c.lost_corner);
-  if (line.accept_changes) {
-    report.findings.push_back({report.inputs.front(), {"place where " + text, 1, {}, "accepted"}});
+  if (line.accept_changes || changed_on_purpose(report)) {
+    report.findings.push_back({report.inputs.front(),
+                               {"place where " + text,
+                                1,
+                                {},
+                                line.accept_changes ? "accepted" : "as --min-gap and --min-thickness ask"}});
     return;
   }
   const bool of_tets = !report.mesher;

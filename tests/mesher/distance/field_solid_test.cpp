@@ -11,7 +11,7 @@ namespace {
 
 SolidShape solid_of(const MesherInput& input, double cell, RegionIndex region) {
   const GridFrame frame = make_grid_frame(input.low, input.high, cell, false);
-  const auto field = build_field(input, frame, false, {}, {}, nullptr).field;
+  const auto field = build_field(input, frame, false, {}, {}, {}, nullptr).field;
   return field_solid(*field, field->interface_voxels(), region);
 }
 
