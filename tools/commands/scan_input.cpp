@@ -60,6 +60,8 @@ bool is_volume(const CommandLine& line, std::optional<LabelVolume>& vdb_labels) 
     throw UsageError(
         "--max-refinement, --min-gap and --min-thickness are for surfaces, and the input is a segmented "
         "volume");
+  if (line.feature_angle.rule != FeatureAngle::Rule::automatic)
+    throw UsageError("--feature-angle is for surfaces and tet meshes, and the input is a segmented volume");
   if (line.nested != NestedRule::automatic)
     throw UsageError("--nested is for surfaces, and the input is a segmented volume");
   return true;

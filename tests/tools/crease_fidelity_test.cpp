@@ -1,0 +1,112 @@
+// Whether a mesh has the creases of its input, and what the program says of them.
+#include "tools/crease_fidelity.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "common/mesh/interfaces.h"
+#include "tests/simplify/meshes.h"
+#include "tests/tools/program.h"
+
+namespace tetwright::crease_fidelity_test {
+namespace {
+
+TetMesh cube_with_patches() {
+  TetMesh mesh = grid_mesh(4);
+  EXPECT_EQ(find_mesh_patches(mesh, {}, "mesh").count, 6U);
+  return mesh;
+}
+
+TEST(CreaseFidelity, MeasuresFromThePlacesOfTheInput) {
+  const TetMesh mesh = cube_with_patches();
+  CreaseCurves creases = mesh_creases(mesh);
+  CreaseFidelity same = compare_creases(creases, mesh);
+  EXPECT_TRUE(same.same());
+  EXPECT_NEAR(same.diagonal, 4 * std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(same.length, 12 * 4, 1e-9);
+  EXPECT_EQ(same.max_distance, 0);
+  EXPECT_EQ(same.corners, 8U);
+  EXPECT_EQ(same.lost_corners, 0U);
+  // A crease that the mesh does not have, across a side.
+  const auto first = static_cast<Index>(creases.points.size());
+  creases.points.emplace_back(2, 0, 0);
+  creases.points.emplace_back(2, 4, 0);
+  creases.segments.push_back({first, first + 1});
+  creases.corners.emplace_back(2.5, 2.5, 0);
+  const CreaseFidelity other = compare_creases(creases, mesh);
+  EXPECT_FALSE(other.same());
+  EXPECT_NEAR(other.max_distance, 2, 1e-2);
+  EXPECT_NEAR((other.place - Vec3(2, 2, 0)).norm(), 0, 1e-2);
+  EXPECT_GT(other.p99_distance, 1);
+  EXPECT_EQ(other.lost_corners, 1U);
+  EXPECT_NEAR((other.lost_corner - Vec3(2.5, 2.5, 0)).norm(), 0, 1e-12);
+  // A mesh without creases is as far from all as it is long.
+  TetMesh smooth = mesh;
+  for (InterfaceTriangle& t : smooth.interfaces) t.patch = 0;
+  EXPECT_EQ(compare_creases(mesh_creases(mesh), smooth).max_distance, same.diagonal);
+}
+
+TEST(CreaseFidelity, IsSaidOfPartsAndNotOfScans) {
+  const TemporaryFolder f;
+  ASSERT_EQ(run("sample cube -o " + (f / "cube.off")).status, 0);
+  const std::string call = "prepare " + (f / "cube.off") + " -o " + (f / "o.vtu") + " --stats " +
+                           (f / "s.json") + " --target-tets 1000 --resolution 16";
+  Answer a = run(call);
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_NE(a.out.find("features of 'cube': 6 patches with sharp edges between them"), std::string::npos)
+      << a.out;
+  EXPECT_NE(a.out.find("8 of 8 corners"), std::string::npos) << a.out;
+  auto stats = nlohmann::json::parse(contents(f / "s.json"));
+  EXPECT_EQ(stats["features"][0]["verdict"], "part");
+  EXPECT_EQ(stats["features"][0]["patches"], 6);
+  EXPECT_TRUE(stats["creases"]["same"]);
+  EXPECT_LT(stats["creases"]["max_distance"].get<double>(), 1e-8);
+  EXPECT_NEAR(stats["result"]["volume"].get<double>(), 8, 1e-5);
+
+  a = run(call + " --feature-angle off");
+  EXPECT_EQ(a.status, 0) << a.err;
+  stats = nlohmann::json::parse(contents(f / "s.json"));
+  EXPECT_EQ(stats["features"][0]["verdict"], "off");
+  EXPECT_FALSE(stats.contains("creases"));
+  EXPECT_LT(stats["result"]["volume"].get<double>(), 8 - 1e-3);
+
+  // Of a tet mesh likewise.
+  ASSERT_EQ(run("mesh " + (f / "cube.off") + " --resolution 16 -o " + (f / "dense.vtu")).status, 0);
+  a = run("simplify " + (f / "dense.vtu") + " --target-tets 500 -o " + (f / "o.vtu") + " --stats " +
+          (f / "s.json"));
+  EXPECT_EQ(a.status, 0) << a.err;
+  stats = nlohmann::json::parse(contents(f / "s.json"));
+  EXPECT_EQ(stats["features"][0]["patches"], 6);
+  EXPECT_EQ(stats["creases"]["corners"], 8);
+  EXPECT_EQ(stats["creases"]["lost_corners"], 0);
+
+  ASSERT_EQ(run("sample sphere -o " + (f / "ball.off")).status, 0);
+  a = run("mesh " + (f / "ball.off") + " --resolution 16 -o " + (f / "o.vtu") + " --stats " + (f / "s.json"));
+  EXPECT_NE(a.out.find("features of 'ball': none; no edge turns far enough"), std::string::npos) << a.out;
+  stats = nlohmann::json::parse(contents(f / "s.json"));
+  EXPECT_EQ(stats["features"][0]["verdict"], "smooth");
+
+  ASSERT_EQ(run("sample organs -o " + (f / "organs.nrrd")).status, 0);
+  a = run("mesh " + (f / "organs.nrrd") + " --feature-angle 30 -o " + (f / "o.vtu"));
+  EXPECT_EQ(a.status, 2);
+  EXPECT_NE(a.err.find("--feature-angle is for surfaces and tet meshes"), std::string::npos) << a.err;
+}
+
+TEST(CreaseFidelity, LostCreasesAreAShortfall) {
+  // A slot of a hundredth between two ridges, closed on no purpose in cells of a tenth.
+  const TemporaryFolder f;
+  std::ofstream(f / "wedge.off") << "OFF\n6 5 9\n0 0 0\n1 0 0\n0.5 0.02 0\n0 0 1\n1 0 1\n0.5 0.02 1\n"
+                                    "3 0 2 1\n3 3 4 5\n4 0 1 4 3\n4 1 2 5 4\n4 2 0 3 5\n";
+  const Answer a = run("mesh " + (f / "wedge.off") + " -o " + (f / "o.vtu") +
+                       " --resolution 8 --feature-angle 2" + " --max-refinement 0 --stats " + (f / "s.json"));
+  EXPECT_EQ(a.status, 1) << a.err;
+  EXPECT_NE(a.err.find("creases are off by up to "), std::string::npos) << a.err;
+  const auto stats = nlohmann::json::parse(contents(f / "s.json"));
+  EXPECT_TRUE(std::any_of(stats["shortfall"].begin(), stats["shortfall"].end(),
+                          [](const auto& s) { return s["what"] == "creases"; }));
+}
+
+}  // namespace
+}  // namespace tetwright::crease_fidelity_test
