@@ -70,7 +70,7 @@ std::vector<InnerEdge> inner_edges(std::span<const Vec3> points, std::span<const
                                    std::span<const std::uint32_t> groups) {
   std::vector<Vec3> normals(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const Vec3 a = points[triangles[t][0]];
+    const Vec3& a = points[triangles[t][0]];
     const Vec3 n = (points[triangles[t][1]] - a).cross(points[triangles[t][2]] - a);
     const double length = n.norm();
     normals[t] = length > 0 ? Vec3(n / length) : Vec3(Vec3::Zero());

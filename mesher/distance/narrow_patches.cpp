@@ -50,8 +50,9 @@ std::vector<Narrow> narrow_places(const RepairedSurface& surface, const SurfaceP
       0, creases.segments.size(), segment_grain,
       [&](std::size_t begin, std::size_t end, std::vector<Narrow>& out) {
         for (std::size_t i = begin; i < end; ++i) {
-          const auto& [ends, own] = creases.segments[i];
-          const Vec3 &a = points[ends[0]], &b = points[ends[1]];
+          const SurfaceCreases::Segment& segment = creases.segments[i];
+          const std::array<std::uint16_t, 2>& own = segment.patches;
+          const Vec3 &a = points[segment.ends[0]], &b = points[segment.ends[1]];
           const auto places = static_cast<int>(std::ceil((b - a).norm() / place_distance));
           for (int k = 0; k <= places; ++k) {
             const Vec3 at = a + (b - a) * (static_cast<double>(k) / std::max(places, 1));
@@ -84,12 +85,12 @@ NarrowPatches find_narrow_patches(const RepairedSurface& surface, const SurfaceP
     for (const Narrow& n : places)
       for (int depth = 0; depth < std::min(n.depth, max_depth); ++depth) {
         const Vec3 cell = n.place * std::ldexp(1, depth);
-        for (int k = 0; k < 27; ++k) {
-          const Vec3 next = cell + Vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-          splits.push_back({depth, morton_encode({static_cast<int>(std::max(0.0, next.x())),
-                                                  static_cast<int>(std::max(0.0, next.y())),
-                                                  static_cast<int>(std::max(0.0, next.z()))})});
-        }
+        const auto along = [&](int axis, int step) {
+          return std::max(0, static_cast<int>(std::floor(cell[axis])) + step);
+        };
+        for (int k = 0; k < 27; ++k)
+          splits.push_back(
+              {depth, morton_encode(along(0, k % 3 - 1), along(1, k / 3 % 3 - 1), along(2, k / 9 - 1))});
       }
     std::sort(splits.begin(), splits.end());
     splits.erase(std::unique(splits.begin(), splits.end()), splits.end());
