@@ -221,13 +221,13 @@ FeatureSurface::Patch patch_of(const TetMesh& mesh, const InterfaceTriangle& t, 
     return place ? place->patch : surface.no_patch();
   }
   FeatureSurface::Patch best = *candidates.begin();
-  double most = -std::numeric_limits<double>::infinity();
+  double best_fit = -std::numeric_limits<double>::infinity();
   for (const FeatureSurface::Patch patch : candidates) {
     const auto place = surface.nearest_of_patch(centre, patch, target_reach * cell);
     if (!place) continue;
     const double alike = normal.dot(place->normal) - (place->point - centre).norm() / cell;
-    if (alike > most) {
-      most = alike;
+    if (alike > best_fit) {
+      best_fit = alike;
       best = patch;
     }
   }

@@ -113,10 +113,10 @@ void CreaseLabels::smooth_labels() {
       alone &= !other.patches.meets(labels_[i].patches);
     });
     if (!alone || counts.empty()) continue;
-    const auto most = std::max_element(counts.begin(), counts.end(),
-                                       [](const auto& x, const auto& y) { return x.second < y.second; });
-    if (surface_.nearest_of_patch(mesh_.points[points_[i]], most->first, cell_))
-      smoothed[i].patches = {most->first};
+    const auto commonest = std::max_element(counts.begin(), counts.end(),
+                                            [](const auto& x, const auto& y) { return x.second < y.second; });
+    if (surface_.nearest_of_patch(mesh_.points[points_[i]], commonest->first, cell_))
+      smoothed[i].patches = {commonest->first};
   }
   labels_ = std::move(smoothed);
 }
