@@ -75,6 +75,9 @@ struct ExpectedSolid {
   bool by_surface = true;
   /// Shells smaller than this (input units cubed) say nothing: by the distances, those of less than a cell.
   double min_volume = 0;
+  /// How far the volume may be off beside that, input units cubed: distances chamfer creases that the mesh
+  /// has.
+  double volume_slack = 0;
 };
 
 /// What meshing takes.

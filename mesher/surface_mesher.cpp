@@ -123,6 +123,17 @@ std::vector<SurfacePatches> patches_of(const MesherInput& input, const MesherOpt
   std::size_t count = 0;
   std::vector<SurfacePatches> patches;
   for (const MesherInput::Body& body : input.bodies) {
+    if (body.surface.intersects_itself && options.feature_angle.rule != FeatureAngle::Rule::off) {
+      // Where parts meet there are creases that no edge of the surface shows.
+      SurfacePatches none;
+      none.verdict = SurfacePatches::Verdict::intersecting;
+      none.patches.assign(body.surface.triangles.size(), 0);
+      patches.push_back(std::move(none));
+      report.features.push_back({body.name, patches.back()});
+      report.features.back().found.patches = {};
+      ++count;
+      continue;
+    }
     patches.push_back(find_patches(body.surface.points, body.surface.triangles,
                                    {options.feature_angle, min_patch_cells * cell * cell}, {}, body.file));
     report.features.push_back({body.name, patches.back()});
@@ -138,6 +149,42 @@ std::vector<SurfacePatches> patches_of(const MesherInput& input, const MesherOpt
                          body.surface.points);
   }
   return patches;
+}
+
+/// Leaves out creases that later bodies carve away, and what is near curves where three regions meet: these
+/// are known to half a cell.
+void keep_visible(CreaseCurves& creases, const MesherInput& input, const DenseMesh& dense) {
+  if (input.bodies.size() == 1) return;
+  const double near = 1.5 * dense.report.cell_size;
+  CreaseCurves junctions = mesh_junctions(dense.mesh);
+  std::vector<ProjectionTree::Item> segments;
+  segments.reserve(junctions.segments.size());
+  for (const auto& [a, b] : junctions.segments) segments.push_back({{a, b, b}, {}});
+  const ProjectionTree tree(std::move(junctions.points), std::move(segments));
+  const auto is_hidden = [&](const Vec3& p) {
+    if (tree.nearest(p, {}, near)) return true;
+    const auto shows = [&](MaterialTag tag) {
+      return std::abs(dense.field->signed_distance(p, tag)) <= near;
+    };
+    return std::none_of(input.bodies.begin(), input.bodies.end(),
+                        [&](const auto& b) { return shows(b.tag); }) &&
+           std::none_of(input.layers.begin(), input.layers.end(),
+                        [&](const auto& l) { return shows(l.tag); });
+  };
+  std::erase_if(creases.segments, [&](const std::array<Index, 2>& s) {
+    return is_hidden(creases.points[s[0]]) || is_hidden(creases.points[s[1]]) ||
+           is_hidden((creases.points[s[0]] + creases.points[s[1]]) / 2);
+  });
+  std::erase_if(creases.corners, is_hidden);
+}
+
+/// The distances chamfer creases, and the mesh does not.
+void allow_for_chamfers(MesherReport& report) {
+  double length = 0;
+  for (const auto& [a, b] : report.creases.segments)
+    length += (report.creases.points[b] - report.creases.points[a]).norm();
+  for (ExpectedSolid& e : report.expected)
+    if (!e.by_surface) e.volume_slack = 0.5 * length * report.cell_size * report.cell_size;
 }
 
 void validate_outside_is_free(const MesherInput& input) {
@@ -227,6 +274,8 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
       stages, [&](const std::vector<std::uint8_t>& there) { validate_materials_left(input, *field, there); });
   if (std::any_of(patches.begin(), patches.end(), [](const SurfacePatches& p) { return p.any(); })) {
     stages.begin("creases");
+    keep_visible(dense.report.creases, input, dense);
+    allow_for_chamfers(dense.report);
     const auto features = std::make_shared<const FeatureSurface>(input, patches, dense.field);
     fit_creases(dense.mesh, *features, dense.report.cell_size);
     dense.reference = features;

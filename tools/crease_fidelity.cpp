@@ -28,11 +28,15 @@ CreaseFidelity compare_creases(const CreaseCurves& expected, const TetMesh& mesh
     }
   if (points.empty()) return result;
   result.diagonal = (box.high - box.low).norm();
-  const CreaseCurves found = mesh_creases(mesh);
+  // A crease may run along a curve where three regions meet.
+  std::vector<Vec3> ends;
   std::vector<ProjectionTree::Item> segments;
-  segments.reserve(found.segments.size());
-  for (const auto& [a, b] : found.segments) segments.push_back({{a, b, b}, {}});
-  const ProjectionTree creases(found.points, std::move(segments));
+  for (const CreaseCurves& found : {mesh_creases(mesh), mesh_junctions(mesh)}) {
+    const auto first = static_cast<Index>(ends.size());
+    ends.insert(ends.end(), found.points.begin(), found.points.end());
+    for (const auto& [a, b] : found.segments) segments.push_back({{first + a, first + b, first + b}, {}});
+  }
+  const ProjectionTree creases(std::move(ends), std::move(segments));
   // Nothing is farther from all creases than this where there are none.
   const double farthest = result.diagonal;
   std::vector<double> distances;

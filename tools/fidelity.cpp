@@ -85,7 +85,8 @@ MaterialFidelity compare(const ExpectedSolid& expected, const SolidShape& result
     add_difference(f.difference, f.result.components, f.expected.components, "component", "components");
   if (countable) add_difference(f.difference, f.result.handles, f.expected.handles, "handle", "handles");
   if (countable) add_difference(f.difference, f.result.cavities, f.expected.cavities, "cavity", "cavities");
-  if (!is_same_volume(f.result.volume, f.expected.volume)) {
+  if (!is_same_volume(f.result.volume, f.expected.volume) &&
+      std::fabs(f.result.volume - f.expected.volume) > expected.volume_slack) {
     const double change = f.result.volume / f.expected.volume - 1;
     char text[80];
     if (f.expected.volume > 0)

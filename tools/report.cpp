@@ -61,6 +61,9 @@ std::string feature_line(const FeatureReport& f) {
     case Verdict::scan:
       line += "none; its edges look like those of a scan (" + loose() + ")";
       break;
+    case Verdict::intersecting:
+      line += "not looked for; the surface intersects itself";
+      break;
     case Verdict::staircase:
       line += "none; its edges look like those of voxels (--feature-angle DEGREES keeps them)";
       break;
@@ -135,7 +138,7 @@ std::vector<std::string> notes_of(const RunReport& run) {
     if (f.found.dropped > 0)
       notes.push_back(
           "'" + f.name + "' has " + std::to_string(f.found.dropped) +
-          " patches between sharp edges that are smaller than a cell (their edges are not kept; a "
+          " patches between sharp edges smaller than eight faces of a cell (their edges are not kept; a "
           "higher resolution keeps them)");
   if (!run.mesher) return notes;
   if (run.mesher->isolated_vertices > 0)

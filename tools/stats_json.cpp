@@ -139,7 +139,7 @@ nlohmann::json fidelity_json(const std::vector<MaterialFidelity>& all) {
 }
 
 nlohmann::json features_json(const std::vector<FeatureReport>& all) {
-  static constexpr const char* verdicts[] = {"off", "smooth", "scan", "staircase", "part"};
+  static constexpr const char* verdicts[] = {"off", "smooth", "scan", "intersecting", "staircase", "part"};
   nlohmann::json j = nlohmann::json::array();
   for (const FeatureReport& f : all)
     j.push_back({{"name", f.name},

@@ -66,6 +66,33 @@ std::vector<EdgeUse> edge_uses(std::span<const Triangle> triangles, std::span<co
   return uses;
 }
 
+/// Triangles without area get the normal of the one across their longest edge that has some: else patches
+/// would hang together across them.
+void take_normals_beside(std::span<const Vec3> points, const std::vector<EdgeUse>& uses,
+                         std::vector<Vec3>& normals) {
+  const auto is_flat = [&](Index t) { return normals[t].isZero(0); };
+  for (bool again = true; again;) {
+    struct Choice {
+      double length = -1;
+      Vec3 normal = Vec3::Zero();
+    };
+    std::map<Index, Choice> choices;
+    for (std::size_t i = 0; i + 1 < uses.size(); ++i) {
+      if (!uses[i].same_edge(uses[i + 1])) continue;
+      for (const auto& [flat, other] : {std::pair(uses[i].triangle, uses[i + 1].triangle),
+                                        std::pair(uses[i + 1].triangle, uses[i].triangle)}) {
+        if (!is_flat(flat) || is_flat(other)) continue;
+        const std::array<Index, 2> ends = ends_of(uses[i].key);
+        Choice& choice = choices[flat];
+        if (const double length = (points[ends[1]] - points[ends[0]]).norm(); length > choice.length)
+          choice = {length, normals[other]};
+      }
+    }
+    again = !choices.empty();
+    for (const auto& [flat, choice] : choices) normals[flat] = choice.normal;
+  }
+}
+
 std::vector<InnerEdge> inner_edges(std::span<const Vec3> points, std::span<const Triangle> triangles,
                                    std::span<const std::uint32_t> groups) {
   std::vector<Vec3> normals(triangles.size());
@@ -76,6 +103,7 @@ std::vector<InnerEdge> inner_edges(std::span<const Vec3> points, std::span<const
     normals[t] = length > 0 ? Vec3(n / length) : Vec3(Vec3::Zero());
   }
   const std::vector<EdgeUse> uses = edge_uses(triangles, groups);
+  take_normals_beside(points, uses, normals);
   std::vector<InnerEdge> edges;
   edges.reserve(uses.size() / 2);
   for (std::size_t i = 0; i < uses.size();) {
@@ -147,10 +175,8 @@ class PatchMerger {
     }
   }
 
-  /// The part of each triangle: the number of one of its triangles.
-  /// How many went to a neighbour because they are small.
-  std::size_t dropped() const { return dropped_; }
-  std::vector<Index> merged(double min_area) {
+  /// Merges across borders of which too little is sharp.
+  void merge_weak() {
     for (const auto& [a, neighbours] : borders_)
       for (const auto& [b, border] : neighbours)
         if (a < b) queue_.insert({border.sharp_share(), a, b});
@@ -158,7 +184,43 @@ class PatchMerger {
       const Queued weakest = *queue_.begin();
       merge(weakest.a, weakest.b);
     }
-    merge_small(min_area);
+  }
+  std::size_t count() {
+    std::size_t roots = 0;
+    for (Index t = 0; t < sets_.size(); ++t) roots += sets_.is_root(t);
+    return roots;
+  }
+  /// Parts below `min_area`, the smallest first, go to the neighbour with the weakest border; how many.
+  std::size_t merge_small(double min_area) {
+    std::set<std::pair<double, Index>> small;
+    const auto list = [&](Index part) {
+      if (areas_[part] < min_area && !borders_[part].empty()) small.insert({areas_[part], part});
+    };
+    std::vector<Index> parts;
+    for (const auto& [part, neighbours] : borders_) parts.push_back(part);
+    if (min_area > 0)
+      for (const Index part : parts) list(part);
+    std::size_t dropped = 0;
+    while (!small.empty()) {
+      const Index part = small.begin()->second;
+      small.erase(small.begin());
+      if (sets_.root(part) != part || borders_[part].empty()) continue;
+      const auto weakest =
+          std::min_element(borders_[part].begin(), borders_[part].end(), [](const auto& x, const auto& y) {
+            if (x.second.sharp_share() != y.second.sharp_share())
+              return x.second.sharp_share() < y.second.sharp_share();
+            return x.second.length != y.second.length ? x.second.length > y.second.length : x.first < y.first;
+          });
+      const Index other = weakest->first;
+      ++dropped;
+      small.erase({areas_[other], other});
+      merge(part, other);
+      list(sets_.root(part));
+    }
+    return dropped;
+  }
+  /// The part of each triangle: the number of one of its triangles.
+  std::vector<Index> parts() {
     std::vector<Index> parts(sets_.size());
     for (std::size_t t = 0; t < parts.size(); ++t) parts[t] = sets_.root(static_cast<Index>(t));
     return parts;
@@ -181,33 +243,6 @@ class PatchMerger {
       return a != o.a ? a < o.a : b < o.b;
     }
   };
-
-  /// Patches below `min_area`, the smallest first, go to the neighbour with the weakest border.
-  void merge_small(double min_area) {
-    std::set<std::pair<double, Index>> small;
-    const auto list = [&](Index part) {
-      if (areas_[part] < min_area && !borders_[part].empty()) small.insert({areas_[part], part});
-    };
-    if (min_area > 0)
-      for (const auto& [part, neighbours] : borders_)
-        if (areas_[part] < min_area && !neighbours.empty()) small.insert({areas_[part], part});
-    while (!small.empty()) {
-      const Index part = small.begin()->second;
-      small.erase(small.begin());
-      if (sets_.root(part) != part || borders_[part].empty()) continue;
-      const auto weakest =
-          std::min_element(borders_[part].begin(), borders_[part].end(), [](const auto& x, const auto& y) {
-            if (x.second.sharp_share() != y.second.sharp_share())
-              return x.second.sharp_share() < y.second.sharp_share();
-            return x.second.length != y.second.length ? x.second.length > y.second.length : x.first < y.first;
-          });
-      const Index other = weakest->first;
-      ++dropped_;
-      merge(part, other);
-      small.erase({areas_[other], other});
-      list(sets_.root(part));
-    }
-  }
 
   static Queued queued(Index a, Index b, const Border& border) {
     return {border.sharp_share(), std::min(a, b), std::max(a, b)};
@@ -232,27 +267,10 @@ class PatchMerger {
   }
 
   DisjointSets sets_;
-  std::vector<double> areas_;  ///< of each part, by its root
-  std::size_t dropped_ = 0;
+  std::vector<double> areas_;                         ///< of each part, by its root
   std::map<Index, std::map<Index, Border>> borders_;  ///< from each part, to each neighbour
   std::set<Queued> queue_;
 };
-
-/// Numbers parts in the order of their first triangles.
-void number_parts(const std::vector<Index>& parts, const std::string& file, SurfacePatches& result) {
-  std::vector<std::uint32_t> numbers(parts.size(), no_index);
-  std::uint32_t count = 0;
-  for (const Index p : parts)
-    if (numbers[p] == no_index) numbers[p] = count++;
-  if (count > max_patches)
-    throw InputError(file, 0,
-                     "its creases cut it into " + std::to_string(count) + " patches, and " +
-                         std::to_string(max_patches) +
-                         " are possible; use a larger --feature-angle, or --feature-angle off");
-  result.count = std::max(count, 1U);
-  for (std::size_t t = 0; t < parts.size(); ++t)
-    result.patches[t] = static_cast<std::uint16_t>(numbers[parts[t]]);
-}
 
 /// The parts of each group, as if no edge were a crease.
 std::vector<Index> whole_groups(std::span<const std::uint32_t> groups) {
@@ -263,44 +281,74 @@ std::vector<Index> whole_groups(std::span<const std::uint32_t> groups) {
   return parts;
 }
 
+/// What find_patches() answers but for the numbers, and the part of each triangle, by one of its triangles.
+struct FoundParts {
+  SurfacePatches found;
+  std::vector<Index> parts;
+};
+
+FoundParts find_parts(std::span<const Vec3> points, std::span<const Triangle> triangles,
+                      const PatchOptions& options, std::span<const std::uint32_t> groups) {
+  const FeatureAngle& angle = options.angle;
+  using Rule = FeatureAngle::Rule;
+  using Verdict = SurfacePatches::Verdict;
+  FoundParts result;
+  SurfacePatches& found = result.found;
+  found.patches.assign(triangles.size(), 0);
+  result.parts = groups.empty() ? std::vector<Index>(triangles.size(), 0) : whole_groups(groups);
+  if (angle.rule == Rule::off || triangles.empty()) return result;
+  const std::vector<InnerEdge> edges = inner_edges(points, triangles, groups);
+  const bool automatic = angle.rule == Rule::automatic;
+  const double sharp = (automatic ? automatic_angle : angle.degrees) * degree;
+  found.loose_ends_low = loose_ends(edges, points.size(), low_share * automatic_angle * degree);
+  found.loose_ends_high = loose_ends(edges, points.size(), automatic_angle * degree);
+  if (std::none_of(edges.begin(), edges.end(), [&](const InnerEdge& e) { return e.turn > sharp; })) {
+    found.verdict = Verdict::smooth;
+    return result;
+  }
+  if (automatic && (found.loose_ends_low > max_loose_low || found.loose_ends_high > max_loose_high)) {
+    found.verdict = Verdict::scan;
+    return result;
+  }
+  PatchMerger merger(triangle_areas(points, triangles), edges, sharp);
+  merger.merge_weak();
+  // Before small ones go, which depends on the size of cells.
+  const std::size_t count = merger.count();
+  if (automatic && count >= min_staircase_patches &&
+      (count > max_patches || count * max_staircase_triangles > triangles.size() ||
+       are_of_boxes(edges, sharp))) {
+    found.verdict = Verdict::staircase;
+    return result;
+  }
+  found.verdict = Verdict::part;
+  found.dropped = merger.merge_small(options.min_area);
+  result.parts = merger.parts();
+  return result;
+}
+
+[[noreturn]] void throw_too_many(const std::string& file) {
+  throw InputError(file, 0,
+                   "its sharp edges cut it into more than the " + std::to_string(max_patches) +
+                       " patches that are possible; use a larger --feature-angle, or --feature-angle off");
+}
+
 }  // namespace
 
 SurfacePatches find_patches(std::span<const Vec3> points, std::span<const Triangle> triangles,
                             const PatchOptions& options, std::span<const std::uint32_t> groups,
                             const std::string& file) {
-  const FeatureAngle& angle = options.angle;
-  using Rule = FeatureAngle::Rule;
-  using Verdict = SurfacePatches::Verdict;
-  SurfacePatches result;
-  result.patches.assign(triangles.size(), 0);
-  std::vector<Index> parts = groups.empty() ? std::vector<Index>(triangles.size(), 0) : whole_groups(groups);
-  if (angle.rule != Rule::off && !triangles.empty()) {
-    const std::vector<InnerEdge> edges = inner_edges(points, triangles, groups);
-    const bool automatic = angle.rule == Rule::automatic;
-    const double sharp = (automatic ? automatic_angle : angle.degrees) * degree;
-    result.loose_ends_low = loose_ends(edges, points.size(), low_share * automatic_angle * degree);
-    result.loose_ends_high = loose_ends(edges, points.size(), automatic_angle * degree);
-    if (std::none_of(edges.begin(), edges.end(), [&](const InnerEdge& e) { return e.turn > sharp; })) {
-      result.verdict = Verdict::smooth;
-    } else if (automatic &&
-               (result.loose_ends_low > max_loose_low || result.loose_ends_high > max_loose_high)) {
-      result.verdict = Verdict::scan;
-    } else {
-      PatchMerger merger(triangle_areas(points, triangles), edges, sharp);
-      std::vector<Index> merged = merger.merged(options.min_area);
-      const std::size_t count = std::set<Index>(merged.begin(), merged.end()).size();
-      if (automatic && count >= min_staircase_patches &&
-          (count * max_staircase_triangles > triangles.size() || are_of_boxes(edges, sharp))) {
-        result.verdict = Verdict::staircase;
-      } else {
-        result.verdict = Verdict::part;
-        result.dropped = merger.dropped();
-        parts = std::move(merged);
-      }
-    }
+  FoundParts found = find_parts(points, triangles, options, groups);
+  // In the order of their first triangles.
+  std::vector<std::uint32_t> numbers(triangles.size(), no_index);
+  std::uint32_t count = 0;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    std::uint32_t& number = numbers[found.parts[t]];
+    if (number == no_index) number = count++;
+    if (count > max_patches) throw_too_many(file);
+    found.found.patches[t] = static_cast<std::uint16_t>(number);
   }
-  number_parts(parts, file, result);
-  return result;
+  found.found.count = std::max(count, 1U);
+  return std::move(found.found);
 }
 
 SurfacePatches find_mesh_patches(TetMesh& mesh, const FeatureAngle& angle, const std::string& file) {
@@ -315,18 +363,17 @@ SurfacePatches find_mesh_patches(TetMesh& mesh, const FeatureAngle& angle, const
     groups.push_back(numbers.emplace(std::pair(t.pair(), t.patch), static_cast<std::uint32_t>(numbers.size()))
                          .first->second);
   }
-  SurfacePatches result = find_patches(mesh.points, triangles, {angle, 0}, groups, file);
-  for (std::size_t i = 0; i < triangles.size(); ++i) mesh.interfaces[i].patch = result.patches[i];
-  number_patches_by_pair(mesh.interfaces);
-  return result;
-}
-
-void number_patches_by_pair(std::vector<InterfaceTriangle>& interfaces) {
-  std::map<MaterialPair, std::map<std::uint16_t, std::uint16_t>> of_pair;
-  for (InterfaceTriangle& t : interfaces) {
-    auto& known = of_pair[t.pair()];
-    t.patch = known.emplace(t.patch, static_cast<std::uint16_t>(known.size())).first->second;
+  FoundParts found = find_parts(mesh.points, triangles, {angle, 0}, groups);
+  std::map<MaterialPair, std::map<Index, std::uint16_t>> of_pair;
+  found.found.count = 0;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    std::map<Index, std::uint16_t>& known = of_pair[mesh.interfaces[i].pair()];
+    const auto [number, added] = known.emplace(found.parts[i], static_cast<std::uint16_t>(known.size()));
+    if (known.size() > max_patches) throw_too_many(file);
+    found.found.count += added;
+    mesh.interfaces[i].patch = found.found.patches[i] = number->second;
   }
+  return std::move(found.found);
 }
 
 SurfaceCreases find_creases(std::span<const Vec3> points, std::span<const Triangle> triangles,
@@ -383,16 +430,40 @@ void CreaseCurves::add(const SurfaceCreases& creases, std::span<const Vec3> surf
   for (const Index c : creases.corners) corners.push_back(surface_points[c]);
 }
 
-CreaseCurves mesh_creases(const TetMesh& mesh) {
+namespace {
+
+/// The faces of each pair of materials, and their patches.
+std::map<MaterialPair, std::pair<std::vector<Triangle>, std::vector<std::uint16_t>>> faces_by_pair(
+    const TetMesh& mesh) {
   std::map<MaterialPair, std::pair<std::vector<Triangle>, std::vector<std::uint16_t>>> by_pair;
   for (const InterfaceTriangle& t : mesh.interfaces) {
     auto& [triangles, patches] = by_pair[t.pair()];
     triangles.push_back(t.ids);
     patches.push_back(t.patch);
   }
+  return by_pair;
+}
+
+}  // namespace
+
+CreaseCurves mesh_creases(const TetMesh& mesh) {
   CreaseCurves curves;
-  for (const auto& [pair, faces] : by_pair)
+  for (const auto& [pair, faces] : faces_by_pair(mesh))
     curves.add(find_creases(mesh.points, faces.first, faces.second), mesh.points);
+  return curves;
+}
+
+CreaseCurves mesh_junctions(const TetMesh& mesh) {
+  CreaseCurves curves;
+  for (const auto& [pair, faces] : faces_by_pair(mesh)) {
+    SurfaceCreases junctions;
+    const std::vector<EdgeUse> uses = edge_uses(faces.first, {});
+    for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
+      while (j < uses.size() && uses[j].key == uses[i].key) ++j;
+      if (j - i != 2) junctions.segments.push_back({ends_of(uses[i].key), {}});
+    }
+    curves.add(junctions, mesh.points);
+  }
   return curves;
 }
 

@@ -33,11 +33,12 @@ struct PatchOptions {
 /// A surface cut into smooth parts along its creases.
 struct SurfacePatches {
   enum class Verdict : std::uint8_t {
-    off,        ///< not looked for
-    smooth,     ///< no edge turns far enough
-    scan,       ///< edges turn far, but what they make up ends anywhere: noise
-    staircase,  ///< creases nearly everywhere, as on the faces of voxels
-    part        ///< there are creases
+    off,           ///< not looked for
+    smooth,        ///< no edge turns far enough
+    scan,          ///< edges turn far, but what they make up ends anywhere: noise
+    intersecting,  ///< not looked for, since the surface intersects itself
+    staircase,     ///< creases nearly everywhere, as on the faces of voxels
+    part           ///< there are creases
   };
   Verdict verdict = Verdict::off;
   /// For each triangle, from 0 to count - 1, ascending by each patch's first triangle; all 0 unless the
@@ -64,20 +65,18 @@ struct SurfacePatches {
 /// than two triangles are borders; so are those of triangles that are oriented against each other, and
 /// triangles without area belong to what is beside them.
 ///
-/// `file` is named in messages. Throws InputError where there are more than 65,535 patches. O(n log n); the
+/// `file` is named in messages. Throws InputError where there are more than 65,535 patches (automatic: such a
+/// surface is a staircase). O(n log n); the
 /// result does not depend on threads.
 SurfacePatches find_patches(std::span<const Vec3> points, std::span<const Triangle> triangles,
                             const PatchOptions& options, std::span<const std::uint32_t> groups,
                             const std::string& file);
 
 /// The same of the boundary and the interfaces of a tet mesh, each pair of materials a group of its own:
-/// gives `mesh.interfaces`, which it finds if they are empty, their patches. Where a pair has one patch only
-/// it is 0. The verdict is that of all of them; what readers gave (patches other than 0) stays apart.
+/// gives `mesh.interfaces`, which it finds if they are empty, their patches, numbered from 0 for each pair,
+/// so that a mesh without creases is as if nobody had looked for any. The count and the verdict are those of
+/// all of them; what readers gave (patches other than 0) stays apart.
 SurfacePatches find_mesh_patches(TetMesh& mesh, const FeatureAngle& angle, const std::string& file);
-
-/// Gives the patches of each pair of materials numbers of their own, from 0 on in the order of the list: a
-/// pair with one patch has 0, so that a mesh without creases is as if nobody had looked for any.
-void number_patches_by_pair(std::vector<InterfaceTriangle>& interfaces);
 
 /// Creases and corners of a surface by its patches.
 struct SurfaceCreases {
@@ -107,5 +106,8 @@ struct CreaseCurves {
 
 /// Those of the boundary and the interfaces of a mesh, between the patches of each pair of materials.
 CreaseCurves mesh_creases(const TetMesh& mesh);
+
+/// The edges in which other than two faces of a pair of materials meet: where three regions do. No corners.
+CreaseCurves mesh_junctions(const TetMesh& mesh);
 
 }  // namespace tetwright

@@ -27,7 +27,7 @@ struct CreaseFit {
 /// Shewchuk 2007, but on the boundary, so that convex and concave creases are alike.) Then all points go to
 /// their corner, crease or patch as far as tets keep their shapes, and what is around makes room.
 ///
-/// Points where materials other than one and outside meet keep to the junction curves they are on. The same
+/// Points where three regions meet keep to the junction curves they are on. The same
 /// result for any number of threads.
 CreaseFit fit_creases(TetMesh& mesh, const FeatureSurface& surface, double cell);
 

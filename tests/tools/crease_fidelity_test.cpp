@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -95,7 +97,7 @@ TEST(CreaseFidelity, IsSaidOfPartsAndNotOfScans) {
 }
 
 TEST(CreaseFidelity, LostCreasesAreAShortfall) {
-  // A slot of a hundredth between two ridges, closed on no purpose in cells of a tenth.
+  // A ridge so low that only an angle of two degrees tells it, in cells six times as high.
   const TemporaryFolder f;
   std::ofstream(f / "wedge.off") << "OFF\n6 5 9\n0 0 0\n1 0 0\n0.5 0.02 0\n0 0 1\n1 0 1\n0.5 0.02 1\n"
                                     "3 0 2 1\n3 3 4 5\n4 0 1 4 3\n4 1 2 5 4\n4 2 0 3 5\n";
@@ -106,6 +108,47 @@ TEST(CreaseFidelity, LostCreasesAreAShortfall) {
   const auto stats = nlohmann::json::parse(contents(f / "s.json"));
   EXPECT_TRUE(std::any_of(stats["shortfall"].begin(), stats["shortfall"].end(),
                           [](const auto& s) { return s["what"] == "creases"; }));
+}
+
+/// A cube of eight quads.
+void put_cube(const std::string& path, double low, double high, double shift) {
+  std::ofstream out(path);
+  out << "OFF\n8 6 12\n";
+  for (int i = 0; i < 8; ++i)
+    out << (i & 1 ? high : low) + shift << ' ' << (i & 2 ? high : low) << ' ' << (i & 4 ? high : low) << '\n';
+  out << "4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
+}
+
+TEST(CreaseFidelity, KnowsWhatCarvesAndWhatTouches) {
+  const TemporaryFolder f;
+  put_cube(f / "a.off", 0, 1, 0);
+  put_cube(f / "b.off", 0, 1, 1);        // touches the first one
+  put_cube(f / "c.off", 0.2, 0.8, 0.5);  // carves it
+  for (const char* other : {"b.off", "c.off"}) {
+    const Answer a = run("mesh " + (f / "a.off") + " --material b=" + (f / other) + " --resolution 20 -o " +
+                         (f / "o.vtu"));
+    EXPECT_EQ(a.err.find("creases are off"), std::string::npos) << a.err;
+  }
+  // Of one surface whose parts overlap nobody knows the creases between them.
+  std::ofstream(f / "both.off") << [&] {
+    const auto points = [](double shift) {
+      std::string text;
+      for (int i = 0; i < 8; ++i)
+        text += std::to_string((i & 1) + shift) + ' ' + std::to_string((i >> 1 & 1) + shift) + ' ' +
+                std::to_string((i >> 2) + shift) + '\n';
+      return text;
+    };
+    std::string text = "OFF\n16 12 24\n" + points(0) + points(0.4);
+    for (const int k : {0, 8})
+      for (const auto& q :
+           {std::array{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}})
+        text += "4 " + std::to_string(q[0] + k) + ' ' + std::to_string(q[1] + k) + ' ' +
+                std::to_string(q[2] + k) + ' ' + std::to_string(q[3] + k) + '\n';
+    return text;
+  }();
+  const Answer a = run("mesh " + (f / "both.off") + " --resolution 20 -o " + (f / "o.vtu"));
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_NE(a.out.find("not looked for; the surface intersects itself"), std::string::npos) << a.out;
 }
 
 }  // namespace

@@ -241,9 +241,12 @@ void find_changed_creases(const CommandLine& line, const TetMesh& mesh, RunRepor
   const bool of_tets = !report.mesher;
   report.shortfall.push_back({"creases", 0, c.max_distance,
                               report.simplify ? "the number of tets" : "the size of the cells",
-                              text + "; raise " + (report.simplify ? "--target-tets" : "--resolution") +
-                                  (of_tets ? ", or leave sharp edges alone with --feature-angle off"
-                                           : ", or take it as it is with --accept-changes")});
+                              text + "; " +
+                                  (line.command == Command::improve ? ""
+                                   : report.simplify                ? "raise --target-tets, or "
+                                                                    : "raise --resolution, or ") +
+                                  (of_tets ? "leave sharp edges alone with --feature-angle off"
+                                           : "take it as it is with --accept-changes")});
 }
 
 /// With --strict whatever is noted.

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <set>
 
@@ -94,26 +96,44 @@ TEST(SurfacePatches, AreNotLookedForOnScans) {
 }
 
 TEST(SurfacePatches, LeaveOutCreasesThatFadeOut) {
-  // A square of which a corner is bent up: the bend ends in the middle.
-  TriangleMesh s;
-  constexpr int n = 8;
-  for (int y = 0; y <= n; ++y)
-    for (int x = 0; x <= n; ++x) s.points.emplace_back(x, y, x < 4 && y == 0 ? 0.0 : x < 4 ? 0.0 : 0.0);
-  for (Vec3& p : s.points)
-    if (p.x() > 4) p.z() = (p.x() - 4) * std::max(0.0, 1 - p.y() / 4);
-  for (Index y = 0; y < n; ++y)
-    for (Index x = 0; x < n; ++x) {
-      const Index a = y * (n + 1) + x;
-      s.triangles.push_back({a, a + 1, a + n + 2});
-      s.triangles.push_back({a, a + n + 2, a + n + 1});
+  // Two halves of a strip that turn by 45 degrees along their common edge up to `sharp`, then less and less
+  // down to 20.
+  constexpr Index n = 32;
+  const auto strip = [&](Index sharp) {
+    TriangleMesh s;
+    for (Index y = 0; y <= n; ++y) {
+      const double angle = y <= sharp ? 45 : std::max(20.0, 45 - 3.0 * (y - sharp));
+      for (Index x = 0; x <= 2; ++x)
+        s.points.emplace_back(x, y, x < 2 ? 0 : std::tan(angle * std::numbers::pi / 180));
     }
-  EXPECT_EQ(patches_of(s, degrees(35)).count, 1U);
+    for (Index y = 0; y < n; ++y)
+      for (Index x = 0; x < 2; ++x) {
+        const Index a = 3 * y + x;
+        s.triangles.push_back({a, a + 1, a + 4});
+        s.triangles.push_back({a, a + 4, a + 3});
+      }
+    return s;
+  };
+  EXPECT_EQ(patches_of(strip(8), degrees(35)).count, 1U);
+  EXPECT_EQ(patches_of(strip(20), degrees(35)).count, 2U);
+}
+
+TEST(SurfacePatches, DoNotHangTogetherAcrossFlatTriangles) {
+  // A point in the middle of an edge that only one side has, and the flat triangle that closes it.
+  TriangleMesh s = turned(unit_cube());
+  const Triangle t = s.triangles[2];  // a wall, with an edge of the bottom
+  ASSERT_EQ(patches_of(s).count, 6U);
+  const auto middle = static_cast<Index>(s.points.size());
+  s.points.push_back((s.points[t[0]] + s.points[t[1]]) / 2);
+  s.triangles[2] = {t[0], middle, t[2]};
+  s.triangles.push_back({middle, t[1], t[2]});
+  s.triangles.push_back({t[0], t[1], middle});
+  EXPECT_EQ(patches_of(s).count, 6U);
 }
 
 TEST(SurfacePatches, SmallOnesGoToTheirNeighbours) {
-  // A step of 0.02 around a cylinder's rim: its top is a ring of area 0.06.
   TriangleMesh s = unit_cube();
-  // A square bump of 0.01 on the side z = 1, which replaces nothing: only its walls and lid are looked at.
+  // Beside it, unconnected: of its six sides none is large, and the last one has no neighbour to go to.
   const TriangleMesh bump =
       extruded({{0.4, 0.4}, {0.41, 0.4}, {0.41, 0.41}, {0.4, 0.41}}, {0.405, 0.405}, 0.01);
   s = joined(s, bump);
@@ -193,6 +213,18 @@ TEST(MeshPatches, OfVoxelsAreNone) {
     return {};
   });
   EXPECT_EQ(find_mesh_patches(mesh, automatic, "m.vtu").verdict, Verdict::staircase);
+  std::vector<Triangle> triangles;
+  for (const InterfaceTriangle& t : mesh.interfaces) triangles.push_back(t.ids);
+  EXPECT_EQ(find_patches(mesh.points, triangles, {automatic, 50}, {}, "m.off").verdict, Verdict::staircase);
+  for (const InterfaceTriangle& t : mesh.interfaces) EXPECT_EQ(t.patch, 0);
+}
+
+TEST(MeshPatches, OfManyMaterialsAreFewOfEachPair) {
+  // More pairs of materials than numbers of patches.
+  TetMesh mesh = grid_mesh(
+      {30, 30, 30}, [](int x, int y, int z) { return std::optional<MaterialTag>(x + 30 * (y + 30 * z)); });
+  const SurfacePatches found = find_mesh_patches(mesh, off, "m.vtu");
+  EXPECT_GT(found.count, 65535U);
   for (const InterfaceTriangle& t : mesh.interfaces) EXPECT_EQ(t.patch, 0);
 }
 
