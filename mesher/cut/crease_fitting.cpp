@@ -46,25 +46,6 @@ class Fitter {
                  pass_floors[std::size(pass_floors) - 1] * tangent_of_poor_tet);
   }
 
-  CreaseFit result() const {
-    CreaseFit fit;
-    for (const Index p : labels_.points()) {
-      const Kind kind = labels_.of(p).kind;
-      if (kind != Kind::crease && kind != Kind::corner) continue;
-      ++fit.points;
-      const auto target = place_of(p, mesh_.points[p]);
-      const double distance = target ? (*target - mesh_.points[p]).norm() : target_reach * cell_;
-      if (distance <= arrived * cell_ * 1e3) continue;
-      ++fit.off;
-      if (distance <= fit.max_distance) continue;
-      fit.max_distance = distance;
-      fit.place = mesh_.points[p];
-    }
-    fit.lost_corners = labels_.lost_corners().size();
-    if (fit.lost_corners > 0) fit.lost_corner = surface_.corners()[labels_.lost_corners().front()].point;
-    return fit;
-  }
-
  private:
   /// Where a point that is at `at` belongs.
   std::optional<Vec3> place_of(Index p, const Vec3& at) const {
@@ -236,10 +217,9 @@ FeatureSurface::Patch patch_of(const TetMesh& mesh, const InterfaceTriangle& t, 
 
 }  // namespace
 
-CreaseFit fit_creases(TetMesh& mesh, const FeatureSurface& surface, double cell) {
+void fit_creases(TetMesh& mesh, const FeatureSurface& surface, double cell) {
   const CreaseLabels labels(mesh, surface, cell);
-  Fitter fitter(mesh, surface, labels, cell);
-  fitter.run();
+  Fitter(mesh, surface, labels, cell).run();
   std::vector<std::uint8_t> boundary(mesh.points.size(), 0);
   for (const Index p : labels.points()) boundary[p] = 1;
   mesh.interfaces = find_interfaces(mesh, &boundary);
@@ -247,7 +227,6 @@ CreaseFit fit_creases(TetMesh& mesh, const FeatureSurface& surface, double cell)
     for (std::size_t i = begin; i < end; ++i)
       mesh.interfaces[i].patch = patch_of(mesh, mesh.interfaces[i], labels, surface, cell);
   });
-  return fitter.result();
 }
 
 }  // namespace tetwright

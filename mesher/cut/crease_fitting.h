@@ -1,21 +1,9 @@
 #pragma once
 
-#include <cstddef>
-
 #include "common/tet_mesh.h"
 #include "mesher/cut/feature_surface.h"
 
 namespace tetwright {
-
-/// Creases and corners of the surfaces in the mesh.
-struct CreaseFit {
-  std::size_t points = 0;           ///< that stand for creases and corners
-  std::size_t off = 0;              ///< of these, not on them
-  double max_distance = 0;          ///< of one of these, input units
-  Vec3 place = Vec3::Zero();        ///< where that one is
-  std::size_t lost_corners = 0;     ///< corners without a point
-  Vec3 lost_corner = Vec3::Zero();  ///< one of them
-};
 
 /// Gives the boundary faces of a dense mesh the patches of the surface that it was made of, and moves it onto
 /// the surface so that edges follow the creases and points stand at the corners. `cell` is the size of the
@@ -29,6 +17,6 @@ struct CreaseFit {
 ///
 /// Points where three regions meet keep to the junction curves they are on. The same
 /// result for any number of threads.
-CreaseFit fit_creases(TetMesh& mesh, const FeatureSurface& surface, double cell);
+void fit_creases(TetMesh& mesh, const FeatureSurface& surface, double cell);
 
 }  // namespace tetwright

@@ -178,7 +178,6 @@ void CreaseLabels::take_corners() {
         return of_triangle.common(meeting).size() >= min_patches;
       });
     };
-    bool found = false;
     for (std::size_t min_patches : {std::size_t{3}, std::size_t{2}, std::size_t{1}}) {
       const auto hit =
           tree.nearest_of(corner.point, corner_reach * cell_,
@@ -187,10 +186,8 @@ void CreaseLabels::take_corners() {
       const Index number = tree.items()[hit->item].kind[0];
       labels_[number] = {Kind::corner, meeting, c, {}};
       taken.push_back({c, number});
-      found = true;
       break;
     }
-    if (!found) lost_corners_.push_back(c);
   }
 }
 

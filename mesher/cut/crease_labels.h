@@ -74,8 +74,6 @@ class CreaseLabels {
   bool on_boundary(Index point) const { return number_[point] != no_index; }
   /// Points of the boundary, by number.
   const std::vector<Index>& points() const { return points_; }
-  /// Corners that no point stands for, ascending.
-  const std::vector<Index>& lost_corners() const { return lost_corners_; }
 
  private:
   using Kind = FeatureLabel::Kind;
@@ -106,7 +104,6 @@ class CreaseLabels {
   std::vector<FeatureLabel> labels_;              ///< by number
   std::vector<std::vector<Index>> triangles_at_;  ///< by number: of mesh_.interfaces
   std::vector<std::vector<Index>> tets_at_;       ///< by number: tets, where they are tracked
-  std::vector<Index> lost_corners_;
 };
 
 }  // namespace tetwright
