@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/face_group.h"
 #include "common/types.h"
 
 namespace tetwright {
@@ -26,6 +27,9 @@ struct InterfaceTriangle {
   bool operator==(const InterfaceTriangle&) const = default;
 };
 
+/// A patch of the interface between two regions.
+using InterfacePatch = std::pair<MaterialPair, std::uint16_t>;
+
 /// Numbers that a file gives to each point or tet: `components` for each, one after the other.
 struct MeshField {
   std::string name;
@@ -44,9 +48,12 @@ struct TetMesh {
   std::vector<Tet> tets;                              ///< indices into points
   std::vector<MaterialTag> materials;                 ///< one tag for each tet
   std::map<MaterialTag, std::string> material_names;  ///< only materials that have a name
-  /// What find_interfaces() of interfaces.h finds in this mesh, or empty: readers leave it so, mesher/ and
-  /// simplify/ fill it. Who changes points' numbers, tets or materials clears it or fills it anew.
+  /// What find_interfaces() of interfaces.h finds in this mesh, or empty: readers leave it so unless a file
+  /// has groups of faces, mesher/ and simplify/ fill it. Who changes points' numbers, tets or materials
+  /// clears it or fills it anew.
   std::vector<InterfaceTriangle> interfaces = {};
+  /// The groups that patches of the interfaces belong to, of those that do.
+  std::map<InterfacePatch, FaceGroup> patch_groups = {};
   /// What else a file says of points and tets; materials are not among them.
   std::vector<MeshField> point_fields = {};
   std::vector<MeshField> cell_fields = {};

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <string>
 #include <vector>
 
+#include "common/face_group.h"
 #include "common/types.h"
 
 namespace tetwright {
@@ -11,6 +14,15 @@ struct TriangleMesh {
   std::vector<Vec3> points;  ///< input units
   std::vector<Triangle>
       triangles;  ///< indices into points; counter-clockwise seen from outside where it is closed
+  /// What a file tells apart, and for each triangle an index into it; both are empty where it does not. One
+  /// of them may be no group.
+  std::vector<FaceGroup> groups = {};
+  std::vector<std::uint32_t> triangle_groups = {};
+};
+
+struct NamedSurface {
+  std::string name;
+  TriangleMesh surface;
 };
 
 }  // namespace tetwright

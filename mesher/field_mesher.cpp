@@ -1,6 +1,7 @@
 #include "mesher/field_mesher.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "common/error.h"
@@ -9,6 +10,7 @@
 #include "common/mesh/interfaces.h"
 #include "common/message_text.h"
 #include "common/parallel/parallel.h"
+#include "mesher/cut/cut_off_surface.h"
 #include "mesher/cut/cutting.h"
 #include "mesher/cut/point_mover.h"
 #include "mesher/cut/wall_restoring.h"
@@ -27,11 +29,15 @@ constexpr double max_tets = 2e9;
 /// Coordinates must resolve this fraction of a finest cell, or rounding them could invert a thin tet.
 constexpr double cell_share_of_rounding = 0x1p-20;
 
-/// True for a point on the frame's box, which is the boundary of the mesh if the outside is kept.
-bool on_box(const Vec3& point, const GridFrame& frame) {
-  for (int k = 0; k < 3; ++k)
-    if (point[k] == 0 || point[k] == frame.cells[k]) return true;  // exact: no point on the box moves
-  return false;
+/// Gives the faces on the sides of the frame's box the patches 1 to 6. `sides` are the box_faces() of points.
+void number_box_patches(std::vector<InterfaceTriangle>& interfaces, const std::vector<std::uint8_t>& sides) {
+  parallel_for(0, interfaces.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      InterfaceTriangle& t = interfaces[i];
+      const unsigned common = sides[t.ids[0]] & sides[t.ids[1]] & sides[t.ids[2]];
+      if (common) t.patch = static_cast<std::uint16_t>(1 + std::countr_zero(common));
+    }
+  });
 }
 
 TetMesh to_input_units(CutMesh cut, const MaterialField& field) {
@@ -39,9 +45,11 @@ TetMesh to_input_units(CutMesh cut, const MaterialField& field) {
   const GridFrame& frame = field.frame();
   mesh.points = std::move(cut.points);
   std::vector<std::uint8_t> candidates = std::move(cut.on_interface);
+  std::vector<std::uint8_t> sides(mesh.points.size());
   parallel_for(0, mesh.points.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (on_box(mesh.points[i], frame)) candidates[i] = 1;
+      sides[i] = static_cast<std::uint8_t>(box_faces(mesh.points[i], frame.box));
+      if (sides[i]) candidates[i] = 1;
       mesh.points[i] = frame.to_input(mesh.points[i]);
     }
   });
@@ -63,6 +71,7 @@ TetMesh to_input_units(CutMesh cut, const MaterialField& field) {
     }
   });
   mesh.interfaces = find_interfaces(mesh, &candidates);
+  if (field.ends_at_box()) number_box_patches(mesh.interfaces, sides);
   return mesh;
 }
 
@@ -168,6 +177,12 @@ void validate_estimate(const MesherEstimate& estimate) {
                  "use a lower resolution");
 }
 
+ThickenedWallsReport thickened_report(const ThickenedWalls& left, const GridFrame& frame) {
+  if (left.points == 0) return {};
+  return {left.points, left.max_offset * frame.cell_size, left.thickness * frame.cell_size,
+          frame.to_input(left.place)};
+}
+
 DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<MortonKey> interface_voxels,
                      FinerCells finer, const MesherOptions& options, const MemoryModel& memory,
                      MesherReport report, Stages& stages,
@@ -216,12 +231,7 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   // A region with few lattice points may have vanished by moves or as an isolated vertex.
   validate_regions(regions_there(*field, cut.regions));
   if (std::shared_ptr<const MaterialField> as_is = field->with_true_walls()) {
-    const ThickenedWalls left = restore_walls(cut, *field, *as_is);
-    if (left.points > 0) {
-      const double unit = field->frame().cell_size;
-      report.thickened = {left.points, left.max_offset * unit, left.thickness * unit,
-                          field->frame().to_input(left.place)};
-    }
+    report.thickened = thickened_report(restore_walls(cut, *field, *as_is), field->frame());
     field = std::move(as_is);
   }
   result.mesh = to_input_units(std::move(cut), *field);
@@ -229,6 +239,9 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   if (progress) progress->throw_if_cancelled();
 
   result.reference = field;
+  if (std::any_of(result.mesh.interfaces.begin(), result.mesh.interfaces.end(),
+                  [](const InterfaceTriangle& t) { return t.patch != 0; }))
+    result.reference = std::make_shared<CutOffSurface>(result.mesh, field);
   result.field = std::move(field);
   result.report = std::move(report);
   return result;

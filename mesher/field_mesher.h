@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mesher/cut/wall_restoring.h"
 #include "mesher/distance/material_field.h"
 #include "mesher/domain/finer_cells.h"
 #include "mesher/mesh_estimate.h"
@@ -43,6 +44,9 @@ double finest_cell_size(const MesherOptions& options, double longest_side, doubl
 /// How many times cells of this frame can be halved so that the lattice can be numbered and coordinates of
 /// this size still tell its points apart.
 int max_possible_refinement(const GridFrame& frame, double max_coordinate);
+
+/// In input units.
+ThickenedWallsReport thickened_report(const ThickenedWalls& left, const GridFrame& frame);
 
 /// Meshes a field: builds the octree and the lattice, moves points, cuts tets, and transforms the result to
 /// input units. To be called within the stage "octree".

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include "mesher/distance/material_field.h"
@@ -24,8 +25,15 @@ void write_fields(const MaterialField& field, const std::string& path, OutputFil
         const NearestRegion there = sampler->nearest_at_voxel(x, y, z);
         std::array<float, 2> both;
         sampler->values_at_voxel(x, y, z, std::array{number, there.region}, both.data());
-        out[static_cast<std::size_t>(i)] =
-            there.region == number ? -there.margin : 0.5F * (both[0] - both[1]);
+        float& distance = out[static_cast<std::size_t>(i)];
+        distance = there.region == number ? -there.margin : 0.5F * (both[0] - both[1]);
+        if (!on_voxels->ends_at_box()) continue;
+        const auto band = static_cast<float>(on_voxels->band());
+        const std::array<int, 3> at{x, y, z};
+        for (std::size_t a = 0; a < 3; ++a)
+          distance = std::clamp(
+              std::max(distance, static_cast<float>(std::max(-at[a], at[a] - on_voxels->frame().box[a]))),
+              -band, band);
       }
     };
     sources.push_back(std::move(source));

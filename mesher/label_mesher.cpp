@@ -3,6 +3,7 @@
 
 #include "common/error.h"
 #include "mesher/field_mesher.h"
+#include "mesher/labels/border_creases.h"
 #include "mesher/labels/label_field.h"
 #include "mesher/labels/label_thickness.h"
 #include "mesher/mesh_estimate.h"
@@ -63,6 +64,7 @@ DenseMesh mesh_labels(const LabelInput& labels, const MesherOptions& options, Pr
   for (const ThinPart& p : thin.too_thin)
     report.thin_parts.push_back({p.region == outside_region ? "" : field->regions()[p.region].name, p.places,
                                  voxels.to_input(p.first), true});
+  if (!options.keep_outside) report.creases = border_creases(labels);
   report.seconds_sdf = stages.seconds();
 
   stages.begin("octree");

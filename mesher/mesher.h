@@ -31,7 +31,7 @@ struct MesherOptions {
   double min_gap = 0, min_thickness = 0;
   /// Which edges of the surfaces stay sharp.
   FeatureAngle feature_angle;
-  /// Mesh the outside too, in a box, as the material `outside` of tag 0.
+  /// Mesh the outside too, in a box (that of the volume for labels), as the material `outside` of tag 0.
   bool keep_outside = false;
   /// Memory that the caller needs afterwards for each dense tet, bytes; meshing is refused if that does not
   /// fit.
@@ -123,8 +123,8 @@ class OutputFiles;
 struct DenseMesh {
   TetMesh mesh;  ///< input units, with interface triangles; README.md lists its invariants
   std::shared_ptr<const MaterialField> field;  ///< the signed distances it was cut from
-  /// What simplify() takes as its reference: the field, or where surfaces have creases a surface that knows
-  /// them and the field.
+  /// What simplify() takes as its reference: the field, or where surfaces have creases or labels are cut off
+  /// by their volume's border a surface that knows these and the field.
   std::shared_ptr<const ReferenceSurface> reference;
   MesherReport report;
 };

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "common/error.h"
 #include "common/message_text.h"
 #include "mesher/cut/crease_fitting.h"
+#include "mesher/cut/wall_restoring.h"
 #include "mesher/distance/body_field.h"
 #include "mesher/distance/field_solid.h"
 #include "mesher/distance/field_thickness.h"
@@ -115,40 +118,94 @@ void validate_limits(const MesherOptions& options, double cell) {
 constexpr double filling_with_creases = 1.5;
 /// A patch that is smaller is none: cells do not show it.
 constexpr double min_patch_cells = 8;
+/// What turns within this is no corner: cells do not show it.
+constexpr double corner_reach_cells = 1;
 
-/// The patches of all bodies; the report gets their numbers and creases.
-std::vector<SurfacePatches> patches_of(const MesherInput& input, const MesherOptions& options, double cell,
-                                       MesherReport& report) {
+/// The patches of all bodies.
+std::vector<SurfacePatches> patches_of(const MesherInput& input, const MesherOptions& options, double cell) {
   constexpr std::size_t max_patches = 0xfffe;  // beside that of faces on no surface
   std::size_t count = 0;
   std::vector<SurfacePatches> patches;
   for (const MesherInput::Body& body : input.bodies) {
-    if (body.surface.intersects_itself && options.feature_angle.rule != FeatureAngle::Rule::off) {
-      // Where parts meet there are creases that no edge of the surface shows.
-      SurfacePatches none;
-      none.verdict = SurfacePatches::Verdict::intersecting;
-      none.patches.assign(body.surface.triangles.size(), 0);
-      patches.push_back(std::move(none));
-      report.features.push_back({body.name, patches.back()});
-      report.features.back().found.patches = {};
-      ++count;
-      continue;
-    }
-    patches.push_back(find_patches(body.surface.points, body.surface.triangles,
-                                   {options.feature_angle, min_patch_cells * cell * cell}, {}, body.file));
-    report.features.push_back({body.name, patches.back()});
-    report.features.back().found.patches = {};
-    count += patches.back().count;
+    const RepairedSurface& surface = body.surface;
+    PatchOptions patch_options{options.feature_angle, min_patch_cells * cell * cell};
+    // Where parts meet there are creases that no edge of the surface shows.
+    const bool intersecting =
+        surface.intersects_itself && options.feature_angle.rule != FeatureAngle::Rule::off;
+    if (intersecting) patch_options.angle.rule = FeatureAngle::Rule::off;
+    SurfacePatches found =
+        find_patches(surface.points, surface.triangles, patch_options, surface.groups, body.file);
+    if (intersecting) found.verdict = SurfacePatches::Verdict::intersecting;
+    count += found.count;
     if (count > max_patches)
       throw InputError(
           body.file, 0,
           "the surfaces have more than " + std::to_string(max_patches) +
               " patches between sharp edges; use a larger --feature-angle, or --feature-angle off");
-    if (patches.back().any())
-      report.creases.add(find_creases(body.surface.points, body.surface.triangles, patches.back().patches),
-                         body.surface.points);
+    patches.push_back(std::move(found));
   }
   return patches;
+}
+
+/// Groups of the user stay.
+void give_up_creases(const RepairedSurface& surface, SurfacePatches& found) {
+  if (!found.any() || !surface.groups.empty()) return;
+  found.verdict = SurfacePatches::Verdict::meeting;
+  found.patches.assign(surface.triangles.size(), 0);
+  found.count = 1;
+  found.dropped = 0;
+}
+
+/// Gives up the creases of surfaces that meet others: those curves are known to half a cell, and no tets of
+/// good shape fit between them and exact creases.
+void give_up_where_surfaces_meet(const MesherInput& input, const TetMesh& mesh,
+                                 std::vector<SurfacePatches>& patches) {
+  if (input.bodies.size() == 1) return;
+  std::map<MaterialTag, std::size_t> bodies;
+  for (const MaterialLayer& layer : input.layers) bodies[layer.tag] = 0;
+  for (std::size_t b = 0; b < input.bodies.size(); ++b) bodies[input.bodies[b].tag] = b;
+  std::vector<const InterfaceTriangle*> first_at(mesh.points.size(), nullptr);
+  std::set<std::size_t> meeting;
+  const auto add = [&](const InterfaceTriangle& t) {
+    for (const MaterialOrOutside material : {MaterialOrOutside(t.material), t.other})
+      if (const auto body = material ? bodies.find(*material) : bodies.end(); body != bodies.end())
+        meeting.insert(body->second);
+  };
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    for (const Index p : t.ids) {
+      if (!first_at[p]) first_at[p] = &t;
+      if (first_at[p]->pair() == t.pair()) continue;
+      add(*first_at[p]);
+      add(t);
+    }
+  for (const std::size_t b : meeting) give_up_creases(input.bodies[b].surface, patches[b]);
+}
+
+/// The same of surfaces whose own gaps are closed over more than a small part of their area: creases would
+/// run within the solid.
+void give_up_where_gaps_are_closed(const MesherInput& input, const MesherReport& report,
+                                   std::vector<SurfacePatches>& patches) {
+  constexpr double max_closed_share = 0.01;
+  for (std::size_t b = 0; b < patches.size(); ++b) {
+    double closed = 0;
+    for (const ClosedGapReport& g : report.closed_gaps)
+      if (g.gap && g.name == input.bodies[b].name) closed += g.area;
+    if (closed > max_closed_share * input.bodies[b].surface.area)
+      give_up_creases(input.bodies[b].surface, patches[b]);
+  }
+}
+
+void report_features(const MesherInput& input, const std::vector<SurfacePatches>& patches,
+                     MesherReport& report) {
+  for (std::size_t b = 0; b < patches.size(); ++b) {
+    const RepairedSurface& surface = input.bodies[b].surface;
+    if (patches[b].any())
+      report.creases.add(find_creases(surface.points, surface.triangles, patches[b].patches,
+                                      corner_reach_cells * report.cell_size),
+                         surface.points);
+    report.features.push_back({input.bodies[b].name, patches[b]});
+    report.features.back().found.patches = {};
+  }
 }
 
 /// Leaves out creases that later bodies carve away, and what is near curves where three regions meet: these
@@ -185,6 +242,20 @@ void allow_for_chamfers(MesherReport& report) {
     length += (report.creases.points[b] - report.creases.points[a]).norm();
   for (ExpectedSolid& e : report.expected)
     if (!e.by_surface) e.volume_slack = 0.5 * length * report.cell_size * report.cell_size;
+}
+
+/// Fitting creases has moved walls, too.
+void measure_walls(DenseMesh& dense, const MaterialField& field) {
+  if (dense.report.thickened.points == 0) return;
+  const GridFrame& frame = field.frame();
+  std::vector<Vec3> points;
+  points.reserve(dense.mesh.points.size());
+  for (const Vec3& p : dense.mesh.points) points.push_back(frame.to_grid(p));
+  std::vector<std::uint8_t> on_interface(points.size(), 0);
+  for (const InterfaceTriangle& t : dense.mesh.interfaces)
+    for (const Index p : t.ids) on_interface[p] = 1;
+  dense.report.thickened =
+      thickened_report(find_thickened_walls(points, on_interface, field, *dense.field), frame);
 }
 
 void validate_outside_is_free(const MesherInput& input) {
@@ -229,7 +300,8 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   budget.max_possible = max_possible_refinement(voxels, largest_coordinate(input));
   budget.base_tets = std::max(min_cheap_tets, static_cast<double>(report.estimate.tets));
   budget.max_tets = std::max(max_added_tets, budget.base_tets);
-  const std::vector<SurfacePatches> patches = patches_of(input, options, report.cell_size, report);
+  std::vector<SurfacePatches> patches = patches_of(input, options, report.cell_size);
+  const auto has_patches = [](const SurfacePatches& p) { return p.any(); };
   std::vector<NarrowPatches> narrow;
   for (std::size_t b = 0; b < input.bodies.size(); ++b)
     narrow.push_back(find_narrow_patches(input.bodies[b].surface, patches[b], voxels,
@@ -259,8 +331,6 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
     });
     add_thin(find_thin_parts(*field, elsewhere), false);
   }
-  report.filling_tets = static_cast<std::size_t>(
-      bodies.filling_tets * (report.creases.segments.empty() ? 1 : filling_with_creases));
   for (const auto& [body, wall] : bodies.changed)
     if (wall.gap || wall.on_purpose)
       report.closed_gaps.push_back(
@@ -272,15 +342,28 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   DenseMesh dense = mesh_field(
       field, std::move(interface_voxels), std::move(sheets.finer), options, MemoryModel{}, std::move(report),
       stages, [&](const std::vector<std::uint8_t>& there) { validate_materials_left(input, *field, there); });
-  if (std::any_of(patches.begin(), patches.end(), [](const SurfacePatches& p) { return p.any(); })) {
+  const auto has_groups = [](const MesherInput::Body& body) { return !body.surface.groups.empty(); };
+  give_up_where_surfaces_meet(input, dense.mesh, patches);
+  give_up_where_gaps_are_closed(input, dense.report, patches);
+  report_features(input, patches, dense.report);
+  if (std::any_of(patches.begin(), patches.end(), has_patches) ||
+      std::any_of(input.bodies.begin(), input.bodies.end(), has_groups)) {
     stages.begin("creases");
     keep_visible(dense.report.creases, input, dense);
     allow_for_chamfers(dense.report);
-    const auto features = std::make_shared<const FeatureSurface>(input, patches, dense.field);
-    fit_creases(dense.mesh, *features, dense.report.cell_size);
+    const auto features = std::make_shared<const FeatureSurface>(
+        input, patches, corner_reach_cells * dense.report.cell_size, dense.field);
+    fit_creases(dense.mesh, *features, *field, dense.report.cell_size);
+    measure_walls(dense, *field);
+    for (const InterfaceTriangle& t : dense.mesh.interfaces)
+      if (const FaceGroup group = features->group_of(t.patch))
+        dense.mesh.patch_groups[{t.pair(), t.patch}] = group;
     dense.reference = features;
     dense.report.seconds_cut += stages.seconds();
   }
+  dense.report.filling_tets = static_cast<std::size_t>(
+      (dense.report.thickened.points > 0 ? bodies.filling_tets_thickened : bodies.filling_tets) *
+      (std::any_of(patches.begin(), patches.end(), has_patches) ? filling_with_creases : 1));
   return dense;
 }
 

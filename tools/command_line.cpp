@@ -80,6 +80,9 @@ void add_material_options(CLI::App& app, CommandLine& c) {
       ->expected(1)
       ->type_name("NAME=FILE")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_flag("--split-solids", c.split_solids,
+               "Each solid, group or label of a surface's triangles is a material by its name, instead of a "
+               "patch of its boundary; later ones carve earlier ones");
   app.add_option_function<std::vector<std::string>>(
          "--layer",
          [&c](const std::vector<std::string>& all) {
@@ -219,7 +222,8 @@ std::string joined(const std::vector<std::string>& names) {
 }
 
 constexpr const char* scans =
-    "Surfaces (.ply .obj .stl .off) and level sets (.vdb), each a material, of which later ones carve "
+    "Surfaces (.ply .obj .stl .off .vtp .msh .mesh) and level sets (.vdb), each a material, of which later "
+    "ones carve "
     "earlier ones; or one segmented volume (.nrrd .nhdr .mhd .mha .nii .nii.gz .inr .inr.gz, .vdb of whole "
     "numbers)";
 constexpr const char* meshes = "Tet mesh: .vtu .msh .mesh .vtk .node .ele";

@@ -58,6 +58,7 @@ struct CommandLine {
   std::vector<NamedValue> materials;  ///< after the positional inputs: name and file
   std::vector<NamedValue> layers;     ///< name and thickness (a number above 0, input units)
   NestedRule nested = NestedRule::automatic;
+  bool split_solids = false;  ///< of a surface that tells them apart each is a material
   bool keep_outside = false;
   std::string write_sdf;  ///< .vdb file; empty: none
 

@@ -64,6 +64,9 @@ std::string feature_line(const FeatureReport& f) {
     case Verdict::intersecting:
       line += "not looked for; the surface intersects itself";
       break;
+    case Verdict::meeting:
+      line += "none kept; the surface meets another one, or gaps of it are closed";
+      break;
     case Verdict::staircase:
       line += "none; its edges look like those of voxels (--feature-angle DEGREES keeps them)";
       break;
@@ -71,6 +74,16 @@ std::string feature_line(const FeatureReport& f) {
       line += text("%zu patches with sharp edges between them", f.found.count);
       break;
   }
+  return printable(line);
+}
+
+std::string patches_line(const std::vector<PatchFidelity>& patches) {
+  constexpr std::size_t max_named = 8;
+  std::string line = "named patches: ";
+  for (std::size_t i = 0; i < std::min(max_named, patches.size()); ++i)
+    line +=
+        (i > 0 ? ", " : "") + patch_name(patches[i].group) + text(" (%zu triangles)", patches[i].triangles);
+  if (patches.size() > max_named) line += text(" and %zu more", patches.size() - max_named);
   return printable(line);
 }
 
@@ -103,6 +116,7 @@ void print_report(const CommandLine& line, const RunReport& run) {
   std::printf("\n");
   if (run.volume) std::printf("%s\n", volume_line(*run.volume).c_str());
   for (const FeatureReport& f : run.features) std::printf("%s\n", feature_line(f).c_str());
+  if (!run.patches.empty()) std::printf("%s\n", patches_line(run.patches).c_str());
   if (run.crease_fidelity) {
     const CreaseFidelity& c = *run.crease_fidelity;
     std::printf("creases within %.2g %% of the diagonal, 99 %% of them within %.2g %%; %zu of %zu corners\n",
@@ -156,6 +170,10 @@ std::vector<std::string> notes_of(const RunReport& run) {
                     std::to_string(t.places) + " places, the first at " + place_text(t.first) +
                     ": parts may tear or join there; a higher resolution keeps them");
   return notes;
+}
+
+std::string patch_name(const FaceGroup& group) {
+  return group.name.empty() ? std::to_string(group.number) : group.name;
 }
 
 void print_notes(const std::vector<std::string>& notes) {

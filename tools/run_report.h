@@ -13,6 +13,7 @@
 #include "simplify/simplify.h"
 #include "tools/crease_fidelity.h"
 #include "tools/fidelity.h"
+#include "tools/patch_fidelity.h"
 
 namespace tetwright {
 
@@ -59,6 +60,8 @@ struct RunReport {
   std::vector<FeatureReport> features;  ///< of each surface, or of the tet mesh
   CreaseCurves creases;                 ///< of all of them
   std::optional<CreaseFidelity> crease_fidelity;
+  std::vector<PatchFidelity> patches;  ///< that the input names or numbers
+  std::size_t held_by_input = 0;       ///< tets of the result below the bound, see tets_held_by_input()
   std::vector<MaterialFidelity> fidelity;
   std::map<MaterialTag, std::string> material_names;
   std::optional<SimplifyReport> simplify;

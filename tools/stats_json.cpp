@@ -139,7 +139,8 @@ nlohmann::json fidelity_json(const std::vector<MaterialFidelity>& all) {
 }
 
 nlohmann::json features_json(const std::vector<FeatureReport>& all) {
-  static constexpr const char* verdicts[] = {"off", "smooth", "scan", "intersecting", "staircase", "part"};
+  static constexpr const char* verdicts[] = {"off",     "smooth",    "scan", "intersecting",
+                                             "meeting", "staircase", "part"};
   nlohmann::json j = nlohmann::json::array();
   for (const FeatureReport& f : all)
     j.push_back({{"name", f.name},
@@ -159,6 +160,17 @@ nlohmann::json creases_json(const CreaseFidelity& c) {
           {"lost_corners", c.lost_corners},
           {"max_corner_distance", c.max_corner_distance},
           {"same", c.same()}};
+}
+
+nlohmann::json patches_json(const std::vector<PatchFidelity>& all) {
+  nlohmann::json j = nlohmann::json::array();
+  for (const PatchFidelity& p : all)
+    j.push_back({{"name", p.group.name},
+                 {"number", p.group.number},
+                 {"input_area", p.input_area},
+                 {"area", p.area},
+                 {"triangles", p.triangles}});
+  return j;
 }
 
 /// Adds to the statistics of the dense mesh how it was made.
@@ -237,8 +249,10 @@ std::string stats_json(const CommandLine& line, const RunReport& run) {
   if (run.mesher) add_mesher_json(*run.mesher, j["dense"]);
   j["result"] =
       run.result ? mesh_json(*run.result, run.material_names, line.min_solid_angle) : nlohmann::json();
+  if (run.simplify) j["result"]["held_by_input"] = run.held_by_input;
   if (run.mesher && !run.volume) j["fidelity"] = fidelity_json(run.fidelity);
   if (!run.features.empty()) j["features"] = features_json(run.features);
+  if (!run.patches.empty()) j["patches"] = patches_json(run.patches);
   if (run.crease_fidelity) j["creases"] = creases_json(*run.crease_fidelity);
   j["iterations"] = nlohmann::json::array();
   if (run.simplify)

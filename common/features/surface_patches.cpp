@@ -5,6 +5,7 @@
 #include <set>
 
 #include "common/error.h"
+#include "common/features/edge_uses.h"
 #include "common/mesh/disjoint_sets.h"
 #include "common/mesh/interfaces.h"
 #include "common/parallel/parallel_sort.h"
@@ -22,22 +23,11 @@ constexpr double low_share = 15.0 / 35;  ///< of the angle: edges that turn less
 constexpr double min_sharp_share = 0.5;  ///< of a border's length turns by more than the angle
 constexpr double max_loose_low = 0.09;   ///< parts have up to 0.07, scans that pass the other test 0.10
 constexpr double max_loose_high = 0.2;   ///< parts have up to 0.10, scans that pass the other test 0.43
-constexpr double corner_turn = 45;       ///< degrees
 /// A staircase has many patches, each of few triangles; or its sharp edges are those of equal boxes.
 constexpr std::size_t min_staircase_patches = 256;
 constexpr std::size_t max_staircase_triangles = 4;
 constexpr double same_length = 1e-3, right_angle = 90 * degree, same_angle = 1 * degree;
 constexpr std::size_t max_patches = 0xffff;
-
-/// The side of an edge that a triangle is on.
-struct EdgeUse {
-  std::uint64_t key;  ///< both ends, the smaller one above
-  std::uint32_t group;
-  Index triangle;
-  bool ascending;  ///< whether the triangle runs from the smaller end to the larger one
-
-  bool same_edge(const EdgeUse& o) const { return key == o.key && group == o.group; }
-};
 
 /// An edge between two triangles of a group.
 struct InnerEdge {
@@ -45,26 +35,6 @@ struct InnerEdge {
   double length;
   double turn;  ///< radians, 0 to pi; 0 where a triangle has no area
 };
-
-std::array<Index, 2> ends_of(std::uint64_t key) {
-  return {static_cast<Index>(key >> 32), static_cast<Index>(key)};
-}
-
-std::vector<EdgeUse> edge_uses(std::span<const Triangle> triangles, std::span<const std::uint32_t> groups) {
-  std::vector<EdgeUse> uses;
-  uses.reserve(3 * triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Index p = triangles[t][k], q = triangles[t][(k + 1) % 3];
-      uses.push_back({std::uint64_t{std::min(p, q)} << 32 | std::max(p, q), groups.empty() ? 0 : groups[t],
-                      static_cast<Index>(t), p < q});
-    }
-  parallel_sort(uses, [](const EdgeUse& x, const EdgeUse& y) {
-    if (x.key != y.key) return x.key < y.key;
-    return x.group != y.group ? x.group < y.group : x.triangle < y.triangle;
-  });
-  return uses;
-}
 
 /// Triangles without area get the normal of the one across their longest edge that has some: else patches
 /// would hang together across them.
@@ -94,7 +64,7 @@ void take_normals_beside(std::span<const Vec3> points, const std::vector<EdgeUse
 }
 
 std::vector<InnerEdge> inner_edges(std::span<const Vec3> points, std::span<const Triangle> triangles,
-                                   std::span<const std::uint32_t> groups) {
+                                   const std::vector<EdgeUse>& uses) {
   std::vector<Vec3> normals(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const Vec3& a = points[triangles[t][0]];
@@ -102,7 +72,6 @@ std::vector<InnerEdge> inner_edges(std::span<const Vec3> points, std::span<const
     const double length = n.norm();
     normals[t] = length > 0 ? Vec3(n / length) : Vec3(Vec3::Zero());
   }
-  const std::vector<EdgeUse> uses = edge_uses(triangles, groups);
   take_normals_beside(points, uses, normals);
   std::vector<InnerEdge> edges;
   edges.reserve(uses.size() / 2);
@@ -131,16 +100,27 @@ std::vector<double> triangle_areas(std::span<const Vec3> points, std::span<const
   return areas;
 }
 
-/// The share of the edges that turn by more than the angle at which a chain of such edges ends.
-double loose_ends(const std::vector<InnerEdge>& edges, std::size_t point_count, double angle) {
-  std::vector<std::uint32_t> degrees(point_count, 0);
+/// Points between two groups.
+std::vector<std::uint8_t> points_between(const std::vector<EdgeUse>& uses, std::size_t point_count) {
+  std::vector<std::uint8_t> between(point_count, 0);
+  for (std::size_t i = 0; i + 1 < uses.size(); ++i)
+    if (uses[i].key == uses[i + 1].key && uses[i].group != uses[i + 1].group)
+      for (const Index p : ends_of(uses[i].key)) between[p] = 1;
+  return between;
+}
+
+/// The share of the edges that turn by more than the angle at which a chain of such edges ends, other than at
+/// the points of `ends`.
+double loose_ends(const std::vector<InnerEdge>& edges, const std::vector<std::uint8_t>& ends, double angle) {
+  std::vector<std::uint32_t> degrees(ends.size(), 0);
   std::size_t sharp = 0;
   for (const InnerEdge& e : edges)
     if (e.turn > angle) {
       ++sharp;
       for (const Index p : e.ends) ++degrees[p];
     }
-  const auto loose = std::count(degrees.begin(), degrees.end(), 1U);
+  std::size_t loose = 0;
+  for (std::size_t p = 0; p < ends.size(); ++p) loose += degrees[p] == 1 && !ends[p];
   return sharp == 0 ? 0 : static_cast<double>(loose) / static_cast<double>(sharp);
 }
 
@@ -297,11 +277,13 @@ FoundParts find_parts(std::span<const Vec3> points, std::span<const Triangle> tr
   found.patches.assign(triangles.size(), 0);
   result.parts = groups.empty() ? std::vector<Index>(triangles.size(), 0) : whole_groups(groups);
   if (angle.rule == Rule::off || triangles.empty()) return result;
-  const std::vector<InnerEdge> edges = inner_edges(points, triangles, groups);
+  const std::vector<EdgeUse> uses = edge_uses(triangles, groups);
+  const std::vector<InnerEdge> edges = inner_edges(points, triangles, uses);
+  const std::vector<std::uint8_t> between = points_between(uses, points.size());
   const bool automatic = angle.rule == Rule::automatic;
   const double sharp = (automatic ? automatic_angle : angle.degrees) * degree;
-  found.loose_ends_low = loose_ends(edges, points.size(), low_share * automatic_angle * degree);
-  found.loose_ends_high = loose_ends(edges, points.size(), automatic_angle * degree);
+  found.loose_ends_low = loose_ends(edges, between, low_share * automatic_angle * degree);
+  found.loose_ends_high = loose_ends(edges, between, automatic_angle * degree);
   if (std::none_of(edges.begin(), edges.end(), [&](const InnerEdge& e) { return e.turn > sharp; })) {
     found.verdict = Verdict::smooth;
     return result;
@@ -365,106 +347,21 @@ SurfacePatches find_mesh_patches(TetMesh& mesh, const FeatureAngle& angle, const
   }
   FoundParts found = find_parts(mesh.points, triangles, {angle, 0}, groups);
   std::map<MaterialPair, std::map<Index, std::uint16_t>> of_pair;
+  const std::map<InterfacePatch, FaceGroup> given = std::move(mesh.patch_groups);
+  mesh.patch_groups.clear();
   found.found.count = 0;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     std::map<Index, std::uint16_t>& known = of_pair[mesh.interfaces[i].pair()];
     const auto [number, added] = known.emplace(found.parts[i], static_cast<std::uint16_t>(known.size()));
     if (known.size() > max_patches) throw_too_many(file);
     found.found.count += added;
+    if (added)
+      if (const auto group = given.find({mesh.interfaces[i].pair(), mesh.interfaces[i].patch});
+          group != given.end())
+        mesh.patch_groups[{mesh.interfaces[i].pair(), number->second}] = group->second;
     mesh.interfaces[i].patch = found.found.patches[i] = number->second;
   }
   return std::move(found.found);
-}
-
-SurfaceCreases find_creases(std::span<const Vec3> points, std::span<const Triangle> triangles,
-                            std::span<const std::uint16_t> patches) {
-  SurfaceCreases creases;
-  const std::vector<EdgeUse> uses = edge_uses(triangles, {});
-  for (std::size_t i = 0; i < uses.size();) {
-    std::size_t j = i;
-    std::set<std::uint16_t> here;
-    for (; j < uses.size() && uses[j].key == uses[i].key; ++j) here.insert(patches[uses[j].triangle]);
-    for (auto p = here.begin(); p != here.end(); ++p)
-      for (auto q = std::next(p); q != here.end(); ++q)
-        creases.segments.push_back({ends_of(uses[i].key), {*p, *q}});
-    i = j;
-  }
-  struct AtPoint {
-    std::size_t count = 0;
-    std::array<std::uint16_t, 2> patches{};
-    std::array<Index, 2> others{};
-    bool mixed = false;
-  };
-  std::map<Index, AtPoint> at_points;
-  for (const SurfaceCreases::Segment& s : creases.segments)
-    for (std::size_t k = 0; k < 2; ++k) {
-      AtPoint& at = at_points[s.ends[k]];
-      if (at.count == 0) at.patches = s.patches;
-      at.mixed |= at.patches != s.patches;
-      if (at.count < 2) at.others[at.count] = s.ends[1 - k];
-      ++at.count;
-    }
-  for (const auto& [p, at] : at_points) {
-    bool corner = at.count != 2 || at.mixed;
-    if (!corner) {
-      const Vec3 u = (points[p] - points[at.others[0]]).normalized(),
-                 v = (points[at.others[1]] - points[p]).normalized();
-      corner = 2 * portable_atan2_upper((u - v).norm(), (u + v).norm()) > corner_turn * degree;
-    }
-    if (corner) creases.corners.push_back(p);
-  }
-  return creases;
-}
-
-void CreaseCurves::add(const SurfaceCreases& creases, std::span<const Vec3> surface_points) {
-  std::map<Index, Index> numbers;
-  for (const SurfaceCreases::Segment& s : creases.segments) {
-    std::array<Index, 2> ends;
-    for (std::size_t k = 0; k < 2; ++k) {
-      const auto [known, added] = numbers.emplace(s.ends[k], static_cast<Index>(points.size()));
-      if (added) points.push_back(surface_points[s.ends[k]]);
-      ends[k] = known->second;
-    }
-    segments.push_back(ends);
-  }
-  for (const Index c : creases.corners) corners.push_back(surface_points[c]);
-}
-
-namespace {
-
-/// The faces of each pair of materials, and their patches.
-std::map<MaterialPair, std::pair<std::vector<Triangle>, std::vector<std::uint16_t>>> faces_by_pair(
-    const TetMesh& mesh) {
-  std::map<MaterialPair, std::pair<std::vector<Triangle>, std::vector<std::uint16_t>>> by_pair;
-  for (const InterfaceTriangle& t : mesh.interfaces) {
-    auto& [triangles, patches] = by_pair[t.pair()];
-    triangles.push_back(t.ids);
-    patches.push_back(t.patch);
-  }
-  return by_pair;
-}
-
-}  // namespace
-
-CreaseCurves mesh_creases(const TetMesh& mesh) {
-  CreaseCurves curves;
-  for (const auto& [pair, faces] : faces_by_pair(mesh))
-    curves.add(find_creases(mesh.points, faces.first, faces.second), mesh.points);
-  return curves;
-}
-
-CreaseCurves mesh_junctions(const TetMesh& mesh) {
-  CreaseCurves curves;
-  for (const auto& [pair, faces] : faces_by_pair(mesh)) {
-    SurfaceCreases junctions;
-    const std::vector<EdgeUse> uses = edge_uses(faces.first, {});
-    for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
-      while (j < uses.size() && uses[j].key == uses[i].key) ++j;
-      if (j - i != 2) junctions.segments.push_back({ends_of(uses[i].key), {}});
-    }
-    curves.add(junctions, mesh.points);
-  }
-  return curves;
 }
 
 }  // namespace tetwright

@@ -37,6 +37,7 @@ struct SurfacePatches {
     smooth,        ///< no edge turns far enough
     scan,          ///< edges turn far, but what they make up ends anywhere: noise
     intersecting,  ///< not looked for, since the surface intersects itself
+    meeting,       ///< not kept, since the surface meets another one, or itself where gaps are closed
     staircase,     ///< creases nearly everywhere, as on the faces of voxels
     part           ///< there are creases
   };
@@ -91,9 +92,11 @@ struct SurfaceCreases {
 };
 
 /// Edges with two triangles of different patches; an edge with more than two has a segment for each two
-/// patches.
+/// patches. How far a crease turns is measured between the chords to the places on it that are at least
+/// `corner_reach` away (0: the neighbouring points), and within that there is only one such corner: a zigzag
+/// from triangle to triangle has none.
 SurfaceCreases find_creases(std::span<const Vec3> points, std::span<const Triangle> triangles,
-                            std::span<const std::uint16_t> patches);
+                            std::span<const std::uint16_t> patches, double corner_reach = 0);
 
 /// Creases and corners by themselves, to be compared with.
 struct CreaseCurves {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/formats/read_tet_mesh_result.h"
+#include "common/triangle_mesh.h"
 
 namespace tetwright {
 
@@ -16,14 +17,27 @@ struct FileTriangles {
   std::map<std::int64_t, std::string> names;  ///< of groups that have one
 };
 
-/// Adds to `read.dropped` what of the triangles is lost. A group is restored if it is what find_interfaces()
-/// and the writers make of the mesh: its triangles lie between the same two materials, or between one and
-/// outside, no other group has that pair, and its name is pair_name()'s, or, where it has none, its number is
-/// interface_groups()'. Triangles without a group are restored if all of them are interface triangles.
+/// Takes the groups of the triangles as patches of `read.mesh`, with their names and numbers: fills
+/// `interfaces` and `patch_groups`. Both stay empty where writers make the same groups of the materials: all
+/// triangles of each group lie between the same two materials, or between one and outside, and its name is
+/// pair_name()'s or, where it has none and is the only group of its pair, its number is the one that
+/// BoundaryGroups gives the pair.
 ///
-/// `group_word` is what the format calls a group, in the plural, for example "physical groups". To be called
-/// when the materials and their names are known. Time and memory grow with the number of triangles, beside
-/// one look at every tet.
-void note_dropped_triangles(const FileTriangles& listed, const std::string& group_word, ReadTetMesh& read);
+/// Adds to `read.dropped` what is restored in this way, and what is lost: triangles within a material, those
+/// of no tet and no group, and those that are in a group already. Throws InputError for a triangle of a
+/// group that is no face of a tet, and for more than 65,535 groups.
+///
+/// `group_word` is what the format calls a group, for example "physical group"; `file` is named in messages.
+/// To be called when the materials and their names are known. Time and memory grow with the number of
+/// triangles, beside one look at every tet.
+void take_triangles(const FileTriangles& listed, const std::string& group_word, const std::string& file,
+                    ReadTetMesh& read);
+
+/// What to say of a file with tets where a surface is needed; to be appended to its name.
+std::string surface_expected(std::size_t tets);
+
+/// The triangles as a surface by themselves; groups are those of the file, unless there is only one and it
+/// has no name. Throws InputError if there are none, or for one that names a point that is not there.
+TriangleMesh surface_of(const FileTriangles& listed, std::vector<Vec3> points, const std::string& file);
 
 }  // namespace tetwright

@@ -19,6 +19,7 @@
 #include "common/formats/tetgen.h"
 #include "common/formats/text_scanner.h"
 #include "common/formats/vtk.h"
+#include "common/formats/vtp.h"
 #include "common/formats/vtu.h"
 
 namespace tetwright {
@@ -30,10 +31,14 @@ struct SurfaceFormat {
   TriangleMesh (*read)(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped);
   std::string (*write)(const TriangleMesh& mesh);
 };
-constexpr std::array<SurfaceFormat, 4> surface_formats{{{".ply", read_ply, write_ply},
+constexpr std::array<SurfaceFormat, 5> surface_formats{{{".ply", read_ply, write_ply},
                                                         {".obj", read_obj, write_obj},
                                                         {".stl", read_stl, write_stl},
-                                                        {".off", read_off, write_off}}};
+                                                        {".off", read_off, write_off},
+                                                        {".vtp", read_vtp, nullptr}}};
+/// Those of tet meshes that may hold a surface instead.
+constexpr std::array<SurfaceFormat, 2> shared_formats{
+    {{".msh", read_msh_surface, nullptr}, {".mesh", read_medit_surface, nullptr}}};
 
 template <ReadTetMesh (*read)(std::string_view, const std::string&, const ReadTetMeshOptions&)>
 ReadTetMesh read_one_file(const std::string& path, const ReadTetMeshOptions& options) {
@@ -173,9 +178,14 @@ std::string known_extensions(FileKind kind, FileUse use) {
     }
   };
   if (kind == FileKind::surface || kind == FileKind::unknown) add(surface_formats);
+  if (kind == FileKind::surface && use == FileUse::read) add(shared_formats);
   if (kind == FileKind::tet_mesh || kind == FileKind::unknown) add(tet_formats);
   if (kind == FileKind::volume || kind == FileKind::unknown) add(volume_formats);
   return out;
+}
+
+bool may_hold_surface(const std::string& path) {
+  return file_kind(path) == FileKind::surface || find_format(shared_formats, path, FileUse::read);
 }
 
 std::string file_stem(const std::string& path) {
@@ -184,7 +194,9 @@ std::string file_stem(const std::string& path) {
 }
 
 TriangleMesh read_surface(const std::string& path, std::vector<Dropped>* dropped) {
-  const SurfaceFormat& format = need_format(surface_formats, path, FileKind::surface, FileUse::read);
+  const SurfaceFormat* shared = find_format(shared_formats, path, FileUse::read);
+  const SurfaceFormat& format =
+      shared ? *shared : need_format(surface_formats, path, FileKind::surface, FileUse::read);
   return format.read(read_whole_file(path), path, dropped);
 }
 

@@ -14,7 +14,7 @@ class OutputFiles;
 
 /// Kinds of files, which their extension tells, in upper or lower case.
 enum class FileKind {
-  surface,   ///< .ply .obj .stl .off
+  surface,   ///< .ply .obj .stl .off; to be read .vtp too
   tet_mesh,  ///< .vtu .msh .mesh; to be read .vtk .node .ele too
   volume,    ///< .nrrd; to be read .nhdr .mhd .mha .nii .nii.gz .inr .inr.gz too
   unknown
@@ -27,6 +27,10 @@ FileKind file_kind(const std::string& path, FileUse use = FileUse::read);
 
 /// ".ply .obj .stl .off", for messages and help.
 std::string known_extensions(FileKind kind, FileUse use = FileUse::read);
+
+/// Whether read_surface() reads files of this extension: surfaces, and .msh and .mesh, which hold a surface
+/// or a tet mesh.
+bool may_hold_surface(const std::string& path);
 
 /// The name of a file without folders and extension; .nii.gz and .inr.gz are removed whole.
 std::string file_stem(const std::string& path);

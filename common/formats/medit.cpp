@@ -8,6 +8,7 @@
 #include "common/formats/file_triangles.h"
 #include "common/formats/mesh_fields.h"
 #include "common/formats/text_scanner.h"
+#include "common/mesh/boundary_groups.h"
 #include "common/mesh/interfaces.h"
 #include "common/number_text.h"
 
@@ -68,6 +69,36 @@ class Reader {
   Reader(std::string_view bytes, const std::string& name) : in_(bytes, name, '#') {}
 
   ReadTetMesh read() {
+    read_sections();
+    check_indices();
+    return std::move(result_);
+  }
+
+  TriangleMesh read_surface(std::vector<Dropped>* dropped) {
+    read_sections();
+    if (!result_.mesh.tets.empty()) throw InputError(in_.name() + surface_expected(result_.mesh.tets.size()));
+    check_has_vertices();
+    if (dropped) note_others(*dropped);
+    return surface_of(triangles_, std::move(result_.mesh.points), in_.name());
+  }
+
+  /// To be called when the materials are known.
+  void finish(ReadTetMesh& read) const {
+    take_triangles(triangles_, "reference", in_.name(), read);
+    note_others(read.dropped);
+  }
+
+ private:
+  void note_others(std::vector<Dropped>& dropped) const {
+    others_.append_to(dropped);
+    if (point_references_ > 0) dropped.push_back({"points with a reference other than 0", point_references_});
+  }
+
+  void check_has_vertices() const {
+    if (!has_vertices_) in_.fail("there is no section \"Vertices\" in it; the file is cut short");
+  }
+
+  void read_sections() {
     if (in_.at_end()) in_.fail("the file is empty");
     if (const std::string_view word = in_.word(); word != "MeshVersionFormatted")
       in_.fail("expected \"MeshVersionFormatted\" at the beginning, found " + in_quotes(word) +
@@ -94,19 +125,8 @@ class Reader {
     if (!volume_cells_.empty())
       throw InputError(in_.name(), volume_cells_line_,
                        unsupported_cells(volume_cells_, "in the section that begins here"));
-    check_indices();
-    return std::move(result_);
   }
 
-  /// To be called when the materials are known.
-  void note_dropped(ReadTetMesh& read) const {
-    note_dropped_triangles(triangles_, "references", read);
-    others_.append_to(read.dropped);
-    if (point_references_ > 0)
-      read.dropped.push_back({"points with a reference other than 0", point_references_});
-  }
-
- private:
   void read_vertices() {
     TetMesh& mesh = result_.mesh;
     if (has_vertices_) in_.fail("a second section \"Vertices\"");
@@ -174,7 +194,7 @@ class Reader {
   /// Checked at the end, since tets may precede the points.
   void check_indices() const {
     const TetMesh& mesh = result_.mesh;
-    if (!has_vertices_) in_.fail("there is no section \"Vertices\" in it; the file is cut short");
+    check_has_vertices();
     if (mesh.tets.empty()) in_.fail("there are no tets in it; a tet mesh is needed, not a surface");
     for (std::size_t t = 0; t < mesh.tets.size(); ++t)
       for (Index vertex : mesh.tets[t])
@@ -193,14 +213,28 @@ class Reader {
   bool has_vertices_ = false;
 };
 
-void append_triangles(std::string& out, const std::vector<InterfaceTriangle>& triangles) {
-  const std::vector<MaterialPair> groups = interface_groups(triangles);
+/// A name as one word in quotes.
+std::string quoted_word(const std::string& name) {
+  std::string out = "\"";
+  for (const char c : name) out += static_cast<unsigned char>(c) <= ' ' || c == '"' ? '_' : c;
+  return out + '"';
+}
+
+void append_triangles(std::string& out, const TetMesh& mesh) {
+  const std::vector<InterfaceTriangle>& triangles = mesh.interfaces;
+  const BoundaryGroups groups(mesh);
   out += '\n';
-  // Tags instead of names: some readers do not know comments, and a name could be one of their keywords.
-  for (std::size_t g = 0; g < groups.size(); ++g) {
+  // Some readers do not know comments, and a name could be one of their keywords: tags of materials, and one
+  // word in quotes for a group of the user.
+  for (const BoundaryGroups::Group& g : groups.all()) {
     out += "# reference ";
-    append_number(out, g + 1);
-    out += ": " + pair_name(groups[g]) + '\n';
+    append_number(out, g.number);
+    out += ": ";
+    if (g.pair)
+      out += pair_name(*g.pair);
+    else
+      out += g.face_group.name.empty() ? std::to_string(g.number) : quoted_word(g.face_group.name);
+    out += '\n';
   }
   out += "Triangles\n";
   append_number(out, triangles.size());
@@ -210,7 +244,7 @@ void append_triangles(std::string& out, const std::vector<InterfaceTriangle>& tr
       append_number(out, std::uint64_t{vertex} + 1);
       out += ' ';
     }
-    append_number(out, group_number(groups, t));
+    append_number(out, groups.number_of(t));
     out += '\n';
   }
 }
@@ -221,8 +255,13 @@ ReadTetMesh read_medit(std::string_view bytes, const std::string& name, const Re
   Reader reader(bytes, name);
   ReadTetMesh read = reader.read();
   take_material(read, options, name);
-  reader.note_dropped(read);
+  reader.finish(read);
   return read;
+}
+
+TriangleMesh read_medit_surface(std::string_view bytes, const std::string& name,
+                                std::vector<Dropped>* dropped) {
+  return Reader(bytes, name).read_surface(dropped);
 }
 
 std::string write_medit(const TetMesh& mesh) {
@@ -245,7 +284,7 @@ std::string write_medit(const TetMesh& mesh) {
     append_number(out, mesh.materials[t]);
     out += '\n';
   }
-  if (!mesh.interfaces.empty()) append_triangles(out, mesh.interfaces);
+  if (!mesh.interfaces.empty()) append_triangles(out, mesh);
   return out + "\nEnd\n";
 }
 

@@ -7,6 +7,7 @@
 
 #include "common/formats/msh_data.h"
 #include "common/formats/msh_elements.h"
+#include "common/mesh/boundary_groups.h"
 #include "common/mesh/interfaces.h"
 #include "common/number_text.h"
 
@@ -38,8 +39,9 @@ void append_element(std::string& out, std::size_t number, std::int64_t type, std
 }
 
 /// msh_name() of each name. Names that differ stay different, by the suffixes "_2", "_3" and so on.
-std::map<MaterialTag, std::string> names_to_write(const std::map<MaterialTag, std::string>& names) {
-  std::map<MaterialTag, std::string> written;
+template <class Key>
+std::map<Key, std::string> names_to_write(const std::map<Key, std::string>& names) {
+  std::map<Key, std::string> written;
   std::map<std::string, std::string> original_of;
   for (const bool unchanged : {true, false})  // these keep their names
     for (const auto& [tag, name] : names) {
@@ -53,18 +55,30 @@ std::map<MaterialTag, std::string> names_to_write(const std::map<MaterialTag, st
   return written;
 }
 
+/// By the numbers of the groups; without those that have no name.
+std::map<std::int64_t, std::string> group_names_to_write(const BoundaryGroups& groups,
+                                                         const std::map<MaterialTag, std::string>& names) {
+  std::map<std::int64_t, std::string> all;
+  for (const BoundaryGroups::Group& g : groups.all())
+    if (g.pair)
+      all[g.number] = pair_name(*g.pair, names);
+    else if (!g.face_group.name.empty())
+      all[g.number] = g.face_group.name;
+  return names_to_write(all);
+}
+
 }  // namespace
 
 std::string write_msh(const TetMesh& mesh) {
   std::string out = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
-  const std::vector<MaterialPair> groups = interface_groups(mesh.interfaces);
+  const BoundaryGroups groups(mesh);
   const std::map<MaterialTag, std::string> names = names_to_write(mesh.material_names);
-  if (!mesh.material_names.empty() || !groups.empty()) {
+  const std::map<std::int64_t, std::string> group_names = group_names_to_write(groups, names);
+  if (!mesh.material_names.empty() || !group_names.empty()) {
     out += "$PhysicalNames\n";
-    append_number(out, groups.size() + mesh.material_names.size());
+    append_number(out, group_names.size() + mesh.material_names.size());
     out += '\n';
-    for (std::size_t g = 0; g < groups.size(); ++g)
-      append_name(out, 2, static_cast<std::int64_t>(g) + 1, pair_name(groups[g], names));
+    for (const auto& [number, name] : group_names) append_name(out, 2, number, name);
     for (const auto& [tag, name] : names) append_name(out, 3, tag, name);
     out += "$EndPhysicalNames\n";
   }
@@ -91,7 +105,7 @@ std::string write_msh(const TetMesh& mesh) {
                    std::lower_bound(tags.begin(), tags.end(), mesh.materials[t]) - tags.begin() + 1,
                    mesh.tets[t]);
   for (std::size_t i = 0; i < mesh.interfaces.size(); ++i) {
-    const auto group = static_cast<std::int64_t>(group_number(groups, mesh.interfaces[i]));
+    const auto group = groups.number_of(mesh.interfaces[i]);
     append_element(out, mesh.tets.size() + i + 1, msh_triangle_type, group, group, mesh.interfaces[i].ids);
   }
   out += "$EndElements\n";

@@ -2,8 +2,10 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/formats/read_tet_mesh_result.h"
+#include "common/triangle_mesh.h"
 
 namespace tetwright {
 
@@ -11,16 +13,23 @@ namespace tetwright {
 /// group of a tet, with its name from $PhysicalNames. In version 4.1, if no volume has a physical group, it
 /// is the number of the volume ("gmsh:geometrical", which the options can also ask for). $NodeData and
 /// $ElementData become fields, with nan for items that a section does not list. Volume elements other than
-/// linear tets are refused; points, lines, faces, their groups and other sections are counted in
-/// ReadTetMesh::dropped. `name` is used in messages. Throws InputError with the line for anything that is
-/// malformed; other versions, binary files and partitioned meshes are refused with advice.
+/// linear tets are refused; physical groups of triangles become groups of faces (see take_triangles());
+/// points, lines, other faces, their groups and other sections are counted in ReadTetMesh::dropped. `name` is
+/// used in messages. Throws InputError with the line for anything that is malformed; other versions, binary
+/// files and partitioned meshes are refused with advice.
 ///
 /// Our own: the library of Gmsh is under the GPL.
 ReadTetMesh read_msh(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options = {});
 
+/// Reads the triangles (type 2) of such a file as a surface: physical groups of faces are its groups, with
+/// their names. What else it holds is appended to `dropped`, unless that is null. Throws InputError as
+/// read_msh() does, and for a file with tets.
+TriangleMesh read_msh_surface(std::string_view bytes, const std::string& name,
+                              std::vector<Dropped>* dropped = nullptr);
+
 /// The content of a file of version 2.2, ASCII; coordinates are read back bit by bit. The interface triangles
-/// of the mesh, if it has any, follow the tets; each pair of materials is a physical group of dimension 2
-/// with the number of interface_groups() and the name of pair_name(). Fields follow as $NodeData and
+/// of the mesh, if it has any, follow the tets; each of the BoundaryGroups is a physical group of
+/// dimension 2 with its number and its name, or pair_name()'s. Fields follow as $NodeData and
 /// $ElementData, see append_msh_data(). Names are written as msh_name() gives them, and get a
 /// suffix where two of them would become equal.
 std::string write_msh(const TetMesh& mesh);

@@ -1,5 +1,7 @@
 #include "common/formats/msh_elements.h"
 
+#include <utility>
+
 #include "common/error.h"
 
 namespace tetwright {
@@ -123,8 +125,18 @@ void OtherMshElements::refuse_volumes(const std::string& file) const {
                                                  std::to_string(first_volume_type_) + ")"));
 }
 
-void OtherMshElements::note_dropped(ReadTetMesh& read) const {
-  note_dropped_triangles(triangles_, "physical groups", read);
+void OtherMshElements::finish(const std::string& file, ReadTetMesh& read) const {
+  take_triangles(triangles_, "physical group", file, read);
+  note_dropped(read.dropped);
+}
+
+TriangleMesh OtherMshElements::surface(std::vector<Vec3> points, const std::string& file,
+                                       std::vector<Dropped>* dropped) const {
+  if (dropped) note_dropped(*dropped);
+  return surface_of(triangles_, std::move(points), file);
+}
+
+void OtherMshElements::note_dropped(std::vector<Dropped>& dropped) const {
   std::array<std::set<std::int64_t>, 3> used;
   used[2].insert(triangles_.groups.begin(), triangles_.groups.end());
   for (const auto& [type, of_kind] : flat_) {
@@ -139,7 +151,7 @@ void OtherMshElements::note_dropped(ReadTetMesh& read) const {
       }
       groups.push_back(name);
     }
-    read.dropped.push_back(
+    dropped.push_back(
         {kind.name + (groups.empty() ? "" : " of physical groups (" + quoted_list(groups) + ")"),
          of_kind.elements});
   }
@@ -147,7 +159,7 @@ void OtherMshElements::note_dropped(ReadTetMesh& read) const {
   for (std::size_t dimension = 0; dimension < used.size(); ++dimension)
     for (const auto& [group, name] : names_of(dimension))
       if (!used[dimension].contains(group)) unused.push_back(name);
-  append_dropped_names(read.dropped, "physical groups of points, lines or faces, without elements", unused);
+  append_dropped_names(dropped, "physical groups of points, lines or faces, without elements", unused);
 }
 
 }  // namespace tetwright

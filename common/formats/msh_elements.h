@@ -35,8 +35,12 @@ class OtherMshElements {
 
   /// Throws InputError if there were volume elements.
   void refuse_volumes(const std::string& file) const;
-  /// Adds all the rest to `read.dropped`. To be called when the materials are known.
-  void note_dropped(ReadTetMesh& read) const;
+  /// Takes the triangles, see take_triangles(), and adds all the rest to `read.dropped`. To be called when
+  /// the materials are known.
+  void finish(const std::string& file, ReadTetMesh& read) const;
+  /// The triangles as a surface, see surface_of(); all the rest is added to `dropped`, unless that is null.
+  TriangleMesh surface(std::vector<Vec3> points, const std::string& file,
+                       std::vector<Dropped>* dropped) const;
 
  private:
   struct OfKind {
@@ -44,6 +48,7 @@ class OtherMshElements {
     std::set<std::int64_t> groups;  ///< without 0
   };
 
+  void note_dropped(std::vector<Dropped>& dropped) const;
   const std::map<std::int64_t, std::string>& names_of(std::size_t dimension) const {
     return dimension == 2 ? triangles_.names : names_[dimension];
   }

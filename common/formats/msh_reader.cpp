@@ -22,6 +22,29 @@ class MshReader {
       : in_(bytes, name), options_(options), bytes_(bytes) {}
 
   ReadTetMesh read() {
+    read_sections();
+    if (result_.mesh.tets.empty())
+      in_.fail("there are no tets of four points (type 4) in it; a volume mesh is needed, not a surface");
+    read_data();
+    set_materials();
+    note_dropped();
+    return std::move(result_);
+  }
+
+  TriangleMesh read_surface(std::vector<Dropped>* dropped) {
+    read_sections();
+    if (!result_.mesh.tets.empty()) throw InputError(in_.name() + surface_expected(result_.mesh.tets.size()));
+    TriangleMesh surface = others_.surface(std::move(result_.mesh.points), in_.name(), dropped);
+    if (!dropped) return surface;
+    for (const auto& [section, places] :
+         {std::pair("fields of nodes", &node_data_), std::pair("fields of elements", &element_data_)})
+      if (!places->empty()) dropped->push_back({section, places->size()});
+    append_dropped_names(*dropped, "sections", other_sections_);
+    return surface;
+  }
+
+ private:
+  void read_sections() {
     if (in_.at_end()) in_.fail("the file is empty");
     read_format();
     for (std::string_view section; !(section = in_.word()).empty();) {
@@ -43,15 +66,8 @@ class MshReader {
     }
     if (!has_elements_) in_.fail("there is no section $Elements in it; the file is cut short");
     others_.refuse_volumes(in_.name());
-    if (result_.mesh.tets.empty())
-      in_.fail("there are no tets of four points (type 4) in it; a volume mesh is needed, not a surface");
-    read_data();
-    set_materials();
-    note_dropped();
-    return std::move(result_);
   }
 
- private:
   void read_format() {
     if (const std::string_view word = in_.word(); word != "$MeshFormat")
       in_.fail("expected $MeshFormat at the beginning, found " + in_quotes(word) + "; is this a Gmsh file?");
@@ -99,6 +115,14 @@ class MshReader {
         throw InputError(in_.name(), line,
                          "expected the name of a physical group in quotes, found " + in_quotes(name));
       name = name.substr(open + 1, close - open - 1);
+      if (dimension == 2) {
+        const auto [known, added] = surface_names_.emplace(std::string(name), tag);
+        if (!added && known->second != tag)
+          throw InputError(in_.name(), line,
+                           "the physical surfaces " + std::to_string(known->second) + " and " +
+                               std::to_string(tag) + " are both called " + in_quotes(name) +
+                               "; give one of them another name, or both the same number");
+      }
       others_.add_name(dimension, tag, std::string(name));
       if (dimension == 3)
         result_.mesh.material_names[checked_material(tag, in_.name(), line)] = std::string(name);
@@ -343,7 +367,7 @@ class MshReader {
   }
 
   void note_dropped() {
-    others_.note_dropped(result_);
+    others_.finish(in_.name(), result_);
     std::vector<Dropped>& dropped = result_.dropped;
     if (further_groups_ > 0) dropped.push_back({"further physical groups of entities", further_groups_});
     // Nothing is lost if each physical group has one volume only.
@@ -372,6 +396,7 @@ class MshReader {
   std::vector<MaterialTag> geometrical_;
   std::vector<TextScanner> node_data_, element_data_;
   OtherMshElements others_;
+  std::map<std::string, std::int64_t> surface_names_;        ///< physical groups of faces
   std::set<std::pair<std::int64_t, std::int64_t>> volumes_;  ///< physical and geometrical number of the tets
   std::pair<std::int64_t, std::int64_t> last_volume_;
   std::size_t further_groups_ = 0, partitioned_ = 0;
@@ -386,6 +411,12 @@ class MshReader {
 
 ReadTetMesh read_msh(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options) {
   return MshReader(bytes, name, options).read();
+}
+
+TriangleMesh read_msh_surface(std::string_view bytes, const std::string& name,
+                              std::vector<Dropped>* dropped) {
+  const ReadTetMeshOptions options;
+  return MshReader(bytes, name, options).read_surface(dropped);
 }
 
 }  // namespace tetwright

@@ -1,6 +1,8 @@
 #include "common/formats/obj.h"
 
+#include <algorithm>
 #include <array>
+#include <map>
 #include <utility>
 
 #include "common/error.h"
@@ -35,7 +37,7 @@ std::int64_t point_of(const TextScanner& in, std::string_view word, std::size_t 
 }
 
 /// The statements that are not read, and what each of them adds; without those that only say how to draw.
-constexpr std::array<std::pair<std::string_view, const char*>, 11> other_statements{
+constexpr std::array<std::pair<std::string_view, const char*>, 8> other_statements{
     {{"l", "lines"},
      {"p", "points drawn as such"},
      {"vt", "texture coordinates"},
@@ -43,10 +45,7 @@ constexpr std::array<std::pair<std::string_view, const char*>, 11> other_stateme
      {"vp", "points of parameter spaces"},
      {"curv", "free-form curves"},
      {"curv2", "free-form curves"},
-     {"surf", "free-form surfaces"},
-     {"g", "names of groups"},
-     {"o", "names of objects"},
-     {"usemtl", "uses of a display material"}}};
+     {"surf", "free-form surfaces"}}};
 
 void note_statement(std::string_view keyword, SurfaceBuilder& surface) {
   if (keyword == "s" || keyword == "mtllib") return;
@@ -58,6 +57,51 @@ void note_statement(std::string_view keyword, SurfaceBuilder& surface) {
   surface.drop("statements " + in_quotes(keyword));
 }
 
+/// What the faces belong to: an object, a group and a display material.
+class FaceNames {
+ public:
+  /// True if `keyword` names one of them, by the rest of the statement.
+  bool read(std::string_view keyword, TextScanner& in) {
+    const auto kind = std::find(keywords.begin(), keywords.end(), keyword) - keywords.begin();
+    if (kind == std::ssize(keywords)) return false;
+    std::string name;
+    for (std::string_view word; !(word = next_word(in)).empty();) (name += name.empty() ? "" : " ") += word;
+    now_[static_cast<std::size_t>(kind)] = name;
+    return true;
+  }
+
+  /// The group of the next face.
+  std::uint32_t group() {
+    if (last_ == no_index || all_[last_] != now_) {
+      const auto [known, added] = numbers_.emplace(now_, static_cast<std::uint32_t>(all_.size()));
+      if (added) all_.push_back(now_);
+      last_ = known->second;
+    }
+    return last_;
+  }
+
+  /// Named by those that differ from face to face.
+  std::vector<FaceGroup> groups() const {
+    std::vector<FaceGroup> groups(all_.size());
+    for (std::size_t kind = 0; kind < keywords.size(); ++kind) {
+      if (std::all_of(all_.begin(), all_.end(), [&](const Names& n) { return n[kind] == all_[0][kind]; }))
+        continue;
+      for (std::size_t i = 0; i < all_.size(); ++i)
+        if (!all_[i][kind].empty()) (groups[i].name += groups[i].name.empty() ? "" : ":") += all_[i][kind];
+    }
+    return groups;
+  }
+
+ private:
+  static constexpr std::array<std::string_view, 3> keywords{"o", "g", "usemtl"};
+  using Names = std::array<std::string, 3>;
+
+  Names now_;
+  std::vector<Names> all_;  ///< that faces have
+  std::map<Names, std::uint32_t> numbers_;
+  std::uint32_t last_ = no_index;  ///< of the last face
+};
+
 }  // namespace
 
 TriangleMesh read_obj(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped) {
@@ -65,6 +109,7 @@ TriangleMesh read_obj(std::string_view bytes, const std::string& name, std::vect
   if (in.at_end()) in.fail("the file is empty");
   SurfaceBuilder surface(name);
   const auto place = [&] { return "line " + std::to_string(in.line()); };
+  FaceNames names;
   std::vector<std::int64_t> polygon;
   std::int64_t largest = -1;
   std::size_t largest_line = 0;
@@ -91,8 +136,9 @@ TriangleMesh read_obj(std::string_view bytes, const std::string& name, std::vect
       if (polygon.size() < 3)
         in.fail("a face with " + std::to_string(polygon.size()) +
                 " vertices; three are needed, the file may be cut short");
+      surface.begin_group(names.group());
       surface.add_fan(polygon);
-    } else {
+    } else if (!names.read(keyword, in)) {
       note_statement(keyword, surface);
     }
     // A keyword's last word may be the backslash that continues the line.
@@ -105,7 +151,7 @@ TriangleMesh read_obj(std::string_view bytes, const std::string& name, std::vect
                      "a face names point " + std::to_string(largest + 1) + ", but there are " +
                          std::to_string(surface.point_count()) +
                          " points; the file is cut short or was exported wrongly");
-  return surface.finish(dropped);
+  return surface.finish(dropped, names.groups());
 }
 
 std::string write_obj(const TriangleMesh& mesh) {

@@ -6,6 +6,7 @@
 
 #include "common/error.h"
 #include "common/formats/byte_order.h"
+#include "common/formats/label_groups.h"
 #include "common/formats/surface_builder.h"
 #include "common/formats/text_scanner.h"
 #include "common/number_text.h"
@@ -45,7 +46,7 @@ std::optional<Type> type_of(std::string_view word) {
 
 bool is_integer(Type type) { return type != Type::float32 && type != Type::float64; }
 
-enum class Role { skipped, x, y, z, vertices };
+enum class Role { skipped, x, y, z, vertices, label };
 
 struct Property {
   std::string name;
@@ -84,6 +85,7 @@ Role role_of(const Element& element, std::string_view name, bool list) {
   }
   if (element.is_face() && list && (name == "vertex_indices" || name == "vertex_index"))
     return Role::vertices;
+  if (element.is_face() && !list && !element.has(Role::label) && is_face_label(name)) return Role::label;
   return Role::skipped;
 }
 
@@ -110,6 +112,7 @@ void read_property(TextScanner& in, Element& element) {
   const std::string_view name = in.word_on_line();
   property.name = std::string(name.substr(0, 64));
   property.role = role_of(element, name, list);
+  if (property.role == Role::label && !is_integer(property.type)) property.role = Role::skipped;
   if (property.role != Role::skipped && element.has(property.role))
     in.fail("property " + in_quotes(name) + " appears twice");
   if (property.role == Role::vertices && !is_integer(property.type))
@@ -251,7 +254,7 @@ void check_count(const Body& body, const Element& element) {
 }
 
 template <class Body>
-void read_element(Body& body, const Element& element, SurfaceBuilder& surface) {
+void read_element(Body& body, const Element& element, SurfaceBuilder& surface, LabelGroups& labels) {
   // Without a property an element takes no bytes, however many there are.
   if (element.properties.empty()) return;
   check_count(body, element);
@@ -274,6 +277,8 @@ void read_element(Body& body, const Element& element, SurfaceBuilder& surface) {
         } else {
           body.skip(p.type, length);
         }
+      } else if (p.role == Role::label) {
+        surface.begin_group(labels.index_of(body.integer(p.type, "label of a face")));
       } else if (p.role == Role::skipped) {
         body.skip(p.type, 1);
       } else {
@@ -326,9 +331,10 @@ TriangleMesh read_ply(std::string_view bytes, const std::string& name, std::vect
     throw InputError(name, face->line, "element \"face\" has no list \"vertex_indices\"");
 
   SurfaceBuilder surface(name);
+  LabelGroups labels;
   const auto read_all = [&](auto body) {
     for (const Element& e : header.elements) {
-      read_element(body, e, surface);
+      read_element(body, e, surface, labels);
       if (&e == face) break;  // nothing behind it is needed
     }
   };
@@ -338,7 +344,7 @@ TriangleMesh read_ply(std::string_view bytes, const std::string& name, std::vect
     read_all(
         BinaryBody(bytes, in.offset(), name, (header.encoding == Encoding::little) != little_endian_machine));
   note_dropped(header, surface);
-  return surface.finish(dropped);
+  return surface.finish(dropped, labels.groups());
 }
 
 std::string write_ply(const TriangleMesh& mesh) {

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cctype>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "common/error.h"
@@ -98,15 +99,47 @@ void expect(TextScanner& in, std::string_view expected) {
   if (!is_word(word, expected)) in.fail("expected " + in_quotes(expected) + ", found " + in_quotes(word));
 }
 
+/// The names of the solids of a file.
+class SolidNames {
+ public:
+  /// `name` is the rest of the line, which may be anything.
+  void add(std::string_view name, std::size_t line) {
+    const std::size_t begin = name.find_first_not_of(" \t\r"), end = name.find_last_not_of(" \t\r");
+    names_.emplace_back(begin == std::string_view::npos ? "" : name.substr(begin, end - begin + 1));
+    lines_.push_back(line);
+  }
+  std::uint32_t last() const { return static_cast<std::uint32_t>(names_.size() - 1); }
+
+  /// Solids without a name are called after their place in the file. Throws InputError for two of one name.
+  std::vector<FaceGroup> groups(const std::string& file) const {
+    std::vector<FaceGroup> groups;
+    std::map<std::string, std::size_t> lines;
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      groups.push_back({0, names_[i].empty() ? "solid_" + std::to_string(i + 1) : names_[i]});
+      const auto [known, added] = lines.emplace(groups[i].name, lines_[i]);
+      if (!added)
+        throw InputError(file, lines_[i],
+                         "a solid is called " + in_quotes(groups[i].name) + " like the one of line " +
+                             std::to_string(known->second) + "; give one of them another name");
+    }
+    return groups;
+  }
+
+ private:
+  std::vector<std::string> names_;
+  std::vector<std::size_t> lines_;
+};
+
 TriangleMesh read_ascii(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped) {
   TextScanner in(bytes, name);
   SurfaceBuilder surface(name);
   PointMerger merger(surface, 0);
-  std::size_t solids = 0;
+  SolidNames solids;
   while (!in.at_end()) {
     expect(in, "solid");
-    ++solids;
-    in.skip_line();  // the solid's name, which may be anything
+    const std::size_t line = in.line();
+    solids.add(in.rest_of_line(), line);
+    surface.begin_group(solids.last());
     for (;;) {
       const std::string_view word = in.word();
       if (word.empty()) in.fail("the file ends without \"endsolid\"; it is cut short");
@@ -131,8 +164,7 @@ TriangleMesh read_ascii(std::string_view bytes, const std::string& name, std::ve
       surface.add_fan(corners);
     }
   }
-  if (solids > 1) surface.drop("solids told apart in the file", solids);
-  return surface.finish(dropped);
+  return surface.finish(dropped, solids.groups(name));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,21 +42,30 @@ class SurfaceBuilder {
   /// points before it lists them.
   void add_fan(std::span<const std::int64_t> polygon);
 
+  /// The triangles that follow belong to this group, an index into the groups that finish() gets; 0 before
+  /// the first call.
+  void begin_group(std::uint32_t group) { group_ = group; }
+
   /// Counts something that the file holds and the surface has no place for; `kind` is a plural.
   void drop(const std::string& kind, std::size_t n = 1) { dropped_.add(kind, n); }
 
   std::size_t point_count() const { return mesh_.points.size(); }
 
-  /// Returns the surface and, unless `dropped` is null, appends to it what was dropped. Throws InputError if
-  /// there is no triangle.
-  TriangleMesh finish(std::vector<Dropped>* dropped);
+  /// Returns the surface and, unless `dropped` is null, appends to it what was dropped. `groups` are those
+  /// of begin_group(): of equal ones the first counts, and where fewer than `min_groups` have triangles the
+  /// surface gets none. Throws InputError if there is no triangle.
+  TriangleMesh finish(std::vector<Dropped>* dropped, const std::vector<FaceGroup>& groups = {},
+                      std::size_t min_groups = 2);
 
  private:
   [[noreturn]] void fail_point(const Vec3& point, const std::string& place) const;
   [[noreturn]] void fail_index(std::int64_t index, const std::string& place) const;
 
+  void take_groups(const std::vector<FaceGroup>& groups, std::size_t min_groups);
+
   std::string file_;
   TriangleMesh mesh_;
+  std::uint32_t group_ = 0;
   KindCounts dropped_;
 };
 

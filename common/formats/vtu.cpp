@@ -34,18 +34,10 @@ class VtuReader {
       : data_(bytes, name), name_(name), options_(options), file_size_(bytes.size()) {}
 
   ReadTetMesh read() {
-    const std::string_view type = data_.root().attribute("type").as_string();
-    const pugi::xml_node grid = data_.root().child("UnstructuredGrid");
-    if (type != "UnstructuredGrid" || !grid)
-      data_.fail(data_.root(), "a file of type UnstructuredGrid is needed, this one is " + in_quotes(type));
-    const pugi::xml_node piece = grid.child("Piece");
-    if (!piece) data_.fail(grid, "there is no Piece in it");
-    if (piece.next_sibling("Piece")) data_.fail(grid, "more than one Piece; merge them into one first");
-    points_ = piece_count(piece, "NumberOfPoints");
-    cells_ = piece_count(piece, "NumberOfCells");
-    if (points_ >= no_index)
-      data_.fail(piece, "more than " + std::to_string(no_index - 1) + " points; split the mesh");
-    read_points(piece);
+    const pugi::xml_node piece = data_.piece("UnstructuredGrid"), grid = piece.parent();
+    points_ = data_.count(piece, "NumberOfPoints");
+    cells_ = data_.count(piece, "NumberOfCells");
+    result_.mesh.points = data_.points(piece, points_);
     read_cells(piece);
     result_.mesh.point_fields = read_fields(piece.child("PointData"), points_, nullptr);
     result_.mesh.cell_fields =
@@ -57,49 +49,16 @@ class VtuReader {
   }
 
  private:
-  std::size_t piece_count(pugi::xml_node piece, const char* attribute) const {
-    const std::string_view text = piece.attribute(attribute).as_string();
-    std::int64_t n = 0;
-    if (!parse_number(text, n) || n < 0)
-      data_.fail(piece, std::string(attribute) + " is " + in_quotes(text) + ", not a number");
-    return static_cast<std::size_t>(n);
-  }
-
-  pugi::xml_node array(pugi::xml_node parent, const char* name) const {
-    const pugi::xml_node node = parent.find_child_by_attribute("DataArray", "Name", name);
-    if (!node) data_.fail(parent, std::string("there is no DataArray \"") + name + "\" in it");
-    return node;
-  }
-
-  void expect_size(pugi::xml_node node, std::size_t size, std::size_t expected) const {
-    if (size != expected)
-      data_.fail(node, std::to_string(size) + " values, but " + std::to_string(expected) + " were expected");
-  }
-
-  void read_points(pugi::xml_node piece) {
-    const pugi::xml_node node = piece.child("Points").child("DataArray");
-    if (!node) data_.fail(piece, "there are no Points in it");
-    const std::vector<double> numbers = data_.numbers(node, 3 * points_);
-    expect_size(node, numbers.size(), 3 * points_);
-    std::vector<Vec3>& points = result_.mesh.points;
-    points.resize(points_);
-    for (std::size_t i = 0; i < points_; ++i) {
-      points[i] = Vec3(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]);
-      if (!points[i].allFinite())
-        data_.fail(node, "a coordinate of point " + std::to_string(i) +
-                             " (counted from 0) is not finite; remove or repair it");
-    }
-  }
-
   void read_cells(pugi::xml_node piece) {
     const pugi::xml_node cells = piece.child("Cells");
     if (!cells) data_.fail(piece, "there are no Cells in it");
-    const pugi::xml_node types_node = array(cells, "types"), offsets_node = array(cells, "offsets"),
-                         connectivity_node = array(cells, "connectivity");
+    const pugi::xml_node types_node = data_.array(cells, "types"),
+                         offsets_node = data_.array(cells, "offsets"),
+                         connectivity_node = data_.array(cells, "connectivity");
     const std::vector<std::uint32_t> types = data_.counts(types_node, cells_);
-    expect_size(types_node, types.size(), cells_);
+    data_.expect_size(types_node, types.size(), cells_);
     const std::vector<std::uint32_t> offsets = data_.counts(offsets_node, cells_);
-    expect_size(offsets_node, offsets.size(), cells_);
+    data_.expect_size(offsets_node, offsets.size(), cells_);
     const std::vector<std::uint32_t> connectivity =
         data_.counts(connectivity_node, offsets.empty() ? 0 : offsets.back());
     const auto tets = static_cast<std::size_t>(std::count(types.begin(), types.end(), vtk_tet_type));
@@ -156,7 +115,7 @@ class VtuReader {
       field.components = static_cast<int>(components);
       const auto per_item = static_cast<std::size_t>(components);
       field.values = data_.numbers(node, per_item * n);
-      expect_size(node, field.values.size(), per_item * n);
+      data_.expect_size(node, field.values.size(), per_item * n);
       if (chosen) {
         for (std::size_t i = 0; i < chosen->size(); ++i)
           for (std::size_t k = 0; k < per_item; ++k)

@@ -86,6 +86,52 @@ VtuData::VtuData(std::string_view bytes, std::string name)
          "compressor " + in_quotes(compressor) + " is not supported; save it with zlib or uncompressed");
 }
 
+pugi::xml_node VtuData::piece(const char* grid) const {
+  const std::string_view type = root_.attribute("type").as_string();
+  const pugi::xml_node node = root_.child(grid);
+  if (type != grid || !node)
+    fail(root_, "a file of type " + std::string(grid) + " is needed, this one is " + in_quotes(type));
+  const pugi::xml_node piece = node.child("Piece");
+  if (!piece) fail(node, "there is no Piece in it");
+  if (piece.next_sibling("Piece")) fail(node, "more than one Piece; merge them into one first");
+  return piece;
+}
+
+std::size_t VtuData::count(pugi::xml_node piece, const char* attribute) const {
+  const std::string_view text = piece.attribute(attribute).as_string();
+  std::int64_t n = 0;
+  if (!parse_number(text, n) || n < 0)
+    fail(piece, std::string(attribute) + " is " + in_quotes(text) + ", not a number");
+  return static_cast<std::size_t>(n);
+}
+
+pugi::xml_node VtuData::array(pugi::xml_node parent, const char* name) const {
+  const pugi::xml_node node = parent.find_child_by_attribute("DataArray", "Name", name);
+  if (!node) fail(parent, std::string("there is no DataArray \"") + name + "\" in it");
+  return node;
+}
+
+std::vector<Vec3> VtuData::points(pugi::xml_node piece, std::size_t n) const {
+  if (n >= no_index) fail(piece, "more than " + std::to_string(no_index - 1) + " points; split the mesh");
+  const pugi::xml_node node = piece.child("Points").child("DataArray");
+  if (!node) fail(piece, "there are no Points in it");
+  const std::vector<double> numbers = this->numbers(node, 3 * n);
+  expect_size(node, numbers.size(), 3 * n);
+  std::vector<Vec3> points(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    points[i] = Vec3(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]);
+    if (!points[i].allFinite())
+      fail(node, "a coordinate of point " + std::to_string(i) +
+                     " (counted from 0) is not finite; remove or repair it");
+  }
+  return points;
+}
+
+void VtuData::expect_size(pugi::xml_node array, std::size_t size, std::size_t expected) const {
+  if (size != expected)
+    fail(array, std::to_string(size) + " values, but " + std::to_string(expected) + " were expected");
+}
+
 void VtuData::fail(const std::string& message) const { throw InputError(name_ + ": " + message); }
 
 void VtuData::fail(pugi::xml_node node, const std::string& message) const {

@@ -9,10 +9,11 @@
 #include <vector>
 
 #include "common/formats/atomic_file.h"
+#include "common/types.h"
 
 namespace tetwright {
 
-/// The data arrays of a VTK XML file, in whatever encoding the file has. For vtu.cpp.
+/// The data arrays of a VTK XML file, in whatever encoding the file has. For vtu.cpp and vtp.cpp.
 class VtuData {
  public:
   /// Parses the file; the bytes must outlive this object. Throws InputError if it is not VTK XML, or is
@@ -21,6 +22,18 @@ class VtuData {
 
   /// The XML element VTKFile.
   pugi::xml_node root() const { return root_; }
+
+  /// The only piece of a grid, "UnstructuredGrid" or "PolyData". Throws InputError if the file holds another
+  /// one, or more than one piece.
+  pugi::xml_node piece(const char* grid) const;
+  /// The number that an attribute of a piece gives.
+  std::size_t count(pugi::xml_node piece, const char* attribute) const;
+  /// The array of this name. Throws InputError if there is none.
+  pugi::xml_node array(pugi::xml_node parent, const char* name) const;
+  /// The `n` points of a piece. Throws InputError if there are more or fewer, or one is not finite.
+  std::vector<Vec3> points(pugi::xml_node piece, std::size_t n) const;
+  /// Throws InputError unless both are equal.
+  void expect_size(pugi::xml_node array, std::size_t size, std::size_t expected) const;
 
   /// Reads the numbers of a DataArray. Throws InputError if there are more than `max_count` (which the caller
   /// knows from the size of the file or from other arrays; no more memory is allocated), or if a number is

@@ -4,10 +4,12 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "common/geometry/predicates.h"
 #include "common/mesh/face_buckets.h"
+#include "common/mesh/interfaces.h"
 #include "common/mesh/point_table.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
@@ -101,6 +103,8 @@ std::size_t merge_soup(TetMesh& mesh) {
     for (std::size_t t = begin; t < end; ++t)
       for (Index& p : mesh.tets[t]) p = target[p];
   });
+  for (InterfaceTriangle& t : mesh.interfaces)
+    for (Index& p : t.ids) p = target[p];
   return merged;
 }
 
@@ -181,6 +185,28 @@ std::size_t orient(TetMesh& mesh) {
   return count;
 }
 
+/// Finds the interfaces again where they have patches, and clears them where they have none; how many faces
+/// with a patch there are no more.
+std::size_t renew_interfaces(TetMesh& mesh) {
+  std::map<Triangle, std::uint16_t> patches;
+  const auto key = [](Triangle ids) {
+    std::sort(ids.begin(), ids.end());
+    return ids;
+  };
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    if (t.patch != 0) patches.emplace(key(t.ids), t.patch);
+  mesh.interfaces.clear();
+  if (patches.empty()) return 0;
+  mesh.interfaces = find_interfaces(mesh);
+  for (InterfaceTriangle& t : mesh.interfaces) {
+    const auto known = patches.find(key(t.ids));
+    if (known == patches.end()) continue;
+    t.patch = known->second;
+    patches.erase(known);
+  }
+  return patches.size();
+}
+
 }  // namespace
 
 ForeignReport make_coherent(TetMesh& mesh) {
@@ -203,7 +229,8 @@ ForeignReport make_coherent(TetMesh& mesh) {
     report.first_inverted.assign(inverted.begin(), inverted.begin() + static_cast<std::ptrdiff_t>(std::min(
                                                                           listed_inverted, inverted.size())));
   }
-  if (report.merged_points + report.removed_tets + report.turned_tets > 0) mesh.interfaces.clear();
+  if (report.merged_points + report.removed_tets + report.turned_tets > 0)
+    report.lost_faces = renew_interfaces(mesh);
   return report;
 }
 

@@ -14,6 +14,7 @@ struct ForeignReport {
   std::size_t turned_tets = 0;        ///< whose last two vertices were swapped
   std::size_t inverted_tets = 0;      ///< flat or negative (exact sign) in the mesh as returned
   std::vector<Index> first_inverted;  ///< the first of them, at most three
+  std::size_t lost_faces = 0;         ///< faces of patches that are no longer of boundary or interfaces
 };
 
 /// Brings a mesh as other programs write it to what the rest of this one expects, as far as its combinatorics
@@ -29,7 +30,8 @@ struct ForeignReport {
 ///   cannot agree with all its neighbours agrees with the one it is first reached from. A tet that is
 ///   inverted in space but fits its neighbours thus stays inverted, and is counted.
 ///
-/// If anything changed, `interfaces` are cleared. When all tets are positive nothing is turned, and unless
+/// If anything changed, `interfaces` are found anew where they have patches, which their faces keep, and else
+/// cleared. When all tets are positive nothing is turned, and unless
 /// the mesh has the four points a tet of a soup nothing is allocated.
 ///
 /// Vertices must be in range, coordinates finite, materials as many as tets, tets fewer than 2^30. At the

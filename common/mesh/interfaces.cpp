@@ -53,12 +53,6 @@ std::vector<MaterialPair> interface_groups(const std::vector<InterfaceTriangle>&
   return groups;
 }
 
-std::size_t group_number(const std::vector<MaterialPair>& groups, const InterfaceTriangle& triangle) {
-  return static_cast<std::size_t>(std::lower_bound(groups.begin(), groups.end(), triangle.pair()) -
-                                  groups.begin()) +
-         1;
-}
-
 std::string pair_name(const MaterialPair& pair, const std::map<MaterialTag, std::string>& names) {
   const auto name = [&](MaterialTag tag) {
     const auto at = names.find(tag);

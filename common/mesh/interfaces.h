@@ -21,12 +21,8 @@ namespace tetwright {
 std::vector<InterfaceTriangle> find_interfaces(const TetMesh& mesh,
                                                const std::vector<std::uint8_t>* candidates = nullptr);
 
-/// The groups in which files list the triangles: the pairs there are, ascending (outside before any tag),
-/// each once. Groups are numbered from 1 in this order.
+/// The pairs of regions there are, ascending (outside before any tag), each once.
 std::vector<MaterialPair> interface_groups(const std::vector<InterfaceTriangle>& triangles);
-
-/// The number of a triangle's group.
-std::size_t group_number(const std::vector<MaterialPair>& groups, const InterfaceTriangle& triangle);
 
 /// "bone|skin", "bone|outside": names of the materials, or their tags where there is no name.
 std::string pair_name(const MaterialPair& pair, const std::map<MaterialTag, std::string>& names = {});

@@ -14,34 +14,56 @@ using Mask = std::uint64_t;
 
 constexpr Mask bit(int i) { return Mask{1} << i; }
 
+/// Beyond the box: no lattice point is there.
+constexpr RegionIndex beyond_box = 0xfffe;
+
 /// The link of a point as bit masks over at most 64 neighbours. Stars of the lattice have at most 17; only
-/// octrees with many hanging edges around one point come near the limit.
+/// octrees with many hanging edges around one point come near the limit. The link of a point on the box is a
+/// disc; one more neighbour beyond the box, joined to the rim of the disc, makes it a sphere like the others.
 struct Link {
   static constexpr int capacity = 64;
+  /// As a triangulated sphere of `capacity` points has.
+  static constexpr int max_triangles = 2 * capacity - 4;
   Index points[capacity];
   Mask neighbours[capacity];
-  int size = 0;
+  std::array<std::uint8_t, 3> triangles[max_triangles];
+  int size = 0, triangle_count = 0;
+  int beyond = -1;  ///< the number of the neighbour beyond the box
   bool overflow = false;
   const LabelledLattice& lattice;
   Index centre;
 
   Link(const LabelledLattice& l, Index c) : lattice(l), centre(c) {
+    const unsigned faces = lattice.box_faces(centre);
     for (Index t : lattice.stars.tets(centre)) {
-      const auto [a, b, d] = opposite(t);
+      std::array<int, 3> local{};
+      int n = 0;
+      for (Index v : lattice.tets[t])
+        if (v != centre) local[n++] = number(v);
+      add_triangle(local[0], local[1], local[2]);
+      if (faces) close_at_box(local, faces);
       if (overflow) return;
-      neighbours[a] |= bit(b) | bit(d);
-      neighbours[b] |= bit(a) | bit(d);
-      neighbours[d] |= bit(a) | bit(b);
     }
   }
 
-  /// The numbers of the three points of a tet other than the centre.
-  std::array<int, 3> opposite(Index t) {
-    std::array<int, 3> local{};
-    int n = 0;
-    for (Index v : lattice.tets[t])
-      if (v != centre) local[n++] = number(v);
-    return local;
+  void add_triangle(int a, int b, int d) {
+    if (triangle_count == max_triangles) overflow = true;
+    if (overflow) return;
+    triangles[triangle_count++] = {static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b),
+                                   static_cast<std::uint8_t>(d)};
+    neighbours[a] |= bit(b) | bit(d);
+    neighbours[b] |= bit(a) | bit(d);
+    neighbours[d] |= bit(a) | bit(b);
+  }
+
+  /// Joins the edges of a triangle that lie on one of the faces of the box with the centre to what is beyond.
+  void close_at_box(const std::array<int, 3>& triangle, unsigned faces) {
+    for (int k = 0; k < 3 && !overflow; ++k) {
+      const int a = triangle[k], b = triangle[(k + 1) % 3];
+      if (!(lattice.box_faces(points[a]) & lattice.box_faces(points[b]) & faces)) continue;
+      if (beyond < 0) beyond = number(no_index);
+      add_triangle(a, b, beyond);
+    }
   }
 
   int number(Index v) {
@@ -56,19 +78,21 @@ struct Link {
     return size++;
   }
 
+  /// The current region of a neighbour, or on_interface.
+  RegionIndex region(int i) const { return i == beyond ? beyond_box : lattice.region(points[i]); }
+
   Mask of_region(RegionIndex region) const {
     Mask mask = 0;
     for (int i = 0; i < size; ++i)
-      if (lattice.region(points[i]) == region) mask |= bit(i);
+      if (this->region(i) == region) mask |= bit(i);
     return mask;
   }
 
-  /// The regions of the pure points of the link; nothing if they are too many.
+  /// The regions of the pure points of the link and beyond the box; nothing if they are too many.
   std::optional<RegionSet> pure() const {
     RegionSet set;
     for (int i = 0; i < size; ++i)
-      if (const RegionIndex r = lattice.region(points[i]); r != on_interface && !set.insert(r))
-        return std::nullopt;
+      if (const RegionIndex r = region(i); r != on_interface && !set.insert(r)) return std::nullopt;
     return set;
   }
 
@@ -89,14 +113,14 @@ struct Link {
   /// True if the points of the mask, with the edges and triangles between them, form one disc.
   bool one_disc(Mask mask) {
     if (!one_piece(mask)) return false;
-    int twice_edges = 0, triangles = 0;
+    int twice_edges = 0, inside = 0;
     for (Mask rest = mask; rest; rest &= rest - 1)
       twice_edges += std::popcount(neighbours[std::countr_zero(rest)] & mask);
-    for (Index t : lattice.stars.tets(centre)) {
-      const auto [a, b, d] = opposite(t);
-      triangles += (bit(a) | bit(b) | bit(d)) == ((bit(a) | bit(b) | bit(d)) & mask);
+    for (int t = 0; t < triangle_count; ++t) {
+      const Mask corners = bit(triangles[t][0]) | bit(triangles[t][1]) | bit(triangles[t][2]);
+      inside += corners == (corners & mask);
     }
-    return std::popcount(mask) - twice_edges / 2 + triangles == 1;
+    return std::popcount(mask) - twice_edges / 2 + inside == 1;
   }
 
   /// True if no region appears twice around the edge from the centre to neighbour i: the points of its link
@@ -107,8 +131,8 @@ struct Link {
     std::array<std::array<int, 2>, capacity> beside;
     std::array<int, capacity> known{};
     int first = -1;
-    for (Index t : lattice.stars.tets(centre)) {
-      std::array<int, 3> c = opposite(t);
+    for (int t = 0; t < triangle_count; ++t) {
+      std::array<std::uint8_t, 3> c = triangles[t];
       const auto at = std::find(c.begin(), c.end(), i);
       if (at == c.end()) continue;
       std::swap(*at, c[2]);
@@ -121,8 +145,7 @@ struct Link {
     std::array<RegionIndex, capacity> stretches;
     int count = 0;
     for (int previous = -1, now = first, steps = 0; steps < size && known[now] == 2; ++steps) {
-      if (const RegionIndex r = lattice.region(points[now]);
-          r != on_interface && (count == 0 || stretches[count - 1] != r))
+      if (const RegionIndex r = region(now); r != on_interface && (count == 0 || stretches[count - 1] != r))
         stretches[count++] = r;
       const int next = beside[now][0] == previous ? beside[now][1] : beside[now][0];
       previous = now;
@@ -161,7 +184,11 @@ std::optional<RegionSet> regions_if_moved(const LabelledLattice& lattice, Index 
   if (link.overflow) return std::nullopt;
   const std::optional<RegionSet> regions = link.pure();
   const RegionIndex region = lattice.first_region[point];
-  if (!regions || regions->size() < 2 || !regions->contains(region)) return std::nullopt;
+  if (!regions || !regions->contains(region)) return std::nullopt;
+  RegionSet meeting;
+  for (const RegionIndex r : *regions)
+    if (r != beyond_box) meeting.insert(r);
+  if (meeting.size() < 2) return std::nullopt;
   if (!link.regular(*regions, ~Mask{0})) return std::nullopt;
   const Mask on = link.of_region(on_interface);
   const Mask own = link.of_region(region);
@@ -191,7 +218,7 @@ std::optional<RegionSet> regions_if_moved(const LabelledLattice& lattice, Index 
       if (around_u.points[k] == point) keep &= ~bit(k);
     if (!around_u.regular(*at_u, keep)) return std::nullopt;
   }
-  return regions;
+  return meeting;
 }
 
 }  // namespace tetwright

@@ -16,7 +16,8 @@ namespace tetwright {
 /// the point. All pure points of the link must belong to the regions that meet at the point, and keep doing
 /// so, so that the region of every incident tet is defined. Besides, no tet may have all four points on
 /// interfaces, and an edge or triangle whose points all came from one region must still belong to a tet with
-/// a pure point of that region; otherwise a thin wall would lose its inside.
+/// a pure point of that region; otherwise a thin wall would lose its inside. What is beyond the box counts as
+/// one more region around points on it.
 ///
 /// Checks the point and those of its neighbours that are on interfaces already, whose links reach two edges
 /// far. Reads regions only.

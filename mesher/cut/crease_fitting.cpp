@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "common/geometry/predicates.h"
 #include "common/geometry/quality.h"
+#include "common/geometry/self_intersection.h"
 #include "common/mesh/interfaces.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
@@ -22,6 +24,8 @@ constexpr std::size_t point_grain = 512, tet_grain = 1 << 13;
 constexpr double target_reach = 4;
 /// What tets must keep in each pass, shares of tangent_of_poor_tet: shapes first, then exact creases.
 constexpr double pass_floors[] = {1, 1, 0.5, 0.5, 0.2, 0.2, 0.05, 0.05};
+/// Walls that cells have thickened go back as long as tets keep this, and else are reported.
+constexpr double wall_floor = 0.2;
 /// Steps that points around are tried at, in the mean edge there.
 constexpr double room_steps[] = {0.4, 0.2, 0.1, 0.05};
 constexpr int room_sweeps = 2;
@@ -31,17 +35,18 @@ constexpr double arrived = 1e-12;
 /// Moves the points of a mesh to where their labels say.
 class Fitter {
  public:
-  Fitter(TetMesh& mesh, const FeatureSurface& surface, const CreaseLabels& labels, double cell)
-      : mesh_(mesh), surface_(surface), labels_(labels), cell_(cell) {}
+  Fitter(TetMesh& mesh, const FeatureSurface& surface, const CreaseLabels& labels, const MaterialField& field,
+         double cell)
+      : mesh_(mesh), surface_(surface), labels_(labels), field_(field), cell_(cell) {}
 
   void run() {
     for (const double floor : pass_floors) {
-      std::vector<PointMove> moves = remaining_moves();
+      std::vector<PointMove> moves = remaining_moves(floor);
       if (moves.empty()) return;
       move_jointly(mesh_.points, mesh_.tets, moves, floor * tangent_of_poor_tet);
-      make_room(remaining_moves());
+      make_room(remaining_moves(floor));
     }
-    std::vector<PointMove> moves = remaining_moves();
+    std::vector<PointMove> moves = remaining_moves(pass_floors[std::size(pass_floors) - 1]);
     move_jointly(mesh_.points, mesh_.tets, moves,
                  pass_floors[std::size(pass_floors) - 1] * tangent_of_poor_tet);
   }
@@ -66,11 +71,18 @@ class Fitter {
     return {};
   }
 
-  std::vector<PointMove> remaining_moves() const {
+  /// A thickened wall goes back only as far as its tets stay in good shape.
+  bool must_stay(Index p, double floor) const {
+    return floor < wall_floor && labels_.of(p).kind == Kind::patch &&
+           field_.changes_walls(field_.frame().to_grid(mesh_.points[p]));
+  }
+
+  std::vector<PointMove> remaining_moves(double floor) const {
     const std::vector<Index>& points = labels_.points();
     return parallel_collect<PointMove>(0, points.size(), point_grain,
                                        [&](std::size_t begin, std::size_t end, std::vector<PointMove>& out) {
                                          for (std::size_t i = begin; i < end; ++i) {
+                                           if (must_stay(points[i], floor)) continue;
                                            const Vec3& at = mesh_.points[points[i]];
                                            const auto target = place_of(points[i], at);
                                            if (target && (*target - at).norm() > arrived * cell_)
@@ -174,8 +186,40 @@ class Fitter {
   TetMesh& mesh_;
   const FeatureSurface& surface_;
   const CreaseLabels& labels_;
+  const MaterialField& field_;
   double cell_;
 };
+
+/// Puts points back to where they were `before` until no faces intersect: tets keep shapes of their own, but
+/// the outside has none that would be turned over. All points back is what there was before.
+void undo_intersections(TetMesh& mesh, const std::vector<Vec3>& before) {
+  std::vector<Triangle> faces;
+  faces.reserve(mesh.interfaces.size());
+  for (const InterfaceTriangle& t : mesh.interfaces) faces.push_back(t.ids);
+  std::vector<std::uint8_t> is_back(mesh.points.size(), 0);
+  const auto put_back = [&](Index p) {
+    const bool moves = !is_back[p] && mesh.points[p] != before[p];
+    is_back[p] = 1;
+    mesh.points[p] = before[p];
+    return moves;
+  };
+  for (bool again = true; again;) {
+    again = false;
+    for (const auto& [f, g] : self_intersections(mesh.points, faces))
+      for (const Index t : {f, g})
+        for (const Index p : faces[t]) again |= put_back(p);
+    if (!again) return;
+    for (bool turned = true; turned;) {
+      turned = false;
+      for (const Tet& t : mesh.tets) {
+        if (std::none_of(t.begin(), t.end(), [&](Index p) { return is_back[p] != 0; })) continue;
+        if (orient3d(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) > 0)
+          continue;
+        for (const Index p : t) turned |= put_back(p);
+      }
+    }
+  }
+}
 
 /// The patch of a face: the one that its points have in common; of several, or of none, the one that lies
 /// most like it.
@@ -217,12 +261,14 @@ FeatureSurface::Patch patch_of(const TetMesh& mesh, const InterfaceTriangle& t, 
 
 }  // namespace
 
-void fit_creases(TetMesh& mesh, const FeatureSurface& surface, double cell) {
+void fit_creases(TetMesh& mesh, const FeatureSurface& surface, const MaterialField& field, double cell) {
   const CreaseLabels labels(mesh, surface, cell);
-  Fitter(mesh, surface, labels, cell).run();
+  const std::vector<Vec3> before = mesh.points;
+  Fitter(mesh, surface, labels, field, cell).run();
   std::vector<std::uint8_t> boundary(mesh.points.size(), 0);
   for (const Index p : labels.points()) boundary[p] = 1;
   mesh.interfaces = find_interfaces(mesh, &boundary);
+  undo_intersections(mesh, before);
   parallel_for(0, mesh.interfaces.size(), point_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       mesh.interfaces[i].patch = patch_of(mesh, mesh.interfaces[i], labels, surface, cell);

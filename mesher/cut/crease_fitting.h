@@ -2,6 +2,7 @@
 
 #include "common/tet_mesh.h"
 #include "mesher/cut/feature_surface.h"
+#include "mesher/distance/material_field.h"
 
 namespace tetwright {
 
@@ -15,8 +16,9 @@ namespace tetwright {
 /// Shewchuk 2007, but on the boundary, so that convex and concave creases are alike.) Then all points go to
 /// their corner, crease or patch as far as tets keep their shapes, and what is around makes room.
 ///
-/// Points where three regions meet keep to the junction curves they are on. The same
-/// result for any number of threads.
-void fit_creases(TetMesh& mesh, const FeatureSurface& surface, double cell);
+/// Points where three regions meet keep to the junction curves they are on, and so do points on the walls
+/// that `field`, which the mesh was cut from, thickens, where shapes would suffer. Where faces came to
+/// intersect points go back to where they were. The same result for any number of threads.
+void fit_creases(TetMesh& mesh, const FeatureSurface& surface, const MaterialField& field, double cell);
 
 }  // namespace tetwright

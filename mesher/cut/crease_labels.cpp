@@ -50,6 +50,7 @@ CreaseLabels::CreaseLabels(TetMesh& mesh, const FeatureSurface& surface, double 
   track(crossing_edges());
   snap_points();
   resolve_rest();
+  take_kinks();
   dissolve_islands();
 }
 
@@ -140,8 +141,8 @@ std::vector<std::array<Index, 2>> CreaseLabels::crossing_edges() const {
 
 void CreaseLabels::take_corners() {
   if (surface_.corners().empty()) return;
-  // Of triangles whose points belong to three patches one goes to the corner, where two patches have a kink
-  // one of those that crease crosses; else the nearest of these patches.
+  // Of triangles whose points belong to three patches one goes to the corner, else to one of those that a
+  // crease crosses; else the nearest of these patches.
   std::vector<Vec3> positions;
   std::vector<ProjectionTree::Item> items;
   for (Index i = 0; i < points_.size(); ++i) {
@@ -157,6 +158,7 @@ void CreaseLabels::take_corners() {
     const FeatureSurface::Corner& corner = surface_.corners()[c];
     PatchSet meeting;
     for (const FeatureSurface::Patch p : corner.patches) meeting.insert(p);
+    if (meeting.size() < 3) continue;  // see take_kinks()
     // Two points would not fit beside each other.
     const auto beside = std::find_if(taken.begin(), taken.end(), [&](const Taken& t) {
       return (surface_.corners()[t.corner].point - corner.point).norm() < narrow_reach * cell_;
@@ -293,6 +295,37 @@ void CreaseLabels::resolve_rest() {
   }
 }
 
+void CreaseLabels::take_kinks() {
+  // Points of the crease, so that it passes through the kink.
+  std::vector<Vec3> positions;
+  std::vector<ProjectionTree::Item> items;
+  for (Index i = 0; i < points_.size(); ++i) {
+    positions.push_back(mesh_.points[points_[i]]);
+    if (labels_[i].kind == Kind::crease) items.push_back({{i, i, i}, {i, 0, 0}});
+  }
+  const ProjectionTree tree(std::move(positions), std::move(items));
+  for (Index c = 0; c < surface_.corners().size(); ++c) {
+    const FeatureSurface::Corner& corner = surface_.corners()[c];
+    if (corner.patches.size() > 2) continue;
+    const auto hit =
+        tree.nearest_of(corner.point, corner_reach * cell_, [&](const ProjectionTree::Item& item) {
+          const Index i = item.kind[0];
+          // Between points of one patch and of the other.
+          return labels_[i].kind == Kind::crease &&
+                 std::all_of(corner.patches.begin(), corner.patches.end(), [&](FeatureSurface::Patch p) {
+                   if (!labels_[i].patches.contains(p)) return false;
+                   bool elsewhere = false;
+                   for_neighbours(i, [&](Index q) { elsewhere |= !labels_[number_[q]].patches.contains(p); });
+                   return elsewhere;
+                 });
+        });
+    if (!hit) continue;
+    FeatureLabel& own = labels_[tree.items()[hit->item].kind[0]];
+    own.kind = Kind::corner;
+    own.corner = c;
+  }
+}
+
 void CreaseLabels::dissolve_islands() {
   for (Index i = 0; i < points_.size(); ++i) {
     if (labels_[i].kind != Kind::patch) continue;
@@ -300,7 +333,8 @@ void CreaseLabels::dissolve_islands() {
     bool first = true, alone = true;
     for_neighbours(i, [&](Index p) {
       const FeatureLabel& other = labels_[number_[p]];
-      alone &= other.kind == Kind::crease || other.kind == Kind::corner;
+      // Beside a corner a patch may have no other point.
+      alone &= other.kind == Kind::crease;
       shared = first ? other.patches : shared.common(other.patches);
       first = false;
     });

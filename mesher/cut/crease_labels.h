@@ -83,6 +83,7 @@ class CreaseLabels {
   void label_points();
   void smooth_labels();
   void take_corners();
+  void take_kinks();
   void snap_points();
   void resolve_rest();
   void dissolve_islands();

@@ -109,7 +109,12 @@ Vec3 meeting_point(const LabelledLattice& lattice, const std::array<Index, N>& c
 }
 
 Vec3 face_cut(const LabelledLattice& lattice, const FaceKey& key) {
-  return meeting_point<3>(lattice, key, min_face_share);
+  Vec3 point = meeting_point<3>(lattice, key, min_face_share);
+  // Shares add up to 1 but for rounding, and a face of the box is left by no point.
+  const Vec3 &a = lattice.positions[key[0]], &b = lattice.positions[key[1]], &c = lattice.positions[key[2]];
+  for (int k = 0; k < 3; ++k)
+    if (a[k] == b[k] && a[k] == c[k]) point[k] = a[k];
+  return point;
 }
 
 /// The point within a tet of three or four regions: where all four meet, or the middle of the junction curve

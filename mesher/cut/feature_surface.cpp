@@ -14,7 +14,7 @@ constexpr double min_facing = -0.5;
 }  // namespace
 
 FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches,
-                               std::shared_ptr<const MaterialField> field)
+                               double corner_reach, std::shared_ptr<const MaterialField> field)
     : field_(std::move(field)) {
   std::vector<Vec3> points, crease_points;
   std::vector<ProjectionTree::Item> triangles, segments;
@@ -23,6 +23,10 @@ FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<Surfa
   for (std::size_t b = 0; b < input.bodies.size(); ++b) {
     bodies_[input.bodies[b].tag] = b;
     const RepairedSurface& surface = input.bodies[b].surface;
+    if (patches[b].verdict == SurfacePatches::Verdict::meeting) {
+      bodies_.erase(input.bodies[b].tag);
+      continue;
+    }
     const auto first = static_cast<Index>(points.size());
     const auto patch_of = [&](std::uint16_t local) { return static_cast<Patch>(first_patch + local); };
     points.insert(points.end(), surface.points.begin(), surface.points.end());
@@ -31,7 +35,8 @@ FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<Surfa
       triangles.push_back({{first + c[0], first + c[1], first + c[2]},
                            {patch_of(patches[b].patches[t]), static_cast<std::uint32_t>(b), 0}});
     }
-    const SurfaceCreases found = find_creases(surface.points, surface.triangles, patches[b].patches);
+    const SurfaceCreases found =
+        find_creases(surface.points, surface.triangles, patches[b].patches, corner_reach);
     std::map<Index, std::set<Patch>> at_corners;
     for (const Index c : found.corners) at_corners[c] = {};
     for (const SurfaceCreases::Segment& s : found.segments) {
@@ -43,6 +48,9 @@ FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<Surfa
     }
     for (const auto& [c, meeting] : at_corners)
       corners_.push_back({surface.points[c], {meeting.begin(), meeting.end()}});
+    groups_.resize(first_patch + patches[b].count);
+    for (std::size_t t = 0; t < surface.groups.size(); ++t)
+      groups_[patch_of(patches[b].patches[t])] = input.bodies[b].groups[surface.groups[t]];
     first_patch += patches[b].count;
   }
   no_patch_ = static_cast<Patch>(first_patch);

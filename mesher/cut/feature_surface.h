@@ -39,9 +39,9 @@ class FeatureSurface : public ReferenceSurface {
     std::vector<Patch> patches;  ///< that meet there, ascending
   };
 
-  /// `patches[b]` are those of body b; they are numbered from 0 on, body by body. `field` answers for what
-  /// has no patches.
-  FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches,
+  /// `patches[b]` are those of body b; they are numbered from 0 on, body by body. `corner_reach` as for
+  /// find_creases(). `field` answers for what has no patches.
+  FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach,
                  std::shared_ptr<const MaterialField> field);
 
   double signed_distance(const Vec3& point, MaterialTag material) const override {
@@ -85,6 +85,8 @@ class FeatureSurface : public ReferenceSurface {
     return CreasePlace{hit->point, pair_of(creases_.items()[hit->item])};
   }
   const std::vector<Corner>& corners() const { return corners_; }
+  /// The group of the input that a patch belongs to, or none.
+  FaceGroup group_of(Patch patch) const { return patch < groups_.size() ? groups_[patch] : FaceGroup{}; }
 
  private:
   std::shared_ptr<const MaterialField> field_;
@@ -93,6 +95,7 @@ class FeatureSurface : public ReferenceSurface {
   ProjectionTree triangles_, creases_, corner_points_;
   std::vector<Vec3> normals_;  ///< of the items of triangles_
   std::vector<Corner> corners_;
+  std::vector<FaceGroup> groups_;  ///< by patch
 };
 
 }  // namespace tetwright

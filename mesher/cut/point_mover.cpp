@@ -177,6 +177,7 @@ class Mover {
     if (field_.is_certain(lattice_.positions[p])) return std::nullopt;
     const std::optional<RegionSet> regions = pure_regions(lattice_, p);
     if (!regions) return std::nullopt;
+    const unsigned faces = lattice_.box_faces(p);
     double nearest = 0;
     Index other = no_index;
     bool too_near = false;
@@ -186,13 +187,14 @@ class Mover {
         if (r == own) continue;
         const double share = lattice_.cut_share(p, own, q, r);
         too_near |= share <= (lattice_.is_centre[p] == lattice_.is_centre[q] ? near_long : near_short);
+        if ((lattice_.box_faces(q) & faces) != faces) continue;  // out of reach
         const double length = share * (lattice_.positions[q] - lattice_.positions[p]).norm();
         if (other == no_index || length < nearest || (length == nearest && q < other)) {
           nearest = length;
           other = q;
         }
       }
-    if (!too_near) return std::nullopt;
+    if (!too_near || other == no_index) return std::nullopt;
     const Vec3 &from = lattice_.positions[p], &to = lattice_.positions[other];
     Candidate c;
     c.point = p;
@@ -201,11 +203,27 @@ class Mover {
     c.edge = (to - from).cast<float>();
     c.projected = from;
     // Across a ridge of the distance the gradient does not lead to the interface.
-    if (!sampler.project(*regions, c.projected) || (c.projected - from).norm() > c.room())
+    if (!sampler.project(*regions, c.projected, held_axes(p)) || (c.projected - from).norm() > c.room())
       c.projected = on_edge(c);
     const double distance = c.at_junction ? (c.projected - from).norm() : lattice_.margin(p);
     c.rank = static_cast<std::uint8_t>(std::clamp(distance / c.room(), 0.0, 1.0) * distance_steps);
     return c;
+  }
+
+  /// The axes that a point cannot move along, a bit for each: points stay on the faces, edges and corners of
+  /// the box.
+  unsigned held_axes(Index p) const {
+    const unsigned faces = lattice_.box_faces(p);
+    unsigned axes = 0;
+    for (int a = 0; a < 3; ++a)
+      if (faces >> 2 * a & 3) axes |= 1u << a;
+    return axes;
+  }
+  Vec3 without_held(Index p, Vec3 step) const {
+    const unsigned held = held_axes(p);
+    for (int a = 0; a < 3; ++a)
+      if (held >> a & 1) step[a] = 0;
+    return step;
   }
 
   /// The nearest cut; valid until the point is moved.
@@ -283,11 +301,11 @@ class Mover {
     const Index p = c.point;
     const std::optional<RegionSet> regions = regions_if_moved(lattice_, p);
     if (!regions) return false;
-    const Vec3 middle = middle_of_star(p);
+    const Vec3 to_middle = without_held(p, middle_of_star(p) - lattice_.positions[p]);
     for (double share : {0.0, 0.5, 1.0}) {
-      Vec3 place = lattice_.positions[p] + share * (middle - lattice_.positions[p]);
-      if (sampler.project(*regions, place) && (place - lattice_.positions[p]).norm() <= c.room() &&
-          star_is_good(p, place))
+      Vec3 place = lattice_.positions[p] + share * to_middle;
+      if (sampler.project(*regions, place, held_axes(p)) &&
+          (place - lattice_.positions[p]).norm() <= c.room() && star_is_good(p, place))
         return put(p, place);
     }
     return false;
@@ -335,6 +353,7 @@ class Mover {
     Vec3 gradient;
     const double value =
         sampler.between(lattice_.first_region[p], other_region(c), lattice_.positions[p], gradient);
+    gradient = without_held(p, gradient);
     const double slope = gradient.norm();
     if (!(slope > 0)) return false;
     std::vector<Vec3> places;
@@ -373,17 +392,18 @@ class Mover {
   void improve_star(Index p, FieldSampler& sampler) {
     if (!lattice_.is_on[p] && field_.is_certain(lattice_.positions[p])) return;
     std::vector<Vec3> places;
-    const Vec3 from = lattice_.positions[p], to_middle = middle_of_star(p) - from;
+    const Vec3 from = lattice_.positions[p], to_middle = without_held(p, middle_of_star(p) - from);
     if (lattice_.is_on[p]) {
       const std::optional<RegionSet> regions = pure_regions(lattice_, p);
       if (!regions) return;
       for (double share : {0.25, 0.5, 1.0}) {
         Vec3 place = from + share * to_middle;
-        if (sampler.project(*regions, place)) places.push_back(place);
+        if (sampler.project(*regions, place, held_axes(p))) places.push_back(place);
       }
     } else if (const RegionIndex other = nearest_other(p); other != on_interface) {
       Vec3 gradient;
       const double value = sampler.between(lattice_.first_region[p], other, from, gradient);
+      gradient = without_held(p, gradient);
       // Steps are fractions of the distance, so that the point keeps its side whatever the size of the cells.
       for (double share : {-0.4, -0.2, 0.3, 0.6})
         places.push_back(from + gradient * (share * value /

@@ -21,35 +21,28 @@ constexpr int passes = 3;
 constexpr double max_step = 1.25;
 
 /// The moves of the points that a thickened wall has displaced.
-std::vector<PointMove> find_moves(const CutMesh& mesh, const MaterialField& field,
-                                  const MaterialField& as_is) {
+std::vector<PointMove> find_moves(const std::vector<Vec3>& points,
+                                  const std::vector<std::uint8_t>& is_on_interface,
+                                  const MaterialField& field, const MaterialField& as_is) {
   return parallel_collect<PointMove>(
-      0, mesh.points.size(), point_grain,
-      [&](std::size_t begin, std::size_t end, std::vector<PointMove>& out) {
+      0, points.size(), point_grain, [&](std::size_t begin, std::size_t end, std::vector<PointMove>& out) {
         const std::unique_ptr<FieldSampler> owned = as_is.sampler();
         for (std::size_t p = begin; p < end; ++p) {
-          if (!mesh.on_interface[p] || !field.changes_walls(mesh.points[p])) continue;
-          const std::optional<RegionSet> both = owned->two_nearest(mesh.points[p]);
+          if (!is_on_interface[p] || !field.changes_walls(points[p])) continue;
+          const std::optional<RegionSet> both = owned->two_nearest(points[p]);
           if (!both) continue;
           Vec3 gradient;
-          const double off = owned->between((*both)[0], (*both)[1], mesh.points[p], gradient);
+          const double off = owned->between((*both)[0], (*both)[1], points[p], gradient);
           const double slope = gradient.squaredNorm();
           // No wall was thickened by more; a longer step comes from where distances have no slope.
           if (!(std::abs(off) < max_step * std::sqrt(slope))) continue;
-          out.push_back({static_cast<Index>(p), mesh.points[p], -gradient * (off / slope)});
+          out.push_back({static_cast<Index>(p), points[p], -gradient * (off / slope)});
         }
       });
 }
 
-}  // namespace
-
-ThickenedWalls restore_walls(CutMesh& mesh, const MaterialField& field, const MaterialField& as_is) {
+ThickenedWalls what_is_left(const std::vector<PointMove>& moves, const MaterialField& field) {
   ThickenedWalls left;
-  std::vector<PointMove> moves = find_moves(mesh, field, as_is);
-  for (int pass = 0; pass < passes && !moves.empty(); ++pass) {
-    move_jointly(mesh.points, mesh.tets, moves, tangent_of_poor_tet);
-    keep_remaining(mesh.points, moves);
-  }
   struct Off {
     double offset, thickness;
     Vec3 place;
@@ -69,6 +62,23 @@ ThickenedWalls restore_walls(CutMesh& mesh, const MaterialField& field, const Ma
       left.place = o.place;
     }
   return left;
+}
+
+}  // namespace
+
+ThickenedWalls restore_walls(CutMesh& mesh, const MaterialField& field, const MaterialField& as_is) {
+  std::vector<PointMove> moves = find_moves(mesh.points, mesh.on_interface, field, as_is);
+  for (int pass = 0; pass < passes && !moves.empty(); ++pass) {
+    move_jointly(mesh.points, mesh.tets, moves, tangent_of_poor_tet);
+    keep_remaining(mesh.points, moves);
+  }
+  return what_is_left(moves, field);
+}
+
+ThickenedWalls find_thickened_walls(const std::vector<Vec3>& points,
+                                    const std::vector<std::uint8_t>& is_on_interface,
+                                    const MaterialField& field, const MaterialField& as_is) {
+  return what_is_left(find_moves(points, is_on_interface, field, as_is), field);
 }
 
 }  // namespace tetwright

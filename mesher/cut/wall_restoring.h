@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "mesher/cut/cutting.h"
 #include "mesher/distance/material_field.h"
@@ -19,5 +21,10 @@ struct ThickenedWalls {
 /// are, as far as tets keep solid angles of 0.1 sr; tets that are worse already get no worse. `as_is` is
 /// field.with_true_walls(). Returns what could not be moved. The same result for any number of threads.
 ThickenedWalls restore_walls(CutMesh& mesh, const MaterialField& field, const MaterialField& as_is);
+
+/// What is left of thickened walls in a mesh whose points have moved since. Lattice units.
+ThickenedWalls find_thickened_walls(const std::vector<Vec3>& points,
+                                    const std::vector<std::uint8_t>& is_on_interface,
+                                    const MaterialField& field, const MaterialField& as_is);
 
 }  // namespace tetwright

@@ -45,6 +45,7 @@ BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool ke
         add(plan.walls ? LevelSet::with_walls(*surfaces[b], std::move(plan.walls)) : surfaces[b]);
     result.finer = combine(std::move(result.finer), std::move(plan.finer));
     result.filling_tets += plan.filling_tets;
+    result.filling_tets_thickened += plan.filling_tets_thickened;
     for (const ChangedWall& w : plan.changed) result.changed.emplace_back(b, w);
     regions[outside_region].terms.push_back({surface, true, number});
     // Carves all earlier ones.

@@ -19,7 +19,7 @@ struct BodyField {
   FinerCells finer;  ///< where walls and gaps of one surface are thin, or patches narrow
   /// Of each body, those that are still shown otherwise than they are.
   std::vector<std::pair<std::size_t, ChangedWall>> changed;
-  double filling_tets = 0;  ///< of all bodies, see ThinWallPlan
+  double filling_tets = 0, filling_tets_thickened = 0;  ///< of all bodies, see ThinWallPlan
 };
 
 /// `limits` in input units; `narrow` of each body, or empty. Throws InputError for layers thicker than the

@@ -28,7 +28,7 @@ double FieldSampler::between(RegionIndex a, RegionIndex b, const Vec3& point, Ve
   return 0.5 * (values[0] - values[1]);
 }
 
-bool FieldSampler::project(const RegionSet& regions, Vec3& point) {
+bool FieldSampler::project(const RegionSet& regions, Vec3& point, unsigned held_axes) {
   constexpr int steps = 8;
   // Of the squared slope; below this the point is near a ridge of the distance.
   const double smallest_slope = 0.1 * min_slope_ * min_slope_;
@@ -51,6 +51,8 @@ bool FieldSampler::project(const RegionSet& regions, Vec3& point) {
       slopes.row(k) = 0.5 * (gradients[0] - gradients[k + 1]).transpose();
       worst = std::max(worst, std::abs(misses[k]));
     }
+    for (int a = 0; a < 3; ++a)
+      if (held_axes >> a & 1) slopes.col(a).setZero();
     if (worst < enough) {
       const RegionIndex there = nearest(point).region;
       if (regions.contains(there)) return true;

@@ -60,8 +60,8 @@ class FieldSampler {
   double between(RegionIndex a, RegionIndex b, const Vec3& point, Vec3& gradient);
   /// Moves the point to where all regions of the set have the same signed distance, by a few Newton steps.
   /// Returns false if the iteration does not converge or another region is nearer there; the point is
-  /// unspecified then.
-  bool project(const RegionSet& regions, Vec3& point);
+  /// unspecified then. It does not move along the axes whose bits are set in `held_axes`.
+  bool project(const RegionSet& regions, Vec3& point, unsigned held_axes = 0);
 
  protected:
   /// `per_voxel`: lattice units per voxel. `min_slope`: the smallest slope that distances have near
@@ -108,6 +108,9 @@ class MaterialField : public ReferenceSurface {
   /// The thickness of a thin wall with parallel sides of which a side is near the point, or infinity; lattice
   /// units.
   virtual double parallel_thickness(const Vec3&) const { return HUGE_VAL; }
+  /// True if what reaches the frame's box is cut off there, as a volume's labels are at its border. The
+  /// distances themselves know nothing of it.
+  virtual bool ends_at_box() const { return false; }
   /// True for points whose region is known exactly and guaranteed in the mesh; lattice points there are not
   /// moved.
   virtual bool is_certain(const Vec3& point) const = 0;

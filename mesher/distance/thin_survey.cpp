@@ -344,7 +344,7 @@ ThinWallPlan plan_thin_walls(const ThinSurvey& survey) {
   std::vector<Cell> cells;
   {
     struct Found {
-      double filling = 0;
+      double filling = 0, filling_thickened = 0;
       std::vector<Cell> cells;
       std::vector<Change> changes;
     };
@@ -379,8 +379,11 @@ ThinWallPlan plan_thin_walls(const ThinSurvey& survey) {
                     const double wall =
                         survey.surface->thickness(*place, Side::wall, facing_to_report, exact_below);
                     if (wall < exact_below) {
-                      const double shown = std::max({wall, min_shown, survey.limits.min_thickness});
-                      found[task].filling += filling_tets_per_area * area_of(wall) / (shown * shown);
+                      const double kept = std::max(wall, survey.limits.min_thickness),
+                                   shown = std::max(kept, min_shown);
+                      const double tets = filling_tets_per_area * area_of(wall);
+                      found[task].filling += tets / (kept * kept);
+                      found[task].filling_thickened += tets / (shown * shown);
                     }
                     for (const Side kind : {Side::wall, Side::gap}) {
                       const double wanted =
@@ -397,6 +400,7 @@ ThinWallPlan plan_thin_walls(const ThinSurvey& survey) {
     });
     for (Found& f : found) {
       plan.filling_tets += f.filling;
+      plan.filling_tets_thickened += f.filling_thickened;
       cells.insert(cells.end(), f.cells.begin(), f.cells.end());
       changes.insert(changes.end(), f.changes.begin(), f.changes.end());
       f = {};

@@ -70,6 +70,8 @@ struct ThinWallPlan {
   std::vector<ChangedWall> changed;
   /// Tets that fill the walls with parallel sides in good shapes, about; fewer would have to be flat.
   double filling_tets = 0;
+  /// The same where walls stay as thick as cells show them.
+  double filling_tets_thickened = 0;
 };
 
 /// The cells that the chosen depths ask for and the distances that go with them.

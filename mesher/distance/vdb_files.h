@@ -12,11 +12,6 @@ namespace tetwright {
 
 // Files of OpenVDB (.vdb), the exchange format of level sets; they may also hold segmented volumes.
 
-struct NamedSurface {
-  std::string name;
-  TriangleMesh surface;
-};
-
 /// Reads the level sets of a file as surfaces: their zero levels in the file's world coordinates, oriented
 /// with the negative side inside, and closed unless the level set itself ends. In the file's order.
 ///

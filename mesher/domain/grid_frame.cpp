@@ -5,6 +5,20 @@
 
 namespace tetwright {
 
+namespace {
+
+/// Chooses the root cells, and rounds the numbers of cells up to whole ones.
+void take_cells(GridFrame& frame, const std::array<int, 3>& needed, bool uniform) {
+  if (!uniform) {
+    const int longest = *std::max_element(needed.begin(), needed.end());
+    while ((8 << frame.root_level) < longest) ++frame.root_level;
+  }
+  const int root = 1 << frame.root_level;
+  for (int a = 0; a < 3; ++a) frame.cells[a] = (needed[a] + root - 1) / root * root;
+}
+
+}  // namespace
+
 GridFrame make_grid_frame(const Vec3& low, const Vec3& high, double cell_size, bool uniform, bool centred) {
   GridFrame frame;
   frame.cell_size = cell_size;
@@ -12,21 +26,32 @@ GridFrame make_grid_frame(const Vec3& low, const Vec3& high, double cell_size, b
   std::array<int, 3> needed;
   for (int a = 0; a < 3; ++a)
     needed[a] = static_cast<int>(std::ceil((high[a] - low[a]) / cell_size)) + 2 * frame_margin;
-  if (!uniform) {
-    const int longest = *std::max_element(needed.begin(), needed.end());
-    while ((8 << frame.root_level) < longest) ++frame.root_level;
-  }
-  const int root = 1 << frame.root_level;
+  take_cells(frame, needed, uniform);
+  frame.box = frame.cells;
+  if (centred)
+    for (int a = 0; a < 3; ++a) {
+      const int before = (frame.cells[a] - needed[a]) / 2;
+      frame.origin[a] -= before * cell_size;
+    }
+  return frame;
+}
+
+GridFrame make_box_frame(const Vec3& corner, const Eigen::Matrix3d& edges, double cell_size, bool uniform) {
+  GridFrame frame;
+  frame.cell_size = cell_size;
+  frame.origin = corner;
   for (int a = 0; a < 3; ++a) {
-    frame.cells[a] = (needed[a] + root - 1) / root * root;
-    if (centred) frame.origin[a] -= (frame.cells[a] - needed[a]) / 2 * cell_size;
+    frame.box[a] = std::max(1, static_cast<int>(std::round(edges.col(a).norm() / cell_size)));
+    frame.axes.col(a) = edges.col(a) / (frame.box[a] * cell_size);
   }
+  take_cells(frame, frame.box, uniform);
   return frame;
 }
 
 GridFrame refined_frame(GridFrame frame, int levels) {
   frame.cell_size = std::ldexp(frame.cell_size, -levels);
   for (int& c : frame.cells) c <<= levels;
+  for (int& c : frame.box) c <<= levels;
   frame.root_level += levels;
   return frame;
 }

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include <Eigen/Dense>
+
 #include "common/types.h"
 
 namespace tetwright {
@@ -15,13 +17,27 @@ struct GridFrame {
   Vec3 origin = Vec3::Zero();         ///< position of grid point (0, 0, 0), input units
   double cell_size = 1;               ///< edge of a finest cell, input units
   std::array<int, 3> cells{1, 1, 1};  ///< finest cells along each side of the box, a multiple of 2^root_level
+  /// Of these the ones that the lattice fills: all, or for a volume as many as end at its border.
+  std::array<int, 3> box{1, 1, 1};
   int root_level = 0;  ///< the octree's largest cells have 2^root_level finest cells to an edge
-  /// Directions of the grid's axes, input space: perpendicular, of length 1, right-handed.
+  /// Edges of a finest cell as shares of cell_size, input space, right-handed. For surfaces they are
+  /// perpendicular and of length 1.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
 
-  Vec3 to_grid(const Vec3& input) const { return axes.transpose() * (input - origin) / cell_size; }
+  Vec3 to_grid(const Vec3& input) const { return axes.inverse() * (input - origin) / cell_size; }
   Vec3 to_input(const Vec3& grid) const { return origin + cell_size * (axes * grid); }
 };
+
+/// The faces of the box [0, box] that a place is on, grid coordinates, a bit for each: 2 * axis for the lower
+/// one, 2 * axis + 1 for the upper one. Exact: lattice points on the box never leave its faces.
+inline unsigned box_faces(const Vec3& place, const std::array<int, 3>& box) {
+  unsigned faces = 0;
+  for (int a = 0; a < 3; ++a) {
+    if (place[a] == 0) faces |= 1u << 2 * a;
+    if (place[a] == box[a]) faces |= 2u << 2 * a;
+  }
+  return faces;
+}
 
 /// Margin between the surface's bounding box and the box of the octree, finest cells. Points that may move
 /// and their stars reach two cells from the surface; the third cell keeps the faces of the box away from
@@ -34,6 +50,10 @@ inline constexpr int frame_margin = 3;
 /// `cell_size` > 0 and at most 2^18 cells along each side.
 GridFrame make_grid_frame(const Vec3& low, const Vec3& high, double cell_size, bool uniform,
                           bool centred = false);
+
+/// A frame that fills a parallelepiped with whole cells: its edges, input units, are the columns of `edges`,
+/// right-handed. Cells are as near to `cell_size` as that permits along each axis.
+GridFrame make_box_frame(const Vec3& corner, const Eigen::Matrix3d& edges, double cell_size, bool uniform);
 
 /// The same box with cells of 1/2^levels the size; the root cells keep their size.
 GridFrame refined_frame(GridFrame frame, int levels);

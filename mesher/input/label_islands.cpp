@@ -1,6 +1,8 @@
 #include "mesher/input/label_islands.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <queue>
 #include <span>
 
@@ -37,6 +39,8 @@ class Islands {
   void unite_neighbours();
   void unite_across(std::size_t begin, std::size_t end, std::size_t shift);
   void count_voxels();
+  bool at_border(Index run) const;
+  void enlarge_outside(Index min_voxels);
   void list_small(Index min_voxels);
   void collect_runs(Index island);
   RegionIndex max_shared();
@@ -181,14 +185,34 @@ void Islands::join(Index a, Index b, Index min_voxels) {
   a = sets_.root(a);
   b = sets_.root(b);
   if (a == b) return;
-  const Index total = voxels_[a] + voxels_[b];
+  const auto total = static_cast<Index>(
+      std::min<std::uint64_t>(std::uint64_t{voxels_[a]} + voxels_[b], std::numeric_limits<Index>::max()));
   // Two rings become one when they swap what comes next. Large islands need none any more.
   if (total < min_voxels) std::swap(next_[a], next_[b]);
   sets_.unite(a, b);
   voxels_[sets_.root(a)] = total;
 }
 
+/// Along axes of a single voxel there is no border: a slice is an image.
+bool Islands::at_border(Index run) const {
+  const std::size_t begin = starts_[run], end = starts_[run + 1], voxels = regions_.size();
+  const std::size_t in_plane = begin % plane_;
+  return (width_ > 1 && (begin % width_ == 0 || end % width_ == 0)) ||
+         (plane_ > width_ && (in_plane < width_ || in_plane + width_ >= plane_)) ||
+         (voxels > plane_ && (begin < plane_ || begin + plane_ >= voxels));
+}
+
+/// Counts islands of the outside that touch the border as large ones: they go on beyond it.
+void Islands::enlarge_outside(Index min_voxels) {
+  for (Index run = 0; run < runs(); ++run) {
+    if (region_of(run) != outside_region || !at_border(run)) continue;
+    Index& voxels = voxels_[sets_.root(run)];
+    voxels = std::max(voxels, min_voxels);
+  }
+}
+
 std::vector<MergedIsland> Islands::merge(Index min_voxels) {
+  enlarge_outside(min_voxels);
   list_small(min_voxels);
   std::vector<MergedIsland> merged;
   merged.reserve(small_.size());
@@ -222,6 +246,9 @@ std::vector<MergedIsland> Islands::merge(Index min_voxels) {
           if (region_of(other) == region) join(run, other, min_voxels);
       });
     const Index root = sets_.root(island);
+    if (region == outside_region &&
+        std::any_of(island_runs_.begin(), island_runs_.end(), [&](Index run) { return at_border(run); }))
+      voxels_[root] = std::max(voxels_[root], min_voxels);
     if (voxels_[root] < min_voxels) queue.emplace(voxels_[root], root);
   }
   for (MergedIsland& m : merged) m.to = regions_[m.voxel];

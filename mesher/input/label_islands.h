@@ -27,7 +27,8 @@ struct IslandMerging {
 /// with which they share most voxel faces; ties go to the smallest region number. The smallest island is
 /// merged first, of equal ones the one with the lowest voxel. It is united with all islands of that region
 /// that it touches, and the size of the union counts from then on. The border of the volume shares no faces.
-/// All regions, including the outside, are treated alike.
+/// The outside is treated like other regions, but its islands at the border of the volume continue beyond it
+/// and are never small. Axes of a single voxel have no border.
 ///
 /// `regions`: the first axis fastest, fewer than 2^32 - 1 voxels. Takes twelve bytes for each run of equal
 /// voxels along the first axis, and O(voxels) time. The same result for any number of threads. Throws

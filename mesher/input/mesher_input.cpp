@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -32,19 +33,38 @@ std::set<MaterialTag> tags_in_use(const std::vector<MaterialSurface>& surfaces,
   return tags;
 }
 
+/// Makes the names of groups differ from surface to surface. Throws InputError where the files give the same.
+void name_groups(std::vector<MaterialSurface>& surfaces) {
+  const auto with_groups = std::count_if(surfaces.begin(), surfaces.end(),
+                                         [](const MaterialSurface& s) { return !s.surface.groups.empty(); });
+  if (with_groups < 2) return;
+  std::map<std::string, const MaterialSurface*> known;
+  for (MaterialSurface& s : surfaces)
+    for (FaceGroup& group : s.surface.groups) {
+      if (!group) continue;
+      if (group.name.empty()) group = {0, s.name + "_" + std::to_string(group.number)};
+      const auto [other, added] = known.emplace(group.name, &s);
+      if (!added && other->second != &s)
+        throw InputError(s.file, 0,
+                         "a patch is called '" + group.name + "' like one of " + other->second->file +
+                             "; give one of them another name");
+    }
+}
+
 /// Repairs the surfaces one by one and appends each as a body, followed by its nested components.
 void add_bodies(std::vector<MaterialSurface> surfaces, std::set<MaterialTag> tags, NestedRule nested,
                 MesherInput& input) {
   MaterialTag next_tag = 1;
   for (MaterialSurface& s : surfaces) {
     SurfaceRepair repaired = repair_surface(s.surface, s.file, nested);
+    const std::vector<FaceGroup> groups = std::move(s.surface.groups);
     s.surface = {};
     for (SurfaceFinding& f : repaired.findings) input.findings.push_back({s.file, std::move(f)});
-    input.bodies.push_back({s.name, s.tag, s.file, std::move(repaired.surface)});
+    input.bodies.push_back({s.name, s.tag, s.file, std::move(repaired.surface), groups});
     for (std::size_t k = 0; k < repaired.nested.size(); ++k) {
       while (!tags.insert(next_tag).second) ++next_tag;
       input.bodies.push_back(
-          {s.name + "_" + std::to_string(k + 1), next_tag, s.file, std::move(repaired.nested[k])});
+          {s.name + "_" + std::to_string(k + 1), next_tag, s.file, std::move(repaired.nested[k]), groups});
     }
   }
 }
@@ -100,6 +120,7 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
                               NestedRule nested) {
   if (surfaces.empty()) throw UsageError("there is no surface to mesh");
   MesherInput input;
+  name_groups(surfaces);
   std::set<MaterialTag> tags = tags_in_use(surfaces, layers);
   add_bodies(std::move(surfaces), std::move(tags), nested, input);
   input.layers = std::move(layers);

@@ -65,8 +65,9 @@ std::vector<Vec3> keep_used(const std::vector<Vec3>& points, std::vector<Triangl
 
 struct Cleaned {
   std::vector<Vec3> points;
-  std::vector<Triangle> triangles;  ///< canonical
-  std::vector<char> two_sided;      ///< of each triangle: wound both ways in the file
+  std::vector<Triangle> triangles;    ///< canonical
+  std::vector<std::uint32_t> groups;  ///< as RepairedSurface::groups
+  std::vector<char> two_sided;        ///< of each triangle: wound both ways in the file
 };
 
 /// Merges equal points, drops unused ones, triangles with equal corners and all but one of each set of
@@ -80,6 +81,7 @@ Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<
   struct Entry {
     Index low, middle, high;
     Index turned;  ///< 1 when wound low, high, middle
+    Index number;  ///< in the file
     auto operator<=>(const Entry&) const = default;
     bool same_corners(const Entry& e) const { return low == e.low && middle == e.middle && high == e.high; }
   };
@@ -88,7 +90,8 @@ Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<
   std::vector<char> used(surface.points.size(), 0);
   std::size_t collapsed = 0, repeated = 0, flats = 0;
   std::optional<Vec3> collapsed_place, repeated_place, flat_place, merged_place, unused_place;
-  for (const Triangle& t : surface.triangles) {
+  for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+    const Triangle& t = surface.triangles[i];
     Triangle u;
     for (std::size_t k = 0; k < 3; ++k) {
       if (t[k] >= surface.points.size())
@@ -103,7 +106,7 @@ Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<
       continue;
     }
     u = canonical(u);
-    entries.push_back({u[0], std::min(u[1], u[2]), std::max(u[1], u[2]), u[1] > u[2]});
+    entries.push_back({u[0], std::min(u[1], u[2]), std::max(u[1], u[2]), u[1] > u[2], static_cast<Index>(i)});
   }
   parallel_sort(entries);
 
@@ -118,6 +121,7 @@ Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<
     const Entry& e = entries[i + (j - i - 1) / 2];
     result.triangles.push_back(e.turned ? Triangle{e.low, e.high, e.middle}
                                         : Triangle{e.low, e.middle, e.high});
+    if (!surface.triangle_groups.empty()) result.groups.push_back(surface.triangle_groups[e.number]);
   }
 
   // Points keep their order, so that what is found first is first in the file.
@@ -152,6 +156,7 @@ RepairedSurface assemble(const Cleaned& from, const std::vector<SurfaceComponent
       if (components[c].closed == closed)
         for (Index t : components[c].triangles) {
           s.triangles.push_back(from.triangles[t]);
+          if (!from.groups.empty()) s.groups.push_back(from.groups[t]);
           s.intersects_itself |= crossing[t] != 0;
         }
     if (closed) s.closed = s.triangles.size();

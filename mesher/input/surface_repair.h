@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,8 @@ struct RepairedSurface {
   std::vector<Vec3> points;  ///< input units, no two equal, all used
   /// Consistently oriented in each component; no repeated triangles, three different corners each.
   std::vector<Triangle> triangles;
+  /// For each triangle an index into the groups of the file (TriangleMesh::groups); empty if it has none.
+  std::vector<std::uint32_t> groups;
   /// The number of triangles of closed components, which come first. All their edges balance, so their
   /// winding number is an integer everywhere off the surface.
   std::size_t closed = 0;

@@ -31,7 +31,8 @@ struct TileBricks {
   std::vector<LabelSmoother::Contact> contacts;
 };
 
-/// Copies the voxels of a tile and around it. Returns false if all of them are of one region.
+/// Copies the voxels of a tile and around it; beyond the volume the nearest voxel is repeated. Returns false
+/// if all of them are of one region.
 bool copy_voxels(const LabelInput& labels, const std::array<int, 3>& tile, std::span<RegionIndex> out) {
   constexpr int side = LabelSmoother::side;
   const std::array<int, 3>& size = labels.size;
@@ -39,21 +40,17 @@ bool copy_voxels(const LabelInput& labels, const std::array<int, 3>& tile, std::
   for (int a = 0; a < 3; ++a)
     low[a] = tile[a] * LabelSmoother::cells - LabelSmoother::reach - LabelBricks::padding;
   const int from = std::clamp(-low[0], 0, side), to = std::clamp(size[0] - low[0], from, side);
+  const auto nearest = [&](int a, int i) { return std::clamp(low[a] + i, 0, size[a] - 1); };
   bool alike = true;
   RegionIndex first = outside_region;
   RegionIndex* row = out.data();
   for (int z = 0; z < side; ++z)
     for (int y = 0; y < side; ++y, row += side) {
-      const int iy = low[1] + y, iz = low[2] + z;
-      if (iy < 0 || iz < 0 || iy >= size[1] || iz >= size[2]) {
-        std::fill(row, row + side, outside_region);
-      } else {
-        const RegionIndex* in =
-            labels.regions.data() + (static_cast<std::size_t>(iz) * size[1] + iy) * size[0] + (low[0] + from);
-        std::fill(row, row + from, outside_region);
-        std::copy(in, in + (to - from), row + from);
-        std::fill(row + to, row + side, outside_region);
-      }
+      const RegionIndex* in = labels.regions.data() +
+                              (static_cast<std::size_t>(nearest(2, z)) * size[1] + nearest(1, y)) * size[0];
+      std::fill(row, row + from, in[0]);
+      std::copy(in + low[0] + from, in + low[0] + to, row + from);
+      std::fill(row + to, row + side, in[size[0] - 1]);
       if (y == 0 && z == 0) first = row[0];
       if (alike)
         for (int x = 0; x < side; ++x) alike &= row[x] == first;
@@ -102,6 +99,12 @@ void make_tile(const LabelInput& labels, int t, const std::array<int, 3>& tiles,
   const std::array<int, 3> tile{t % tiles[0], t / tiles[0] % tiles[1], t / (tiles[0] * tiles[1])};
   out = {};
   const bool mixed = copy_voxels(labels, tile, smoother.voxels());
+  std::array<int, 3> first_voxel, end_voxel;  // of the volume, in nodes of the tile
+  for (int a = 0; a < 3; ++a) {
+    first_voxel[a] = LabelBricks::padding - tile[a] * LabelSmoother::cells;
+    end_voxel[a] = first_voxel[a] + labels.size[a];
+  }
+  smoother.set_volume(first_voxel, end_voxel);
   if (mixed) {
     if (smoother.number_labels() > LabelSmoother::max_labels)
       throw InputError(
@@ -118,8 +121,9 @@ void make_tile(const LabelInput& labels, int t, const std::array<int, 3>& tiles,
     }
     if (with_contacts) out.contacts = smoother.contacts();
   } else if (const RegionIndex alone = smoother.voxels()[0]; alone != outside_region) {
-    constexpr int side = LabelSmoother::part_cells;
-    for (auto& part : out.shares) part.emplace_back(alone, side * side * side);
+    for (int k = 0; k < static_cast<int>(out.shares.size()); ++k)
+      out.shares[k].emplace_back(alone, smoother.volume_of({k % tile_parts, k / tile_parts % tile_parts,
+                                                            k / (tile_parts * tile_parts)}));
   }
   for (int k = 0; k < bricks_per_tile * bricks_per_tile * bricks_per_tile; ++k) {
     const std::array<int, 3> in_tile{k % bricks_per_tile, k / bricks_per_tile % bricks_per_tile,
@@ -166,11 +170,12 @@ class Growth {
     for (int z = 0; z < tile_parts * tile_counts[2]; ++z)
       for (int y = 0; y < tile_parts * tile_counts[1]; ++y)
         for (int x = 0; x < tile_parts * tile_counts[0]; ++x) {
-          const auto tile = static_cast<std::size_t>(
-              (z / tile_parts * tile_counts[1] + y / tile_parts) * tile_counts[0] + x / tile_parts);
-          const auto part = static_cast<std::size_t>(
-              (z % tile_parts * tile_parts + y % tile_parts) * tile_parts + x % tile_parts);
-          for (const auto& [region, volume] : tiles[tile].shares[part]) now[region] += volume;
+          const int tile =
+              (z / tile_parts * tile_counts[1] + y / tile_parts) * tile_counts[0] + x / tile_parts;
+          const int part = (z % tile_parts * tile_parts + y % tile_parts) * tile_parts + x % tile_parts;
+          for (const auto& [region, volume] :
+               tiles[static_cast<std::size_t>(tile)].shares[static_cast<std::size_t>(part)])
+            now[region] += volume;
         }
     if (begun_) learn(now);
     begun_ = true;
@@ -215,28 +220,47 @@ class Growth {
     }
   }
 
+  static double voxels_of(const LabelInput& labels, std::size_t region) {
+    return static_cast<double>(labels.materials[region - 1].voxels);
+  }
+  static bool is_small(const LabelInput& labels, std::size_t region) {
+    constexpr double small = 1000;
+    return voxels_of(labels, region) <= small;
+  }
+
   bool solve(const LabelInput& labels) {
     // Relative to the label's voxels; meshing adds a few tenths of a percent. Small labels are promised less.
-    constexpr double tolerance = 0.004, tolerance_small = 0.02, small = 1000;
+    constexpr double tolerance = 0.004, tolerance_small = 0.02;
+    // Slanted sheets of a voxel come out too thick, and tear if they shrink by more against what is beside
+    // them; voxels.
+    constexpr double max_small_shrinking = 0.15;
     constexpr int sweeps = 30;  // of Gauss-Seidel; the outside and labels of correct volume are not changed
     std::vector<RegionIndex> off;
     for (std::size_t r = 1; r < growth_.size(); ++r) {
       step_[r] = 0;
-      const auto voxels = static_cast<double>(labels.materials[r - 1].voxels);
+      const double voxels = voxels_of(labels, r);
       if (!contacts(r).empty() &&
-          std::abs(voxels - volumes_[r]) > (voxels > small ? tolerance : tolerance_small) * voxels)
+          std::abs(voxels - volumes_[r]) > (is_small(labels, r) ? tolerance_small : tolerance) * voxels)
         off.push_back(static_cast<RegionIndex>(r));
     }
     for (int sweep = 0; sweep < sweeps; ++sweep)
       for (RegionIndex r : off) {
-        double gain = (static_cast<double>(labels.materials[r - 1u].voxels) - volumes_[r]) / give_[r];
+        double gain = (voxels_of(labels, r) - volumes_[r]) / give_[r];
         double faces = 0;
         for (const Contact& c : contacts(r)) {
           gain += c.faces * step_[c.with];
           faces += c.faces;
         }
         const double max_growth = LabelSmoother::max_growth;
-        step_[r] = std::clamp(growth_[r] + gain / faces, -max_growth, max_growth) - growth_[r];
+        double low = -max_growth, high = max_growth;
+        for (const Contact& c : contacts(r)) {
+          const double beside = growth_[c.with] + step_[c.with];
+          if (is_small(labels, r)) low = std::max(low, beside - max_small_shrinking);
+          if (c.with != outside_region && is_small(labels, c.with) &&
+              volumes_[c.with] > voxels_of(labels, c.with))
+            high = std::min(high, beside + max_small_shrinking);
+        }
+        step_[r] = std::clamp(growth_[r] + gain / faces, std::min(low, high), high) - growth_[r];
       }
     bool any = false;
     for (RegionIndex r : off) {

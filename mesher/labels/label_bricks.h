@@ -11,10 +11,11 @@
 namespace tetwright {
 
 /// The distances of LabelSmoother for a whole volume, stored in bricks of 8 x 8 x 8 cells between nodes. Node
-/// (0, 0, 0) is `padding` voxels before the first voxel along each axis, which is as far as smoothing spreads
-/// labels beyond the volume.
+/// (0, 0, 0) is `padding` voxels before the first voxel along each axis, so that they reach half a voxel
+/// beyond the outermost centres, to the border of the volume. Labels continue there as they are in the
+/// outermost voxels, so surfaces pass the border as if it were not there.
 struct LabelBricks {
-  static constexpr int padding = 4;
+  static constexpr int padding = 1;
   static constexpr int cells = 8, nodes = cells + 1, volume = nodes * nodes * nodes;
   /// Distances are stored as 16-bit integers with this many units per voxel, finer than any decision needs.
   static constexpr float units_per_voxel = 15000;

@@ -43,10 +43,7 @@ LabelDepths label_depths(const LabelInput& labels) {
     for (const Neighbour& k : earlier) {
       const int nx = x + direction * k.by[0], ny = y + direction * k.by[1], nz = z + direction * k.by[2];
       const bool inside = nx >= 0 && ny >= 0 && nz >= 0 && nx < n[0] && ny < n[1] && nz < n[2];
-      if (!inside) {
-        if (own != outside_region) least = std::min(least, k.steps);
-        continue;
-      }
+      if (!inside) continue;
       const std::ptrdiff_t j = nz * step_z + ny * step_y + nx;
       least = std::min(least, labels.regions[j] != own ? k.steps : depths.steps[j] + k.steps);
     }
@@ -86,9 +83,7 @@ double LabelDepths::at(const Vec3& index, Vec3& gradient) const {
                                 (k >> 2 ? 1 : -1) * w[0] * w[1]);
   }
   gradient /= steps_per_voxel;
-  // Out of the volume outside is as deep as the way there.
-  const Vec3 clamped = index.cwiseMax(0).cwiseMin(Vec3(size[0] - 1, size[1] - 1, size[2] - 1));
-  return sum / steps_per_voxel + (index - clamped).norm();
+  return sum / steps_per_voxel;
 }
 
 }  // namespace tetwright

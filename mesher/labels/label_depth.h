@@ -20,7 +20,7 @@ struct LabelDepths {
 
 /// Chamfer distances (Borgefors 1986: weights 3, 4, 5 for neighbours across faces, edges, corners; within 8 %
 /// of the Euclidean ones) less half a voxel, at most 85 voxels. They are needed for cells so coarse that
-/// distances clamped to two voxels do not locate the interface. Everything beyond the volume is outside.
+/// distances clamped to two voxels do not locate the interface. Regions continue beyond the volume.
 LabelDepths label_depths(const LabelInput& labels);
 
 }  // namespace tetwright

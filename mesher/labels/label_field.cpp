@@ -1,6 +1,5 @@
 #include "mesher/labels/label_field.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -12,29 +11,6 @@
 namespace tetwright {
 
 namespace {
-
-/// The volume's axes made perpendicular and right-handed (Gram-Schmidt). Positions along them, relative to
-/// the first voxel's centre, are to_local * index.
-struct LocalAxes {
-  explicit LocalAxes(const Eigen::Matrix3d& directions) {
-    Eigen::Matrix3d r = Eigen::Matrix3d::Zero();
-    for (int a = 0; a < 3; ++a) {
-      Vec3 rest = directions.col(a);
-      for (int b = 0; b < a; ++b) {
-        r(b, a) = axes.col(b).dot(rest);
-        rest -= r(b, a) * axes.col(b);
-      }
-      r(a, a) = rest.norm();
-      axes.col(a) = rest / r(a, a);
-    }
-    if (axes.determinant() < 0) {
-      axes.col(2) = -axes.col(2);
-      r.row(2) = -r.row(2);
-    }
-    to_local = r;
-  }
-  Eigen::Matrix3d axes, to_local;
-};
 
 constexpr int padding = LabelBricks::padding;
 constexpr int brick_cells = LabelBricks::cells, brick_nodes = LabelBricks::nodes;
@@ -69,35 +45,32 @@ void for_each_mixed_cube(const std::array<std::uint16_t, brick_volume>& own, Use
   }
 }
 
+/// Such a volume's last axis is taken the other way round.
+bool is_mirrored(const LabelInput& labels) { return labels.directions.determinant() < 0; }
+
 }  // namespace
 
 double voxel_size(const LabelInput& labels) { return labels.directions.colwise().norm().minCoeff(); }
 
 GridFrame label_frame(const LabelInput& labels, double cell_size, bool uniform) {
-  const LocalAxes local(labels.directions);
-  Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
-  for (int k = 0; k < 8; ++k) {
-    Vec3 corner;
-    for (int a = 0; a < 3; ++a) corner[a] = (k >> a & 1) ? labels.size[a] - 0.5 : -0.5;
-    corner = local.to_local * corner;
-    low = low.cwiseMin(corner);
-    high = high.cwiseMax(corner);
+  Eigen::Matrix3d edges = labels.directions;
+  Vec3 corner = Vec3::Constant(-0.5);
+  for (int a = 0; a < 3; ++a) edges.col(a) *= labels.size[a];
+  if (is_mirrored(labels)) {
+    edges.col(2) = -edges.col(2);
+    corner[2] = labels.size[2] - 0.5;
   }
-  // Whole cells downwards from the first voxel's centre.
-  for (int a = 0; a < 3; ++a) low[a] = std::floor(low[a] / cell_size) * cell_size;
-  GridFrame frame = make_grid_frame(low, high, cell_size, uniform);
-  frame.origin = labels.origin + local.axes * frame.origin;
-  frame.axes = local.axes;
-  return frame;
+  return make_box_frame(labels.origin + labels.directions * corner, edges, cell_size, uniform);
 }
 
 /// Data shared by the fields of all refinements.
 struct LabelField::Shared {
   LabelBricks bricks;
-  double voxel;              ///< smallest spacing, input units
-  double min_slope;          ///< smallest spacing by largest
-  Eigen::Matrix3d to_index;  ///< from local positions
-  Vec3 origin;               ///< first voxel's centre, input units
+  double voxel;      ///< smallest spacing, input units
+  double min_slope;  ///< smallest spacing by largest
+  Vec3
+      voxels_per_cell;  ///< of the frame, along each axis; below 0 where an axis is taken the other way round
+  Vec3 first_node;      ///< the frame's origin, in nodes
   /// For cells larger than a voxel, whose corners may be farther than the band from an interface; else empty.
   LabelDepths depths;
 };
@@ -108,8 +81,12 @@ std::shared_ptr<const LabelField> LabelField::make(const LabelInput& labels, con
   made->bricks = make_label_bricks(labels, progress);
   made->voxel = voxel_size(labels);
   made->min_slope = made->voxel / labels.directions.colwise().norm().maxCoeff();
-  made->to_index = LocalAxes(labels.directions).to_local.inverse();
-  made->origin = labels.origin;
+  for (int a = 0; a < 3; ++a) made->voxels_per_cell[a] = static_cast<double>(labels.size[a]) / frame.box[a];
+  made->first_node = Vec3::Constant(padding - 0.5);
+  if (is_mirrored(labels)) {
+    made->voxels_per_cell[2] = -made->voxels_per_cell[2];
+    made->first_node[2] += labels.size[2];
+  }
   if (frame.cell_size > (1 + tolerance::coinciding_cells) * made->voxel) made->depths = label_depths(labels);
   std::vector<FieldRegion> regions{{keep_outside ? outside_name : "", outside_tag}};
   for (const LabelMaterial& m : labels.materials) regions.push_back({m.name, m.tag});
@@ -125,9 +102,11 @@ LabelField::LabelField(std::shared_ptr<const Shared> shared, const GridFrame& vo
                        std::vector<FieldRegion> regions, int refinement)
     : MaterialField(voxels, std::move(regions), band_in_cells(*shared, voxels), refinement),
       shared_(std::move(shared)),
-      to_nodes_(shared_->to_index * frame().cell_size),
-      first_node_(shared_->to_index * (frame().axes.transpose() * (frame().origin - shared_->origin)) +
-                  Vec3::Constant(padding)) {}
+      nodes_per_unit_(shared_->voxels_per_cell * std::ldexp(1, -refinement)) {}
+
+Vec3 LabelField::to_nodes(const Vec3& point) const {
+  return point.cwiseProduct(nodes_per_unit_) + shared_->first_node;
+}
 
 LabelField::~LabelField() { drop_samplers(); }
 
@@ -184,16 +163,17 @@ class LabelField::Sampler final : public FieldSampler {
   };
 
   Place find(const Vec3& point) const {
-    const Vec3 at = field_.to_nodes_ * point + field_.first_node_;
-    Place p{&outside_, 0, {0, 0, 0}};
+    const Vec3 at = field_.to_nodes(point);
+    Place p{};
     std::array<int, 3> brick, cell;
     for (int a = 0; a < 3; ++a) {
-      // Negated so that NaN is outside too.
-      if (!(at[a] >= 0 && at[a] < bricks_.counts[a] * brick_cells)) return p;
-      const int whole = static_cast<int>(at[a]);
+      // Beyond the border everything continues as it is there. NaN becomes 0.
+      const int nodes = bricks_.counts[a] * brick_cells;
+      const double along = std::min(std::max(0.0, at[a]), static_cast<double>(nodes));
+      const int whole = std::min(static_cast<int>(along), nodes - 1);
       brick[a] = whole / brick_cells;
       cell[a] = whole % brick_cells;
-      p.share[a] = at[a] - whole;
+      p.share[a] = along - whole;
     }
     p.brick = &bricks_.brick(brick[0], brick[1], brick[2]);
     p.node = (cell[2] * brick_nodes + cell[1]) * brick_nodes + cell[0];
@@ -257,12 +237,12 @@ class LabelField::Sampler final : public FieldSampler {
     const double cut_off = per_unit_ * band_units;
     // Rounding and interpolation give slightly less than the band.
     if (first.margin < 0.98 * cut_off) return std::nullopt;
-    const Vec3 index = field_.to_nodes_ * point + field_.first_node_ - Vec3::Constant(padding);
+    const Vec3 index = field_.to_nodes(point) - Vec3::Constant(padding);
     Vec3 by_voxels;
     const double per_voxel = per_unit_ * units_per_voxel;
     const double depth = per_voxel * shared_.depths.at(index, by_voxels);
     if (depth <= cut_off) return std::nullopt;
-    return Far{first.region, depth, per_voxel * (field_.to_nodes_.transpose() * by_voxels)};
+    return Far{first.region, depth, per_voxel * by_voxels.cwiseProduct(field_.nodes_per_unit_)};
   }
 
   /// The region of the smallest distance and that of the second smallest.
@@ -299,7 +279,7 @@ class LabelField::Sampler final : public FieldSampler {
       Vec3 by_nodes = Vec3::Zero();
       const auto channel = channel_of(p, r);
       *values++ = per_unit_ * (channel ? channel_value(p, *channel, by_nodes) : far_value(p, r));
-      *gradients++ = per_unit_ * (field_.to_nodes_.transpose() * by_nodes);
+      *gradients++ = per_unit_ * by_nodes.cwiseProduct(field_.nodes_per_unit_);
     }
   }
 
@@ -308,13 +288,12 @@ class LabelField::Sampler final : public FieldSampler {
   const LabelBricks& bricks_;
   const double per_unit_;         ///< lattice units
   const double cells_per_voxel_;  ///< lattice units per voxel of the frame
-  const LabelBricks::Brick outside_;
 };
 
 bool LabelField::is_certain(const Vec3& point) const {
   constexpr double cells_per_voxel = 2;
   if (cells_per_voxel * voxels().cell_size > (1 + tolerance::coinciding_cells) * shared_->voxel) return false;
-  const Vec3 at = to_nodes_ * point + first_node_;
+  const Vec3 at = to_nodes(point);
   // Only rounding separates a point from the voxel centre that it is meant to be at; in voxels.
   return (at - at.array().round().matrix()).cwiseAbs().maxCoeff() < tolerance::coinciding_cells;
 }
@@ -327,12 +306,11 @@ class LabelField::InterfaceFinder {
   /// Where cells are as large as voxels or larger, all that overlap the cube count. Of smaller ones a cell
   /// counts whose corners, middles of edges, faces or centre are of more than one region.
   explicit InterfaceFinder(const LabelField& field)
-      : cells_(field.voxels().cells),
+      : cells_(field.voxels().box),
         smaller_(field.voxels().cell_size < (1 - tolerance::coinciding_cells) * field.shared_->voxel),
         on_voxels_(field.refined(0)),
         sampler_(on_voxels_->sampler()),
-        max_slope_(std::sqrt(3.0) * 2 * LabelSmoother::band * field.voxels().cell_size *
-                   field.shared_->to_index.norm()),
+        max_slope_(std::sqrt(3.0) * 2 * LabelSmoother::band * field.shared_->voxels_per_cell.norm()),
         band_(LabelSmoother::band) {}
 
   /// `low`, `high`: the bounding box of the cube, in cells.
@@ -382,10 +360,10 @@ class LabelField::InterfaceFinder {
 
   bool is_mixed(int x, int y, int z) {
     const RegionIndex there = sampler_->nearest_at_voxel(x, y, z).region;
-    for (int k = 1; k < 27; ++k)
-      if (sampler_->nearest(Vec3(x + 0.5 * (k % 3), y + 0.5 * (k / 3 % 3), z + 0.5 * (k / 9))).region !=
-          there)
-        return true;
+    for (int k = 1; k < 27; ++k) {
+      const int dx = k % 3, dy = k / 3 % 3, dz = k / 9;  // half voxels
+      if (sampler_->nearest(Vec3(x + 0.5 * dx, y + 0.5 * dy, z + 0.5 * dz)).region != there) return true;
+    }
     return false;
   }
 
@@ -401,9 +379,9 @@ class LabelField::InterfaceFinder {
 
 std::vector<MortonKey> LabelField::interface_voxels() const {
   const LabelBricks& all = shared_->bricks;
-  const Eigen::Matrix3d to_cells = (shared_->to_index * voxels().cell_size).inverse();
-  const Vec3 first = shared_->to_index * (voxels().axes.transpose() * (voxels().origin - shared_->origin)) +
-                     Vec3::Constant(padding);
+  const auto to_cells = [&](const Vec3& node) -> Vec3 {
+    return (node - shared_->first_node).cwiseQuotient(shared_->voxels_per_cell);
+  };
   const auto rows = static_cast<std::size_t>(all.counts[1]) * all.counts[2];
   std::vector<MortonKey> keys = parallel_collect<MortonKey>(
       0, rows, 1, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
@@ -420,7 +398,7 @@ std::vector<MortonKey> LabelField::interface_voxels() const {
                               bz * brick_cells + cube[2]);
               Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
               for (int corner = 0; corner < 8; ++corner) {
-                const Vec3 at = to_cells * (node + Vec3(corner & 1, corner >> 1 & 1, corner >> 2) - first);
+                const Vec3 at = to_cells(node + Vec3(corner & 1, corner >> 1 & 1, corner >> 2));
                 low = low.cwiseMin(at);
                 high = high.cwiseMax(at);
               }
@@ -432,11 +410,20 @@ std::vector<MortonKey> LabelField::interface_voxels() const {
   return keys;
 }
 
+bool LabelField::is_at_border(const std::array<int, 3>& brick) const {
+  for (int a = 0; a < 3; ++a) {
+    const double from = shared_->first_node[a];
+    for (const double border : {from, from + voxels().box[a] * shared_->voxels_per_cell[a]})
+      if (brick[a] * brick_cells <= border && border <= (brick[a] + 1) * brick_cells) return true;
+  }
+  return false;
+}
+
 std::vector<LeafOrigin> LabelField::band_leaves(RegionIndex region) const {
   const LabelBricks& all = shared_->bricks;
-  const Eigen::Matrix3d to_cells = (shared_->to_index * voxels().cell_size).inverse();
-  const Vec3 first = shared_->to_index * (voxels().axes.transpose() * (voxels().origin - shared_->origin)) +
-                     Vec3::Constant(padding);
+  const auto to_cells = [&](const Vec3& node) -> Vec3 {
+    return (node - shared_->first_node).cwiseQuotient(shared_->voxels_per_cell);
+  };
   const double around = std::max(1.0, std::ceil(std::ldexp(band(), -refinement())));
   std::vector<LeafOrigin> leaves;
   for (int bz = 0; bz < all.counts[2]; ++bz)
@@ -444,12 +431,12 @@ std::vector<LeafOrigin> LabelField::band_leaves(RegionIndex region) const {
       for (int bx = 0; bx < all.counts[0]; ++bx) {
         const LabelBricks::Brick& b = all.brick(bx, by, bz);
         const auto channels = all.channels.begin() + b.first;
-        if (std::find(channels, channels + b.count, region) == channels + b.count) continue;
+        const bool cut_off = b.count == 0 && b.alone == region && is_at_border({bx, by, bz});
+        if (!cut_off && std::find(channels, channels + b.count, region) == channels + b.count) continue;
         Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
         for (int corner = 0; corner < 8; ++corner) {
           const Vec3 at =
-              to_cells *
-              (brick_cells * Vec3(bx + (corner & 1), by + (corner >> 1 & 1), bz + (corner >> 2)) - first);
+              to_cells(brick_cells * Vec3(bx + (corner & 1), by + (corner >> 1 & 1), bz + (corner >> 2)));
           low = low.cwiseMin(at);
           high = high.cwiseMax(at);
         }

@@ -8,9 +8,11 @@
 
 namespace tetwright {
 
-/// The frame for a segmented volume: cubes of `cell_size` (input units) along the axes of the volume, made
-/// perpendicular and right-handed. The centre of the first voxel is at a corner of cells, so cells of one
-/// voxel, half a voxel, ... have the centres of all voxels at corners.
+/// The frame for a segmented volume: its box ends exactly at the volume's border, half a voxel beyond the
+/// outermost centres, and its axes are the volume's, right-handed. Cells are cubes of `cell_size` (input
+/// units) as far as whole ones fill the box and the axes are perpendicular. The lattice, which has points at
+/// corners and centres of cells, has them at the centres of voxels where cells are one voxel, half a voxel,
+/// ...
 GridFrame label_frame(const LabelInput& labels, double cell_size, bool uniform);
 
 /// The smallest of the three spacings, input units: the length of a voxel.
@@ -36,6 +38,7 @@ class LabelField final : public MaterialField {
   bool knows_sheets() const override { return false; }
   /// True at the centres of voxels, provided that cells are at most half a voxel.
   bool is_certain(const Vec3& point) const override;
+  bool ends_at_box() const override { return true; }
 
  private:
   class Sampler;
@@ -46,9 +49,13 @@ class LabelField final : public MaterialField {
   LabelField(std::shared_ptr<const Shared> shared, const GridFrame& voxels, std::vector<FieldRegion> regions,
              int refinement);
 
+  /// From lattice units.
+  Vec3 to_nodes(const Vec3& point) const;
+  /// Whether the volume's border passes through a brick.
+  bool is_at_border(const std::array<int, 3>& brick) const;
+
   std::shared_ptr<const Shared> shared_;
-  Eigen::Matrix3d to_nodes_;  ///< lattice units to nodes
-  Vec3 first_node_;           ///< the lattice's origin, in nodes
+  Vec3 nodes_per_unit_;  ///< along each axis of the lattice
 };
 
 }  // namespace tetwright

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "mesher/domain/regions.h"
@@ -60,6 +62,14 @@ class LabelSmoother {
   /// The labels of side^3 voxels with the tile in their middle, x fastest; to be filled with two or more
   /// labels.
   std::span<RegionIndex> voxels() { return raw_; }
+  /// The voxels of the volume, as nodes of the tile from `low` to `high` (exclusive); at first all. Volumes
+  /// and contacts are those within it, up to half a voxel beyond the outermost centres.
+  void set_volume(const std::array<int, 3>& low, const std::array<int, 3>& high) {
+    low_ = low;
+    high_ = high;
+  }
+  /// How much of the volume is in a part of the tile, voxels.
+  double volume_of(const std::array<int, 3>& part) const;
   /// Finds the labels and returns their number, which must not exceed max_labels: each takes a megabyte.
   std::size_t number_labels();
   static constexpr std::size_t max_labels = 1024;
@@ -129,6 +139,20 @@ class LabelSmoother {
     return {near_.data() + n.first_label, n.label_count};
   }
 
+  /// Samples of shares() along each side of a cell.
+  static constexpr int samples_along = 4;
+  /// Of these the ones within the volume, of the cell above node i (of the tile) along an axis.
+  std::pair<int, int> samples_within(int axis, int i) const {
+    return {i >= low_[axis]       ? 0
+            : i == low_[axis] - 1 ? samples_along / 2
+                                  : samples_along,
+            i < high_[axis] - 1    ? samples_along
+            : i == high_[axis] - 1 ? samples_along / 2
+                                   : 0};
+  }
+
+  static constexpr int far = std::numeric_limits<int>::max() / 2;
+  std::array<int, 3> low_{-far, -far, -far}, high_{far, far, far};  ///< see set_volume()
   std::vector<RegionIndex> raw_;
   std::vector<std::uint16_t> own_;      ///< place in labels_ of each node's label
   std::vector<std::uint16_t> numbers_;  ///< by region: place in labels_ plus 1 while labels are numbered

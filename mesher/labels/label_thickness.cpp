@@ -184,7 +184,7 @@ class ThinLabelFinder {
         frame_(frame),
         progress_(progress),
         spacing_(labels.directions.colwise().norm()),
-        to_grid_(frame.axes.transpose() * labels.directions / frame.cell_size),
+        to_grid_(frame.axes.inverse() * labels.directions / frame.cell_size),
         first_(frame.to_grid(labels.origin)) {}
 
   /// The highest level, up to `coarsest`, of cells that may contain an interface: those of at most half a
@@ -245,8 +245,9 @@ class ThinLabelFinder {
             for (int a = 0; a < 3; ++a) {
               const double low = std::ldexp(middle[a] - reach[a], depth),
                            high = std::ldexp(middle[a] + reach[a], depth);
-              from[a] = std::max(0, static_cast<int>(std::floor(low)));
-              to[a] = std::min(frame_.cells[a] << depth, static_cast<int>(std::ceil(high)));
+              from[a] = std::max(0, static_cast<int>(std::floor(low + tolerance::coinciding_cells)));
+              to[a] = std::min(frame_.box[a] << depth,
+                               static_cast<int>(std::ceil(high - tolerance::coinciding_cells)));
             }
             for (int z = from[2]; z < to[2]; ++z)
               for (int y = from[1]; y < to[1]; ++y)
@@ -274,8 +275,8 @@ class ThinLabelFinder {
   /// Of a voxel, in grid coordinates.
   Vec3 centre(std::size_t voxel) const {
     const auto nx = static_cast<std::size_t>(labels_.size[0]), ny = static_cast<std::size_t>(labels_.size[1]);
-    return first_ + to_grid_ * Vec3(static_cast<double>(voxel % nx), static_cast<double>(voxel / nx % ny),
-                                    static_cast<double>(voxel / (nx * ny)));
+    const std::size_t x = voxel % nx, y = voxel / nx % ny, z = voxel / (nx * ny);
+    return first_ + to_grid_ * Vec3(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
   }
 
   const LabelInput& labels_;

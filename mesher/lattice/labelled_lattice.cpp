@@ -156,6 +156,7 @@ LabelledLattice label_lattice(LatticePoints points, std::vector<NearestRegion> n
   lattice.keep_outside = keep_outside;
   lattice.positions = std::move(points.positions);
   lattice.is_centre = std::move(points.is_centre);
+  lattice.box = points.box;
   points = {};
   const std::size_t count = lattice.positions.size();
   std::vector<RegionIndex>& regions = lattice.first_region;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -28,6 +29,10 @@ class LabelledLattice {
   TetList tets;                           ///< positive
   StarMap stars;                          ///< of all points of tets with more than one region
   bool keep_outside = false;
+  std::array<int, 3> box{};  ///< lattice units
+
+  /// The faces of the box that a point is on, see tetwright::box_faces().
+  unsigned box_faces(Index p) const { return tetwright::box_faces(positions[p], box); }
 
   /// The current region of a point, or on_interface.
   RegionIndex region(Index p) const { return is_on[p] ? on_interface : first_region[p]; }

@@ -167,6 +167,7 @@ LatticePoints lattice_points(const Octree& octree) {
         out.erase(std::unique(out.begin(), out.end()), out.end());
       });
   parallel_sort_unique(marked);
+  points.box = octree.cells;
   points.keys = std::move(marked);
   points.positions.resize(points.size());
   points.is_centre.resize(points.size());

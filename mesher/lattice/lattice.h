@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct LatticePoints {
 
   std::size_t size() const { return keys.size(); }
   std::vector<Index> leaf_centres;  ///< by leaf: the number of its centre
+  std::array<int, 3> box{};         ///< the octree's, lattice units
 
   /// The number of the point with this key, or no_index. Fast if it is close to the number `hint`.
   Index find(MortonKey key, Index hint = 0) const;

@@ -52,6 +52,30 @@ bool has_split_neighbour(MortonKey key, const std::array<int, 3>& size, const st
   return false;
 }
 
+/// Appends the cells of a level that the upper sides of the box cut in two.
+void append_cut_by_box(const std::array<int, 3>& box, int level, std::vector<MortonKey>& out) {
+  std::array<int, 3> size;
+  for (int a = 0; a < 3; ++a) size[a] = (box[a] + (1 << level) - 1) >> level;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (size[a] << level == box[a]) continue;
+    const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
+    std::array<int, 3> q;
+    q[a] = size[a] - 1;
+    for (q[c] = 0; q[c] < size[c]; ++q[c])
+      for (q[b] = 0; q[b] < size[b]; ++q[b]) out.push_back(morton_encode(q));
+  }
+}
+
+/// Drops the leaves beyond the box, which no leaf crosses.
+void cut_off_at_box(Octree& octree, const std::array<int, 3>& box) {
+  if (octree.cells == box) return;
+  std::erase_if(octree.packed, [&](std::uint64_t packed) {
+    const std::array<int, 3> low = morton_decode(packed >> 5);
+    return low[0] >= box[0] || low[1] >= box[1] || low[2] >= box[2];
+  });
+  octree.cells = box;
+}
+
 /// True if the cell contains one interface, and trilinear interpolation between the corners of the cell
 /// places it within `tolerance` (voxels) of the interface on voxels. `key` and `level` are in voxels.
 bool interpolates(FieldSampler& sampler, MortonKey key, int level, double tolerance,
@@ -157,18 +181,22 @@ Octree build_octree(const MaterialField& field, const OctreeOptions& options,
   const int voxel_level = field.refinement();
   // Cells of the current level that contain an interface.
   std::vector<MortonKey> holding = std::move(interface_voxels);
-  return build_octree(frame.cells, frame.root_level, [&](int level, const std::vector<MortonKey>& already) {
+  const SplitCells split = [&](int level, const std::vector<MortonKey>& already) {
     if (progress) {
       progress->throw_if_cancelled();
       progress->update(static_cast<double>(level) / (frame.root_level + 1));
     }
     const auto place = static_cast<std::size_t>(level);
     std::vector<MortonKey> sheets = place < thin.size() ? thin[place] : std::vector<MortonKey>();
+    append_cut_by_box(frame.box, level, sheets);
     if (level <= voxel_level) return sheets;
     for (MortonKey& key : holding) key >>= 3;
     holding.erase(std::unique(holding.begin(), holding.end()), holding.end());
     const int voxel_steps = level - voxel_level;
-    if (voxel_steps > options.coarsest_interface_level || options.adaptivity <= 0) return holding;
+    if (voxel_steps > options.coarsest_interface_level || options.adaptivity <= 0) {
+      sheets.insert(sheets.end(), holding.begin(), holding.end());
+      return sheets;
+    }
     const std::vector<MortonKey> failed = parallel_collect<MortonKey>(
         0, holding.size(), cell_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
           const std::unique_ptr<FieldSampler> owned = field.sampler();
@@ -181,15 +209,18 @@ Octree build_octree(const MaterialField& field, const OctreeOptions& options,
     const std::array<int, 3> size{frame.cells[0] >> level, frame.cells[1] >> level, frame.cells[2] >> level};
     // Cut tets are worse where cells of two sizes meet at the interface, so coarse cells are used only inside
     // patches of them, never singly.
-    std::vector<MortonKey> split = parallel_collect<MortonKey>(
+    std::vector<MortonKey> chosen = parallel_collect<MortonKey>(
         0, holding.size(), cell_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
           for (std::size_t i = begin; i < end; ++i)
             if (has_split_neighbour(holding[i], size, failed)) out.push_back(holding[i]);
         });
-    split.insert(split.end(), failed.begin(), failed.end());
-    split.insert(split.end(), sheets.begin(), sheets.end());
-    return split;
-  });
+    chosen.insert(chosen.end(), failed.begin(), failed.end());
+    chosen.insert(chosen.end(), sheets.begin(), sheets.end());
+    return chosen;
+  };
+  Octree octree = build_octree(frame.cells, frame.root_level, split);
+  cut_off_at_box(octree, frame.box);
+  return octree;
 }
 
 }  // namespace tetwright

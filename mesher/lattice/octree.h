@@ -48,9 +48,10 @@ struct OctreeOptions {
   int coarsest_interface_level = 2;
 };
 
-/// The octree for a field: cells of one voxel at interfaces, except where trilinear interpolation over a
-/// coarser cell is accurate enough, and larger cells away from them. `interface_voxels` are the field's. The
-/// cells listed in `thin`, by level, are split further. Throws Interrupted.
+/// The octree for a field, of the leaves within the frame's box: cells of one voxel at interfaces, except
+/// where trilinear interpolation over a coarser cell is accurate enough, and larger cells away from them.
+/// `interface_voxels` are the field's. The cells listed in `thin`, by level, are split further. Throws
+/// Interrupted.
 Octree build_octree(const MaterialField& field, const OctreeOptions& options,
                     std::vector<MortonKey> interface_voxels, const std::vector<std::vector<MortonKey>>& thin,
                     Progress* progress);

@@ -167,6 +167,7 @@ TetMesh MeshCompaction::to_mesh() {
   }
   const FacePatches patches = this->patches(number);
   mesh.material_names = std::move(mesh_.names_);
+  mesh.patch_groups = std::move(mesh_.patch_groups_);
   mesh_.tets_ = {};
   mesh_.regions_ = {};
   mesh_.qualities_ = {};

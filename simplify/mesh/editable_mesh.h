@@ -49,6 +49,7 @@ class EditableMesh {
   std::size_t region_count() const { return tags_.size(); }
   MaterialTag tag(RegionId region) const { return tags_[region]; }
   const std::map<MaterialTag, std::string>& names() const { return names_; }
+  const std::map<InterfacePatch, FaceGroup>& patch_groups() const { return patch_groups_; }
   const WorkingSpace& space() const { return space_; }
   Vec3 snap(const Vec3& working) const { return space_.snap(working); }
 
@@ -217,6 +218,7 @@ class EditableMesh {
   FacePatches interface_patches_;
   std::vector<MaterialTag> tags_;  ///< of each region
   std::map<MaterialTag, std::string> names_;
+  std::map<InterfacePatch, FaceGroup> patch_groups_;
   WorkingSpace space_;
 };
 

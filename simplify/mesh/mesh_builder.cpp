@@ -34,6 +34,7 @@ void MeshBuilder::build(TetMesh&& input) {
   if (input.tets.size() >= FaceLink::max_tets)
     throw InputError(name_, 0, std::to_string(input.tets.size()) + " tets are more than the 2^30 possible");
   mesh_.names_ = std::move(input.material_names);
+  mesh_.patch_groups_ = std::move(input.patch_groups);
   take_points(std::move(input.points));
   take_tets(input);
   const std::vector<InterfaceTriangle> interfaces = std::move(input.interfaces);

@@ -6,35 +6,13 @@
 #include <numbers>
 
 #include "common/geometry/quality.h"
-#include "common/mesh/interfaces.h"
-#include "common/mesh/mesh_check.h"
-#include "common/mesh/topology.h"
 #include "common/parallel/parallel.h"
 #include "common/random.h"
+#include "tests/mesher/checked_labels.h"
 #include "tests/mesher/label_volumes.h"
 
 namespace tetwright::label_mesher_test {
 namespace {
-
-MesherOptions cells_of(double cell, double adaptivity = MesherOptions().adaptivity) {
-  MesherOptions options;
-  options.voxel_size = cell;
-  options.adaptivity = adaptivity;
-  return options;
-}
-
-/// Meshes and looks at what must hold of any volume.
-DenseMesh checked_mesh(const LabelInput& labels, const MesherOptions& options) {
-  DenseMesh meshed = mesh_labels(labels, options, nullptr);
-  for (const MeshFinding& f : check_mesh(meshed.mesh)) ADD_FAILURE() << mesh_finding_line(f);
-  EXPECT_EQ(meshed.mesh.interfaces, find_interfaces(meshed.mesh));
-  for (const LabelMaterial& m : labels.materials) {
-    EXPECT_GT(std::count(meshed.mesh.materials.begin(), meshed.mesh.materials.end(), m.tag), 0) << m.tag;
-    EXPECT_EQ(meshed.mesh.material_names.at(m.tag), m.name);
-  }
-  return meshed;
-}
-DenseMesh checked_mesh(const LabelInput& labels, double cell) { return checked_mesh(labels, cells_of(cell)); }
 
 /// Promises of cells no larger than half a voxel.
 void expect_faithful(const LabelInput& labels, const TetMesh& mesh) {
@@ -43,8 +21,6 @@ void expect_faithful(const LabelInput& labels, const TetMesh& mesh) {
   EXPECT_LE(f.moved, 0.75) << fidelity_line(f);
   EXPECT_LE(f.worst_volume, 0.02) << fidelity_line(f);
 }
-
-double length(double x, double y, double z) { return std::sqrt(x * x + y * y + z * z); }
 
 struct Angles {
   double percent_poor = 0, smallest = HUGE_VAL;
@@ -87,16 +63,6 @@ LabelInput blobs(const std::array<int, 3>& size, int seeds, int labels, std::uin
         return label;
       },
       directions, origin);
-}
-
-std::string text(const TetMesh& mesh) {
-  std::string all;
-  for (const std::string& line : topology_lines(topology(mesh))) all += line + "\n";
-  return all;
-}
-
-void expect_line(const TetMesh& mesh, const std::string& line) {
-  EXPECT_NE(text(mesh).find(line + "\n"), std::string::npos) << line << "\nnot in\n" << text(mesh);
 }
 
 TEST(LabelMesher, CentresInterfacesAndVolumesOfBlobs) {
@@ -152,7 +118,6 @@ struct Sides {
 };
 const std::vector<Sides> all_sides{{0, 0}, {1, 1}, {1, 3}, {0, 1}};
 
-const std::string disc = "components 1, euler 1, boundary components 1, boundary euler 2";
 const std::string shell = "components 1, euler 2, boundary components 2, boundary euler 4";
 
 /// The sheet is label 2; `topology` is what it must have.

@@ -7,6 +7,7 @@
 #include "common/formats/atomic_file.h"
 #include "common/formats/formats.h"
 #include "common/message_text.h"
+#include "tools/held_tets.h"
 #include "tools/limiting_rules.h"
 #include "tools/report.h"
 #include "tools/stats_json.h"
@@ -100,9 +101,13 @@ void report_poor_shapes(const CommandLine& line, RunReport& report) {
   char what[100];
   std::snprintf(what, sizeof what, "tets below %.6g sr, %.2g %% of all, the smallest at %.3g sr",
                 line.min_solid_angle, result.below_percent, result.min_solid_angle);
+  const std::string held =
+      report.held_by_input == 0
+          ? ""
+          : std::to_string(report.held_by_input) + " of them in angles of the input too narrow for more; ";
   report.findings.push_back(
       {report.inputs.front(),
-       {what, result.below_count, {}, "held back by: " + rules_limiting_shapes(*report.simplify)}});
+       {what, result.below_count, {}, held + "held back by: " + rules_limiting_shapes(*report.simplify)}});
 }
 
 /// Labels that were to be meshed and are not in the mesh.
@@ -249,6 +254,32 @@ void find_changed_creases(const CommandLine& line, const TetMesh& mesh, RunRepor
                                            : "take it as it is with --accept-changes")});
 }
 
+/// Patches of the user of which the mesh has nothing: a shortfall, or with --accept-changes a finding.
+void find_lost_patches(const CommandLine& line, const TetMesh& mesh, RunReport& report) {
+  compare_patches(mesh, report.patches);
+  std::string text;
+  std::size_t lost = 0;
+  for (const PatchFidelity& p : report.patches)
+    if (p.lost() && lost++ < max_lost_named)
+      text += (text.empty() ? "" : ", ") + ("'" + patch_name(p.group)) + "' at " + place_text(p.place);
+  if (lost == 0) return;
+  if (lost > max_lost_named) text += ", ...";
+  const std::size_t all = report.patches.size();
+  if (line.accept_changes || changed_on_purpose(report)) {
+    report.findings.push_back({report.inputs.front(),
+                               {"named patches that are lost: " + text,
+                                lost,
+                                {},
+                                line.accept_changes ? "accepted" : "as --min-gap and --min-thickness ask"}});
+    return;
+  }
+  report.shortfall.push_back(
+      {"patches", static_cast<double>(all), static_cast<double>(all - lost), "the size of the cells",
+       "lost " + std::to_string(lost) + " of " + std::to_string(all) + " named patches: " + text +
+           "; they are smaller than cells or inside another material: raise --resolution, or leave them "
+           "out"});
+}
+
 /// With --strict whatever is noted.
 void find_notes(const CommandLine& line, const std::vector<std::string>& notes, RunReport& report) {
   if (!line.strict || notes.empty()) return;
@@ -277,6 +308,7 @@ ExitStatus finish(const TetMesh& mesh, const MaterialField* field, CommandRun& r
   report.material_names = mesh.material_names;
   if (report.simplify) {
     report.result = mesh_statistics(mesh, run.line.min_solid_angle);
+    report.held_by_input = tets_held_by_input(mesh, report.creases, run.line.min_solid_angle);
     report_touching_points(report.inputs.front(), report);
     report_volumes(mesh, report.inputs.front(), report);
     find_count_and_shape_shortfall(run.line, report);
@@ -288,6 +320,7 @@ ExitStatus finish(const TetMesh& mesh, const MaterialField* field, CommandRun& r
   find_changed_solids(run.line, mesh, report);
   find_thin_walls(run.line, report);
   find_changed_creases(run.line, mesh, report);
+  find_lost_patches(run.line, mesh, report);
   const std::vector<std::string> notes = notes_of(report);
   find_notes(run.line, notes, report);
   write_files(mesh, field, run);

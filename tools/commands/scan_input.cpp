@@ -9,6 +9,7 @@
 #include "common/error.h"
 #include "common/formats/formats.h"
 #include "common/formats/label_names.h"
+#include "mesher/input/split_solids.h"
 
 namespace tetwright {
 
@@ -18,7 +19,7 @@ namespace {
 void check_input_kinds(const CommandLine& line) {
   for (const std::string& file : input_files(line)) {
     const FileKind kind = file_kind(file);
-    if (is_vdb(file) || kind == FileKind::surface || kind == FileKind::volume) continue;
+    if (is_vdb(file) || may_hold_surface(file) || kind == FileKind::volume) continue;
     std::string read = name_of(line.command);
     read.append(" reads surfaces (").append(known_extensions(FileKind::surface));
     read.append("), level sets (.vdb) and segmented volumes (").append(known_extensions(FileKind::volume));
@@ -62,6 +63,8 @@ bool is_volume(const CommandLine& line, std::optional<LabelVolume>& vdb_labels) 
         "volume");
   if (line.feature_angle.rule != FeatureAngle::Rule::automatic)
     throw UsageError("--feature-angle is for surfaces and tet meshes, and the input is a segmented volume");
+  if (line.split_solids)
+    throw UsageError("--split-solids is for surfaces, and the input is a segmented volume");
   if (line.nested != NestedRule::automatic)
     throw UsageError("--nested is for surfaces, and the input is a segmented volume");
   return true;
@@ -100,29 +103,43 @@ TriangleMesh read_one_level_set(const NamedValue& material) {
   return std::move(level_sets[0].surface);
 }
 
-/// One material for each surface and level set, with tags from 1 in the order of the call.
+/// One material for each surface and level set, or with --split-solids for each solid of a surface, with tags
+/// from 1 in the order of the call.
 std::vector<MaterialSurface> read_material_surfaces(const CommandLine& line, RunReport& report) {
   std::vector<MaterialSurface> surfaces;
+  const auto add = [&](const std::string& name, const std::string& file, TriangleMesh surface) {
+    surfaces.push_back({name, static_cast<MaterialTag>(surfaces.size() + 1), std::move(surface), file});
+  };
+  const auto count = [&](TriangleMesh surface) {
+    report.input_triangles += surface.triangles.size();
+    report.input_points += surface.points.size();
+    return surface;
+  };
   const auto read = [&](const std::string& file) {
     std::vector<Dropped> dropped;
     TriangleMesh surface = read_surface(file, &dropped);
     report_dropped(dropped, file, report);
-    return surface;
+    return count(std::move(surface));
   };
-  const auto add = [&](const std::string& name, const std::string& file, TriangleMesh surface) {
-    report.input_triangles += surface.triangles.size();
-    report.input_points += surface.points.size();
-    surfaces.push_back({name, static_cast<MaterialTag>(surfaces.size() + 1), std::move(surface), file});
-  };
+  bool split = false;
   for (const std::string& file : line.inputs) {
-    if (is_vdb(file))
+    if (is_vdb(file)) {
       for (NamedSurface& s : read_level_sets(file))
-        add(s.name.empty() ? file_stem(file) : s.name, file, std::move(s.surface));
-    else
+        add(s.name.empty() ? file_stem(file) : s.name, file, count(std::move(s.surface)));
+    } else if (line.split_solids) {
+      std::vector<NamedSurface> solids = split_solids(read(file), file_stem(file));
+      split |= solids.size() > 1;
+      for (NamedSurface& s : solids) add(s.name, file, std::move(s.surface));
+    } else {
       add(file_stem(file), file, read(file));
+    }
   }
+  if (line.split_solids && !split)
+    throw InputError(line.inputs.empty() ? line.materials.front().value : line.inputs.front(), 0,
+                     "--split-solids finds no solids, groups or labels that tell its parts apart; leave the "
+                     "option out (it does not split what --material names)");
   for (const NamedValue& m : line.materials)
-    add(m.name, m.value, is_vdb(m.value) ? read_one_level_set(m) : read(m.value));
+    add(m.name, m.value, is_vdb(m.value) ? count(read_one_level_set(m)) : read(m.value));
   return surfaces;
 }
 
@@ -134,6 +151,7 @@ MesherInput read_surfaces(CommandRun& run) {
         {l.name, static_cast<MaterialTag>(surfaces.size() + layers.size() + 1), std::stod(l.value)});
   MesherInput input = make_mesher_input(std::move(surfaces), std::move(layers), run.line.nested);
   run.report.findings.insert(run.report.findings.end(), input.findings.begin(), input.findings.end());
+  run.report.patches = patches_of_input(input);
   return input;
 }
 

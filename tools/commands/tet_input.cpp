@@ -33,6 +33,7 @@ void repair(TetMesh& mesh, const std::string& file, RunReport& report) {
   std::optional<Vec3> first;
   if (!found.first_inverted.empty()) first = mesh.points[mesh.tets[found.first_inverted.front()][0]];
   add(found.inverted_tets, "flat or negative tets", "kept unless the work puts them right", first);
+  add(found.lost_faces, "faces of named patches between tets that were merged", "no longer of the boundary");
   if (mesh.tets.empty()) throw InputError(file, 0, "all its tets have a vertex twice; nothing is left of it");
 }
 
@@ -54,12 +55,13 @@ TetInput read_tets(CommandRun& run) {
     input.mesh.point_fields.clear();
     input.mesh.cell_fields.clear();
   }
+  run.report.patches = patches_of_input(input.mesh);
   if (run.line.feature_angle.rule != FeatureAngle::Rule::off) {
     run.report.features.push_back(
         {file_stem(file), find_mesh_patches(input.mesh, run.line.feature_angle, file)});
     run.report.features.back().found.patches = {};
-    run.report.creases = mesh_creases(input.mesh);
   }
+  run.report.creases = mesh_creases(input.mesh);
   run.report.seconds_read = watch.seconds();
   if (run.line.target_tets > input.mesh.tets.size())
     throw UsageError("--target-tets " + std::to_string(run.line.target_tets) + " is above the " +

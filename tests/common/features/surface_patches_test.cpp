@@ -180,6 +180,49 @@ TEST(SurfacePatches, KinksAreCorners) {
   EXPECT_EQ(find_creases(s.points, s.triangles, patches).corners.size(), 12U);
 }
 
+TEST(SurfacePatches, AZigzagHasNoCorners) {
+  // A strip of squares 1 wide, with a border between two patches that goes up and down by 1, and turns once.
+  std::vector<Vec3> points;
+  std::vector<Triangle> triangles;
+  std::vector<std::uint16_t> patches;
+  constexpr int n = 60;
+  for (int y = 0; y <= n; ++y)
+    for (int x = 0; x <= n; ++x) points.emplace_back(x, y, 0);
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x) {
+      const auto p = static_cast<Index>(y * (n + 1) + x), q = p + n + 1;
+      const bool inside = x >= 30 + x % 2 && y >= 30 + x % 2;
+      for (const Triangle& t : {Triangle{p, p + 1, q + 1}, Triangle{p, q + 1, q}}) {
+        triangles.push_back(t);
+        patches.push_back(inside ? 1 : 0);
+      }
+    }
+  EXPECT_GT(find_creases(points, triangles, patches).corners.size(), 20U);
+  const std::vector<Index> corners = find_creases(points, triangles, patches, 8).corners;
+  // Its two ends, and where it turns, which is within the reach.
+  EXPECT_GE(corners.size(), 3U);
+  EXPECT_LE(corners.size(), 4U);
+  EXPECT_TRUE(std::any_of(corners.begin(), corners.end(),
+                          [&](Index c) { return (points[c] - Vec3(30, 30, 0)).norm() < 4; }));
+}
+
+TEST(MeshPatches, KeepTheirGroups) {
+  TetMesh mesh = grid_mesh({4, 4, 4}, [](int, int, int) { return 1; });
+  mesh.interfaces = find_interfaces(mesh);
+  const MaterialPair outer{1, std::nullopt};
+  for (InterfaceTriangle& t : mesh.interfaces)
+    if (std::all_of(t.ids.begin(), t.ids.end(), [&](Index p) { return mesh.points[p].x() <= 2; }))
+      t.patch = 9;
+  mesh.patch_groups[{outer, 9}] = {0, "half"};
+  EXPECT_EQ(find_mesh_patches(mesh, {}, "mesh").count, 10U);
+  EXPECT_EQ(mesh.patch_groups.size(), 5U);
+  for (const InterfaceTriangle& t : mesh.interfaces) {
+    const Vec3 centre = (mesh.points[t.ids[0]] + mesh.points[t.ids[1]] + mesh.points[t.ids[2]]) / 3;
+    const auto group = mesh.patch_groups.find({outer, t.patch});
+    EXPECT_EQ(group != mesh.patch_groups.end() && group->second.name == "half", centre.x() < 2);
+  }
+}
+
 TEST(MeshPatches, AreNumberedForEachPairOfMaterials) {
   TetMesh mesh =
       grid_mesh({4, 4, 4}, [](int x, int, int) { return std::optional<MaterialTag>(x < 2 ? 1 : 2); });

@@ -46,10 +46,9 @@ TEST(Medit, OtherSectionsAndCommentsAreSkippedInAnyOrder) {
                  "f");
   EXPECT_EQ(r.mesh.tets, (std::vector<Tet>{{0, 1, 2, 3}}));
   EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{-5}));
-  EXPECT_EQ(r.dropped, (std::vector<Dropped>{{"triangles of references (\"4\")", 1},
-                                             {"ridges", 1},
-                                             {"required vertices", 1},
-                                             {"points with a reference other than 0", 1}}));
+  EXPECT_EQ(r.dropped,
+            (std::vector<Dropped>{
+                {"ridges", 1}, {"required vertices", 1}, {"points with a reference other than 0", 1}}));
 }
 
 TEST(Medit, OtherVolumeCellsAreRefusedByKindAndNumber) {
@@ -74,8 +73,23 @@ TEST(Medit, InterfaceTrianglesAreFoundAgain) {
   // A group with another number may be a boundary condition.
   std::string other = text;
   other.replace(other.find("1 2 3 2\n"), 8, "1 2 3 9\n");
-  EXPECT_EQ(dropped(other), (std::vector<Dropped>{{"boundary and interface triangles of 2 groups", 6, true},
-                                                  {"triangles of references (\"9\")", 1}}));
+  EXPECT_TRUE(dropped(other).empty());
+  const TetMesh back = read_medit(other, "f").mesh;
+  EXPECT_EQ(back.patch_groups.at({{-7, 1}, 3}), (FaceGroup{9, ""}));
+  const std::string again = write_medit(back);
+  EXPECT_NE(again.find("# reference 1: 1\n# reference 3: 3\n# reference 9: 9\n"), std::string::npos) << again;
+  EXPECT_EQ(again.substr(again.find("Triangles")), other.substr(other.find("Triangles")));
+}
+
+TEST(Medit, Surfaces) {
+  const std::string text = head + vertices + "Triangles\n2\n1 2 3 4\n1 2 4 5\nRidges\n1\n1\nEnd\n";
+  std::vector<Dropped> dropped;
+  const TriangleMesh mesh = read_medit_surface(text, "f", &dropped);
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}}));
+  EXPECT_EQ(mesh.groups, (std::vector<FaceGroup>{{4, ""}, {5, ""}}));
+  EXPECT_EQ(dropped, (std::vector<Dropped>{{"ridges", 1}, {"points with a reference other than 0", 1}}));
+  expect_input_error(read_medit_surface, write_medit(two_tets(2)), "2 tets", "tetwright simplify");
+  expect_input_error(read_medit_surface, head + vertices + "Triangles\n1\n1 2 9 4\n", "point 8");
 }
 
 TEST(Medit, BadInput) {

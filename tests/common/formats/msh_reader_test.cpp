@@ -34,9 +34,9 @@ TEST(MshReader, Version41) {
   EXPECT_EQ(r.mesh.material_names, (std::map<MaterialTag, std::string>{{7, "my bone"}}));
   EXPECT_EQ(r.material_field, "gmsh:physical");
   EXPECT_TRUE(r.mesh.cell_fields.empty());
-  EXPECT_EQ(r.dropped, (std::vector<Dropped>{{"triangles of physical groups (\"skin\")", 2},
-                                             {"points", 1},
-                                             {"further physical groups of entities", 1}}));
+  EXPECT_EQ(r.mesh.patch_groups,
+            (std::map<InterfacePatch, FaceGroup>{{{{7, std::nullopt}, 1}, {7, "skin"}}}));
+  EXPECT_EQ(r.dropped, (std::vector<Dropped>{{"points", 1}, {"further physical groups of entities", 1}}));
 }
 
 TEST(MshReader, WithoutPhysicalGroupsTheVolumeIsTheMaterial) {

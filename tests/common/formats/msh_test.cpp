@@ -50,12 +50,49 @@ TEST(Msh, InterfaceTrianglesFollowTheTets) {
   EXPECT_TRUE(back.mesh.interfaces.empty());
   EXPECT_EQ(write_msh(back.mesh), without);
   EXPECT_EQ(back.dropped, (std::vector<Dropped>{{"boundary and interface triangles of 3 groups", 7, true}}));
-  // A group that the user named is lost.
-  std::string named = text;
-  named.replace(named.find("bone|outside"), 12, "inlet");
-  EXPECT_EQ(read_msh(named, "f").dropped,
-            (std::vector<Dropped>{{"boundary and interface triangles of 2 groups", 4, true},
-                                  {"triangles of physical groups (\"inlet\")", 3}}));
+}
+
+TEST(Msh, GroupsOfFacesComeBackWithTheirNamesAndNumbers) {
+  TetMesh mesh = two_tets(-7);
+  mesh.material_names = {{1, "bone"}};
+  mesh.interfaces = find_interfaces(mesh);
+  const MaterialPair outer{1, std::nullopt};
+  for (InterfaceTriangle& t : mesh.interfaces)
+    if (t.pair() == outer) t.patch = 5;
+  std::find_if(mesh.interfaces.begin(), mesh.interfaces.end(), [&](const InterfaceTriangle& t) {
+    return t.pair() == outer;
+  })->patch = 6;
+  mesh.patch_groups = {{{outer, 5}, {12, "inlet"}}, {{outer, 6}, {0, "outlet"}}};
+  const std::string text = write_msh(mesh);
+  EXPECT_NE(text.find("$PhysicalNames\n5\n2 1 \"-7|outside\"\n2 2 \"-7|bone\"\n2 3 \"outlet\"\n"
+                      "2 12 \"inlet\"\n3 1 \"bone\"\n"),
+            std::string::npos)
+      << text;
+  const ReadTetMesh back = read_msh(text, "f");
+  EXPECT_TRUE(back.dropped.empty());
+  EXPECT_EQ(back.mesh.interfaces.size(), mesh.interfaces.size());
+  EXPECT_EQ(write_msh(back.mesh), text);
+  std::string twice = text;
+  twice.replace(twice.find("outlet"), 6, "inlet");
+  expect_input_error(read_msh, twice, "line 9", "both called \"inlet\"");
+  // The points of the last triangle do not belong to one tet.
+  std::string other = text;
+  other.replace(other.find("$EndElements"), 0, "10 2 2 12 12 1 4 5\n");
+  other.replace(other.find("$Elements\n9"), 11, "$Elements\n10");
+  expect_input_error(read_msh, other, "\"inlet\"", "no face of a tet");
+}
+
+TEST(Msh, SurfacesWithGroups) {
+  const std::string text = head + "$PhysicalNames\n1\n2 7 \"skin\"\n$EndPhysicalNames\n" + nodes +
+                           elements("1 15 2 0 1 1\n2 2 2 7 1 1 2 3\n3 2 2 9 1 1 2 4\n4 2 2 7 1 2 3 4\n", "4");
+  std::vector<Dropped> dropped;
+  const TriangleMesh mesh = read_msh_surface(text, "f", &dropped);
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}, {1, 2, 3}}));
+  EXPECT_EQ(mesh.groups, (std::vector<FaceGroup>{{7, "skin"}, {9, ""}}));
+  EXPECT_EQ(mesh.triangle_groups, (std::vector<std::uint32_t>{0, 1, 0}));
+  EXPECT_EQ(dropped, (std::vector<Dropped>{{"points", 1}}));
+  expect_input_error(read_msh_surface, write_msh(two_tets(2)), "2 tets", "tetwright simplify");
+  expect_input_error(read_msh_surface, head + nodes + elements("1 15 2 0 1 1\n", "1"), "no triangles");
 }
 
 TEST(Msh, WhatGmshWrites) {
@@ -69,8 +106,9 @@ TEST(Msh, WhatGmshWrites) {
   EXPECT_EQ(r.mesh.tets, (std::vector<Tet>{{0, 1, 2, 3}, {1, 2, 3, 4}}));
   EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{7, 8}));
   EXPECT_EQ(r.mesh.material_names, (std::map<MaterialTag, std::string>{{7, "my bone"}}));
-  EXPECT_EQ(r.dropped, (std::vector<Dropped>{{"triangles of physical groups (\"skin\")", 1},
-                                             {"points", 1},
+  EXPECT_EQ(r.mesh.patch_groups,
+            (std::map<InterfacePatch, FaceGroup>{{{{7, std::nullopt}, 1}, {7, "skin"}}}));
+  EXPECT_EQ(r.dropped, (std::vector<Dropped>{{"points", 1},
                                              {"tets with numbers of partitions", 1},
                                              {"sections (\"$ElementNodeData\")", 1}}));
 }
@@ -162,8 +200,7 @@ TEST(Msh, DataOfSomeNodesAndOfOtherElements) {
                                                     "$EndElementData\n",
                                                 "f")
                                            .dropped;
-  EXPECT_EQ(dropped, (std::vector<Dropped>{{"triangles of physical groups (\"7\")", 1},
-                                           {"fields of elements other than tets (\"faces\")", 1}}));
+  EXPECT_EQ(dropped, (std::vector<Dropped>{{"fields of elements other than tets (\"faces\")", 1}}));
 }
 
 TEST(Msh, WhatIsTakenForTheMaterial) {

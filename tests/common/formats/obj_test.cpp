@@ -39,9 +39,20 @@ TEST(Obj, WhatIsDroppedIsNamed) {
       "f", &dropped);
   EXPECT_EQ(dropped, (std::vector<Dropped>{{"points with a weight or a colour", 1},
                                            {"texture coordinates", 2},
-                                           {"names of groups", 1},
                                            {"lines", 1},
                                            {"statements \"zap\"", 1}}));
+}
+
+TEST(Obj, ObjectsGroupsAndMaterialsThatDifferAreGroups) {
+  const std::string face = "f 1 2 3\n";
+  const auto groups = [&](const std::string& text) { return read_obj(points + text, "f").groups; };
+  EXPECT_TRUE(groups("o a\ng b\nusemtl c\n" + face + face).empty());
+  EXPECT_EQ(groups("o a\ng b\n" + face + "g c d\n" + face), (std::vector<FaceGroup>{{0, "b"}, {0, "c d"}}));
+  EXPECT_EQ(groups("o a\ng b\nusemtl m\n" + face + "o c\nusemtl n\n" + face),
+            (std::vector<FaceGroup>{{0, "a:m"}, {0, "c:n"}}));
+  const TriangleMesh mesh = read_obj(points + face + "g a\n" + face + "g b\n" + face + "g a\n" + face, "f");
+  EXPECT_EQ(mesh.groups, (std::vector<FaceGroup>{{}, {0, "a"}, {0, "b"}}));
+  EXPECT_EQ(mesh.triangle_groups, (std::vector<std::uint32_t>{0, 1, 2, 1}));
 }
 
 TEST(Obj, FacesMayComeBeforeTheirPoints) {

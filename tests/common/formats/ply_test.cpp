@@ -123,5 +123,27 @@ TEST(Ply, BadInput) {
                      "no triangles");
 }
 
+TEST(Ply, LabelsOfFacesAreGroups) {
+  const auto text = [](const std::string& property, const std::string& second) {
+    return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+           "element face 3\n" +
+           property +
+           "\nproperty list uchar int vertex_indices\nend_header\n"
+           "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 4 0 1 2 3\n" +
+           second + " 3 0 1 3\n3 3 1 2 3\n";
+  };
+  const TriangleMesh mesh = read_ply(text("property int patch_id", "7"), "f");
+  EXPECT_EQ(mesh.groups, (std::vector<FaceGroup>{{3, ""}, {7, ""}}));
+  EXPECT_EQ(mesh.triangle_groups, (std::vector<std::uint32_t>{0, 0, 1, 0}));
+  EXPECT_TRUE(read_ply(text("property int patch_id", "3"), "f").groups.empty());
+  for (const std::string& other :
+       {std::string("property float patch_id"), std::string("property int flags")}) {
+    std::vector<Dropped> dropped;
+    EXPECT_TRUE(read_ply(text(other, "7"), "f", &dropped).groups.empty());
+    ASSERT_EQ(dropped.size(), 1u);
+  }
+  expect_input_error(read_ply, text("property int label", "x"), "label of a face", "\"x\"");
+}
+
 }  // namespace
 }  // namespace tetwright::ply_test

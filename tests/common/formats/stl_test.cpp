@@ -56,9 +56,15 @@ TEST(Stl, WhatIsDroppedIsNamed) {
   (void)read_stl(bytes + "more", "f", &dropped);
   EXPECT_EQ(dropped, (std::vector<Dropped>{{"triangles with attribute bytes", 1},
                                            {"bytes behind the last triangle", 4}}));
-  dropped.clear();
-  (void)read_stl("solid a\n" + facet + "endsolid a\nsolid b\n" + facet + "endsolid b\n", "f", &dropped);
-  EXPECT_EQ(dropped, (std::vector<Dropped>{{"solids told apart in the file", 2}}));
+}
+
+TEST(Stl, SolidsAreGroups) {
+  const auto solid = [](const std::string& name) { return "solid" + name + "\n" + facet + "endsolid\n"; };
+  const TriangleMesh mesh = read_stl(solid(" a b ") + solid("") + solid(" c"), "f");
+  EXPECT_EQ(mesh.groups, (std::vector<FaceGroup>{{0, "a b"}, {0, "solid_2"}, {0, "c"}}));
+  EXPECT_EQ(mesh.triangle_groups, (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_TRUE(read_stl(solid(" a"), "f").groups.empty());  // nothing to tell apart
+  expect_input_error(read_stl, solid(" a") + solid(" b") + solid(" a"), "\"a\"", "another name");
 }
 
 TEST(Stl, SeveralSolidsInAnyCase) {

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "common/geometry/predicates.h"
+#include "common/mesh/interfaces.h"
 #include "common/parallel/parallel.h"
 #include "common/random.h"
 #include "tests/common/small_meshes.h"
@@ -145,6 +146,25 @@ TEST(ForeignMesh, SoupOfAGrid) {
       for (std::size_t q = 0; q < first; ++q) ASSERT_NE(soup.points[q], mesh.points[p]);
     }
   }
+}
+
+TEST(ForeignMesh, PatchesStayWithTheirFaces) {
+  TetMesh soup = soup_of(grid_mesh(2));
+  turn(soup.tets[3]);
+  soup.interfaces = find_interfaces(soup);
+  const std::size_t faces = soup.interfaces.size();
+  for (InterfaceTriangle& t : soup.interfaces)
+    t.patch =
+        soup.points[t.ids[0]].x() == 0 && soup.points[t.ids[1]].x() == 0 && soup.points[t.ids[2]].x() == 0;
+  soup.interfaces[faces / 2].patch = 2;  // within the mesh that the soup becomes
+  soup.patch_groups[{{1, std::nullopt}, 1}] = {0, "left"};
+  const ForeignReport report = make_coherent(soup);
+  ASSERT_LT(soup.interfaces.size(), faces);
+  EXPECT_EQ(report.lost_faces, 1u);
+  for (const InterfaceTriangle& t : soup.interfaces)
+    EXPECT_EQ(t.patch, soup.points[t.ids[0]].x() == 0 && soup.points[t.ids[1]].x() == 0 &&
+                           soup.points[t.ids[2]].x() == 0);
+  EXPECT_EQ(soup.patch_groups.size(), 1u);
 }
 
 TEST(ForeignMesh, UnusedPointsOfASoupStay) {

@@ -133,8 +133,6 @@ TEST(Interfaces, GroupsAndTheirNames) {
       {{0, 1, 2}, 2, 7}, {{0, 1, 3}, -4, 2}, {{1, 2, 3}, 2, std::nullopt}, {{1, 2, 4}, 2, 7}};
   const std::vector<MaterialPair> groups = interface_groups(triangles);
   EXPECT_EQ(groups, (std::vector<MaterialPair>{{-4, 2}, {2, std::nullopt}, {2, 7}}));
-  EXPECT_EQ(group_number(groups, triangles[0]), 3u);
-  EXPECT_EQ(group_number(groups, triangles[1]), 1u);
   EXPECT_EQ(pair_name(groups[0]), "-4|2");
   EXPECT_EQ(pair_name(groups[1], {{2, "bone"}}), "bone|outside");
   EXPECT_EQ(pair_name(groups[2], {{2, "bone"}}), "bone|7");

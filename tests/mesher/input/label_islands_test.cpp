@@ -48,9 +48,15 @@ class Plain {
     for (;;) {
       std::vector<std::vector<std::size_t>> islands = find();
       // By their lowest voxels so far; equal sizes stay in that order.
+      const auto largest = std::max_element(islands.begin(), islands.end(),
+                                            [](const auto& a, const auto& b) { return a.size() < b.size(); });
+      if (largest->size() < min_voxels) return regions_;
+      const auto size = [&](const auto& island) {
+        return continues(island) ? std::max(island.size(), min_voxels) : island.size();
+      };
       std::stable_sort(islands.begin(), islands.end(),
-                       [](const auto& a, const auto& b) { return a.size() < b.size(); });
-      if (islands.back().size() < min_voxels || islands.front().size() >= min_voxels) return regions_;
+                       [&](const auto& a, const auto& b) { return size(a) < size(b); });
+      if (size(islands.front()) >= min_voxels) return regions_;
       std::map<RegionIndex, int> faces;
       for (std::size_t v : islands.front())
         for (std::size_t n : neighbours(v))
@@ -80,6 +86,19 @@ class Plain {
   }
 
  private:
+  /// True for the outside at the border.
+  bool continues(const std::vector<std::size_t>& island) const {
+    if (regions_[island[0]] != outside_region) return false;
+    return std::any_of(island.begin(), island.end(), [&](std::size_t v) {
+      for (int n : size_) {
+        const std::size_t count = static_cast<std::size_t>(n), at = v % count;
+        if (count > 1 && (at == 0 || at + 1 == count)) return true;
+        v /= count;
+      }
+      return false;
+    });
+  }
+
   std::vector<std::size_t> neighbours(std::size_t v) const {
     std::vector<std::size_t> result;
     std::size_t step = 1, rest = v;
@@ -181,8 +200,32 @@ TEST(LabelIslands, ChainsOfMerges) {
   EXPECT_EQ(merged_row("999991121199999", 5), "999991111199999");
 }
 
+TEST(LabelIslands, OutsideGoesOnBeyondTheBorder) {
+  EXPECT_EQ(merged_row("0111", 2), "0111");
+  EXPECT_EQ(merged_row("1110", 2), "1110");
+  EXPECT_EQ(merged_row("1101", 2), "1111");
+  EXPECT_EQ(merged_plane("111"
+                         "110"
+                         "111",
+                         4),
+            "111110111");
+  // In a slice there is no way out across it.
+  EXPECT_EQ(merged_plane("111"
+                         "101"
+                         "111",
+                         4),
+            "111111111");
+  // What joins it is outside for good, however small both are.
+  EXPECT_EQ(merged_row("22222223100", 5), "22222220000");
+  Regions notch(27, 1);
+  notch[13 - 9] = outside_region;  // the middle of the lowest plane
+  EXPECT_EQ(merged(notch, {3, 3, 3}, 8), notch);
+  Regions hole(27, 1);
+  hole[13] = outside_region;
+  EXPECT_EQ(merged(hole, {3, 3, 3}, 8), Regions(27, 1));
+}
+
 TEST(LabelIslands, OutsideIsARegionLikeOthersAndBeyondTheVolumeIsNothing) {
-  EXPECT_EQ(merged_row("0111", 2), "1111");
   EXPECT_EQ(merged_row("1101", 2), "1111");
   EXPECT_EQ(merged_row("1000", 2), "0000");
   // A corner has three faces beyond the volume, which don't count.

@@ -42,42 +42,45 @@ Vec3 index_of(const LabelInput& labels, std::size_t voxel) {
               static_cast<double>(voxel / (x * y)));
 }
 
-TEST(LabelFrame, IsRightHandedAndHoldsTheVolume) {
+TEST(LabelFrame, EndsAtTheBorderOfTheVolume) {
   for (const Eigen::Matrix3d& directions : all_directions())
     for (const double cell : {0.25, 0.5, 1.0, 3.3}) {
       const LabelInput labels = noise({7, 5, 9}, 3, directions);
       const GridFrame frame = label_frame(labels, cell, false);
       EXPECT_EQ(frame.cell_size, cell);
-      EXPECT_LT((frame.axes.transpose() * frame.axes - Eigen::Matrix3d::Identity()).norm(), 1e-12);
-      EXPECT_NEAR(frame.axes.determinant(), 1, 1e-12);
-      EXPECT_NEAR(std::abs(frame.axes.col(0).dot(directions.col(0).normalized())), 1, 1e-12);
+      EXPECT_GT(frame.axes.determinant(), 0);
+      std::array<Vec3, 2> ends{Vec3::Constant(HUGE_VAL), Vec3::Constant(-HUGE_VAL)};
       for (int k = 0; k < 8; ++k) {
         Vec3 corner;
         for (int a = 0; a < 3; ++a) corner[a] = (k >> a & 1) ? labels.size[a] - 0.5 : -0.5;
         const Vec3 p = frame.to_grid(labels.origin + directions * corner);
-        for (int a = 0; a < 3; ++a) {
-          EXPECT_GE(p[a], frame_margin - 1e-9);
-          EXPECT_LE(p[a], frame.cells[a] - frame_margin + 1e-9);
-        }
+        for (int a = 0; a < 3; ++a)
+          EXPECT_NEAR(std::min(std::abs(p[a]), std::abs(p[a] - frame.box[a])), 0, 1e-9);
+        ends = {ends[0].cwiseMin(p), ends[1].cwiseMax(p)};
+      }
+      for (int a = 0; a < 3; ++a) {
+        EXPECT_GT(ends[1][a] - ends[0][a], 0.5);
+        EXPECT_LE(frame.box[a], frame.cells[a]);
+        EXPECT_EQ(frame.cells[a] % (1 << frame.root_level), 0);
+        // Whole cells that fill a side are at most half a cell off in all.
+        const double side = directions.col(a).norm() * labels.size[a];
+        EXPECT_NEAR(frame.axes.col(a).norm() * frame.box[a] * cell, side, 1e-9);
+        EXPECT_LE(std::abs(frame.box[a] * cell - side), 0.5 * cell + 1e-9);
       }
     }
 }
 
-TEST(LabelFrame, CentresAreCornersOfCells) {
+TEST(LabelFrame, CentresAreLatticePoints) {
   for (const Eigen::Matrix3d& directions : all_directions()) {
     const Vec3 spacing = directions.colwise().norm();
     if (directions.determinant() < 0 || (spacing - Vec3::Ones()).norm() > 1e-9) continue;
     for (const double cell : {1.0, 0.5, 0.25}) {
       const LabelInput labels = noise({7, 5, 9}, 3, directions);
       const Vec3 first = label_frame(labels, cell, false).to_grid(labels.origin);
-      EXPECT_LT((first - first.array().round().matrix()).norm(), 1e-9);
+      // A centre of cells, or a corner.
+      const Vec3 shift = Vec3::Constant(cell == 1.0 ? 0.5 : 0);
+      EXPECT_LT((first - shift - (first - shift).array().round().matrix()).norm(), 1e-9);
     }
-  }
-  const LabelInput mirrored = noise({7, 5, 9}, 3, Vec3(-1, 1, 1).asDiagonal());
-  const GridFrame frame = label_frame(mirrored, 0.5, false);
-  for (std::size_t v = 0; v < mirrored.voxel_count(); ++v) {
-    const Vec3 p = frame.to_grid(mirrored.origin + mirrored.directions * index_of(mirrored, v));
-    EXPECT_LT((p - p.array().round().matrix()).norm(), 1e-9);
   }
 }
 
@@ -96,14 +99,32 @@ TEST(LabelField, CentresHaveTheirLabels) {
     }
 }
 
-TEST(LabelField, OutsideGoesOnBeyondTheVolume) {
-  const LabelInput labels = make_labels({6, 6, 6}, [](int, int, int) { return 1; });
+TEST(LabelField, LabelsGoOnBeyondTheVolume) {
+  const LabelInput labels = make_labels({6, 6, 6}, [](int x, int, int) { return x < 3 ? 1 : 0; });
   const auto field = make_field(labels, 0.5);
   const auto sampler = field->sampler();
-  for (const Vec3& p : {Vec3(-1, 3, 3), Vec3(3, 6, 3), Vec3(-1, -1, -1), Vec3(3, 3, 60), Vec3(-1e9, 0, 0)})
+  for (const Vec3& p : {Vec3(-1, 3, 3), Vec3(0, 6, 3), Vec3(-1, -1, -1), Vec3(2, 3, 60), Vec3(-1e9, 0, 0)})
+    EXPECT_EQ(sampler->nearest(field->frame().to_grid(p)).region, 1) << p.transpose();
+  for (const Vec3& p : {Vec3(3, 3, -9), Vec3(60, 3, 3), Vec3(4, -1, 7)})
     EXPECT_EQ(sampler->nearest(field->frame().to_grid(p)).region, outside_region) << p.transpose();
   const double nothing = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(sampler->nearest(Vec3(nothing, 0, 0)).region, outside_region);
+  EXPECT_LE(sampler->nearest(Vec3(nothing, 0, 0)).region, 1);
+}
+
+TEST(LabelField, SurfacesPassTheBorderStraight) {
+  // A slab across the volume: where it is cut off it is as thick as within.
+  const LabelInput labels = make_labels({9, 9, 9}, [](int, int, int z) { return z > 2 && z < 6 ? 1 : 0; });
+  const auto field = make_field(labels, 0.5);
+  const auto sampler = field->sampler();
+  const std::array<RegionIndex, 2> both{0, 1};
+  for (const double z : {2.0, 2.5, 3.0, 5.2}) {
+    std::array<float, 2> within, at_border, at_corner;
+    sampler->values(field->frame().to_grid(Vec3(4, 4, z)), both, within.data());
+    sampler->values(field->frame().to_grid(Vec3(-0.5, 4, z)), both, at_border.data());
+    sampler->values(field->frame().to_grid(Vec3(8.5, 8.5, z)), both, at_corner.data());
+    EXPECT_EQ(within, at_border);
+    EXPECT_EQ(within, at_corner);
+  }
 }
 
 TEST(LabelField, DistancesAreInInputUnitsOfTheSmallestSpacing) {
@@ -180,7 +201,7 @@ TEST(LabelField, VoxelsWithAnInterfaceAreFound) {
       EXPECT_TRUE(std::is_sorted(keys.begin(), keys.end()));
       EXPECT_EQ(std::adjacent_find(keys.begin(), keys.end()), keys.end());
       const auto sampler = field->sampler();
-      const std::array<int, 3>& n = field->frame().cells;
+      const std::array<int, 3>& n = field->frame().box;
       for (int z = 0; z < n[2]; ++z)
         for (int y = 0; y < n[1]; ++y)
           for (int x = 0; x < n[0]; ++x) {

@@ -108,6 +108,7 @@ std::vector<MortonKey> cells_by_the_rules(const LabelInput& labels, const GridFr
       high = high.cwiseMax(p);
     }
     const auto first = [](double x) { return std::max(0, static_cast<int>(std::floor(x + 1e-9))); };
+    for (int a = 0; a < 3; ++a) high[a] = std::min(high[a], std::ldexp(frame.box[a], depth));
     for (int z = first(low[2]); z < high[2] - 1e-9; ++z)
       for (int y = first(low[1]); y < high[1] - 1e-9; ++y)
         for (int x = first(low[0]); x < high[0] - 1e-9; ++x) keys.push_back(morton_encode(x, y, z));

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string_view>
+#include <vector>
+
+#include "common/face_group.h"
+
+namespace tetwright {
+
+/// Whether a face property or cell field of this name tells parts of a surface apart: no format says which
+/// does, these are the names that programs write.
+inline bool is_face_label(std::string_view name) {
+  constexpr std::array<std::string_view, 18> names{
+      "label",   "labels",     "patch",          "patch_id",   "f:patch_id",  "PatchID",
+      "group",   "group_id",   "GroupIds",       "region",     "region_id",   "RegionId",
+      "segment", "segment_id", "material_index", "MaterialID", "ModelFaceID", "medit:ref"};
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Numbers that label faces, as groups.
+class LabelGroups {
+ public:
+  /// The index of a label's group. The label 0 is none.
+  std::uint32_t index_of(std::int64_t label) {
+    const auto [known, added] = indices_.emplace(label, static_cast<std::uint32_t>(groups_.size()));
+    if (added) groups_.push_back({label, {}});
+    return known->second;
+  }
+  const std::vector<FaceGroup>& groups() const { return groups_; }
+
+ private:
+  std::map<std::int64_t, std::uint32_t> indices_;
+  std::vector<FaceGroup> groups_;
+};
+
+}  // namespace tetwright

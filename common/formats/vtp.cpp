@@ -1,0 +1,93 @@
+#include "common/formats/vtp.h"
+
+#include <algorithm>
+#include <span>
+
+#include "common/formats/label_groups.h"
+#include "common/formats/mesh_fields.h"
+#include "common/formats/surface_builder.h"
+#include "common/formats/vtu_data.h"
+
+namespace tetwright {
+
+namespace {
+
+/// The labels of all cells, or nothing.
+std::vector<std::int64_t> read_labels(const VtuData& data, pugi::xml_node cell_data, std::size_t cells,
+                                      std::string& label_name) {
+  for (const pugi::xml_node node : cell_data.children("DataArray")) {
+    const std::string_view name = node.attribute("Name").as_string(),
+                           type = node.attribute("type").as_string();
+    if (!is_face_label(name) || type.starts_with("Float") || type == "String") continue;
+    if (node.attribute("NumberOfComponents").as_int(1) != 1) continue;
+    label_name = name;
+    std::vector<std::int64_t> labels = data.integers(node, cells);
+    data.expect_size(node, labels.size(), cells);
+    return labels;
+  }
+  return {};
+}
+
+void note_arrays(pugi::xml_node parent, const std::string& what, const std::string& taken,
+                 std::vector<Dropped>& dropped) {
+  std::vector<std::string> names;
+  for (const pugi::xml_node node : parent.children())
+    if (const std::string name = field_name(node.attribute("Name").as_string());
+        node.type() == pugi::node_element && (taken.empty() || name != taken))
+      names.push_back(name);
+  append_dropped_names(dropped, what, names);
+}
+
+}  // namespace
+
+TriangleMesh read_vtp(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped) {
+  const VtuData data(bytes, name);
+  const pugi::xml_node piece = data.piece("PolyData");
+  const auto count = [&](const char* attribute) {
+    return piece.attribute(attribute) ? data.count(piece, attribute) : 0;
+  };
+  const std::size_t polygons = count("NumberOfPolys"), verts = count("NumberOfVerts"),
+                    lines = count("NumberOfLines"), strips = count("NumberOfStrips");
+  if (strips > 0) data.fail(piece, "triangle strips are not supported; export the surface as triangles");
+  SurfaceBuilder surface(name);
+  const std::vector<Vec3> points = data.points(piece, data.count(piece, "NumberOfPoints"));
+  surface.reserve(points.size(), 0);
+  for (const Vec3& p : points) surface.add_point(p, [] { return std::string("Points"); });
+  if (verts > 0) surface.drop("vertices", verts);
+  if (lines > 0) surface.drop("lines", lines);
+
+  std::string label_name;
+  LabelGroups groups;
+  if (polygons > 0) {
+    const pugi::xml_node cells = piece.child("Polys");
+    const pugi::xml_node offsets_node = data.array(cells, "offsets");
+    const std::vector<std::uint32_t> offsets = data.counts(offsets_node, polygons);
+    data.expect_size(offsets_node, offsets.size(), polygons);
+    const std::vector<std::uint32_t> connectivity =
+        data.counts(data.array(cells, "connectivity"), offsets.empty() ? 0 : offsets.back());
+    // Cells are numbered vertices first, then lines, then polygons.
+    const std::vector<std::int64_t> labels =
+        read_labels(data, piece.child("CellData"), verts + lines + polygons, label_name);
+    std::vector<std::int64_t> polygon;
+    std::size_t begin = 0;
+    for (std::size_t c = 0; c < polygons; ++c) {
+      const std::size_t end = offsets[c];
+      if (end < begin || end > connectivity.size())
+        data.fail(offsets_node, "polygon " + std::to_string(c) + " ends at " + std::to_string(end) + " of " +
+                                    std::to_string(connectivity.size()) + "; the file is damaged");
+      polygon.assign(connectivity.begin() + static_cast<std::ptrdiff_t>(begin),
+                     connectivity.begin() + static_cast<std::ptrdiff_t>(end));
+      if (!labels.empty()) surface.begin_group(groups.index_of(labels[verts + lines + c]));
+      surface.add_polygon(polygon, [&] { return "polygon " + std::to_string(c) + " (counted from 0)"; });
+      begin = end;
+    }
+  }
+  TriangleMesh mesh = surface.finish(dropped, groups.groups());
+  if (dropped) {
+    note_arrays(piece.child("PointData"), "fields of points", "", *dropped);
+    note_arrays(piece.child("CellData"), "fields of cells", label_name, *dropped);
+  }
+  return mesh;
+}
+
+}  // namespace tetwright

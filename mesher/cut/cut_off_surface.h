@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "common/geometry/projection_tree.h"
+#include "common/reference_surface.h"
+#include "common/tet_mesh.h"
+#include "mesher/distance/material_field.h"
+
+namespace tetwright {
+
+/// The interfaces of a field that ends at its box: patch 0 is where the field's regions meet, 1 to 6 are the
+/// faces of the box, 1 + 2 * axis for the lower one and 2 + 2 * axis for the upper one. Faces of the box are
+/// known exactly, as are its edges; where an interface meets the box, the points of the dense mesh say.
+class CutOffSurface final : public ReferenceSurface {
+ public:
+  /// `mesh` was cut from the field, its interfaces with their patches; it is not kept.
+  CutOffSurface(const TetMesh& mesh, std::shared_ptr<const MaterialField> field);
+
+  double signed_distance(const Vec3& point, MaterialTag material) const override;
+  std::optional<Vec3> project(const Vec3& point, MaterialOrOutside first, MaterialOrOutside second,
+                              double max_distance) const override;
+  bool has_patches() const override { return true; }
+  std::optional<Vec3> onto_patch(const Vec3& point, MaterialOrOutside first, MaterialOrOutside second,
+                                 std::uint16_t patch, double max_distance) const override;
+  std::optional<Vec3> onto_crease(const Vec3& point, double max_distance) const override;
+  std::optional<Vec3> onto_corner(const Vec3& point, double max_distance) const override;
+
+ private:
+  std::shared_ptr<const MaterialField> field_;
+  std::array<Vec3, 3> normals_;  ///< of the faces of the box, along each axis
+  ProjectionTree creases_, corners_;
+};
+
+}  // namespace tetwright
