@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "common/error.h"
 #include "common/parallel/parallel.h"
@@ -35,6 +36,32 @@ auto with_record(std::uint32_t record) {
 
 Vec3 low_corner(const MeshTriangle& t) { return t.points[0].cwiseMin(t.points[1]).cwiseMin(t.points[2]); }
 Vec3 high_corner(const MeshTriangle& t) { return t.points[0].cwiseMax(t.points[1]).cwiseMax(t.points[2]); }
+
+/// Two triangles are nearly folded together where the cosine of the angle between them at their common edge
+/// is larger: below 120 degrees, so that no operation gets past it unseen, while most edges are flatter.
+constexpr double min_narrow_cosine = -0.5;
+
+/// The edge of two triangles, by its ends, where they are nearly folded together.
+std::optional<std::array<Index, 2>> narrow_edge(const MeshTriangle& f, const MeshTriangle& g) {
+  std::array<int, 2> shared{};
+  int count = 0, apex_f = -1, apex_g = 3;
+  for (int i = 0; i < 3; ++i) {
+    const auto at = std::find(g.ids.begin(), g.ids.end(), f.ids[i]);
+    if (at == g.ids.end()) {
+      apex_f = i;
+      continue;
+    }
+    if (count < 2) shared[count] = i;
+    ++count;
+    apex_g -= static_cast<int>(at - g.ids.begin());
+  }
+  if (count != 2) return {};
+  const Vec3 &a = f.points[shared[0]], along = (f.points[shared[1]] - a).normalized();
+  const auto across = [&](const Vec3& apex) { return Vec3(apex - a - along * along.dot(apex - a)); };
+  const Vec3 x = across(f.points[apex_f]), y = across(g.points[apex_g]);
+  if (x.dot(y) < min_narrow_cosine * std::sqrt(x.squaredNorm() * y.squaredNorm())) return {};
+  return std::array{f.ids[shared[0]], f.ids[shared[1]]};
+}
 
 }  // namespace
 
@@ -137,7 +164,8 @@ void SurfaceGrid::insert(std::uint32_t record) {
   });
 }
 
-bool SurfaceGrid::hits_standing(const MeshTriangle& t, std::span<const std::uint32_t> removed) const {
+bool SurfaceGrid::hits_standing(const MeshTriangle& t, std::span<const std::uint32_t> removed,
+                                std::vector<std::array<Index, 2>>* narrow) const {
   const Cell3 low = cell_at(low_corner(t));
   const Box box = box_of(t);
   bool hit = false;
@@ -155,6 +183,8 @@ bool SurfaceGrid::hits_standing(const MeshTriangle& t, std::span<const std::uint
         hit = true;
         return;
       }
+      if (narrow)
+        if (const auto edge = narrow_edge(t, other)) narrow->push_back(*edge);
     }
   });
   return hit;
@@ -201,15 +231,23 @@ void SurfaceGrid::replace(Edit& edit) {
 
 bool SurfaceGrid::test(Edit& edit) const {
   find_records(edit);
+  edit.narrow_edges.clear();
   for (const Added& a : edit.added)
-    if (hits_standing(a.triangle, edit.removed_records)) return false;
+    if (hits_standing(a.triangle, edit.removed_records, &edit.narrow_edges)) return false;
   for (std::size_t i = 0; i < edit.added.size(); ++i) {
     const Vec3 low = low_corner(edit.added[i].triangle), high = high_corner(edit.added[i].triangle);
     edit.low = i == 0 ? low : edit.low.cwiseMin(low);
     edit.high = i == 0 ? high : edit.high.cwiseMax(high);
-    for (std::size_t j = 0; j < i; ++j)
+    for (std::size_t j = 0; j < i; ++j) {
       if (triangles_intersect(edit.added[i].triangle, edit.added[j].triangle)) return false;
+      if (const auto edge = narrow_edge(edit.added[i].triangle, edit.added[j].triangle))
+        edit.narrow_edges.push_back(*edge);
+    }
   }
+  // The order of a cell's records depends on threads.
+  std::sort(edit.narrow_edges.begin(), edit.narrow_edges.end());
+  edit.narrow_edges.erase(std::unique(edit.narrow_edges.begin(), edit.narrow_edges.end()),
+                          edit.narrow_edges.end());
   return true;
 }
 
@@ -218,7 +256,7 @@ bool SurfaceGrid::apart(const Edit& first, const Edit& second) {
     return true;
   for (const Added& a : first.added)
     for (const Added& b : second.added)
-      if (triangles_intersect(a.triangle, b.triangle)) return false;
+      if (triangles_intersect(a.triangle, b.triangle) || narrow_edge(a.triangle, b.triangle)) return false;
   return true;
 }
 

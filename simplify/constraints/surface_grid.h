@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <span>
@@ -32,6 +33,9 @@ class SurfaceGrid {
     // Of those that come in, and the records of those that go: filled by test().
     Vec3 low = Vec3::Zero(), high = Vec3::Zero();
     std::vector<std::uint32_t> removed_records;
+    /// Edges, by their ends, where a triangle that comes in and another one are nearly folded together: what
+    /// lies between them, outside or a part of it, may be turned inside out without an intersection.
+    std::vector<std::array<Index, 2>> narrow_edges;
     /// Records for those that come in: filled by take_records().
     std::vector<std::uint32_t> added_records;
 
@@ -39,6 +43,7 @@ class SurfaceGrid {
       removed.clear();
       added.clear();
       removed_records.clear();
+      narrow_edges.clear();
       added_records.clear();
     }
     bool empty() const { return removed.empty() && added.empty(); }
@@ -59,7 +64,8 @@ class SurfaceGrid {
   /// Whether no added triangle meets one that stands and stays, or another added one. Fills the edit; the
   /// points' ids become those of the places where they stand (EditableMesh::original). Safe concurrently.
   bool test(Edit& edit) const;
-  /// Whether no triangle that comes in by one edit meets one of the other. Both were tested.
+  /// Whether no triangle that comes in by one edit meets one of the other or is nearly folded onto it. Both
+  /// were tested.
   static bool apart(const Edit& first, const Edit& second);
   /// Puts triangles into the place of others without any test, where points were moved from outside. While no
   /// task runs.
@@ -118,7 +124,9 @@ class SurfaceGrid {
   template <class F>
   void for_cells(const MeshTriangle& t, const F& f) const;
   void insert(std::uint32_t record);
-  bool hits_standing(const MeshTriangle& t, std::span<const std::uint32_t> removed) const;
+  /// Appends to `narrow`, if there is one, the edges where they are nearly folded together.
+  bool hits_standing(const MeshTriangle& t, std::span<const std::uint32_t> removed,
+                     std::vector<std::array<Index, 2>>* narrow = nullptr) const;
   /// Gives the triangles of an edit the ids that records have, and finds the records of those that go.
   void find_records(Edit& edit) const;
   /// The record of a standing triangle, ids ascending.

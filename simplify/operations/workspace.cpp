@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "simplify/operations/edge_turn.h"
+
 namespace tetwright {
 
 Outcome Workspace::gather(Index point) {
@@ -24,6 +26,7 @@ float Workspace::acceptance_limit(const BlockRules& rules, float worst) {
 
 Outcome Workspace::within_bounds(const BlockRules& rules, std::int64_t count_change) {
   if (!ledger.allows(proposal.volumes)) return Outcome::volume;
+  if (folds_over(*this)) return Outcome::self_intersection;
   proposal.count_change = count_change;
   proposal.count_bounds = rules.count;
   return rules.count.allow(mesh.live_tets(), count_change) ? Outcome::done : Outcome::count;

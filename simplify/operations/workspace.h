@@ -88,8 +88,8 @@ struct Workspace {
     }
     return outcome;
   }
-  /// What all operations end with: whether the count may change by that much, and the volumes as the proposal
-  /// says; then done.
+  /// What all operations end with: whether no tets come to overlap around an edge, and the count may change
+  /// by that much, and the volumes as the proposal says; then done.
   Outcome within_bounds(const BlockRules& rules, std::int64_t count_change);
 };
 
