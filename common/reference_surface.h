@@ -30,7 +30,8 @@ class ReferenceSurface {
                                       double max_distance) const = 0;
 
   /// Whether it knows the patches of the mesh's interfaces, by their numbers, with the creases and corners
-  /// where they meet. If so, what is asked for below is exact; else nothing is found.
+  /// where they meet. If so, what is asked for below is exact; else nothing is found, and the borders of the
+  /// patches that the mesh has are kept as its junction curves are.
   virtual bool has_patches() const { return false; }
   /// The nearest point of a patch of the interface between two regions within `max_distance` (input units).
   virtual std::optional<Vec3> onto_patch(const Vec3& /*point*/, MaterialOrOutside /*first*/,

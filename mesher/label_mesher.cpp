@@ -13,6 +13,17 @@ namespace tetwright {
 
 namespace {
 
+/// Whole cells fill the volume along each axis: larger ones than this share of its shortest side would be
+/// flat.
+constexpr double max_cell_share = 1.5;
+
+/// Of the whole volume, input units.
+Vec3 sides(const LabelInput& labels) {
+  Vec3 lengths = labels.directions.colwise().norm();
+  for (int a = 0; a < 3; ++a) lengths[a] *= labels.size[a];
+  return lengths;
+}
+
 void validate_materials_left(const LabelInput& labels, const std::vector<std::uint8_t>& there) {
   if (std::count(there.begin() + 1, there.end(), 1) == 0)
     throw NothingToMeshError(
@@ -30,16 +41,13 @@ void validate_materials_left(const LabelInput& labels, const std::vector<std::ui
 
 }  // namespace
 
-double longest_side(const LabelInput& labels) {
-  const Vec3 spacing = labels.directions.colwise().norm();
-  double longest = 0;
-  for (int a = 0; a < 3; ++a) longest = std::max(longest, spacing[a] * labels.size[a]);
-  return longest;
-}
+double longest_side(const LabelInput& labels) { return sides(labels).maxCoeff(); }
 
 double cell_size(const LabelInput& labels, const MesherOptions& options) {
   const double longest = longest_side(labels);
-  return finest_cell_size(options, longest, labels.origin.cwiseAbs().maxCoeff() + longest, labels.file);
+  const double wanted =
+      finest_cell_size(options, longest, labels.origin.cwiseAbs().maxCoeff() + longest, labels.file);
+  return std::max(std::min(wanted, max_cell_share * sides(labels).minCoeff()), longest / max_resolution);
 }
 
 DenseMesh mesh_labels(const LabelInput& labels, const MesherOptions& options, Progress* progress) {

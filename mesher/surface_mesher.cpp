@@ -147,13 +147,13 @@ std::vector<SurfacePatches> patches_of(const MesherInput& input, const MesherOpt
   return patches;
 }
 
-/// Groups of the user stay.
-void give_up_creases(const RepairedSurface& surface, SurfacePatches& found) {
-  if (!found.any() || !surface.groups.empty()) return;
+/// But for the borders of groups.
+void give_up_creases(const MesherInput::Body& body, SurfacePatches& found) {
+  if (!found.any()) return;
+  PatchOptions options;
+  options.angle.rule = FeatureAngle::Rule::off;
+  found = find_patches(body.surface.points, body.surface.triangles, options, body.surface.groups, body.file);
   found.verdict = SurfacePatches::Verdict::meeting;
-  found.patches.assign(surface.triangles.size(), 0);
-  found.count = 1;
-  found.dropped = 0;
 }
 
 /// Gives up the creases of surfaces that meet others: those curves are known to half a cell, and no tets of
@@ -178,7 +178,7 @@ void give_up_where_surfaces_meet(const MesherInput& input, const TetMesh& mesh,
       add(*first_at[p]);
       add(t);
     }
-  for (const std::size_t b : meeting) give_up_creases(input.bodies[b].surface, patches[b]);
+  for (const std::size_t b : meeting) give_up_creases(input.bodies[b], patches[b]);
 }
 
 /// The same of surfaces whose own gaps are closed over more than a small part of their area: creases would
@@ -191,15 +191,18 @@ void give_up_where_gaps_are_closed(const MesherInput& input, const MesherReport&
     for (const ClosedGapReport& g : report.closed_gaps)
       if (g.gap && g.name == input.bodies[b].name) closed += g.area;
     if (closed > max_closed_share * input.bodies[b].surface.area)
-      give_up_creases(input.bodies[b].surface, patches[b]);
+      give_up_creases(input.bodies[b], patches[b]);
   }
 }
 
+/// Creases of surfaces that meet others or themselves run within the solid, too, and are not compared.
 void report_features(const MesherInput& input, const std::vector<SurfacePatches>& patches,
                      MesherReport& report) {
   for (std::size_t b = 0; b < patches.size(); ++b) {
     const RepairedSurface& surface = input.bodies[b].surface;
-    if (patches[b].any())
+    const bool exact = patches[b].verdict != SurfacePatches::Verdict::meeting &&
+                       patches[b].verdict != SurfacePatches::Verdict::intersecting;
+    if (patches[b].any() && exact)
       report.creases.add(find_creases(surface.points, surface.triangles, patches[b].patches,
                                       corner_reach_cells * report.cell_size),
                          surface.points);
@@ -358,7 +361,11 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
     for (const InterfaceTriangle& t : dense.mesh.interfaces)
       if (const FaceGroup group = features->group_of(t.patch))
         dense.mesh.patch_groups[{t.pair(), t.patch}] = group;
-    dense.reference = features;
+    // Where surfaces meet the borders of groups are known to a cell, as the curves are in which they meet.
+    if (std::none_of(patches.begin(), patches.end(), [](const SurfacePatches& p) {
+          return p.verdict == SurfacePatches::Verdict::meeting && p.any();
+        }))
+      dense.reference = features;
     dense.report.seconds_cut += stages.seconds();
   }
   dense.report.filling_tets = static_cast<std::size_t>(

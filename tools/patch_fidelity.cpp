@@ -33,24 +33,20 @@ FacesByGroup faces_by_group(const TetMesh& mesh) {
   return faces;
 }
 
-std::vector<PatchFidelity> as_input(const FacesByGroup& faces) {
-  std::vector<PatchFidelity> patches;
-  for (const auto& [group, f] : faces) patches.push_back({group, f.area, 0, 0, f.place});
-  return patches;
-}
-
 }  // namespace
 
 std::vector<PatchFidelity> patches_of_input(const MesherInput& input) {
-  FacesByGroup faces;
-  for (const MesherInput::Body& body : input.bodies)
-    for (std::size_t t = 0; t < body.surface.groups.size(); ++t)
-      if (const FaceGroup& group = body.groups[body.surface.groups[t]])
-        faces[group].add(body.surface.points, body.surface.triangles[t]);
-  return as_input(faces);
+  std::vector<PatchFidelity> patches;
+  patches.reserve(input.groups.size());
+  for (const MesherInput::Group& g : input.groups) patches.push_back({g.group, g.area, 0, 0, g.place});
+  return patches;
 }
 
-std::vector<PatchFidelity> patches_of_input(const TetMesh& mesh) { return as_input(faces_by_group(mesh)); }
+std::vector<PatchFidelity> patches_of_input(const TetMesh& mesh) {
+  std::vector<PatchFidelity> patches;
+  for (const auto& [group, f] : faces_by_group(mesh)) patches.push_back({group, f.area, 0, 0, f.place});
+  return patches;
+}
 
 void compare_patches(const TetMesh& result, std::vector<PatchFidelity>& patches) {
   const FacesByGroup faces = faces_by_group(result);

@@ -56,7 +56,8 @@ std::string feature_line(const FeatureReport& f) {
       line += "not looked for";
       break;
     case Verdict::smooth:
-      line += "none; no edge turns far enough";
+      line += f.found.any() ? "no edge turns far enough within the named patches"
+                            : "none; no edge turns far enough";
       break;
     case Verdict::scan:
       line += "none; its edges look like those of a scan (" + loose() + ")";

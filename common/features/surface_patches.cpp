@@ -309,9 +309,11 @@ FoundParts find_parts(std::span<const Vec3> points, std::span<const Triangle> tr
 }
 
 [[noreturn]] void throw_too_many(const std::string& file) {
-  throw InputError(file, 0,
-                   "its sharp edges cut it into more than the " + std::to_string(max_patches) +
-                       " patches that are possible; use a larger --feature-angle, or --feature-angle off");
+  throw InputError(
+      file, 0,
+      "its sharp edges and labels cut it into more than the " + std::to_string(max_patches) +
+          " patches that are possible; use a larger --feature-angle or --feature-angle off, or leave labels "
+          "of single faces out of the file");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "common/geometry/predicates.h"
@@ -188,23 +189,41 @@ std::size_t orient(TetMesh& mesh) {
 /// Finds the interfaces again where they have patches, and clears them where they have none; how many faces
 /// with a patch there are no more.
 std::size_t renew_interfaces(TetMesh& mesh) {
-  std::map<Triangle, std::uint16_t> patches;
+  std::map<Triangle, InterfacePatch> before;
   const auto key = [](Triangle ids) {
     std::sort(ids.begin(), ids.end());
     return ids;
   };
-  for (const InterfaceTriangle& t : mesh.interfaces)
-    if (t.patch != 0) patches.emplace(key(t.ids), t.patch);
-  mesh.interfaces.clear();
-  if (patches.empty()) return 0;
-  mesh.interfaces = find_interfaces(mesh);
-  for (InterfaceTriangle& t : mesh.interfaces) {
-    const auto known = patches.find(key(t.ids));
-    if (known == patches.end()) continue;
-    t.patch = known->second;
-    patches.erase(known);
+  const std::map<InterfacePatch, FaceGroup> groups = std::move(mesh.patch_groups);
+  std::size_t lost = 0;
+  for (const InterfaceTriangle& t : mesh.interfaces) {
+    if (t.patch == 0) continue;
+    // Both sides of what becomes one face may have a patch.
+    const InterfacePatch own{t.pair(), t.patch};
+    const auto [known, added] = before.emplace(key(t.ids), own);
+    lost += !added && known->second != own && groups.contains(own);
   }
-  return patches.size();
+  mesh.interfaces.clear();
+  mesh.patch_groups.clear();
+  if (before.empty()) return lost;
+  mesh.interfaces = find_interfaces(mesh);
+  // Faces of the boundary may lie between materials now: beside patches with the same number.
+  std::map<std::pair<InterfacePatch, InterfacePatch>, std::uint16_t> numbers;
+  std::set<InterfacePatch> taken;
+  for (InterfaceTriangle& t : mesh.interfaces) {
+    const auto known = before.find(key(t.ids));
+    if (known == before.end()) continue;
+    const InterfacePatch old = known->second;
+    const auto [number, added] = numbers.try_emplace({old, {t.pair(), 0}}, old.second);
+    if (added)
+      while (number->second == 0 || !taken.insert(InterfacePatch{t.pair(), number->second}).second)
+        ++number->second;
+    t.patch = number->second;
+    if (const auto group = groups.find(old); group != groups.end())
+      mesh.patch_groups[{t.pair(), t.patch}] = group->second;
+    before.erase(known);
+  }
+  return lost + before.size();
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<Surfa
   for (std::size_t b = 0; b < input.bodies.size(); ++b) {
     bodies_[input.bodies[b].tag] = b;
     const RepairedSurface& surface = input.bodies[b].surface;
-    if (patches[b].verdict == SurfacePatches::Verdict::meeting) {
+    if (patches[b].verdict == SurfacePatches::Verdict::meeting && !patches[b].any()) {
       bodies_.erase(input.bodies[b].tag);
       continue;
     }

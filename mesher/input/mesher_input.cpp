@@ -51,6 +51,32 @@ void name_groups(std::vector<MaterialSurface>& surfaces) {
     }
 }
 
+/// The groups that have triangles of which the points are there.
+std::vector<MesherInput::Group> measure_groups(const std::vector<MaterialSurface>& surfaces) {
+  std::map<FaceGroup, MesherInput::Group> measured;
+  std::map<FaceGroup, double> largest;
+  for (const MaterialSurface& s : surfaces)
+    for (std::size_t t = 0; t < s.surface.triangle_groups.size(); ++t) {
+      const FaceGroup& group = s.surface.groups[s.surface.triangle_groups[t]];
+      const Triangle& corners = s.surface.triangles[t];
+      const std::vector<Vec3>& points = s.surface.points;
+      if (!group || std::any_of(corners.begin(), corners.end(), [&](Index p) { return p >= points.size(); }))
+        continue;
+      const Vec3 &a = points[corners[0]], &b = points[corners[1]], &c = points[corners[2]];
+      const double area = (b - a).cross(c - a).norm() / 2;
+      MesherInput::Group& own = measured.try_emplace(group, MesherInput::Group{group, 0, a}).first->second;
+      own.area += area;
+      double& max_area = largest[group];
+      if (!(area > max_area)) continue;
+      max_area = area;
+      own.place = (a + b + c) / 3;
+    }
+  std::vector<MesherInput::Group> groups;
+  groups.reserve(measured.size());
+  for (auto& [group, own] : measured) groups.push_back(std::move(own));
+  return groups;
+}
+
 /// Repairs the surfaces one by one and appends each as a body, followed by its nested components.
 void add_bodies(std::vector<MaterialSurface> surfaces, std::set<MaterialTag> tags, NestedRule nested,
                 MesherInput& input) {
@@ -121,6 +147,7 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
   if (surfaces.empty()) throw UsageError("there is no surface to mesh");
   MesherInput input;
   name_groups(surfaces);
+  input.groups = measure_groups(surfaces);
   std::set<MaterialTag> tags = tags_in_use(surfaces, layers);
   add_bodies(std::move(surfaces), std::move(tags), nested, input);
   input.layers = std::move(layers);

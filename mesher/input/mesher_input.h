@@ -33,9 +33,16 @@ struct MesherInput {
     RepairedSurface surface;
     std::vector<FaceGroup> groups;  ///< of the file, see RepairedSurface::groups
   };
+  /// A group of the triangles as a file has them, before any repair.
+  struct Group {
+    FaceGroup group;
+    double area = 0;            ///< input units squared
+    Vec3 place = Vec3::Zero();  ///< the centre of its largest triangle, input units
+  };
   std::vector<Body> bodies;           ///< later bodies carve earlier ones
   std::vector<MaterialLayer> layers;  ///< of the first body, outermost first
   std::vector<InputFinding> findings;
+  std::vector<Group> groups;  ///< those that have triangles, ascending; nothing need be left of them
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< bounding box of all bodies, input units
 };
 

@@ -39,9 +39,10 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
                                      const ReferenceSurface* given,
                                      const std::function<bool(Index)>& complete)
     : has_patches_(
+          (!given || given->has_patches()) &&
           std::any_of(faces.begin(), faces.end(), [](const InterfaceFace& f) { return f.patch != 0; })),
-      given_patches_(has_patches_ && given && given->has_patches()),
-      given_(has_patches_ && !given_patches_ ? nullptr : given),
+      given_patches_(has_patches_ && given),
+      given_(given),
       mesh_(&mesh) {
   if (!given_) {
     PointCopies points(mesh);

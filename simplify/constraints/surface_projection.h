@@ -16,8 +16,8 @@ namespace tetwright {
 class SurfaceProjection {
  public:
   SurfaceProjection() = default;
-  /// Copies what it needs: the mesh may change afterwards. `given` may be null and must outlive this; where
-  /// faces have patches and it knows none, the mesh as it came serves instead.
+  /// Copies what it needs: the mesh may change afterwards. `given` may be null and must outlive this; one
+  /// without patches says that the borders of the faces' patches are known to a cell only.
   SurfaceProjection(const EditableMesh& mesh, const ReferenceSurface* given)
       : SurfaceProjection(mesh, mesh.interface_faces(), given, [](Index) { return true; }) {}
   /// Of these faces alone. `complete`: whether all interface faces at a point are among them; junction curves
@@ -25,7 +25,8 @@ class SurfaceProjection {
   SurfaceProjection(const EditableMesh& mesh, const std::vector<InterfaceFace>& faces,
                     const ReferenceSurface* given, const std::function<bool(Index)>& complete);
 
-  /// Whether some face has another patch than 0: its planes and creases are kept exactly.
+  /// Whether some face has another patch than 0 and no given surface says that it knows none: planes and
+  /// creases are kept exactly.
   bool has_patches() const { return has_patches_; }
   /// The nearest point, or one near it, of a patch of the interface between two regions within
   /// `max_distance`; safe concurrently.

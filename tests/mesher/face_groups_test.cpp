@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
+#include <string>
 
 #include "mesher/input/split_solids.h"
 #include "mesher/mesher.h"
@@ -151,6 +153,37 @@ TEST(FaceGroups, AreSplitIntoSolids) {
   expect_same(solids[0].surface, unit_cube());
   expect_same(solids[1].surface, other);
   EXPECT_EQ(split_solids(unit_cube(), "cube")[0].name, "cube");
+}
+
+TEST(FaceGroups, OfSurfacesThatMeetAreKept) {
+  const auto halves = [](const std::string& name, double shift) {
+    TriangleMesh mesh = grouped(gridded_cube(4), {{0, name + "1"}, {0, name + "2"}},
+                                [&](const Vec3& p) { return p.x() == 0 ? 0U : 1U; });
+    for (Vec3& p : mesh.points) p.x() += shift;
+    return mesh;
+  };
+  const DenseMesh dense = mesh_of({{"left", 1, halves("a", 0), "a"}, {"right", 2, halves("b", 1), "b"}}, 38);
+  EXPECT_EQ(dense.report.features[0].found.verdict, SurfacePatches::Verdict::meeting);
+  EXPECT_TRUE(dense.report.creases.segments.empty());
+  std::set<std::string> names;
+  for (const auto& [patch, group] : dense.mesh.patch_groups) names.insert(group.name);
+  EXPECT_EQ(names, (std::set<std::string>{"a1", "a2", "b1", "b2"}));
+  // Known to a cell only, as the curve is in which the surfaces meet.
+  EXPECT_FALSE(dense.reference->has_patches());
+}
+
+TEST(FaceGroups, OfWhichRepairLeavesNothingAreKnown) {
+  TriangleMesh mesh = gridded_cube(2);
+  const std::size_t own = mesh.triangles.size();
+  mesh.triangles.push_back(mesh.triangles.front());
+  mesh.groups = {{0, "cube"}, {0, "again"}, {0, "empty"}};
+  mesh.triangle_groups.assign(own, 0);
+  mesh.triangle_groups.push_back(1);
+  const MesherInput input = make_mesher_input({{"cube", 1, mesh, "a"}});
+  ASSERT_EQ(input.groups.size(), 2u);
+  EXPECT_EQ(input.groups[0].group.name, "again");
+  EXPECT_DOUBLE_EQ(input.groups[0].area, 0.125);
+  EXPECT_DOUBLE_EQ(input.groups[1].area, 6);
 }
 
 TEST(FaceGroups, WhereSurfacesMeetNoCreasesAreKept) {

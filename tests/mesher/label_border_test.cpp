@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/geometry/quality.h"
+#include "common/mesh/mesh_statistics.h"
 #include "tests/mesher/checked_labels.h"
 #include "tests/mesher/label_volumes.h"
 
@@ -85,6 +86,15 @@ TEST(LabelBorder, AFullVolumeIsItsBox) {
       EXPECT_EQ(meshed.report.creases.segments.size(), 12u);
       EXPECT_EQ(meshed.report.creases.corners.size(), 8u);
     }
+}
+
+TEST(LabelBorder, CellsAreNeverFlatterThanWide) {
+  const LabelInput labels = make_labels({12, 12, 1}, [](int x, int, int) { return x < 5 ? 1 : 2; });
+  for (const double cell : {4.0, 100.0}) {
+    const DenseMesh meshed = checked_mesh(labels, cell);
+    EXPECT_LE(meshed.report.cell_size, 1.5);
+    EXPECT_EQ(mesh_statistics(meshed.mesh, 0.1).below_count, 0u);
+  }
 }
 
 TEST(LabelBorder, LabelsAreCutOffByPlanes) {

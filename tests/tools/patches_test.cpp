@@ -3,9 +3,11 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "common/formats/formats.h"
+#include "common/mesh/mesh_statistics.h"
 #include "tests/tools/program.h"
 
 namespace tetwright::patches_test {
@@ -82,6 +84,19 @@ TEST(Patches, ThatAreLostAreSaid) {
   EXPECT_NE(a.err.find("lost 1 of 2 named patches: 'inlet' at ("), std::string::npos) << a.err;
   const Answer b = run(call + " --accept-changes");
   EXPECT_NE(b.err.find("1 named patches that are lost: 'inlet'"), std::string::npos) << b.err;
+}
+
+TEST(Patches, OfBoxesThatTouchLeaveGoodShapes) {
+  const TemporaryFolder f;
+  write(f / "box.stl", box(0, 1, "wall", "inlet"));
+  write(f / "case.stl", box(1, 2, "side", "outlet"));
+  const Answer a =
+      run("prepare " + (f / "box.stl") + " " + (f / "case.stl") + " --target-tets 3000 -o " + (f / "a.msh"));
+  const TetMesh mesh = read_tet_mesh(f / "a.msh").mesh;
+  EXPECT_LT(mesh_statistics(mesh, 0.1).below_percent, 5);  // with exact creases more than 30
+  std::set<std::string> names;
+  for (const auto& [patch, group] : mesh.patch_groups) names.insert(group.name);
+  EXPECT_TRUE(names.contains("wall") && names.contains("side") && names.contains("outlet")) << a.err;
 }
 
 TEST(Patches, SolidsAreMaterials) {

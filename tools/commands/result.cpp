@@ -276,8 +276,8 @@ void find_lost_patches(const CommandLine& line, const TetMesh& mesh, RunReport& 
   report.shortfall.push_back(
       {"patches", static_cast<double>(all), static_cast<double>(all - lost), "the size of the cells",
        "lost " + std::to_string(lost) + " of " + std::to_string(all) + " named patches: " + text +
-           "; they are smaller than cells or inside another material: raise --resolution, or leave them "
-           "out"});
+           "; they are smaller than cells, within the solid, or on triangles that are there twice: raise "
+           "--resolution, or leave them out"});
 }
 
 /// With --strict whatever is noted.

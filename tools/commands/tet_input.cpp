@@ -33,7 +33,8 @@ void repair(TetMesh& mesh, const std::string& file, RunReport& report) {
   std::optional<Vec3> first;
   if (!found.first_inverted.empty()) first = mesh.points[mesh.tets[found.first_inverted.front()][0]];
   add(found.inverted_tets, "flat or negative tets", "kept unless the work puts them right", first);
-  add(found.lost_faces, "faces of named patches between tets that were merged", "no longer of the boundary");
+  add(found.lost_faces, "faces of named patches between tets that were merged",
+      "no longer of the boundary, or of another patch from their other side");
   if (mesh.tets.empty()) throw InputError(file, 0, "all its tets have a vertex twice; nothing is left of it");
 }
 

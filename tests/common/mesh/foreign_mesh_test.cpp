@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstring>
 #include <numeric>
+#include <set>
+#include <string>
 
 #include "common/geometry/predicates.h"
 #include "common/mesh/interfaces.h"
@@ -165,6 +167,39 @@ TEST(ForeignMesh, PatchesStayWithTheirFaces) {
     EXPECT_EQ(t.patch, soup.points[t.ids[0]].x() == 0 && soup.points[t.ids[1]].x() == 0 &&
                            soup.points[t.ids[2]].x() == 0);
   EXPECT_EQ(soup.patch_groups.size(), 1u);
+}
+
+TEST(ForeignMesh, PatchesThatComeToLieBetweenMaterialsKeepTheirGroups) {
+  TetMesh mesh = grid_mesh(2);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    Vec3 centre = Vec3::Zero();
+    for (const Index p : mesh.tets[t]) centre += mesh.points[p] / 4;
+    mesh.materials[t] = centre.x() < 1 ? 1 : 2;
+  }
+  TetMesh soup = soup_of(mesh);
+  soup.interfaces = find_interfaces(soup);
+  // Both sides of the interface, of which only one is left, are boundary patches with the same number.
+  std::size_t between = 0;
+  for (InterfaceTriangle& t : soup.interfaces) {
+    t.patch = std::all_of(t.ids.begin(), t.ids.end(), [&](Index p) { return soup.points[p].x() == 1; });
+    between += t.patch;
+  }
+  ASSERT_GT(between, 0u);
+  soup.patch_groups[{{1, std::nullopt}, 1}] = {0, "left"};
+  soup.patch_groups[{{2, std::nullopt}, 1}] = {0, "right"};
+  EXPECT_EQ(make_coherent(soup).lost_faces, between / 2);  // the names of one side
+  std::set<std::string> names;
+  std::size_t kept = 0;
+  for (const InterfaceTriangle& t : soup.interfaces) {
+    if (t.patch == 0) continue;
+    ++kept;
+    const auto group = soup.patch_groups.find({t.pair(), t.patch});
+    ASSERT_NE(group, soup.patch_groups.end());
+    EXPECT_EQ(t.other, MaterialOrOutside(2));
+    names.insert(group->second.name);
+  }
+  EXPECT_EQ(kept, between / 2);
+  EXPECT_TRUE(names == std::set<std::string>{"left"} || names == std::set<std::string>{"right"});
 }
 
 TEST(ForeignMesh, UnusedPointsOfASoupStay) {

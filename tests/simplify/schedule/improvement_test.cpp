@@ -86,7 +86,7 @@ TEST(Improve, OnlyBelowLeavesTheRestAlone) {
 TEST(Improve, AHigherOnlyBelowDoesMore) {
   const TetMesh mesh = crooked(5);
   std::size_t left = mesh.tets.size();
-  for (const double bound : {0.05, 0.2, 0.3}) {
+  for (const double bound : {0.05, 0.1, 0.3}) {
     ImproveOptions options;
     options.only_below = bound;
     const std::size_t below = mesh_statistics(improve(mesh, options), 0.3).below_count;
