@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/formats/msh_data.h"
@@ -38,33 +40,52 @@ void append_element(std::string& out, std::size_t number, std::int64_t type, std
   out += '\n';
 }
 
-/// msh_name() of each name. Names that differ stay different, by the suffixes "_2", "_3" and so on.
-template <class Key>
-std::map<Key, std::string> names_to_write(const std::map<Key, std::string>& names) {
-  std::map<Key, std::string> written;
-  std::map<std::string, std::string> original_of;
+/// Gives each name that it is asked for once: msh_name(), or where that is taken with the suffix "_2", "_3"
+/// and so on.
+class NamesToWrite {
+ public:
+  std::string add(const std::string& name) {
+    const std::string plain = msh_name(name);
+    std::string unique = plain;
+    std::size_t& number = next_.try_emplace(plain, 2).first->second;
+    while (!used_.insert(unique).second) unique = plain + "_" + std::to_string(number++);
+    return unique;
+  }
+
+ private:
+  std::set<std::string> used_;
+  std::map<std::string, std::size_t> next_;  ///< the next suffix to try
+};
+
+/// Of the materials. Names that differ stay different, and equal ones equal.
+std::map<MaterialTag, std::string> material_names_to_write(const std::map<MaterialTag, std::string>& names) {
+  std::map<MaterialTag, std::string> written;
+  std::map<std::string, std::string> written_of;
+  NamesToWrite unique;
   for (const bool unchanged : {true, false})  // these keep their names
     for (const auto& [tag, name] : names) {
-      const std::string plain = msh_name(name);
-      if ((plain == name) != unchanged) continue;
-      std::string unique = plain;
-      for (int n = 2; original_of.try_emplace(unique, name).first->second != name; ++n)
-        unique = plain + "_" + std::to_string(n);
-      written[tag] = unique;
+      if ((msh_name(name) == name) != unchanged) continue;
+      const auto [known, added] = written_of.try_emplace(name);
+      if (added) known->second = unique.add(name);
+      written[tag] = known->second;
     }
   return written;
 }
 
-/// By the numbers of the groups; without those that have no name.
+/// By the numbers of the groups; without those that have no name. No two are equal: groups of the user come
+/// first, those before the others whose names stay as they are.
 std::map<std::int64_t, std::string> group_names_to_write(const BoundaryGroups& groups,
                                                          const std::map<MaterialTag, std::string>& names) {
-  std::map<std::int64_t, std::string> all;
+  std::map<std::int64_t, std::string> written;
+  NamesToWrite unique;
+  for (const bool unchanged : {true, false})
+    for (const BoundaryGroups::Group& g : groups.all()) {
+      const std::string& name = g.face_group.name;
+      if (!name.empty() && (msh_name(name) == name) == unchanged) written[g.number] = unique.add(name);
+    }
   for (const BoundaryGroups::Group& g : groups.all())
-    if (g.pair)
-      all[g.number] = pair_name(*g.pair, names);
-    else if (!g.face_group.name.empty())
-      all[g.number] = g.face_group.name;
-  return names_to_write(all);
+    if (g.pair) written[g.number] = unique.add(pair_name(*g.pair, names));
+  return written;
 }
 
 }  // namespace
@@ -72,7 +93,7 @@ std::map<std::int64_t, std::string> group_names_to_write(const BoundaryGroups& g
 std::string write_msh(const TetMesh& mesh) {
   std::string out = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
   const BoundaryGroups groups(mesh);
-  const std::map<MaterialTag, std::string> names = names_to_write(mesh.material_names);
+  const std::map<MaterialTag, std::string> names = material_names_to_write(mesh.material_names);
   const std::map<std::int64_t, std::string> group_names = group_names_to_write(groups, names);
   if (!mesh.material_names.empty() || !group_names.empty()) {
     out += "$PhysicalNames\n";

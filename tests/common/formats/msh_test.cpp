@@ -1,5 +1,6 @@
 #include "common/formats/msh.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "common/mesh/interfaces.h"
@@ -80,6 +81,28 @@ TEST(Msh, GroupsOfFacesComeBackWithTheirNamesAndNumbers) {
   other.replace(other.find("$EndElements"), 0, "10 2 2 12 12 1 4 5\n");
   other.replace(other.find("$Elements\n9"), 11, "$Elements\n10");
   expect_input_error(read_msh, other, "\"inlet\"", "no face of a tet");
+}
+
+TEST(Msh, NoTwoGroupsOfFacesHaveOneName) {
+  TetMesh mesh = two_tets(2);
+  mesh.interfaces = find_interfaces(mesh);
+  const MaterialPair first{1, std::nullopt}, second{2, std::nullopt};
+  for (InterfaceTriangle& t : mesh.interfaces)
+    if (t.ids == Triangle{0, 1, 3} || t.ids == Triangle{0, 4, 1}) t.patch = 1;
+  // Like the pair of materials, like that with a suffix, and like each other when written.
+  mesh.patch_groups = {{{first, 1}, {7, "1|outside"}}, {{second, 1}, {8, "1|outside_2"}}};
+  const std::string text = write_msh(mesh);
+  EXPECT_NE(text.find("2 7 \"1|outside\"\n2 8 \"1|outside_2\"\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\"1|outside_3\"\n"), std::string::npos) << text;
+  EXPECT_EQ(write_msh(read_msh(text, "f").mesh), text);
+  mesh.patch_groups = {{{first, 1}, {7, "a\"b"}}, {{second, 1}, {8, "a_b"}}};
+  EXPECT_NE(write_msh(mesh).find("2 7 \"a_b_2\"\n2 8 \"a_b\"\n"), std::string::npos);
+  mesh.patch_groups = {{{first, 1}, {7, "same"}}, {{second, 1}, {8, "same"}}};
+  EXPECT_NO_THROW(read_msh(write_msh(mesh), "f"));
+  // Materials of one name make pairs of one name.
+  mesh.patch_groups = {};
+  mesh.material_names = {{1, "bone"}, {2, "bone"}};
+  EXPECT_NO_THROW(read_msh(write_msh(mesh), "f"));
 }
 
 TEST(Msh, SurfacesWithGroups) {
