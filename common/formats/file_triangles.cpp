@@ -27,73 +27,126 @@ class TriangleTaker {
  public:
   TriangleTaker(const FileTriangles& listed, const std::string& group_word, const std::string& file,
                 ReadTetMesh& read)
-      : listed_(listed), group_word_(group_word), file_(file), read_(read) {
-    std::vector<std::uint8_t> candidates(read.mesh.points.size(), 0);
-    for (const Triangle& triangle : listed.triangles)
-      for (const Index vertex : triangle)
-        if (vertex < candidates.size()) candidates[vertex] = 1;
-    faces_ = mesh_faces(read.mesh.tets, read.mesh.points.size(), &candidates);
-  }
+      : listed_(listed),
+        group_word_(group_word),
+        file_(file),
+        read_(read),
+        interfaces_(find_interfaces(read.mesh)),
+        group_of_(interfaces_.size(), 0) {}
 
   void take() {
     for (std::size_t i = 0; i < listed_.triangles.size(); ++i) add(i);
-    std::map<MaterialPair, std::size_t> groups_of_pair;
-    std::set<MaterialPair> pairs;
-    for (const auto& [number, group] : groups_)
-      for (const MaterialPair& pair : group.pairs) {
-        pairs.insert(pair);
-        groups_of_pair[pair] += number != 0;
-      }
-    const auto is_of_pair = [&](std::int64_t number, const Group& group) {
-      if (number == 0) return true;
-      if (group.pairs.size() > 1) return false;
-      const MaterialPair& pair = *group.pairs.begin();
-      const auto name = listed_.names.find(number);
-      if (name != listed_.names.end())
-        return name->second == msh_name(pair_name(pair, read_.mesh.material_names));
-      return groups_of_pair[pair] == 1 && number == std::distance(pairs.begin(), pairs.find(pair)) + 1;
-    };
-    const bool all_of_pairs = std::all_of(groups_.begin(), groups_.end(),
-                                          [&](const auto& g) { return is_of_pair(g.first, g.second); });
-    std::size_t restored = 0;
-    for (const auto& [number, group] : groups_)
-      if (all_of_pairs || number == 0) restored += group.triangles;
-    if (!all_of_pairs) set_patches();
-    note(restored, all_of_pairs ? groups_.size() - groups_.count(0) : 0);
+    check_others();
+    count_groups();
+    find_derived();
+    for (const std::int64_t number : derived_) restored_ += groups_.at(number).triangles;
+    set_patches();
+    note();
   }
 
  private:
   struct Group {
-    std::size_t triangles = 0;  ///< that are faces of boundary or interfaces
+    std::size_t triangles = 0;
     std::set<MaterialPair> pairs;
+  };
+  struct FacesOfPair {
+    std::size_t without_group = 0;
+    std::set<std::int64_t> groups;
   };
 
   void add(std::size_t i) {
     const Triangle ids = sorted(listed_.triangles[i]);
     const std::int64_t number = listed_.groups[i];
-    const auto face = std::lower_bound(faces_.begin(), faces_.end(), ids,
-                                       [](const MeshFace& f, const Triangle& t) { return f.ids < t; });
-    if (face == faces_.end() || face->ids != ids) {
-      if (number != 0) fail(i);
-      ++without_group_;
+    const auto face =
+        std::lower_bound(interfaces_.begin(), interfaces_.end(), ids,
+                         [](const InterfaceTriangle& f, const Triangle& t) { return sorted(f.ids) < t; });
+    if (face == interfaces_.end() || sorted(face->ids) != ids) {
+      if (number != 0)
+        others_.push_back(i);
+      else
+        ++without_group_;
       return;
     }
-    const std::vector<MaterialTag>& materials = read_.mesh.materials;
-    MaterialPair pair{materials[face->first], std::nullopt};
-    if (face->count > 1) {
-      const MaterialTag other = materials[face->second];
-      if (face->count > 2 || other == pair.first) {
-        ++(number != 0 ? inside_ : without_group_);
-        return;
-      }
-      pair = {std::min(pair.first, other), std::max(pair.first, other)};
-    }
-    if (!group_of_.emplace(ids, number).second) {
+    std::int64_t& group = group_of_[static_cast<std::size_t>(face - interfaces_.begin())];
+    if (number == 0)
+      ++restored_;
+    else if (group == 0)
+      group = number;
+    else
       ++repeated_;
-      return;
+  }
+
+  /// Those of a group that are no faces of the boundary or of an interface must lie inside a material.
+  void check_others() const {
+    if (others_.empty()) return;
+    const TetMesh& mesh = read_.mesh;
+    std::vector<std::uint8_t> candidates(mesh.points.size(), 0);
+    for (const std::size_t i : others_)
+      for (const Index vertex : listed_.triangles[i])
+        if (vertex < candidates.size()) candidates[vertex] = 1;
+    const std::vector<MeshFace> faces = mesh_faces(mesh.tets, mesh.points.size(), &candidates);
+    for (const std::size_t i : others_) {
+      const Triangle ids = sorted(listed_.triangles[i]);
+      const auto face = std::lower_bound(faces.begin(), faces.end(), ids,
+                                         [](const MeshFace& f, const Triangle& t) { return f.ids < t; });
+      if (face == faces.end() || face->ids != ids) fail(i);
     }
-    ++groups_[number].triangles;
-    groups_[number].pairs.insert(pair);
+  }
+
+  void count_groups() {
+    for (std::size_t f = 0; f < interfaces_.size(); ++f) {
+      const MaterialPair pair = interfaces_[f].pair();
+      FacesOfPair& of_pair = pairs_[pair];
+      if (const std::int64_t number = group_of_[f]) {
+        Group& group = groups_[number];
+        ++group.triangles;
+        group.pairs.insert(pair);
+        of_pair.groups.insert(number);
+      } else {
+        ++of_pair.without_group;
+      }
+    }
+  }
+
+  /// Finds the groups that are what writers make of a pair of materials.
+  void find_derived() {
+    std::map<std::string, std::int64_t> number_of_name;
+    for (const auto& [number, name] : listed_.names) number_of_name.emplace(msh_name(name), number);
+    // Without names and comments a number alone may be a user's: it tells only if all of them do.
+    std::set<std::int64_t> by_number;
+    std::int64_t next = 0;
+    for (const auto& [pair, faces] : pairs_) {
+      ++next;
+      if (faces.without_group > 0) continue;
+      if (const std::int64_t number = named_like(pair, faces, number_of_name))
+        derived_.insert(number);
+      else if (faces.groups == std::set{next} && !listed_.names.contains(next) &&
+               !listed_.comments.contains(next) && is_of(next, pair))
+        by_number.insert(next);
+    }
+    if (derived_.size() + by_number.size() == groups_.size()) derived_.merge(by_number);
+  }
+
+  bool is_of(std::int64_t number, const MaterialPair& pair) const {
+    return groups_.at(number).pairs == std::set{pair};
+  }
+
+  /// Of the groups that lie within a pair of materials the one whose name or comment says so; 0 if there is
+  /// none. Writers add a suffix where a name is taken, so the last one counts.
+  std::int64_t named_like(const MaterialPair& pair, const FacesOfPair& faces,
+                          const std::map<std::string, std::int64_t>& number_of_name) const {
+    std::int64_t found = 0;
+    const std::string name = msh_name(pair_name(pair, read_.mesh.material_names));
+    auto named = number_of_name.find(name);
+    for (int n = 2; named != number_of_name.end(); ++n) {
+      if (faces.groups.contains(named->second) && is_of(named->second, pair)) found = named->second;
+      named = number_of_name.find(name + "_" + std::to_string(n));
+    }
+    for (const std::int64_t number : faces.groups)
+      if (const auto comment = listed_.comments.find(number);
+          comment != listed_.comments.end() && comment->second == pair_name(pair) && is_of(number, pair))
+        found = number;
+    return found;
   }
 
   std::string name_of(std::int64_t number) const {
@@ -120,44 +173,47 @@ class TriangleTaker {
   void set_patches() {
     std::vector<std::int64_t> numbers;
     for (const auto& [number, group] : groups_)
-      if (number != 0) numbers.push_back(number);
+      if (!derived_.contains(number)) numbers.push_back(number);
+    if (numbers.empty()) return;
     if (numbers.size() > max_patches)
       throw InputError(file_ + ": its triangles are in " + std::to_string(numbers.size()) + " " +
                        group_word_ + "s; at most " + std::to_string(max_patches) +
                        " are possible: join some of them");
     TetMesh& mesh = read_.mesh;
-    mesh.interfaces = find_interfaces(mesh);
-    for (InterfaceTriangle& t : mesh.interfaces) {
-      const auto listed = group_of_.find(sorted(t.ids));
-      if (listed == group_of_.end() || listed->second == 0) continue;
-      const auto number = std::lower_bound(numbers.begin(), numbers.end(), listed->second);
+    mesh.interfaces = std::move(interfaces_);
+    for (std::size_t f = 0; f < group_of_.size(); ++f) {
+      const auto number = std::lower_bound(numbers.begin(), numbers.end(), group_of_[f]);
+      if (number == numbers.end() || *number != group_of_[f]) continue;
+      InterfaceTriangle& t = mesh.interfaces[f];
       t.patch = static_cast<std::uint16_t>(number - numbers.begin() + 1);
       const auto name = listed_.names.find(*number);
       mesh.patch_groups[{t.pair(), t.patch}] = {*number, name == listed_.names.end() ? "" : name->second};
     }
   }
 
-  void note(std::size_t restored, std::size_t restored_groups) {
+  void note() {
     const auto add = [&](const std::string& what, std::size_t count, bool is_restored) {
       if (count > 0) read_.dropped.push_back({what, count, is_restored});
     };
+    const std::size_t groups = derived_.size();
     add("boundary and interface triangles" +
-            (restored_groups == 0
-                 ? ""
-                 : " of " + std::to_string(restored_groups) + (restored_groups == 1 ? " group" : " groups")),
-        restored, true);
+            (groups == 0 ? "" : " of " + std::to_string(groups) + (groups == 1 ? " group" : " groups")),
+        restored_, true);
     add("triangles inside a material or of no tet", without_group_, false);
-    add("triangles of " + group_word_ + "s inside a material", inside_, false);
+    add("triangles of " + group_word_ + "s inside a material", others_.size(), false);
     add("triangles that are in a " + group_word_ + " already", repeated_, false);
   }
 
   const FileTriangles& listed_;
   const std::string &group_word_, &file_;
   ReadTetMesh& read_;
-  std::vector<MeshFace> faces_;  ///< those with points of listed triangles only
-  std::map<Triangle, std::int64_t> group_of_;
-  std::map<std::int64_t, Group> groups_;
-  std::size_t without_group_ = 0, inside_ = 0, repeated_ = 0;
+  std::vector<InterfaceTriangle> interfaces_;  ///< in ascending order of their sorted ids
+  std::vector<std::int64_t> group_of_;         ///< of each of these; 0: none
+  std::map<std::int64_t, Group> groups_;       ///< those with faces
+  std::map<MaterialPair, FacesOfPair> pairs_;
+  std::set<std::int64_t> derived_;   ///< groups that follow from the materials
+  std::vector<std::size_t> others_;  ///< triangles of a group that are no interface's
+  std::size_t restored_ = 0, without_group_ = 0, repeated_ = 0;
 };
 
 }  // namespace

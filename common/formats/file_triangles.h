@@ -14,22 +14,29 @@ namespace tetwright {
 struct FileTriangles {
   std::vector<Triangle> triangles;   ///< indices of points; no_index where the file names none of its points
   std::vector<std::int64_t> groups;  ///< one for each triangle; 0: none
-  std::map<std::int64_t, std::string> names;  ///< of groups that have one
+  std::map<std::int64_t, std::string> names;     ///< of groups that have one
+  std::map<std::int64_t, std::string> comments;  ///< what write_medit() says of a group in a comment
 };
 
 /// Takes the groups of the triangles as patches of `read.mesh`, with their names and numbers: fills
-/// `interfaces` and `patch_groups`. Both stay empty where writers make the same groups of the materials: all
-/// triangles of each group lie between the same two materials, or between one and outside, and its name is
-/// pair_name()'s or, where it has none and is the only group of its pair, its number is the one that
-/// BoundaryGroups gives the pair.
+/// `interfaces` and `patch_groups`. A group that writers make of a pair of materials is none: all its
+/// triangles lie between two materials, or between one and outside; each face there that is in no other group
+/// is in it; and it is known by
+/// - its name: pair_name()'s, with the suffix that write_msh() gives it where the user has groups of the
+/// names
+///   before it;
+/// - or the comment of write_medit();
+/// - or, where it has neither, its number, if that is the one that BoundaryGroups gives the pair and no group
+///   of the file is the user's.
+/// Where there is no other, both stay empty.
 ///
 /// Adds to `read.dropped` what is restored in this way, and what is lost: triangles within a material, those
-/// of no tet and no group, and those that are in a group already. Throws InputError for a triangle of a
+/// of no tet and no group, and those that are in a group already. To be listed without a group, too, loses
+/// none. Throws InputError for a triangle of a
 /// group that is no face of a tet, and for more than 65,535 groups.
 ///
 /// `group_word` is what the format calls a group, for example "physical group"; `file` is named in messages.
-/// To be called when the materials and their names are known. Time and memory grow with the number of
-/// triangles, beside one look at every tet.
+/// To be called when the materials and their names are known. Time and memory are those of find_interfaces().
 void take_triangles(const FileTriangles& listed, const std::string& group_word, const std::string& file,
                     ReadTetMesh& read);
 

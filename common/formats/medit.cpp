@@ -16,6 +16,8 @@ namespace tetwright {
 
 namespace {
 
+constexpr std::string_view reference_comment = "# reference ";
+
 /// Reads a reference. Some programs write it as a floating-point number.
 std::int64_t reference(TextScanner& in) {
   const std::string_view word = in.word();
@@ -66,10 +68,11 @@ const char* find_section(const Sections& sections, std::string_view keyword) {
 
 class Reader {
  public:
-  Reader(std::string_view bytes, const std::string& name) : in_(bytes, name, '#') {}
+  Reader(std::string_view bytes, const std::string& name) : bytes_(bytes), in_(bytes, name, '#') {}
 
   ReadTetMesh read() {
     read_sections();
+    read_comments();
     check_indices();
     return std::move(result_);
   }
@@ -153,6 +156,19 @@ class Reader {
     }
   }
 
+  /// What write_medit() says of references.
+  void read_comments() {
+    for (std::size_t at = 0; (at = bytes_.find(reference_comment, at)) != std::string_view::npos;) {
+      const bool begins_line = at == 0 || bytes_[at - 1] == '\n' || bytes_[at - 1] == '\r';
+      at += reference_comment.size();
+      const std::string_view line = bytes_.substr(at, bytes_.substr(at).find_first_of("\r\n"));
+      const std::size_t colon = line.find(": ");
+      std::int64_t number = 0;
+      if (begins_line && colon != std::string_view::npos && parse_number(line.substr(0, colon), number))
+        triangles_.comments.emplace(number, line.substr(colon + 2));
+    }
+  }
+
   /// Counts what a section holds if `word` is the keyword of one: keywords begin with a capital letter, and
   /// the number of items follows.
   void note_section(std::string_view word) {
@@ -204,6 +220,7 @@ class Reader {
                    " (counted from 1); export the file again");
   }
 
+  std::string_view bytes_;
   TextScanner in_;
   ReadTetMesh result_;
   FileTriangles triangles_;
@@ -227,7 +244,7 @@ void append_triangles(std::string& out, const TetMesh& mesh) {
   // Some readers do not know comments, and a name could be one of their keywords: tags of materials, and one
   // word in quotes for a group of the user.
   for (const BoundaryGroups::Group& g : groups.all()) {
-    out += "# reference ";
+    out += reference_comment;
     append_number(out, g.number);
     out += ": ";
     if (g.pair)

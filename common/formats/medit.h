@@ -10,10 +10,10 @@
 namespace tetwright {
 
 /// Reads the sections Vertices and Tetrahedra of a Medit ASCII mesh (.mesh). The reference of a tet is its
-/// material ("medit:ref"), those of triangles are groups of faces (see take_triangles()); the format has no
-/// place for fields. Sections of other volume cells are refused, what other sections hold is counted in
-/// ReadTetMesh::dropped. `name` is used in messages. Throws InputError with the line for anything that is
-/// malformed.
+/// material ("medit:ref"), those of triangles are groups of faces (see take_triangles()), of which
+/// write_medit()'s comments tell those of a pair of materials; the format has no place for fields. Sections
+/// of other volume cells are refused, what other sections hold is counted in ReadTetMesh::dropped. `name` is
+/// used in messages. Throws InputError with the line for anything that is malformed.
 ///
 /// Our own: libMeshb reports that a file can't be read without saying where and why.
 ReadTetMesh read_medit(std::string_view bytes, const std::string& name,

@@ -73,12 +73,31 @@ TEST(Medit, InterfaceTrianglesAreFoundAgain) {
   // A group with another number may be a boundary condition.
   std::string other = text;
   other.replace(other.find("1 2 3 2\n"), 8, "1 2 3 9\n");
-  EXPECT_TRUE(dropped(other).empty());
+  EXPECT_EQ(dropped(other),
+            (std::vector<Dropped>{{"boundary and interface triangles of 2 groups", 6, true}}));
   const TetMesh back = read_medit(other, "f").mesh;
-  EXPECT_EQ(back.patch_groups.at({{-7, 1}, 3}), (FaceGroup{9, ""}));
+  EXPECT_EQ(back.patch_groups, (std::map<InterfacePatch, FaceGroup>{{{{-7, 1}, 1}, {9, ""}}}));
   const std::string again = write_medit(back);
-  EXPECT_NE(again.find("# reference 1: 1\n# reference 3: 3\n# reference 9: 9\n"), std::string::npos) << again;
-  EXPECT_EQ(again.substr(again.find("Triangles")), other.substr(other.find("Triangles")));
+  EXPECT_NE(again.find("# reference 1: -7|outside\n# reference 2: 1|outside\n# reference 9: 9\n"),
+            std::string::npos)
+      << again;
+  EXPECT_EQ(write_medit(read_medit(again, "f").mesh), again);
+  // Without comments the others may be the user's, too.
+  const auto without_comments = [](std::string from) {
+    for (std::size_t at; (at = from.find("# ref")) != std::string::npos;)
+      from.erase(at, from.find('\n', at) + 1 - at);
+    return from;
+  };
+  EXPECT_EQ(read_medit(without_comments(other), "f").mesh.patch_groups.size(), 3u);
+  EXPECT_EQ(dropped(without_comments(text)), dropped(text));
+  // A comment that says something else, and a group that leaves faces out.
+  std::string named = text;
+  named.replace(named.find("# reference 2: -7|1"), 19, "# reference 2: \"in\"");
+  EXPECT_EQ(read_medit(named, "f").mesh.patch_groups.size(), 1u);
+  std::string partial = text;
+  partial.replace(partial.find("1 2 4 3\n"), 8, "1 2 4 0\n");
+  EXPECT_EQ(read_medit(partial, "f").mesh.patch_groups,
+            (std::map<InterfacePatch, FaceGroup>{{{{1, std::nullopt}, 1}, {3, ""}}}));
 }
 
 TEST(Medit, Surfaces) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 #include "common/mesh/interfaces.h"
 #include "tests/common/formats/expect_error.h"
@@ -70,8 +71,11 @@ TEST(Msh, GroupsOfFacesComeBackWithTheirNamesAndNumbers) {
             std::string::npos)
       << text;
   const ReadTetMesh back = read_msh(text, "f");
-  EXPECT_TRUE(back.dropped.empty());
+  EXPECT_EQ(back.dropped, (std::vector<Dropped>{{"boundary and interface triangles of 2 groups", 4, true}}));
   EXPECT_EQ(back.mesh.interfaces.size(), mesh.interfaces.size());
+  std::set<FaceGroup> of_user;
+  for (const auto& [patch, group] : back.mesh.patch_groups) of_user.insert(group);
+  EXPECT_EQ(of_user, (std::set<FaceGroup>{{12, "inlet"}, {3, "outlet"}}));
   EXPECT_EQ(write_msh(back.mesh), text);
   std::string twice = text;
   twice.replace(twice.find("outlet"), 6, "inlet");
@@ -95,6 +99,7 @@ TEST(Msh, NoTwoGroupsOfFacesHaveOneName) {
   EXPECT_NE(text.find("2 7 \"1|outside\"\n2 8 \"1|outside_2\"\n"), std::string::npos) << text;
   EXPECT_NE(text.find("\"1|outside_3\"\n"), std::string::npos) << text;
   EXPECT_EQ(write_msh(read_msh(text, "f").mesh), text);
+  EXPECT_EQ(read_msh(text, "f").mesh.patch_groups.size(), 2u);
   mesh.patch_groups = {{{first, 1}, {7, "a\"b"}}, {{second, 1}, {8, "a_b"}}};
   EXPECT_NE(write_msh(mesh).find("2 7 \"a_b_2\"\n2 8 \"a_b\"\n"), std::string::npos);
   mesh.patch_groups = {{{first, 1}, {7, "same"}}, {{second, 1}, {8, "same"}}};
@@ -103,6 +108,20 @@ TEST(Msh, NoTwoGroupsOfFacesHaveOneName) {
   mesh.patch_groups = {};
   mesh.material_names = {{1, "bone"}, {2, "bone"}};
   EXPECT_NO_THROW(read_msh(write_msh(mesh), "f"));
+}
+
+TEST(Msh, TrianglesThatAreListedWithoutTheirGroupToo) {
+  TetMesh mesh = one_tet();
+  mesh.interfaces = find_interfaces(mesh);
+  mesh.interfaces[0].patch = 1;
+  mesh.patch_groups = {{{{1, std::nullopt}, 1}, {12, "inlet"}}};
+  const std::string text = write_msh(mesh);
+  std::string other = text;
+  other.replace(other.find("$Elements\n5\n"), 12, "$Elements\n6\n0 2 2 0 1 1 2 3\n");
+  const ReadTetMesh back = read_msh(other, "f");
+  EXPECT_EQ(back.mesh.patch_groups, mesh.patch_groups);
+  EXPECT_EQ(write_msh(back.mesh), text);
+  EXPECT_EQ(back.dropped, (std::vector<Dropped>{{"boundary and interface triangles of 1 group", 4, true}}));
 }
 
 TEST(Msh, SurfacesWithGroups) {
