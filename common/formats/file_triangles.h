@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -10,8 +11,18 @@
 
 namespace tetwright {
 
-/// The triangles that a file lists beside its tets, and the group that it puts each into.
+/// The triangles that a file lists, beside its tets or as a surface, and the group that it puts each into.
 struct FileTriangles {
+  void add(const Triangle& ids, std::int64_t group) {
+    triangles.push_back(ids);
+    groups.push_back(group);
+  }
+  /// Cuts a quad as SurfaceBuilder::add_polygon() does.
+  void add_quad(const std::array<Index, 4>& ids, std::int64_t group) {
+    add({ids[0], ids[1], ids[2]}, group);
+    add({ids[0], ids[2], ids[3]}, group);
+  }
+
   std::vector<Triangle> triangles;   ///< indices of points; no_index where the file names none of its points
   std::vector<std::int64_t> groups;  ///< one for each triangle; 0: none
   std::map<std::int64_t, std::string> names;     ///< of groups that have one

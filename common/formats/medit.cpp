@@ -78,9 +78,11 @@ class Reader {
   }
 
   TriangleMesh read_surface(std::vector<Dropped>* dropped) {
+    surface_ = true;
     read_sections();
     if (!result_.mesh.tets.empty()) throw InputError(in_.name() + surface_expected(result_.mesh.tets.size()));
     check_has_vertices();
+    if (largest_ > std::ssize(result_.mesh.points)) fail_face(largest_, largest_line_);
     if (dropped) note_others(*dropped);
     return surface_of(triangles_, std::move(result_.mesh.points), in_.name());
   }
@@ -118,6 +120,8 @@ class Reader {
         read_tets();
       } else if (word == "Triangles") {
         read_triangles();
+      } else if (word == "Quadrilaterals" && surface_) {
+        read_quads();
       } else if (word == "End") {
         ended = true;
       } else {
@@ -147,13 +151,38 @@ class Reader {
     const std::size_t n = in_.count("number of triangles", 8);
     for (std::size_t i = 0; i < n; ++i) {
       Triangle ids;
-      for (Index& vertex : ids) {
-        const std::int64_t index = in_.integer("index of a point");
-        vertex = index >= 1 && index < no_index ? static_cast<Index>(index - 1) : no_index;
-      }
-      triangles_.triangles.push_back(ids);
-      triangles_.groups.push_back(reference(in_));
+      for (Index& vertex : ids) vertex = read_point_of_face();
+      triangles_.add(ids, reference(in_));
     }
+  }
+
+  /// Of a surface. Beside tets quads are no faces.
+  void read_quads() {
+    const std::size_t n = in_.count("number of quads", 10);
+    for (std::size_t i = 0; i < n; ++i) {
+      std::array<Index, 4> ids;
+      for (Index& vertex : ids) vertex = read_point_of_face();
+      triangles_.add_quad(ids, reference(in_));
+    }
+  }
+
+  /// no_index for none that there can be; in a surface that is an error. Faces may precede the points.
+  Index read_point_of_face() {
+    const std::int64_t index = in_.integer("index of a point");
+    const bool possible = index >= 1 && index < no_index;
+    if (surface_ && !possible) fail_face(index, in_.line());
+    if (index > largest_) {
+      largest_ = index;
+      largest_line_ = in_.line();
+    }
+    return possible ? static_cast<Index>(index - 1) : no_index;
+  }
+
+  [[noreturn]] void fail_face(std::int64_t index, std::size_t line) const {
+    throw InputError(in_.name(), line,
+                     "a face names point " + std::to_string(index) +
+                         (has_vertices_ ? " of " + std::to_string(result_.mesh.points.size()) : "") +
+                         " (counted from 1); export the file again");
   }
 
   /// What write_medit() says of references.
@@ -227,7 +256,10 @@ class Reader {
   KindCounts volume_cells_, others_;
   std::size_t volume_cells_line_ = 0;  ///< of the keyword of the first section that has some
   std::size_t point_references_ = 0;
+  std::int64_t largest_ = 0;  ///< of the points that faces name, counted from 1
+  std::size_t largest_line_ = 0;
   bool has_vertices_ = false;
+  bool surface_ = false;  ///< a surface is wanted, and no tets
 };
 
 /// A name as one word in quotes.

@@ -19,9 +19,9 @@ namespace tetwright {
 ReadTetMesh read_medit(std::string_view bytes, const std::string& name,
                        const ReadTetMeshOptions& options = {});
 
-/// Reads the sections Vertices and Triangles of such a file as a surface: references are its groups. What
-/// else it holds is appended to `dropped`, unless that is null. Throws InputError as read_medit() does, and
-/// for a file with tets.
+/// Reads the sections Vertices, Triangles and Quadrilaterals, cut in two, of such a file as a surface:
+/// references are its groups. What else it holds is appended to `dropped`, unless that is null. Throws
+/// InputError as read_medit() does, and for a file with tets.
 TriangleMesh read_medit_surface(std::string_view bytes, const std::string& name,
                                 std::vector<Dropped>* dropped = nullptr);
 

@@ -13,17 +13,18 @@ namespace tetwright {
 /// group of a tet, with its name from $PhysicalNames. In version 4.1, if no volume has a physical group, it
 /// is the number of the volume ("gmsh:geometrical", which the options can also ask for). $NodeData and
 /// $ElementData become fields, with nan for items that a section does not list. Volume elements other than
-/// linear tets are refused; physical groups of triangles become groups of faces (see take_triangles());
-/// points, lines, other faces, their groups and other sections are counted in ReadTetMesh::dropped. `name` is
-/// used in messages. Throws InputError with the line for anything that is malformed; other versions, binary
-/// files and partitioned meshes are refused with advice.
+/// linear tets are refused; physical groups of triangles become groups of faces (see take_triangles()),
+/// whatever the sign of their number, which says how Gmsh turns them; points, lines, other faces, their
+/// groups and other sections are counted in ReadTetMesh::dropped. `name` is used in messages. Throws
+/// InputError with the line for anything that is malformed; other versions, binary files and partitioned
+/// meshes are refused with advice.
 ///
 /// Our own: the library of Gmsh is under the GPL.
 ReadTetMesh read_msh(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options = {});
 
-/// Reads the triangles (type 2) of such a file as a surface: physical groups of faces are its groups, with
-/// their names. What else it holds is appended to `dropped`, unless that is null. Throws InputError as
-/// read_msh() does, and for a file with tets.
+/// Reads the triangles (type 2) and quads (type 3), cut in two, of such a file as a surface: physical groups
+/// of faces are its groups, with their names. What else it holds is appended to `dropped`, unless that is
+/// null. Throws InputError as read_msh() does, and for a file with tets.
 TriangleMesh read_msh_surface(std::string_view bytes, const std::string& name,
                               std::vector<Dropped>* dropped = nullptr);
 

@@ -90,7 +90,12 @@ bool OtherMshElements::is_volume(std::int64_t type) { return volume_kind(type) !
 
 void OtherMshElements::add_name(std::int64_t dimension, std::int64_t group, const std::string& name) {
   if (dimension == 2) triangles_.names[group] = name;
-  if (dimension == 0 || dimension == 1) names_[static_cast<std::size_t>(dimension)][group] = name;
+  if (dimension == 0 || dimension == 1 || dimension == 3)
+    names_[static_cast<std::size_t>(dimension)][group] = name;
+}
+
+void OtherMshElements::add_further_group(std::size_t dimension, std::int64_t group) {
+  further_groups_[dimension].insert(group);
 }
 
 void OtherMshElements::add_volume(std::int64_t type, std::int64_t element, std::size_t line) {
@@ -106,11 +111,6 @@ void OtherMshElements::add_flat(std::int64_t type, std::int64_t group) {
   OfKind& kind = flat_[type];
   ++kind.elements;
   if (group != 0) kind.groups.insert(group);
-}
-
-void OtherMshElements::add_triangle(const Triangle& ids, std::int64_t group) {
-  triangles_.triangles.push_back(ids);
-  triangles_.groups.push_back(group);
 }
 
 void OtherMshElements::refuse_volumes(const std::string& file) const {
@@ -137,19 +137,19 @@ TriangleMesh OtherMshElements::surface(std::vector<Vec3> points, const std::stri
 }
 
 void OtherMshElements::note_dropped(std::vector<Dropped>& dropped) const {
+  const auto name_of = [&](std::size_t dimension, std::int64_t group) {
+    const auto known = names_of(dimension).find(group);
+    return known == names_of(dimension).end() ? std::to_string(group) : known->second;
+  };
   std::array<std::set<std::int64_t>, 3> used;
   used[2].insert(triangles_.groups.begin(), triangles_.groups.end());
   for (const auto& [type, of_kind] : flat_) {
     const ElementKind kind = flat_kind(type);
     std::vector<std::string> groups;
     for (std::int64_t group : of_kind.groups) {
-      std::string name = std::to_string(group);
-      if (kind.dimension < unknown_dimension) {
-        const auto& names = names_of(kind.dimension);
-        if (const auto known = names.find(group); known != names.end()) name = known->second;
-        used[kind.dimension].insert(group);
-      }
-      groups.push_back(name);
+      const bool known = kind.dimension < unknown_dimension;
+      if (known) used[kind.dimension].insert(group);
+      groups.push_back(known ? name_of(kind.dimension, group) : std::to_string(group));
     }
     dropped.push_back(
         {kind.name + (groups.empty() ? "" : " of physical groups (" + quoted_list(groups) + ")"),
@@ -158,8 +158,13 @@ void OtherMshElements::note_dropped(std::vector<Dropped>& dropped) const {
   std::vector<std::string> unused;
   for (std::size_t dimension = 0; dimension < used.size(); ++dimension)
     for (const auto& [group, name] : names_of(dimension))
-      if (!used[dimension].contains(group)) unused.push_back(name);
+      if (!used[dimension].contains(group) && !further_groups_[dimension].contains(group))
+        unused.push_back(name);
   append_dropped_names(dropped, "physical groups of points, lines or faces, without elements", unused);
+  std::vector<std::string> further;
+  for (std::size_t dimension = 0; dimension < further_groups_.size(); ++dimension)
+    for (const std::int64_t group : further_groups_[dimension]) further.push_back(name_of(dimension, group));
+  append_dropped_names(dropped, "further physical groups of entities", further);
 }
 
 }  // namespace tetwright

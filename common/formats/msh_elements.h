@@ -15,6 +15,7 @@ namespace tetwright {
 
 /// Gmsh's numbers of element types.
 inline constexpr std::int64_t msh_triangle_type = 2;
+inline constexpr std::int64_t msh_quad_type = 3;
 inline constexpr std::int64_t msh_tet_type = 4;
 
 /// The elements of an MSH file that are not linear tets, counted by kind and group, and the names of the
@@ -24,14 +25,18 @@ class OtherMshElements {
   /// True for the types of volume elements other than linear tets.
   static bool is_volume(std::int64_t type);
 
-  /// A name of section $PhysicalNames; `dimension` is 0 to 2.
+  /// A name of section $PhysicalNames; `dimension` is 0 to 3.
   void add_name(std::int64_t dimension, std::int64_t group, const std::string& name);
+  /// A physical group of an entity that has another one before it, which counts.
+  void add_further_group(std::size_t dimension, std::int64_t group);
   /// A volume element other than a linear tet, also one of a type that is_volume() does not know.
   void add_volume(std::int64_t type, std::int64_t element, std::size_t line);
   /// A point, line or face other than a linear triangle; `group` is its physical group, 0 for none.
   void add_flat(std::int64_t type, std::int64_t group);
   /// A linear triangle; its nodes as indices of points, no_index for a node that the file does not have.
-  void add_triangle(const Triangle& ids, std::int64_t group);
+  void add_triangle(const Triangle& ids, std::int64_t group) { triangles_.add(ids, group); }
+  /// A quad of a surface, as two triangles.
+  void add_quad(const std::array<Index, 4>& ids, std::int64_t group) { triangles_.add_quad(ids, group); }
 
   /// Throws InputError if there were volume elements.
   void refuse_volumes(const std::string& file) const;
@@ -53,8 +58,9 @@ class OtherMshElements {
     return dimension == 2 ? triangles_.names : names_[dimension];
   }
 
-  std::array<std::map<std::int64_t, std::string>, 2> names_;  ///< of groups of points and of lines
+  std::array<std::map<std::int64_t, std::string>, 4> names_;  ///< by dimension, but for faces
   FileTriangles triangles_;                                   ///< with the names of groups of faces
+  std::array<std::set<std::int64_t>, 4> further_groups_;      ///< by dimension
   std::map<std::int64_t, OfKind> flat_;                       ///< by type
   std::map<std::int64_t, std::size_t> volumes_;               ///< numbers by type
   std::int64_t first_volume_ = 0, first_volume_type_ = 0;

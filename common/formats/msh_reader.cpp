@@ -1,4 +1,5 @@
 #include <array>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -16,6 +17,11 @@ namespace tetwright {
 
 namespace {
 
+/// The number of a group of faces, or of what is less: where a sign is, Gmsh means the other orientation.
+std::int64_t without_sign(std::int64_t number) {
+  return number < 0 && number != std::numeric_limits<std::int64_t>::min() ? -number : number;
+}
+
 class MshReader {
  public:
   MshReader(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options)
@@ -32,6 +38,7 @@ class MshReader {
   }
 
   TriangleMesh read_surface(std::vector<Dropped>* dropped) {
+    surface_ = true;
     read_sections();
     if (!result_.mesh.tets.empty()) throw InputError(in_.name() + surface_expected(result_.mesh.tets.size()));
     TriangleMesh surface = others_.surface(std::move(result_.mesh.points), in_.name(), dropped);
@@ -107,7 +114,8 @@ class MshReader {
     const std::size_t n = in_.count("number of physical names", 6);
     for (std::size_t i = 0; i < n; ++i) {
       const std::int64_t dimension = in_.integer("dimension of a physical group");
-      const std::int64_t tag = in_.integer("physical group");
+      std::int64_t tag = in_.integer("physical group");
+      if (dimension != 3) tag = without_sign(tag);
       const std::size_t line = in_.line();
       std::string_view name = in_.rest_of_line();
       const std::size_t open = name.find('"'), close = name.rfind('"');
@@ -197,13 +205,17 @@ class MshReader {
     for (std::size_t& n : counts) n = in_.count("number of entities", 2);
     for (std::size_t dimension = 0; dimension < 4; ++dimension)
       for (std::size_t i = 0; i < counts[dimension]; ++i) {
-        const std::int64_t tag = in_.integer("number of an entity");
+        const auto number = [&](const char* what) {
+          const std::int64_t value = in_.integer(what);
+          return dimension < 3 ? without_sign(value) : value;
+        };
+        const std::int64_t tag = number("number of an entity");
         for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) (void)in_.number("bound of an entity");
         const std::size_t physical = in_.count("number of physical groups", 2);
         for (std::size_t k = 0; k < physical; ++k) {
-          const std::int64_t group = in_.integer("physical group");
+          const std::int64_t group = number("physical group");
           if (k == 0) entity_to_group_[dimension][tag] = group;
-          if (k > 0) ++further_groups_;
+          if (k > 0) others_.add_further_group(dimension, group);
         }
         if (dimension == 0) continue;
         const std::size_t bounding = in_.count("number of bounding entities", 2);
@@ -219,21 +231,33 @@ class MshReader {
     keep_numbers_ = bytes_.find("$ElementData") != std::string_view::npos;
   }
 
-  void read_triangle(std::int64_t group) {
-    Triangle ids;
-    for (Index& vertex : ids) vertex = nodes_.find(in_.integer("node of a triangle"));
-    others_.add_triangle(ids, group);
-  }
-
-  void read_tet(std::int64_t element) {
-    Tet tet;
-    for (Index& vertex : tet) {
-      const std::int64_t node = in_.integer("node of a tet");
+  /// Nodes that are not there are an error if they are `needed`.
+  template <class Ids>
+  Ids read_ids(std::int64_t element, bool needed, const char* what) {
+    Ids ids;
+    for (Index& vertex : ids) {
+      const std::int64_t node = in_.integer(what);
       vertex = nodes_.find(node);
-      if (vertex == no_index)
+      if (needed && vertex == no_index)
         in_.fail("element " + std::to_string(element) + " names node " + std::to_string(node) +
                  ", which is not in $Nodes; export the file again");
     }
+    return ids;
+  }
+
+  /// False: faces of this type are not taken. Beside tets quads are no faces.
+  bool read_face(std::int64_t type, std::int64_t element, std::int64_t group) {
+    if (type == msh_triangle_type)
+      others_.add_triangle(read_ids<Triangle>(element, surface_, "node of a triangle"), without_sign(group));
+    else if (type == msh_quad_type && surface_)
+      others_.add_quad(read_ids<std::array<Index, 4>>(element, true, "node of a quad"), without_sign(group));
+    else
+      return false;
+    return true;
+  }
+
+  void read_tet(std::int64_t element) {
+    const Tet tet = read_ids<Tet>(element, true, "node of a tet");
     result_.mesh.tets.push_back(tet);
     if (keep_numbers_) elements_.add(element);
   }
@@ -263,10 +287,8 @@ class MshReader {
         partitioned_ += tags > 2;
         add_groups(physical, geometrical);
         read_tet(element);
-      } else if (type == msh_triangle_type) {
-        read_triangle(physical);
-      } else {
-        others_.add_flat(type, physical);
+      } else if (!read_face(type, element, physical)) {
+        others_.add_flat(type, without_sign(physical));
       }
       in_.skip_line();
     }
@@ -282,7 +304,8 @@ class MshReader {
     std::size_t done = 0;
     for (std::size_t b = 0; b < blocks; ++b) {
       const std::int64_t dimension = read_dimension();
-      const std::int64_t entity = in_.integer("number of an entity");
+      std::int64_t entity = in_.integer("number of an entity");
+      if (dimension < 3) entity = without_sign(entity);
       const std::int64_t type = in_.integer("type of an element");
       const std::size_t in_block = in_.count("number of elements", 4);
       if (in_block > n - done)
@@ -303,9 +326,7 @@ class MshReader {
         } else if (dimension == 3 || OtherMshElements::is_volume(type)) {
           others_.add_volume(type, element, in_.line());
           in_.skip_line();
-        } else if (type == msh_triangle_type) {
-          read_triangle(group);
-        } else {
+        } else if (!read_face(type, element, group)) {
           others_.add_flat(type, group);
           in_.skip_line();
         }
@@ -369,7 +390,6 @@ class MshReader {
   void note_dropped() {
     others_.finish(in_.name(), result_);
     std::vector<Dropped>& dropped = result_.dropped;
-    if (further_groups_ > 0) dropped.push_back({"further physical groups of entities", further_groups_});
     // Nothing is lost if each physical group has one volume only.
     std::set<std::int64_t> physical;
     for (const auto& volume : volumes_) physical.insert(volume.first);
@@ -399,8 +419,9 @@ class MshReader {
   std::map<std::string, std::int64_t> surface_names_;        ///< physical groups of faces
   std::set<std::pair<std::int64_t, std::int64_t>> volumes_;  ///< physical and geometrical number of the tets
   std::pair<std::int64_t, std::int64_t> last_volume_;
-  std::size_t further_groups_ = 0, partitioned_ = 0;
+  std::size_t partitioned_ = 0;
   std::vector<std::string> empty_fields_, fields_of_others_, other_sections_;  ///< names of what is not taken
+  bool surface_ = false;  ///< a surface is wanted, and no tets
   bool version_4_ = false;
   bool has_elements_ = false;
   bool any_physical_ = false, any_geometrical_ = false;

@@ -108,7 +108,26 @@ TEST(Medit, Surfaces) {
   EXPECT_EQ(mesh.groups, (std::vector<FaceGroup>{{4, ""}, {5, ""}}));
   EXPECT_EQ(dropped, (std::vector<Dropped>{{"ridges", 1}, {"points with a reference other than 0", 1}}));
   expect_input_error(read_medit_surface, write_medit(two_tets(2)), "2 tets", "tetwright simplify");
-  expect_input_error(read_medit_surface, head + vertices + "Triangles\n1\n1 2 9 4\n", "point 8");
+  expect_input_error(read_medit_surface, head + vertices + "Triangles\n1\n1 2 9 4\n", "line 12",
+                     "point 9 of 4 (counted from 1)");
+  expect_input_error(read_medit_surface, head + vertices + "Triangles\n1\n1 0 2 4\n", "line 12",
+                     "point 0 of 4");
+  expect_input_error(read_medit_surface, head + "Triangles\n2\n1 2 9 4\n1 2 3 4\n" + vertices, "line 6",
+                     "point 9 of 4");
+}
+
+TEST(Medit, QuadsOfSurfacesAreCut) {
+  const TriangleMesh mesh =
+      read_medit_surface(head + vertices + "Quadrilaterals\n1\n1 2 3 4 7\nTriangles\n1\n1 2 3 5\nEnd\n", "f");
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 1, 2}}));
+  EXPECT_EQ(mesh.groups, (std::vector<FaceGroup>{{7, ""}, {5, ""}}));
+  EXPECT_EQ(mesh.triangle_groups, (std::vector<std::uint32_t>{0, 0, 1}));
+  expect_input_error(read_medit_surface, head + vertices + "Quadrilaterals\n1\n1 2 3 5 7\n", "line 12",
+                     "point 5 of 4");
+  // Beside tets they are no faces.
+  EXPECT_EQ(read_medit(head + vertices + "Tetrahedra\n1\n1 2 3 4 1\nQuadrilaterals\n1\n1 2 3 4 7\n", "f")
+                .dropped[0],
+            (Dropped{"quads", 1}));
 }
 
 TEST(Medit, BadInput) {

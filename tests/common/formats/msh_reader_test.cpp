@@ -36,7 +36,21 @@ TEST(MshReader, Version41) {
   EXPECT_TRUE(r.mesh.cell_fields.empty());
   EXPECT_EQ(r.mesh.patch_groups,
             (std::map<InterfacePatch, FaceGroup>{{{{7, std::nullopt}, 1}, {7, "skin"}}}));
-  EXPECT_EQ(r.dropped, (std::vector<Dropped>{{"points", 1}, {"further physical groups of entities", 1}}));
+  EXPECT_EQ(r.dropped,
+            (std::vector<Dropped>{{"points", 1}, {"further physical groups of entities (\"8\")", 1}}));
+}
+
+TEST(MshReader, SurfacesWithSeveralAndTurnedGroups) {
+  const std::string text =
+      head + "$PhysicalNames\n2\n2 7 \"skin\"\n2 9 \"extra\"\n$EndPhysicalNames\n" +
+      "$Entities\n0 0 2 0\n1 0 0 0 1 1 1 2 -7 9 0\n-2 0 0 0 1 1 1 1 7 0\n$EndEntities\n" + nodes +
+      "$Elements\n3 3 1 9\n2 1 2 1\n2 10 20 7\n2 2 2 1\n9 10 20 40\n2 5 3 1\n" +
+      "3 10 20 7 40\n$EndElements\n";
+  std::vector<Dropped> dropped;
+  const TriangleMesh mesh = read_msh_surface(text, "f", &dropped);
+  EXPECT_EQ(mesh.groups, (std::vector<FaceGroup>{{7, "skin"}, {}}));
+  EXPECT_EQ(mesh.triangle_groups, (std::vector<std::uint32_t>{0, 0, 1, 1}));
+  EXPECT_EQ(dropped, (std::vector<Dropped>{{"further physical groups of entities (\"extra\")", 1}}));
 }
 
 TEST(MshReader, WithoutPhysicalGroupsTheVolumeIsTheMaterial) {

@@ -137,6 +137,20 @@ TEST(Msh, SurfacesWithGroups) {
   expect_input_error(read_msh_surface, head + nodes + elements("1 15 2 0 1 1\n", "1"), "no triangles");
 }
 
+TEST(Msh, QuadsAndTurnedFacesOfSurfaces) {
+  const TriangleMesh mesh =
+      read_msh_surface(head + "$PhysicalNames\n1\n2 7 \"skin\"\n$EndPhysicalNames\n" + nodes +
+                           elements("1 3 2 7 1 1 2 3 4\n2 2 2 -7 1 1 2 3\n3 2 2 -9 1 1 2 3\n", "3"),
+                       "f");
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 1, 2}, {0, 1, 2}}));
+  EXPECT_EQ(mesh.groups, (std::vector<FaceGroup>{{7, "skin"}, {9, ""}}));
+  EXPECT_EQ(mesh.triangle_groups, (std::vector<std::uint32_t>{0, 0, 0, 1}));
+  expect_input_error(read_msh_surface, head + nodes + elements("8 3 2 7 1 1 2 3 5\n"), "line 13",
+                     "element 8 names node 5");
+  expect_input_error(read_msh_surface, head + nodes + elements("8 2 2 -9223372036854775808 1 1 2 9\n"),
+                     "element 8 names node 9");
+}
+
 TEST(Msh, WhatGmshWrites) {
   const ReadTetMesh r = read_msh(
       head +
