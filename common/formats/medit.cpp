@@ -11,6 +11,7 @@
 #include "common/mesh/boundary_groups.h"
 #include "common/mesh/interfaces.h"
 #include "common/number_text.h"
+#include "common/utf8.h"
 
 namespace tetwright {
 
@@ -265,7 +266,7 @@ class Reader {
 /// A name as one word in quotes.
 std::string quoted_word(const std::string& name) {
   std::string out = "\"";
-  for (const char c : name) out += static_cast<unsigned char>(c) <= ' ' || c == '"' ? '_' : c;
+  for (const char c : valid_utf8(name)) out += static_cast<unsigned char>(c) <= ' ' || c == '"' ? '_' : c;
   return out + '"';
 }
 
@@ -282,7 +283,7 @@ void append_triangles(std::string& out, const TetMesh& mesh) {
     if (g.pair)
       out += pair_name(*g.pair);
     else
-      out += g.face_group.name.empty() ? std::to_string(g.number) : quoted_word(g.face_group.name);
+      out += g.face_group.name.empty() ? std::to_string(g.face_group.number) : quoted_word(g.face_group.name);
     out += '\n';
   }
   out += "Triangles\n";

@@ -28,7 +28,7 @@ TriangleMesh read_medit_surface(std::string_view bytes, const std::string& name,
 /// The content of a file; coordinates are read back bit by bit. The format has no place for fields and for
 /// names of materials. The interface triangles of the mesh, if it has any, are written as section Triangles:
 /// their reference is the number of their group (see BoundaryGroups), and a comment gives its name, or the
-/// tags of a pair of materials.
+/// tags of a pair of materials, or the number that the user's group had.
 std::string write_medit(const TetMesh& mesh);
 
 }  // namespace tetwright

@@ -7,31 +7,13 @@
 #include "common/error.h"
 #include "common/formats/text_scanner.h"
 #include "common/number_text.h"
+#include "common/utf8.h"
 
 namespace tetwright {
 
 namespace {
 
 constexpr std::size_t max_name_size = 200;  // bytes
-
-/// The number of bytes of the UTF-8 sequence at the beginning of `text`; 0 if there is none.
-std::size_t utf8_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char first = byte(0);
-  if (first < 0x80) return 1;
-  const std::size_t n = first >= 0xf0 && first <= 0xf4  ? 4
-                        : first >= 0xe0 && first < 0xf0 ? 3
-                        : first >= 0xc2 && first < 0xe0 ? 2
-                                                        : 0;
-  if (n == 0 || n > text.size()) return 0;
-  for (std::size_t i = 1; i < n; ++i)
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  // Overlong forms, surrogates and values beyond the last code point.
-  if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) >= 0xa0) ||
-      (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) >= 0x90))
-    return 0;
-  return n;
-}
 
 bool is_whole(double value) { return value == std::floor(value) && std::fabs(value) <= max_exact_whole; }
 
@@ -91,12 +73,12 @@ std::string field_name(std::string_view name) {
   name = name.substr(0, max_name_size);
   std::string out;
   while (!name.empty()) {
-    const std::size_t n = utf8_length(name);
-    if (n == 0 || static_cast<unsigned char>(name[0]) < ' ' || name[0] == 127)
+    const auto [n, valid] = first_utf8_part(name);
+    if (!valid || static_cast<unsigned char>(name[0]) < ' ' || name[0] == 127)
       out += '_';
     else
       out += name.substr(0, n);
-    name.remove_prefix(std::max<std::size_t>(1, n));
+    name.remove_prefix(valid ? n : 1);
   }
   return out.empty() ? "field" : out;
 }

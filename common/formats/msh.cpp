@@ -83,6 +83,11 @@ std::map<std::int64_t, std::string> group_names_to_write(const BoundaryGroups& g
       const std::string& name = g.face_group.name;
       if (!name.empty() && (msh_name(name) == name) == unchanged) written[g.number] = unique.add(name);
     }
+  // A number that cannot be kept.
+  for (const BoundaryGroups::Group& g : groups.all())
+    if (const FaceGroup& of_user = g.face_group;
+        of_user.name.empty() && of_user.number != 0 && of_user.number != g.number)
+      written[g.number] = unique.add(std::to_string(of_user.number));
   for (const BoundaryGroups::Group& g : groups.all())
     if (g.pair) written[g.number] = unique.add(pair_name(*g.pair, names));
   return written;

@@ -30,10 +30,10 @@ TriangleMesh read_msh_surface(std::string_view bytes, const std::string& name,
 
 /// The content of a file of version 2.2, ASCII; coordinates are read back bit by bit. The interface triangles
 /// of the mesh, if it has any, follow the tets; each of the BoundaryGroups is a physical group of
-/// dimension 2 with its number and its name, or pair_name()'s. Fields follow as $NodeData and
-/// $ElementData, see append_msh_data(). Names are written as msh_name() gives them, and get a
-/// suffix where two of them would become equal: names of pairs of materials before those of the user's
-/// groups.
+/// dimension 2 with its number and its name, or pair_name()'s; one without a name whose number is not kept
+/// has that for a name. Fields follow as $NodeData and $ElementData, see append_msh_data(). Names are written
+/// as msh_name() gives them, and get a suffix where two of them would become equal: names of pairs of
+/// materials before those of the user's groups.
 std::string write_msh(const TetMesh& mesh);
 
 }  // namespace tetwright

@@ -6,6 +6,7 @@
 #include "common/error.h"
 #include "common/formats/mesh_fields.h"
 #include "common/number_text.h"
+#include "common/utf8.h"
 
 namespace tetwright {
 
@@ -111,7 +112,8 @@ void append_msh_data(std::string& out, const std::string& section, const std::ve
 
 std::string msh_name(const std::string& name) {
   std::string out;
-  for (char c : name) out += c == '"' || c == '\\' || static_cast<unsigned char>(c) < ' ' ? '_' : c;
+  for (char c : valid_utf8(name))
+    out += c == '"' || c == '\\' || static_cast<unsigned char>(c) < ' ' ? '_' : c;
   return out;
 }
 

@@ -25,7 +25,8 @@ MeshField read_msh_data(TextScanner& in, const std::string& what, const FileNumb
 void append_msh_data(std::string& out, const std::string& section, const std::vector<MeshField>& fields,
                      std::size_t items);
 
-/// A name as it may stand in quotes: a quote, backslash or control character becomes an underscore.
+/// A name as it may stand in quotes: a quote, backslash or control character becomes an underscore, and what
+/// is no UTF-8 a replacement character, which other readers need.
 std::string msh_name(const std::string& name);
 
 }  // namespace tetwright

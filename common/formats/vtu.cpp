@@ -13,6 +13,7 @@
 #include "common/formats/vtk_cells.h"
 #include "common/formats/vtu_data.h"
 #include "common/number_text.h"
+#include "common/utf8.h"
 
 namespace tetwright {
 
@@ -249,7 +250,7 @@ void write_vtu(const TetMesh& mesh, const ByteSink& sink) {
     for (const auto& [tag, name] : mesh.material_names) {
       append_number(text, tag);
       text += '\t';
-      for (char c : name) text += static_cast<unsigned char>(c) < ' ' ? '_' : c;
+      for (char c : valid_utf8(name)) text += static_cast<unsigned char>(c) < ' ' ? '_' : c;
       text += '\n';
     }
     sink("<FieldData>\n");

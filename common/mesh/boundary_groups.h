@@ -21,8 +21,9 @@ class BoundaryGroups {
     std::optional<MaterialPair> pair;  ///< of faces that are in no group of the user
   };
 
-  /// Groups of the user keep their numbers where these are free. Pairs get the smallest numbers that are
-  /// left, in ascending order (outside before any tag), then groups without a number.
+  /// Groups of the user keep their numbers where these are free and from 1 to 2^31 - 1. Pairs get the
+  /// smallest numbers that are left, in ascending order (outside before any tag), then groups without a
+  /// number.
   explicit BoundaryGroups(const TetMesh& mesh);
 
   /// Pairs in ascending order, then groups of the user; only those that have faces.

@@ -100,6 +100,20 @@ TEST(Medit, InterfaceTrianglesAreFoundAgain) {
             (std::map<InterfacePatch, FaceGroup>{{{{1, std::nullopt}, 1}, {3, ""}}}));
 }
 
+TEST(Medit, NamesAndNumbersThatCannotBeKeptAreComments) {
+  TetMesh mesh = one_tet();
+  mesh.interfaces = find_interfaces(mesh);
+  mesh.interfaces[0].patch = 1;
+  mesh.interfaces[1].patch = 2;
+  const MaterialPair pair{1, std::nullopt};
+  mesh.patch_groups = {{{pair, 1}, {-5, ""}}, {{pair, 2}, {9, "K\xf6rper A"}}};
+  const std::string text = write_medit(mesh);
+  EXPECT_NE(
+      text.find("# reference 1: 1|outside\n# reference 2: -5\n# reference 9: \"K\xef\xbf\xbdrper_A\"\n"),
+      std::string::npos)
+      << text;
+}
+
 TEST(Medit, Surfaces) {
   const std::string text = head + vertices + "Triangles\n2\n1 2 3 4\n1 2 4 5\nRidges\n1\n1\nEnd\n";
   std::vector<Dropped> dropped;

@@ -124,6 +124,18 @@ TEST(Msh, TrianglesThatAreListedWithoutTheirGroupToo) {
   EXPECT_EQ(back.dropped, (std::vector<Dropped>{{"boundary and interface triangles of 1 group", 4, true}}));
 }
 
+TEST(Msh, NumbersThatCannotBeKeptAreNames) {
+  TetMesh mesh = one_tet();
+  mesh.interfaces = find_interfaces(mesh);
+  mesh.interfaces[0].patch = 1;
+  mesh.interfaces[1].patch = 2;
+  const MaterialPair pair{1, std::nullopt};
+  mesh.patch_groups = {{{pair, 1}, {-5, ""}}, {{pair, 2}, {1LL << 40, ""}}};
+  const std::string text = write_msh(mesh);
+  EXPECT_NE(text.find("2 1 \"1|outside\"\n2 2 \"-5\"\n2 3 \"1099511627776\"\n"), std::string::npos) << text;
+  EXPECT_EQ(write_msh(read_msh(text, "f").mesh), text);
+}
+
 TEST(Msh, SurfacesWithGroups) {
   const std::string text = head + "$PhysicalNames\n1\n2 7 \"skin\"\n$EndPhysicalNames\n" + nodes +
                            elements("1 15 2 0 1 1\n2 2 2 7 1 1 2 3\n3 2 2 9 1 1 2 4\n4 2 2 7 1 2 3 4\n", "4");
@@ -206,6 +218,8 @@ TEST(Msh, QuotesInNamesDoNotBreakTheFile) {
   TetMesh mesh = tricky_tets();
   mesh.material_names = {{0, "a\"b\nc"}};
   EXPECT_EQ(read_msh(write_msh(mesh), "f").mesh.material_names.at(0), "a_b_c");
+  mesh.material_names = {{0, "K\xf6rper"}};
+  EXPECT_EQ(read_msh(write_msh(mesh), "f").mesh.material_names.at(0), "K\xef\xbf\xbdrper");
   // Names that differ stay different; equal ones stay equal.
   mesh.material_names = {{0, "a\"b"}, {1, "a_b"}, {2, "a\\b"}, {3, "a_b"}};
   EXPECT_EQ(read_msh(write_msh(mesh), "f").mesh.material_names,
