@@ -80,8 +80,8 @@ class FaceNames {
     return last_;
   }
 
-  /// Named by those that differ from face to face.
-  std::vector<FaceGroup> groups() const {
+  /// Named by those that differ from face to face. Throws InputError where that makes two of one name.
+  std::vector<FaceGroup> groups(const std::string& file) const {
     std::vector<FaceGroup> groups(all_.size());
     for (std::size_t kind = 0; kind < keywords.size(); ++kind) {
       if (std::all_of(all_.begin(), all_.end(), [&](const Names& n) { return n[kind] == all_[0][kind]; }))
@@ -89,12 +89,28 @@ class FaceNames {
       for (std::size_t i = 0; i < all_.size(); ++i)
         if (!all_[i][kind].empty()) (groups[i].name += groups[i].name.empty() ? "" : ":") += all_[i][kind];
     }
+    std::map<FaceGroup, std::size_t> known;
+    for (std::size_t i = 0; i < groups.size(); ++i)
+      if (const auto [other, added] = known.emplace(groups[i], i); !added)
+        throw InputError(file, 0,
+                         "the faces of " + text(all_[other->second]) + " and those of " + text(all_[i]) +
+                             " would both be the patch " + in_quotes(groups[i].name) +
+                             "; give one of them another name");
     return groups;
   }
 
  private:
   static constexpr std::array<std::string_view, 3> keywords{"o", "g", "usemtl"};
   using Names = std::array<std::string, 3>;
+
+  /// "o "a", g "b""
+  static std::string text(const Names& names) {
+    std::string out;
+    for (std::size_t kind = 0; kind < keywords.size(); ++kind)
+      if (!names[kind].empty())
+        out += (out.empty() ? "" : ", ") + std::string(keywords[kind]) + " " + in_quotes(names[kind]);
+    return out;
+  }
 
   Names now_;
   std::vector<Names> all_;  ///< that faces have
@@ -151,7 +167,7 @@ TriangleMesh read_obj(std::string_view bytes, const std::string& name, std::vect
                      "a face names point " + std::to_string(largest + 1) + ", but there are " +
                          std::to_string(surface.point_count()) +
                          " points; the file is cut short or was exported wrongly");
-  return surface.finish(dropped, names.groups());
+  return surface.finish(dropped, names.groups(name));
 }
 
 std::string write_obj(const TriangleMesh& mesh) {

@@ -50,6 +50,10 @@ TEST(Obj, ObjectsGroupsAndMaterialsThatDifferAreGroups) {
   EXPECT_EQ(groups("o a\ng b\n" + face + "g c d\n" + face), (std::vector<FaceGroup>{{0, "b"}, {0, "c d"}}));
   EXPECT_EQ(groups("o a\ng b\nusemtl m\n" + face + "o c\nusemtl n\n" + face),
             (std::vector<FaceGroup>{{0, "a:m"}, {0, "c:n"}}));
+  // Joined they may be the same.
+  expect_input_error(read_obj, points + "o A:b\ng c\n" + face + "o A\ng b:c\n" + face,
+                     "o \"A:b\", g \"c\" and those of o \"A\", g \"b:c\"", "\"A:b:c\"");
+  expect_input_error(read_obj, points + "g a\n" + face + "o a\ng\n" + face, "g \"a\" and those of o \"a\"");
   const TriangleMesh mesh = read_obj(points + face + "g a\n" + face + "g b\n" + face + "g a\n" + face, "f");
   EXPECT_EQ(mesh.groups, (std::vector<FaceGroup>{{}, {0, "a"}, {0, "b"}}));
   EXPECT_EQ(mesh.triangle_groups, (std::vector<std::uint32_t>{0, 1, 2, 1}));
