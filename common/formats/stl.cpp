@@ -110,12 +110,16 @@ class SolidNames {
   }
   std::uint32_t last() const { return static_cast<std::uint32_t>(names_.size() - 1); }
 
-  /// Solids without a name are called after their place in the file. Throws InputError for two of one name.
+  /// Solids without a name have their place in the file for a number. Throws InputError for two of one name.
   std::vector<FaceGroup> groups(const std::string& file) const {
     std::vector<FaceGroup> groups;
     std::map<std::string, std::size_t> lines;
     for (std::size_t i = 0; i < names_.size(); ++i) {
-      groups.push_back({0, names_[i].empty() ? "solid_" + std::to_string(i + 1) : names_[i]});
+      if (names_[i].empty()) {
+        groups.push_back({static_cast<std::int64_t>(i + 1), ""});
+        continue;
+      }
+      groups.push_back({0, names_[i]});
       const auto [known, added] = lines.emplace(groups[i].name, lines_[i]);
       if (!added)
         throw InputError(file, lines_[i],

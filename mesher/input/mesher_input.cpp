@@ -33,7 +33,8 @@ std::set<MaterialTag> tags_in_use(const std::vector<MaterialSurface>& surfaces,
   return tags;
 }
 
-/// Makes the names of groups differ from surface to surface. Throws InputError where the files give the same.
+/// Makes the names of groups differ from surface to surface. Throws InputError where the files give the same,
+/// and where a name made of a number is that of another group.
 void name_groups(std::vector<MaterialSurface>& surfaces) {
   const auto with_groups = std::count_if(surfaces.begin(), surfaces.end(),
                                          [](const MaterialSurface& s) { return !s.surface.groups.empty(); });
@@ -42,9 +43,15 @@ void name_groups(std::vector<MaterialSurface>& surfaces) {
   for (MaterialSurface& s : surfaces)
     for (FaceGroup& group : s.surface.groups) {
       if (!group) continue;
-      if (group.name.empty()) group = {0, s.name + "_" + std::to_string(group.number)};
+      const std::int64_t number = group.number;
+      const bool numbered = group.name.empty();
+      if (numbered) group = {0, s.name + "_" + std::to_string(number)};
       const auto [other, added] = known.emplace(group.name, &s);
-      if (!added && other->second != &s)
+      if (!added && numbered)
+        throw InputError(s.file, 0,
+                         "its patch " + std::to_string(number) + " would be called '" + group.name +
+                             "' like one of " + other->second->file + "; give that another name");
+      if (!added)
         throw InputError(s.file, 0,
                          "a patch is called '" + group.name + "' like one of " + other->second->file +
                              "; give one of them another name");

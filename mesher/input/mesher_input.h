@@ -52,7 +52,7 @@ struct MesherInput {
 /// that have only a number are named after their surface.
 ///
 /// Throws InputError (see repair_surface(); coordinates too large or a size too small for areas and volumes
-/// in double precision; groups of two surfaces that have one name) and UsageError (no surface, two materials
+/// in double precision; two groups that have one name) and UsageError (no surface, two materials
 /// of one name or tag, a layer whose thickness is not above 0, more than 60,000 materials).
 MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers = {},
                               NestedRule nested = NestedRule::automatic);

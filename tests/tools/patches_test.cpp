@@ -108,6 +108,37 @@ TEST(Patches, SolidsAreMaterials) {
   EXPECT_EQ(mesh.material_names, (std::map<MaterialTag, std::string>{{1, "bone"}, {2, "skin"}}));
 }
 
+TEST(Patches, SolidsWithoutANameHaveNumbers) {
+  const TemporaryFolder f;
+  write(f / "a.stl", box(0, 1, "", " "));
+  write(f / "b.stl", box(2, 3, "", " "));
+  const Answer both =
+      run("mesh " + (f / "a.stl") + " " + (f / "b.stl") + " --resolution 12 -o " + (f / "out.msh"));
+  EXPECT_LE(both.status, 1) << both.err;
+  const TetMesh mesh = read_tet_mesh(f / "out.msh").mesh;
+  for (const char* name : {"a_1", "a_2", "b_1", "b_2"}) EXPECT_GT(faces_named(mesh, name), 0U) << name;
+  write(f / "two.stl", box(0, 1, "") + box(2, 3, ""));
+  const Answer split =
+      run("mesh " + (f / "two.stl") + " --split-solids --resolution 12 -o " + (f / "out.msh"));
+  EXPECT_LE(split.status, 1) << split.err;
+  EXPECT_EQ(read_tet_mesh(f / "out.msh").mesh.material_names,
+            (std::map<MaterialTag, std::string>{{1, "two_1"}, {2, "two_2"}}));
+  write(f / "c.stl", box(2, 3, "c_2", " "));
+  expect_refused("mesh " + (f / "a.stl") + " " + (f / "c.stl") + " -o " + (f / "out.msh"), 3,
+                 {"c.stl: its patch 2 would be called 'c_2' like one of "});
+}
+
+TEST(Patches, NamesAreTheSameInTheFileAndInTheStats) {
+  const TemporaryFolder f;
+  write(f / "box.stl", box(0, 1, "W\xe4nde", "\xe2\x82 lid"));
+  const Answer a =
+      run("mesh " + (f / "box.stl") + " --resolution 12 -o " + (f / "a.msh") + " --stats " + (f / "s.json"));
+  EXPECT_LE(a.status, 1) << a.err;
+  const TetMesh mesh = read_tet_mesh(f / "a.msh").mesh;
+  for (const nlohmann::json& patch : nlohmann::json::parse(contents(f / "s.json")).at("patches"))
+    EXPECT_GT(faces_named(mesh, patch.at("name")), 0U) << patch;
+}
+
 TEST(Patches, WrongCalls) {
   const TemporaryFolder f;
   const std::string out = " -o " + (f / "out.vtu");

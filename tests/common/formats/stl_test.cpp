@@ -61,7 +61,7 @@ TEST(Stl, WhatIsDroppedIsNamed) {
 TEST(Stl, SolidsAreGroups) {
   const auto solid = [](const std::string& name) { return "solid" + name + "\n" + facet + "endsolid\n"; };
   const TriangleMesh mesh = read_stl(solid(" a b ") + solid("") + solid(" c"), "f");
-  EXPECT_EQ(mesh.groups, (std::vector<FaceGroup>{{0, "a b"}, {0, "solid_2"}, {0, "c"}}));
+  EXPECT_EQ(mesh.groups, (std::vector<FaceGroup>{{0, "a b"}, {2, ""}, {0, "c"}}));
   EXPECT_EQ(mesh.triangle_groups, (std::vector<std::uint32_t>{0, 1, 2}));
   EXPECT_TRUE(read_stl(solid(" a"), "f").groups.empty());  // nothing to tell apart
   expect_input_error(read_stl, solid(" a") + solid(" b") + solid(" a"), "\"a\"", "another name");
