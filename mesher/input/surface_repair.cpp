@@ -71,7 +71,7 @@ struct Cleaned {
 };
 
 /// Merges equal points, drops unused ones, triangles with equal corners and all but one of each set of
-/// triangles with the same corners: the first one of the way in which most of them are wound.
+/// triangles with the same corners: wound as most of them are, in the group of the first one of the file.
 Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<SurfaceFinding>& findings) {
   if (surface.triangles.empty()) throw InputError(file, 0, "there are no triangles");
   for (const Vec3& p : surface.points)
@@ -121,7 +121,12 @@ Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<
     const Entry& e = entries[i + (j - i - 1) / 2];
     result.triangles.push_back(e.turned ? Triangle{e.low, e.high, e.middle}
                                         : Triangle{e.low, e.middle, e.high});
-    if (!surface.triangle_groups.empty()) result.groups.push_back(surface.triangle_groups[e.number]);
+    if (surface.triangle_groups.empty()) continue;
+    const Index in_file = std::min_element(entries.begin() + static_cast<std::ptrdiff_t>(i),
+                                           entries.begin() + static_cast<std::ptrdiff_t>(j),
+                                           [](const Entry& a, const Entry& b) { return a.number < b.number; })
+                              ->number;
+    result.groups.push_back(surface.triangle_groups[in_file]);
   }
 
   // Points keep their order, so that what is found first is first in the file.

@@ -36,6 +36,21 @@ TEST(SurfaceRepair, NothingIsFoundInACleanClosedSurface) {
   }
 }
 
+TEST(SurfaceRepair, RepeatedTrianglesAreInTheGroupOfTheFirst) {
+  const TriangleMesh box = make_box({0, 0, 0}, {1, 2, 3});
+  TriangleMesh thrice = box;
+  thrice.groups = {{0, "a"}, {0, "b"}, {0, "c"}};
+  thrice.triangle_groups.assign(box.triangles.size(), 2);
+  for (const std::uint32_t group : {0, 1})
+    for (const auto& [p, q, r] : box.triangles) {
+      thrice.triangles.push_back(group == 0 ? Triangle{q, r, p} : Triangle{p, r, q});
+      thrice.triangle_groups.push_back(group);
+    }
+  const SurfaceRepair input = repair_surface(thrice, "");
+  EXPECT_EQ(input.surface.groups, std::vector<std::uint32_t>(box.triangles.size(), 2));
+  EXPECT_NEAR(input.surface.volume, 6, 1e-12);
+}
+
 TEST(SurfaceRepair, MergesASoupAndDropsWhatIsDegenerate) {
   const TriangleMesh box = make_box({0, 0, 0}, {1, 2, 3});
   TriangleMesh soup;
