@@ -191,10 +191,11 @@ class Reader {
     for (std::size_t at = 0; (at = bytes_.find(reference_comment, at)) != std::string_view::npos;) {
       const bool begins_line = at == 0 || bytes_[at - 1] == '\n' || bytes_[at - 1] == '\r';
       at += reference_comment.size();
+      if (!begins_line) continue;
       const std::string_view line = bytes_.substr(at, bytes_.substr(at).find_first_of("\r\n"));
       const std::size_t colon = line.find(": ");
       std::int64_t number = 0;
-      if (begins_line && colon != std::string_view::npos && parse_number(line.substr(0, colon), number))
+      if (colon != std::string_view::npos && parse_number(line.substr(0, colon), number))
         triangles_.comments.emplace(number, line.substr(colon + 2));
     }
   }
