@@ -110,15 +110,15 @@ class TriangleTaker {
 
   /// Finds the groups that are what writers make of a pair of materials.
   void find_derived() {
-    std::map<std::string, std::int64_t> number_of_name;
-    for (const auto& [number, name] : listed_.names) number_of_name.emplace(msh_name(name), number);
+    std::set<std::string> names;
+    for (const auto& [number, name] : listed_.names) names.insert(msh_name(name));
     // Without names and comments a number alone may be a user's: it tells only if all of them do.
     std::set<std::int64_t> by_number;
     std::int64_t next = 0;
     for (const auto& [pair, faces] : pairs_) {
       ++next;
       if (faces.without_group > 0) continue;
-      if (const std::int64_t number = named_like(pair, faces, number_of_name))
+      if (const std::int64_t number = named_like(pair, faces, names))
         derived_.insert(number);
       else if (faces.groups == std::set{next} && !listed_.names.contains(next) &&
                !listed_.comments.contains(next) && is_of(next, pair))
@@ -132,20 +132,23 @@ class TriangleTaker {
   }
 
   /// Of the groups that lie within a pair of materials the one whose name or comment says so; 0 if there is
-  /// none. Writers add a suffix where a name is taken, so the last one counts.
+  /// none. Of those with the pair's name and a suffix the writer's has the largest, one more than another's.
   std::int64_t named_like(const MaterialPair& pair, const FacesOfPair& faces,
-                          const std::map<std::string, std::int64_t>& number_of_name) const {
-    std::int64_t found = 0;
-    const std::string name = msh_name(pair_name(pair, read_.mesh.material_names));
-    auto named = number_of_name.find(name);
-    for (int n = 2; named != number_of_name.end(); ++n) {
-      if (faces.groups.contains(named->second) && is_of(named->second, pair)) found = named->second;
-      named = number_of_name.find(name + "_" + std::to_string(n));
+                          const std::set<std::string>& names) const {
+    std::int64_t found = 0, largest = 0;
+    const std::string base = msh_name(pair_name(pair, read_.mesh.material_names));
+    for (const std::int64_t number : faces.groups) {
+      if (!is_of(number, pair)) continue;
+      if (const auto comment = listed_.comments.find(number); comment != listed_.comments.end())
+        if (comment->second == pair_name(pair)) found = number;
+      const auto name = listed_.names.find(number);
+      if (name == listed_.names.end()) continue;
+      const std::int64_t n = name_suffix(base, msh_name(name->second));
+      if (n <= largest) continue;
+      if (n > 1 && !names.contains(n == 2 ? base : base + "_" + std::to_string(n - 1))) continue;
+      found = number;
+      largest = n;
     }
-    for (const std::int64_t number : faces.groups)
-      if (const auto comment = listed_.comments.find(number);
-          comment != listed_.comments.end() && comment->second == pair_name(pair) && is_of(number, pair))
-        found = number;
     return found;
   }
 

@@ -33,9 +33,8 @@ struct FileTriangles {
 /// `interfaces` and `patch_groups`. A group that writers make of a pair of materials is none: all its
 /// triangles lie between two materials, or between one and outside; each face there that is in no other group
 /// is in it; and it is known by
-/// - its name: pair_name()'s, with the suffix that write_msh() gives it where the user has groups of the
-/// names
-///   before it;
+/// - its name: pair_name()'s, or with the suffix that write_msh() gives it where the user has groups of this
+///   name;
 /// - or the comment of write_medit();
 /// - or, where it has neither, its number, if that is the one that BoundaryGroups gives the pair and no group
 ///   of the file is the user's.

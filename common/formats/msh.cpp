@@ -52,6 +52,16 @@ class NamesToWrite {
     return unique;
   }
 
+  /// The same for the name of a pair of materials, which has the largest suffix of those with its name: so
+  /// readers tell it from the user's.
+  std::string add_pair(const std::string& name) {
+    const std::string plain = msh_name(name);
+    std::int64_t last = 0;
+    for (auto other = used_.lower_bound(plain); other != used_.end() && other->starts_with(plain); ++other)
+      last = std::max(last, name_suffix(plain, *other));
+    return add(last == 0 ? plain : plain + "_" + std::to_string(last + 1));
+  }
+
  private:
   std::set<std::string> used_;
   std::map<std::string, std::size_t> next_;  ///< the next suffix to try
@@ -89,7 +99,7 @@ std::map<std::int64_t, std::string> group_names_to_write(const BoundaryGroups& g
         of_user.name.empty() && of_user.number != 0 && of_user.number != g.number)
       written[g.number] = unique.add(std::to_string(of_user.number));
   for (const BoundaryGroups::Group& g : groups.all())
-    if (g.pair) written[g.number] = unique.add(pair_name(*g.pair, names));
+    if (g.pair) written[g.number] = unique.add_pair(pair_name(*g.pair, names));
   return written;
 }
 

@@ -32,8 +32,8 @@ TriangleMesh read_msh_surface(std::string_view bytes, const std::string& name,
 /// of the mesh, if it has any, follow the tets; each of the BoundaryGroups is a physical group of
 /// dimension 2 with its number and its name, or pair_name()'s; one without a name whose number is not kept
 /// has that for a name. Fields follow as $NodeData and $ElementData, see append_msh_data(). Names are written
-/// as msh_name() gives them, and get a suffix where two of them would become equal: names of pairs of
-/// materials before those of the user's groups.
+/// as msh_name() gives them, and get a suffix where two of them would become equal: of pairs of
+/// materials before the user's groups, and then one that is larger than theirs.
 std::string write_msh(const TetMesh& mesh);
 
 }  // namespace tetwright

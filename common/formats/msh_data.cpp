@@ -110,6 +110,15 @@ void append_msh_data(std::string& out, const std::string& section, const std::ve
   }
 }
 
+std::int64_t name_suffix(const std::string& base, const std::string& name) {
+  if (name == base) return 1;
+  if (!name.starts_with(base + "_")) return 0;
+  std::int64_t n = 0;
+  const std::string_view digits = std::string_view(name).substr(base.size() + 1);
+  const bool known = parse_number(digits, n) && n >= 2 && n <= std::numeric_limits<std::int32_t>::max();
+  return known && std::to_string(n) == digits ? n : 0;
+}
+
 std::string msh_name(const std::string& name) {
   std::string out;
   for (char c : valid_utf8(name))

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,10 @@ MeshField read_msh_data(TextScanner& in, const std::string& what, const FileNumb
 /// integers.
 void append_msh_data(std::string& out, const std::string& section, const std::vector<MeshField>& fields,
                      std::size_t items);
+
+/// Which suffix makes `name` of `base`: 1 if they are equal, n for "base_n" with n from 2 to 2^31 - 1, else
+/// 0.
+std::int64_t name_suffix(const std::string& base, const std::string& name);
 
 /// A name as it may stand in quotes: a quote, backslash or control character becomes an underscore, and what
 /// is no UTF-8 a replacement character, which other readers need.

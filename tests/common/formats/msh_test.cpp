@@ -100,6 +100,11 @@ TEST(Msh, NoTwoGroupsOfFacesHaveOneName) {
   EXPECT_NE(text.find("\"1|outside_3\"\n"), std::string::npos) << text;
   EXPECT_EQ(write_msh(read_msh(text, "f").mesh), text);
   EXPECT_EQ(read_msh(text, "f").mesh.patch_groups.size(), 2u);
+  // A name that the pair has with a suffix.
+  mesh.patch_groups = {{{first, 1}, {7, "1|outside_2"}}};
+  const ReadTetMesh suffix = read_msh(write_msh(mesh), "f");
+  EXPECT_EQ(suffix.mesh.patch_groups, mesh.patch_groups);
+  EXPECT_EQ(write_msh(suffix.mesh), write_msh(mesh));
   mesh.patch_groups = {{{first, 1}, {7, "a\"b"}}, {{second, 1}, {8, "a_b"}}};
   EXPECT_NE(write_msh(mesh).find("2 7 \"a_b_2\"\n2 8 \"a_b\"\n"), std::string::npos);
   mesh.patch_groups = {{{first, 1}, {7, "same"}}, {{second, 1}, {8, "same"}}};
