@@ -188,6 +188,11 @@ bool may_hold_surface(const std::string& path) {
   return file_kind(path) == FileKind::surface || find_format(shared_formats, path, FileUse::read);
 }
 
+// Those that hold surfaces hold the triangles of tet meshes, too.
+bool holds_face_groups(const std::string& path) {
+  return find_format(shared_formats, path, FileUse::read) != nullptr;
+}
+
 std::string file_stem(const std::string& path) {
   const std::string name = std::filesystem::path(path).filename().string();
   return name.substr(0, name.size() - extension_of(path).size());

@@ -32,6 +32,9 @@ std::string known_extensions(FileKind kind, FileUse use = FileUse::read);
 /// or a tet mesh.
 bool may_hold_surface(const std::string& path);
 
+/// Whether tet meshes with this extension are written with their boundary and interface triangles, by groups.
+bool holds_face_groups(const std::string& path);
+
 /// The name of a file without folders and extension; .nii.gz and .inr.gz are removed whole.
 std::string file_stem(const std::string& path);
 

@@ -86,6 +86,16 @@ TEST(Patches, ThatAreLostAreSaid) {
   EXPECT_NE(b.err.find("1 named patches that are lost: 'inlet'"), std::string::npos) << b.err;
 }
 
+TEST(Patches, ThatAFormatHasNoPlaceForAreTold) {
+  const TemporaryFolder f;
+  write(f / "box.stl", box(0, 1, "wall", "inlet"));
+  for (const std::string output : {"a.vtu", "a.msh"}) {
+    const Answer a = run("mesh " + (f / "box.stl") + " --resolution 8 -o " + (f / output));
+    EXPECT_EQ(a.status, 0) << a.err;
+    EXPECT_EQ(a.err.find("2 named patches (not written") != std::string::npos, output == "a.vtu") << a.err;
+  }
+}
+
 TEST(Patches, OfBoxesThatTouchLeaveGoodShapes) {
   const TemporaryFolder f;
   write(f / "box.stl", box(0, 1, "wall", "inlet"));

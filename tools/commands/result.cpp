@@ -257,6 +257,10 @@ void find_changed_creases(const CommandLine& line, const TetMesh& mesh, RunRepor
 /// Patches of the user of which the mesh has nothing: a shortfall, or with --accept-changes a finding.
 void find_lost_patches(const CommandLine& line, const TetMesh& mesh, RunReport& report) {
   compare_patches(mesh, report.patches);
+  if (!report.patches.empty() && !holds_face_groups(line.output))
+    report.findings.push_back(
+        {line.output,
+         {"named patches", report.patches.size(), {}, "not written; .msh and .mesh have a place for them"}});
   std::string text;
   std::size_t lost = 0;
   for (const PatchFidelity& p : report.patches)
