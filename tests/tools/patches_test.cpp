@@ -145,7 +145,9 @@ TEST(Patches, NamesAreTheSameInTheFileAndInTheStats) {
       run("mesh " + (f / "box.stl") + " --resolution 12 -o " + (f / "a.msh") + " --stats " + (f / "s.json"));
   EXPECT_LE(a.status, 1) << a.err;
   const TetMesh mesh = read_tet_mesh(f / "a.msh").mesh;
-  for (const nlohmann::json& patch : nlohmann::json::parse(contents(f / "s.json")).at("patches"))
+  const nlohmann::json stats = nlohmann::json::parse(contents(f / "s.json"));
+  ASSERT_EQ(stats.at("patches").size(), 2U);
+  for (const nlohmann::json& patch : stats.at("patches"))
     EXPECT_GT(faces_named(mesh, patch.at("name")), 0U) << patch;
 }
 

@@ -129,7 +129,8 @@ std::vector<MaterialSurface> read_material_surfaces(const CommandLine& line, Run
     } else if (line.split_solids) {
       std::vector<NamedSurface> solids = split_solids(read(file), file_stem(file));
       split |= solids.size() > 1;
-      for (NamedSurface& s : solids) add(s.name, file, std::move(s.surface));
+      for (NamedSurface& s : solids)
+        add(s.name, solids.size() > 1 ? file + ", '" + s.name + "'" : file, std::move(s.surface));
     } else {
       add(file_stem(file), file, read(file));
     }
