@@ -121,6 +121,14 @@ constexpr double min_patch_cells = 8;
 /// What turns within this is no corner: cells do not show it.
 constexpr double corner_reach_cells = 1;
 
+/// The cells that a body's patches are shown by: those that are thin all over are meshed with smaller ones.
+double patch_cell(const RepairedSurface& surface, const MesherOptions& options, double cell) {
+  if (options.uniform || surface.closed < surface.triangles.size()) return cell;
+  const double mean_thickness = 2 * std::abs(surface.volume) / surface.area;
+  const int halvings = options.max_refinement.value_or(max_wall_refinement);
+  return std::clamp(mean_thickness, std::ldexp(cell, -halvings), cell);
+}
+
 /// The patches of all bodies.
 std::vector<SurfacePatches> patches_of(const MesherInput& input, const MesherOptions& options, double cell) {
   constexpr std::size_t max_patches = 0xfffe;  // beside that of faces on no surface
@@ -128,7 +136,8 @@ std::vector<SurfacePatches> patches_of(const MesherInput& input, const MesherOpt
   std::vector<SurfacePatches> patches;
   for (const MesherInput::Body& body : input.bodies) {
     const RepairedSurface& surface = body.surface;
-    PatchOptions patch_options{options.feature_angle, min_patch_cells * cell * cell};
+    const double shown = patch_cell(surface, options, cell);
+    PatchOptions patch_options{options.feature_angle, min_patch_cells * shown * shown};
     // Where parts meet there are creases that no edge of the surface shows.
     const bool intersecting =
         surface.intersects_itself && options.feature_angle.rule != FeatureAngle::Rule::off;

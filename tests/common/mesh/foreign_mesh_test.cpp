@@ -12,6 +12,7 @@
 #include "common/mesh/interfaces.h"
 #include "common/parallel/parallel.h"
 #include "common/random.h"
+#include "common/reference_surface.h"
 #include "tests/common/small_meshes.h"
 #include "tests/simplify/meshes.h"
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "common/geometry/quality.h"
 #include "common/mesh/mesh_check.h"
 #include "common/parallel/parallel.h"
 #include "mesher/cut/crease_labels.h"
@@ -119,6 +120,20 @@ TEST(CreaseFitting, FollowsCurvedRims) {
   EXPECT_EQ(n.odd, 0U);
   EXPECT_LT(n.max_distance, 0.05 * dense.report.cell_size);
   EXPECT_EQ(dense.report.features[0].found.count, 3U);
+}
+
+// Its sides are smaller than eight faces of a cell, but the cells there are not that large.
+TEST(CreaseFitting, KeepsTheSidesOfAThinRod) {
+  TriangleMesh rod = unit_cube();
+  for (Vec3& p : rod.points) p.x() *= 400;
+  const DenseMesh dense = mesh_of(turned(rod), 32);
+  ASSERT_EQ(dense.report.features.size(), 1u);
+  EXPECT_GE(dense.report.features[0].found.count, 4u);  // the ends are that small
+  double volume = 0;
+  for (const auto& [a, b, c, d] : dense.mesh.tets)
+    volume +=
+        tet_volume(dense.mesh.points[a], dense.mesh.points[b], dense.mesh.points[c], dense.mesh.points[d]);
+  EXPECT_NEAR(volume, 400, 4);
 }
 
 TEST(CreaseFitting, LeavesScansAlone) {
