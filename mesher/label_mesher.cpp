@@ -14,8 +14,8 @@ namespace tetwright {
 namespace {
 
 /// Whole cells fill the volume along each axis: larger ones than this share of its shortest side would be
-/// flat.
-constexpr double max_cell_share = 1.5;
+/// flat. They are taken smaller for that, but no further than this.
+constexpr double max_cell_share = 1.5, min_share_of_wanted = 0.25;
 
 /// Of the whole volume, input units.
 Vec3 sides(const LabelInput& labels) {
@@ -45,9 +45,13 @@ double longest_side(const LabelInput& labels) { return sides(labels).maxCoeff();
 
 double cell_size(const LabelInput& labels, const MesherOptions& options) {
   const double longest = longest_side(labels);
-  const double wanted =
-      finest_cell_size(options, longest, labels.origin.cwiseAbs().maxCoeff() + longest, labels.file);
-  return std::max(std::min(wanted, max_cell_share * sides(labels).minCoeff()), longest / max_resolution);
+  const double max_coordinate = labels.origin.cwiseAbs().maxCoeff() + longest;
+  const double wanted = finest_cell_size(options, longest, max_coordinate, labels.file);
+  MesherOptions smaller = options;
+  smaller.voxel_size = std::max(
+      {max_cell_share * sides(labels).minCoeff(), min_share_of_wanted * wanted, longest / max_resolution});
+  return smaller.voxel_size < wanted ? finest_cell_size(smaller, longest, max_coordinate, labels.file)
+                                     : wanted;
 }
 
 DenseMesh mesh_labels(const LabelInput& labels, const MesherOptions& options, Progress* progress) {

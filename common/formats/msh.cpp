@@ -53,18 +53,22 @@ class NamesToWrite {
   }
 
   /// The same for the name of a pair of materials, which has the largest suffix of those with its name: so
-  /// readers tell it from the user's.
+  /// readers tell it from the user's. Those of the user must be there.
   std::string add_pair(const std::string& name) {
     const std::string plain = msh_name(name);
-    std::int64_t last = 0;
-    for (auto other = used_.lower_bound(plain); other != used_.end() && other->starts_with(plain); ++other)
-      last = std::max(last, name_suffix(plain, *other));
-    return add(last == 0 ? plain : plain + "_" + std::to_string(last + 1));
+    const auto [last, first_time] = last_of_pairs_.try_emplace(plain, 0);
+    if (first_time)
+      for (auto other = used_.lower_bound(plain); other != used_.end() && other->starts_with(plain); ++other)
+        last->second = std::max(last->second, name_suffix(plain, *other));
+    ++last->second;
+    return add(last->second == 1 ? plain : plain + "_" + std::to_string(last->second));
   }
 
  private:
   std::set<std::string> used_;
   std::map<std::string, std::size_t> next_;  ///< the next suffix to try
+  /// The largest suffix of names of pairs, and of what the user calls like them.
+  std::map<std::string, std::int64_t> last_of_pairs_;
 };
 
 /// Of the materials. Names that differ stay different, and equal ones equal.

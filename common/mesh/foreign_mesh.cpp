@@ -210,14 +210,19 @@ std::size_t renew_interfaces(TetMesh& mesh) {
   // Faces of the boundary may lie between materials now: beside patches with the same number.
   std::map<std::pair<InterfacePatch, InterfacePatch>, std::uint16_t> numbers;
   std::set<InterfacePatch> taken;
+  std::map<MaterialPair, std::uint32_t> next_free;
+  constexpr std::uint32_t max_patch = 0xffff;
   for (InterfaceTriangle& t : mesh.interfaces) {
     const auto known = before.find(key(t.ids));
     if (known == before.end()) continue;
     const InterfacePatch old = known->second;
     const auto [number, added] = numbers.try_emplace({old, {t.pair(), 0}}, old.second);
-    if (added)
-      while (number->second == 0 || !taken.insert(InterfacePatch{t.pair(), number->second}).second)
-        ++number->second;
+    if (added && !taken.insert(InterfacePatch{t.pair(), old.second}).second) {
+      std::uint32_t& free = next_free.try_emplace(t.pair(), 1).first->second;
+      while (free <= max_patch && !taken.insert({t.pair(), static_cast<std::uint16_t>(free)}).second) ++free;
+      number->second = free <= max_patch ? static_cast<std::uint16_t>(free) : 0;
+    }
+    if (number->second == 0) continue;  // counted as lost
     t.patch = number->second;
     if (const auto group = groups.find(old); group != groups.end())
       mesh.patch_groups[{t.pair(), t.patch}] = group->second;

@@ -170,6 +170,34 @@ TEST(ForeignMesh, PatchesStayWithTheirFaces) {
   EXPECT_EQ(soup.patch_groups.size(), 1u);
 }
 
+// Soups of tets that touch in pairs, of two materials, each with a patch of its own on the common face.
+TEST(ForeignMesh, MorePatchesThanNumbersEndAtOnce) {
+  constexpr int pairs = 0xffff;
+  TetMesh soup;
+  for (int i = 0; i <= pairs; ++i) {
+    const double x = 10.0 * i;
+    for (const double apex : {1.0, -1.0}) {
+      const auto first = static_cast<Index>(soup.points.size());
+      for (const Vec3& p : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, apex)})
+        soup.points.push_back(p + Vec3(x, 0, 0));
+      soup.tets.push_back({first, first + 1, first + 2, first + 3});
+      if (apex < 0) std::swap(soup.tets.back()[0], soup.tets.back()[1]);
+      soup.materials.push_back(apex > 0 ? 1 : 2);
+      InterfaceTriangle t;
+      t.ids = {first, first + 1, first + 2};
+      t.material = apex > 0 ? 1 : 2;
+      // All of the first material have a number of their own; the last pair has that of the second only.
+      t.patch = static_cast<std::uint16_t>(apex > 0 ? (i < pairs ? i + 1 : 0) : i < pairs ? 0 : 1);
+      if (t.patch == 0) continue;
+      soup.interfaces.push_back(t);
+      soup.patch_groups[{{t.material, std::nullopt}, t.patch}] = {i + 1, ""};
+    }
+  }
+  const ForeignReport report = make_coherent(soup);
+  EXPECT_EQ(report.lost_faces, 1u);
+  EXPECT_EQ(soup.patch_groups.size(), static_cast<std::size_t>(pairs));
+}
+
 TEST(ForeignMesh, PatchesThatComeToLieBetweenMaterialsKeepTheirGroups) {
   TetMesh mesh = grid_mesh(2);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
