@@ -163,12 +163,14 @@ MesherEstimate estimate_mesh(const LabelInput& labels, const MesherOptions& opti
 /// The smallest spacing, or the smallest possible cell size of a volume this long, input units.
 double default_cell_size(const LabelInput& labels);
 
-/// The cell size that gives about five dense tets for each of `target_tets`: at most default_cell_size(), at
-/// least a quarter of a voxel, input units. Throws UsageError for a target of 0.
-double cell_size_for_target(const LabelInput& labels, std::size_t target_tets);
+/// The cell size that gives about five dense tets for each of `target_tets`, at least a quarter of a voxel,
+/// input units; where cells of two or four voxels still give 20 and save half of the tets, those. Of
+/// `options` the cell size is not looked at. Throws UsageError for a target of 0.
+double cell_size_for_target(const LabelInput& labels, std::size_t target_tets, const MesherOptions& options);
 
 /// The resolution that gives about 40 dense tets for each of `target_tets`, as many as a simplifier needs to
-/// have a choice: at least 32, and at most some 20 million dense tets. Throws UsageError for a target of 0.
-int resolution_for_target(const MesherInput& input, std::size_t target_tets);
+/// have a choice, or 100 where surfaces have creases at this angle: at least 32, and at most some 20 million
+/// dense tets. Throws UsageError for a target of 0, InputError as find_patches() does.
+int resolution_for_target(const MesherInput& input, std::size_t target_tets, const FeatureAngle& angle);
 
 }  // namespace tetwright

@@ -13,6 +13,8 @@ namespace {
 constexpr double same_volume = 0.01;
 /// The same for shells that may stand for each other.
 constexpr double alike_volume = 0.1;
+/// The same of labels, but for those of few voxels: how far their surface may move, voxels, were they cubes.
+constexpr double label_volume = 0.02, label_shift = 0.06, cube_sides = 6;
 
 /// The material's solid in the mesh: its faces to others and to outside, wound outwards.
 SolidShape solid_of(const TetMesh& mesh, MaterialTag tag) {
@@ -50,6 +52,17 @@ void add_difference(std::string& to, Count is, Count should, const char* one, co
         std::to_string(should);
 }
 
+void add_volume(MaterialFidelity& f) {
+  const double change = f.result.volume / f.expected.volume - 1;
+  char text[80];
+  if (f.expected.volume > 0)
+    std::snprintf(text, sizeof text, "volume %.3g %% %s", 100 * std::fabs(change),
+                  change > 0 ? "more" : "less");
+  else
+    std::snprintf(text, sizeof text, "volume %.6g instead of %.6g", f.result.volume, f.expected.volume);
+  f.difference += (f.difference.empty() ? "" : ", ") + std::string(text);
+}
+
 /// Whether one may stand for the other.
 bool alike(const SolidShell& a, const SolidShell& b) {
   return a.handles == b.handles && std::fabs(a.volume - b.volume) <= alike_volume * std::fabs(a.volume);
@@ -74,7 +87,7 @@ MaterialFidelity compare(const ExpectedSolid& expected, const SolidShape& result
   MaterialFidelity f;
   f.name = expected.name;
   f.tag = expected.tag;
-  f.by_surface = expected.by_surface;
+  if (!expected.by_surface) f.against = MaterialFidelity::Against::distances;
   const std::vector<SolidShell> was = shells_of(expected.shape, expected.min_volume),
                                 is = shells_of(result, expected.min_volume);
   f.expected = numbers_of(expected.shape, was);
@@ -87,16 +100,40 @@ MaterialFidelity compare(const ExpectedSolid& expected, const SolidShape& result
   if (countable) add_difference(f.difference, f.result.cavities, f.expected.cavities, "cavity", "cavities");
   if (!is_same_volume(f.result.volume, f.expected.volume) &&
       std::fabs(f.result.volume - f.expected.volume) > expected.volume_slack) {
-    const double change = f.result.volume / f.expected.volume - 1;
-    char text[80];
-    if (f.expected.volume > 0)
-      std::snprintf(text, sizeof text, "volume %.3g %% %s", 100 * std::fabs(change),
-                    change > 0 ? "more" : "less");
-    else
-      std::snprintf(text, sizeof text, "volume %.6g instead of %.6g", f.result.volume, f.expected.volume);
-    f.difference += (f.difference.empty() ? "" : ", ") + std::string(text);
+    add_volume(f);
   }
   if (countable && !f.same_counts()) f.place = first_difference(was, is);
+  return f;
+}
+
+/// "12 components instead of 2 to 4".
+void add_components(MaterialFidelity& f, const char* one, const char* many) {
+  add_difference(f.difference, f.result.components, f.expected.components, one, many);
+  if (f.max_components > f.expected.components) f.difference += " to " + std::to_string(f.max_components);
+}
+
+MaterialFidelity compare(const LabelMaterial& label, double voxel_volume, const SolidShape& result) {
+  MaterialFidelity f;
+  f.name = label.name;
+  f.tag = label.tag;
+  f.against = MaterialFidelity::Against::voxels;
+  f.expected = {.volume = voxel_volume * static_cast<double>(label.voxels),
+                .components = label.parts.touching};
+  f.max_components = label.parts.by_faces;
+  const std::vector<SolidShell> shells = shells_of(result, 0);
+  f.result = numbers_of(result, shells);
+  // A label may touch itself in an edge where others meet: then its count means nothing.
+  if (result.manifold && !f.same_counts()) {
+    add_components(f, "component", "components");
+    f.place = label.parts.smallest_place;
+    if (f.result.components > f.expected.components)
+      f.place = std::find_if(shells.rbegin(), shells.rend(), [](const SolidShell& s) {
+                  return s.volume > 0;
+                })->place;
+  }
+  const auto voxels = static_cast<double>(label.voxels);
+  const double slack = std::max(label_volume * voxels, label_shift * cube_sides * std::cbrt(voxels * voxels));
+  if (std::fabs(f.result.volume - f.expected.volume) > slack * voxel_volume) add_volume(f);
   return f;
 }
 
@@ -111,6 +148,38 @@ std::vector<MaterialFidelity> compare_solids(const std::vector<ExpectedSolid>& e
   std::vector<MaterialFidelity> all;
   all.reserve(expected.size());
   for (const ExpectedSolid& e : expected) all.push_back(compare(e, solid_of(mesh, e.tag)));
+  return all;
+}
+
+std::vector<MaterialFidelity> compare_labels(const std::vector<LabelMaterial>& labels,
+                                             const std::optional<LabelParts>& outside, double voxel_volume,
+                                             const TetMesh& mesh) {
+  std::vector<MaterialFidelity> all;
+  all.reserve(labels.size() + 1);
+  for (const LabelMaterial& label : labels)
+    all.push_back(compare(label, voxel_volume, solid_of(mesh, label.tag)));
+
+  std::vector<Triangle> boundary;
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    if (!t.other) boundary.push_back(t.ids);
+  const SolidShape domain = solid_shape(mesh.points, boundary);
+  if (!outside || !domain.manifold) return all;
+  MaterialFidelity f;
+  f.name = outside_name;
+  f.tag = outside_tag;
+  f.against = MaterialFidelity::Against::voxels;
+  f.expected.components = outside->touching;
+  f.max_components = outside->by_faces;
+  f.result.components = domain.cavities();
+  if (!f.same_counts()) {
+    f.place = outside->smallest_place;
+    add_components(f, "part within the labels", "parts within the labels");
+    if (f.result.components > f.expected.components)
+      f.place = std::find_if(domain.shells.begin(), domain.shells.end(), [](const SolidShell& s) {
+                  return s.volume < 0;
+                })->place;
+  }
+  all.push_back(std::move(f));
   return all;
 }
 

@@ -34,6 +34,7 @@ struct VolumeReport {
         space(from.space),
         labels(from.materials),
         lost(from.lost),
+        outside_parts(from.outside_parts),
         merged_islands(from.merged_islands),
         merged_voxels(from.merged_voxels) {}
   /// The distance between voxels along each axis, input units.
@@ -45,6 +46,7 @@ struct VolumeReport {
   std::string space;
   std::vector<LabelMaterial> labels;
   std::vector<LostLabel> lost;
+  LabelParts outside_parts;
   std::size_t merged_islands, merged_voxels;
 };
 

@@ -119,6 +119,11 @@ nlohmann::json input_json(const RunReport& run) {
   return j;
 }
 
+nlohmann::json parts_json(std::size_t touching, std::size_t by_faces) {
+  if (by_faces == LabelParts().by_faces) return nullptr;
+  return {touching, by_faces};
+}
+
 nlohmann::json solid_json(const SolidNumbers& s) {
   return {
       {"volume", s.volume}, {"components", s.components}, {"handles", s.handles}, {"cavities", s.cavities}};
@@ -126,13 +131,20 @@ nlohmann::json solid_json(const SolidNumbers& s) {
 
 nlohmann::json fidelity_json(const std::vector<MaterialFidelity>& all) {
   nlohmann::json j = nlohmann::json::array();
+  static constexpr const char* against[] = {"surface", "distances", "voxels"};
   for (const MaterialFidelity& f : all) {
     j.push_back({{"name", f.name},
                  {"tag", f.tag},
-                 {"against", f.by_surface ? "surface" : "distances"},
+                 {"against", against[static_cast<std::size_t>(f.against)]},
                  {"expected", solid_json(f.expected)},
                  {"result", solid_json(f.result)},
                  {"same", f.same()}});
+    if (f.against == MaterialFidelity::Against::voxels) {
+      nlohmann::json &expected = j.back()["expected"], &result = j.back()["result"];
+      expected = {{"components", parts_json(f.expected.components, f.max_components)}};
+      result = {{"components", f.result.components}};
+      if (f.expected.volume > 0) expected["volume"] = f.expected.volume, result["volume"] = f.result.volume;
+    }
     if (f.place) j.back()["place"] = place_json(*f.place);
   }
   return j;
@@ -250,7 +262,7 @@ std::string stats_json(const CommandLine& line, const RunReport& run) {
   j["result"] =
       run.result ? mesh_json(*run.result, run.material_names, line.min_solid_angle) : nlohmann::json();
   if (run.simplify) j["result"]["held_by_input"] = run.held_by_input;
-  if (run.mesher && !run.volume) j["fidelity"] = fidelity_json(run.fidelity);
+  if (run.mesher) j["fidelity"] = fidelity_json(run.fidelity);
   if (!run.features.empty()) j["features"] = features_json(run.features);
   if (!run.patches.empty()) j["patches"] = patches_json(run.patches);
   if (run.crease_fidelity) j["creases"] = creases_json(*run.crease_fidelity);

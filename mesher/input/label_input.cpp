@@ -152,7 +152,7 @@ std::vector<LabelMaterial> name_materials(const LabelChoice& choice, const std::
   for (const auto& [tag, voxels] : counts) {
     const auto name = choice.names.find(tag);
     const bool named = name != choice.names.end() && !name->second.empty();
-    materials.push_back({named ? name->second : "label_" + std::to_string(tag), tag, voxels, voxels});
+    materials.push_back({named ? name->second : "label_" + std::to_string(tag), tag, voxels, voxels, {}});
   }
   std::vector<const LabelMaterial*> by_name;
   by_name.reserve(materials.size());
@@ -221,6 +221,8 @@ class Preparation {
 
   /// `outside`: voxels at first
   void merge(std::size_t outside, const Progress* progress);
+  /// The parts of all regions.
+  void count(const Progress* progress);
 
  private:
   Vec3 place(std::size_t voxel) const {
@@ -262,6 +264,17 @@ void Preparation::merge(std::size_t outside, const Progress* progress) {
   }
   report(losses);
   drop_lost(losses);
+}
+
+void Preparation::count(const Progress* progress) {
+  if (result_.voxel_count() >= no_index) return;
+  const std::vector<RegionParts> all =
+      count_parts(result_.regions, result_.size, result_.materials.size() + 1, progress);
+  for (std::size_t r = 0; r < all.size(); ++r) {
+    LabelParts& parts = r == outside_region ? result_.outside_parts : result_.materials[r - 1].parts;
+    parts = {all[r].touching, all[r].by_faces, std::nullopt};
+    if (all[r].smallest != no_index) parts.smallest_place = place(all[r].smallest);
+  }
 }
 
 void Preparation::report(const std::vector<Loss>& losses) {
@@ -343,6 +356,7 @@ LabelInput make_label_input(LabelVolume volume, const std::string& file, const L
     throw NothingToMeshError(file + ": every island of a label has fewer than " +
                              std::to_string(choice.min_voxels) +
                              " voxels, and what is around them is outside; give a smaller --min-voxels");
+  Preparation(result, choice).count(progress);
   return result;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,12 +29,20 @@ struct LabelChoice {
   std::size_t min_voxels = 8;
 };
 
+/// How many parts a region of voxels may have: at least those that touch in a corner or more, at most those
+/// connected by faces. Any number, if not counted.
+struct LabelParts {
+  std::size_t touching = 0, by_faces = std::numeric_limits<std::size_t>::max();
+  std::optional<Vec3> smallest_place;  ///< centre of a voxel of the smallest part by faces, input units
+};
+
 /// A label that is meshed.
 struct LabelMaterial {
   std::string name;
   MaterialTag tag = 0;             ///< the label
   std::size_t voxels = 0;          ///< after merging small islands, 1 or more
   std::size_t voxels_in_file = 0;  ///< before merging
+  LabelParts parts;                ///< after merging
 };
 
 /// A label that is not meshed although it was chosen, because all of it was in small islands.
@@ -56,6 +66,9 @@ struct LabelInput {
   std::vector<LostLabel> lost;           ///< by ascending tag
   std::size_t merged_islands = 0;        ///< including those of the outside
   std::size_t merged_voxels = 0;
+  /// Of the outside, those that do not reach the border of the volume. No parts are counted of 2^32 voxels
+  /// and more.
+  LabelParts outside_parts;
   std::vector<InputFinding> findings;  ///< changes to the input, for the user
 
   std::size_t voxel_count() const { return regions.size(); }

@@ -31,6 +31,10 @@ class Islands {
   std::size_t islands() const { return islands_; }
   Index largest() const { return largest_; }
   std::vector<MergedIsland> merge(Index min_voxels);
+  /// By region, those of the outside that reach the border left out.
+  std::vector<std::size_t> parts(std::size_t regions, std::vector<Index>* smallest = nullptr);
+  /// From then on what touches in an edge or a corner is one island, too.
+  void unite_touching();
 
  private:
   using Span = std::pair<std::size_t, std::size_t>;  ///< voxels from first to before second
@@ -38,6 +42,7 @@ class Islands {
   std::vector<Index> find_runs() const;
   void unite_neighbours();
   void unite_across(std::size_t begin, std::size_t end, std::size_t shift);
+  void unite_rows(std::size_t here, std::size_t there);
   void count_voxels();
   bool at_border(Index run) const;
   void enlarge_outside(Index min_voxels);
@@ -256,7 +261,71 @@ std::vector<MergedIsland> Islands::merge(Index min_voxels) {
   return merged;
 }
 
+std::vector<std::size_t> Islands::parts(std::size_t regions, std::vector<Index>* smallest) {
+  std::vector<std::uint8_t> reaches_border(runs(), 0);
+  for (Index run = 0; run < runs(); ++run)
+    if (region_of(run) == outside_region && at_border(run)) reaches_border[sets_.root(run)] = 1;
+  std::vector<std::size_t> parts(regions, 0);
+  std::vector<Index> fewest(regions, no_index);  // voxels
+  for (Index run = 0; run < runs(); ++run) {
+    if (!sets_.is_root(run) || reaches_border[run]) continue;
+    const RegionIndex region = region_of(run);
+    ++parts[region];
+    if (!smallest || voxels_[run] >= fewest[region]) continue;
+    fewest[region] = voxels_[run];
+    (*smallest)[region] = starts_[run];
+  }
+  return parts;
+}
+
+/// Unites the runs of two rows, given by their first voxels, that overlap or that a step along the row would
+/// make overlap.
+void Islands::unite_rows(std::size_t here, std::size_t there) {
+  const std::size_t here_end = here + width_, there_end = there + width_;
+  Index a = run_of(here), b = run_of(there);
+  while (starts_[a] < here_end && starts_[b] < there_end) {
+    const std::size_t a_from = starts_[a] - here, a_to = starts_[a + 1] - here;
+    const std::size_t b_from = starts_[b] - there, b_to = starts_[b + 1] - there;
+    if (a_from <= b_to && b_from <= a_to && region_of(a) == region_of(b)) sets_.unite(a, b);
+    // Where both end together, the next one of each touches this one of the other.
+    if (a_to == b_to) {
+      if (a_to < width_ && region_of(a + 1) == region_of(b)) sets_.unite(a + 1, b);
+      if (a_to < width_ && region_of(a) == region_of(b + 1)) sets_.unite(a, b + 1);
+    }
+    if (a_to <= b_to) ++a;
+    if (b_to <= a_to) ++b;
+  }
+}
+
+void Islands::unite_touching() {
+  const std::size_t rows = plane_ / width_, planes = regions_.size() / plane_;
+  for (std::size_t z = 0; z < planes; ++z) {
+    throw_if_cancelled();
+    for (std::size_t y = 0; y < rows; ++y) {
+      const std::size_t row = z * plane_ + y * width_;
+      if (y > 0) unite_rows(row, row - width_);
+      if (z == 0) continue;
+      unite_rows(row, row - plane_);
+      if (y > 0) unite_rows(row, row - plane_ - width_);
+      if (y + 1 < rows) unite_rows(row, row - plane_ + width_);
+    }
+  }
+}
+
 }  // namespace
+
+std::vector<RegionParts> count_parts(std::vector<RegionIndex>& regions, const std::array<int, 3>& size,
+                                     std::size_t count, const Progress* progress) {
+  TETWRIGHT_CHECK(!regions.empty() && regions.size() < no_index);
+  Islands islands(regions, size, progress);
+  std::vector<Index> smallest(count, no_index);
+  const std::vector<std::size_t> by_faces = islands.parts(count, &smallest);
+  islands.unite_touching();
+  const std::vector<std::size_t> touching = islands.parts(count);
+  std::vector<RegionParts> parts(count);
+  for (std::size_t r = 0; r < count; ++r) parts[r] = {touching[r], by_faces[r], smallest[r]};
+  return parts;
+}
 
 IslandMerging merge_small_islands(std::vector<RegionIndex>& regions, const std::array<int, 3>& size,
                                   std::size_t min_voxels, const Progress* progress) {

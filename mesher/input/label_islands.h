@@ -36,4 +36,16 @@ struct IslandMerging {
 IslandMerging merge_small_islands(std::vector<RegionIndex>& regions, const std::array<int, 3>& size,
                                   std::size_t min_voxels, const Progress* progress);
 
+/// Parts of a region: those connected by faces of voxels, and those that touch at least in a corner. Voxels
+/// do not say which of them belong together: a smooth region has as many parts or a number between.
+struct RegionParts {
+  std::size_t touching = 0, by_faces = 0;
+  Index smallest = no_index;  ///< the lowest voxel of the smallest part by faces, if there is any
+};
+
+/// The parts of regions 0 to `count` - 1; of the outside those that do not reach the border of the volume
+/// (nor touch one that does). Throws Interrupted; memory and time as for merge_small_islands().
+std::vector<RegionParts> count_parts(std::vector<RegionIndex>& regions, const std::array<int, 3>& size,
+                                     std::size_t count, const Progress* progress);
+
 }  // namespace tetwright

@@ -201,16 +201,6 @@ TEST(Mesher, EstimatesWithinAFactor) {
     }
 }
 
-TEST(Mesher, ResolutionForATarget) {
-  const MesherInput ball = make_mesher_input({{"", 1, make_sphere(1), ""}});
-  EXPECT_EQ(resolution_for_target(ball, 1), 32);
-  const int n = resolution_for_target(ball, 5000);
-  const auto dense = static_cast<double>(mesh_of(make_sphere(1), resolution(n)).mesh.tets.size());
-  EXPECT_GT(dense, 25 * 5000);
-  EXPECT_LT(dense, 60 * 5000);
-  EXPECT_THROW(resolution_for_target(ball, 0), UsageError);
-}
-
 class CancelAtStage : public Progress {
  public:
   explicit CancelAtStage(std::string_view stage) : stage_(stage) {}

@@ -44,8 +44,9 @@ class Volumes : public testing::Test {
   TemporaryFolder folder_;
 };
 
-/// Cells of almost three voxels. The tests that use them do not depend on the cell size.
-const std::string coarse = " --voxel-size 2 --uniform";
+/// Cells of almost three voxels, which do not keep volumes. The tests that use them do not depend on the cell
+/// size.
+const std::string coarse = " --voxel-size 2 --uniform --accept-changes";
 const std::string cube = "dimension: 3\nsizes: 2 2 2\n";
 
 TEST_F(Volumes, ReportAndStatistics) {
@@ -197,7 +198,57 @@ TEST_F(Volumes, ALostLabelIsStatusOneAndNamed) {
   EXPECT_EQ(shortfall[0]["asked"], 2);
   EXPECT_EQ(shortfall[0]["reached"], 1);
   EXPECT_TRUE(std::filesystem::exists(path("out.vtu")));
-  EXPECT_EQ(run(mesh(path("lost.nrrd")) + " --min-voxels 1").status, 0);
+  // It is kept on request, though not its volume.
+  const Answer kept = run(mesh(path("lost.nrrd")) + " --quiet --min-voxels 1");
+  EXPECT_EQ(kept.status, 1);
+  EXPECT_EQ(kept.err.rfind("tetwright: not the solid of the input: 'label_9' has volume ", 0), 0u)
+      << kept.err;
+}
+
+TEST_F(Volumes, LabelsAreComparedWithTheirVoxels) {
+  // Two blocks, one of them hollow, and a gap of two voxels between them.
+  LabelVolume volume;
+  volume.size = {26, 14, 14};
+  const auto in_box = [](int x, int y, int z, int low, int high) {
+    return x >= low && x < high && y >= 2 && y < 12 && z >= 2 && z < 12;
+  };
+  for (int z = 0; z < 14; ++z)
+    for (int y = 0; y < 14; ++y)
+      for (int x = 0; x < 26; ++x) {
+        const bool hollow = x >= 5 && x < 9 && y >= 5 && y < 9 && z >= 5 && z < 9;
+        volume.labels.push_back((in_box(x, y, z, 2, 12) && !hollow) || in_box(x, y, z, 14, 24));
+      }
+  write_label_volume(volume, path("blocks.nrrd"));
+  const auto compared = [&](const std::string& options, int status) {
+    const Answer a = run(mesh(path("blocks.nrrd")) + options);
+    EXPECT_EQ(a.status, status) << a.err;
+    return nlohmann::json::parse(contents(path("s.json")))["fidelity"];
+  };
+  auto same = compared("", 0);
+  ASSERT_EQ(same.size(), 2u);
+  EXPECT_EQ(same[0]["against"], "voxels");
+  EXPECT_EQ(same[0]["expected"]["components"], nlohmann::json({2, 2}));
+  EXPECT_EQ(same[0]["expected"]["volume"], 2000 - 64);
+  EXPECT_EQ(same[0]["result"]["components"], 2);
+  EXPECT_EQ(same[1]["name"], "outside");
+  EXPECT_EQ(same[1]["expected"]["components"], nlohmann::json({1, 1}));
+  EXPECT_EQ(same[1]["result"]["components"], 1);
+  EXPECT_TRUE(same[1]["same"]);
+  // Outside that is meshed is no cavity.
+  EXPECT_EQ(compared(" --keep-outside", 0).size(), 1u);
+
+  // Cells of seven voxels show neither the gap nor the cavity.
+  const auto different = compared(" --voxel-size 7 --uniform", 1);
+  EXPECT_EQ(different[0]["result"]["components"], 1);
+  EXPECT_FALSE(different[0]["same"]);
+  EXPECT_EQ(different[1]["result"]["components"], 0);
+  EXPECT_EQ(different[1]["place"], nlohmann::json({5, 5, 5}));
+  const Answer a = run(mesh(path("blocks.nrrd")) + " --voxel-size 7 --uniform");
+  EXPECT_NE(a.err.find("'label_1' has 1 component instead of 2"), std::string::npos) << a.err;
+  EXPECT_NE(a.err.find("'outside' has 0 parts within the labels instead of 1, the first at (5, 5, 5)"),
+            std::string::npos)
+      << a.err;
+  EXPECT_EQ(run(mesh(path("blocks.nrrd")) + " --voxel-size 7 --uniform --accept-changes").status, 0);
 }
 
 TEST_F(Volumes, TheFileOfNamesIsNotReplaced) {

@@ -139,7 +139,12 @@ bool changed_on_purpose(const RunReport& report) {
 /// Materials that are not the solid they are meant to be: a shortfall, or with --accept-changes a finding.
 void find_changed_solids(const CommandLine& line, const TetMesh& mesh, RunReport& report) {
   if (!report.mesher) return;
-  report.fidelity = compare_solids(report.mesher->expected, mesh);
+  if (const std::optional<VolumeReport>& volume = report.volume)
+    report.fidelity = compare_labels(volume->labels,
+                                     line.keep_outside ? std::nullopt : std::optional(volume->outside_parts),
+                                     std::abs(volume->directions.determinant()), mesh);
+  else
+    report.fidelity = compare_solids(report.mesher->expected, mesh);
   std::string text;
   std::size_t same = 0;
   bool dense_was_same = report.simplify.has_value();  // but for its counts, which simplifying keeps
@@ -151,10 +156,11 @@ void find_changed_solids(const CommandLine& line, const TetMesh& mesh, RunReport
     const auto dense = report.dense->materials.find(f.tag);
     dense_was_same &= f.same_counts() && dense != report.dense->materials.end() &&
                       is_same_volume(dense->second.volume, f.expected.volume);
-    text +=
-        (text.empty() ? "" : "; ") + std::string("'") + f.name + "' has " + f.difference +
-        (f.place ? ", the first at " + place_text(*f.place) : "") +
-        (f.by_surface ? "" : " (by the distances: the surface is open, intersects itself or meets another)");
+    text += (text.empty() ? "" : "; ") + std::string("'") + f.name + "' has " + f.difference +
+            (f.place ? ", the first at " + place_text(*f.place) : "") +
+            (f.against == MaterialFidelity::Against::distances
+                 ? " (by the distances: the surface is open, intersects itself or meets another)"
+                 : "");
   }
   if (text.empty()) return;
   const std::size_t all = report.fidelity.size();

@@ -187,15 +187,16 @@ DenseMesh mesh_input(const MesherInput& surfaces, const CommandLine& line, Progr
   options.min_gap = line.min_gap.in_input_units(diagonal);
   options.min_thickness = line.min_thickness.in_input_units(diagonal);
   if (!line.resolution && line.voxel_size == 0 && line.command == Command::prepare)
-    options.resolution = resolution_for_target(surfaces, line.target_tets);
+    options.resolution = resolution_for_target(surfaces, line.target_tets, line.feature_angle);
   return mesh_surfaces(surfaces, options, progress);
 }
 
 DenseMesh mesh_input(const LabelInput& labels, const CommandLine& line, Progress* progress) {
   MesherOptions options = common_options(line);
   if (!line.resolution && line.voxel_size == 0)
-    options.voxel_size = line.command == Command::prepare ? cell_size_for_target(labels, line.target_tets)
-                                                          : default_cell_size(labels);
+    options.voxel_size = line.command == Command::prepare
+                             ? cell_size_for_target(labels, line.target_tets, options)
+                             : default_cell_size(labels);
   return mesh_labels(labels, options, progress);
 }
 

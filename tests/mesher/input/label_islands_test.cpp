@@ -283,11 +283,70 @@ TEST(LabelIslands, TheSameForAnyNumberOfThreads) {
   }
 }
 
+/// By flood fill: the parts of a region, of the outside only those that do not reach the border.
+std::size_t plain_parts(const Regions& regions, const Size& size, RegionIndex region, bool touching) {
+  std::vector<std::uint8_t> seen(regions.size(), 0);
+  const auto at_border = [&](const Size& p) {
+    for (int a = 0; a < 3; ++a)
+      if (size[a] > 1 && (p[a] == 0 || p[a] == size[a] - 1)) return true;
+    return false;
+  };
+  const auto place = [&](const Size& p) {
+    return (static_cast<std::size_t>(p[2]) * size[1] + p[1]) * size[0] + p[0];
+  };
+  std::size_t parts = 0;
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    if (seen[i] || regions[i] != region) continue;
+    seen[i] = 1;
+    const int n = static_cast<int>(i);
+    std::vector<Size> open{{n % size[0], n / size[0] % size[1], n / size[0] / size[1]}};
+    bool border = false;
+    while (!open.empty()) {
+      const Size p = open.back();
+      open.pop_back();
+      border |= at_border(p);
+      for (int k = 0; k < 27; ++k) {
+        const Size step{k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
+        if (!touching && std::abs(step[0]) + std::abs(step[1]) + std::abs(step[2]) > 1) continue;
+        const Size q{p[0] + step[0], p[1] + step[1], p[2] + step[2]};
+        bool inside = true;
+        for (int a = 0; a < 3; ++a) inside &= q[a] >= 0 && q[a] < size[a];
+        if (!inside || regions[place(q)] != region || seen[place(q)]) continue;
+        seen[place(q)] = 1;
+        open.push_back(q);
+      }
+    }
+    parts += region != outside_region || !border;
+  }
+  return parts;
+}
+
+TEST(LabelIslands, PartsAreThoseOfAFloodFill) {
+  Random random(7);
+  for (const Size& size : {Size{6, 5, 4}, Size{9, 1, 7}, Size{1, 8, 8}, Size{13, 12, 1}, Size{20, 9, 10}})
+    for (int round = 0; round < 20; ++round) {
+      Regions regions(static_cast<std::size_t>(size[0]) * size[1] * size[2]);
+      for (RegionIndex& r : regions) r = static_cast<RegionIndex>(random.below(2 + round % 4));
+      const std::vector<RegionParts> parts = count_parts(regions, size, 5, nullptr);
+      for (RegionIndex r = 0; r < 5; ++r) {
+        EXPECT_EQ(parts[r].by_faces, plain_parts(regions, size, r, false));
+        EXPECT_EQ(parts[r].touching, plain_parts(regions, size, r, true));
+        EXPECT_EQ(parts[r].smallest == no_index, parts[r].by_faces == 0);
+        if (parts[r].smallest != no_index) {
+          EXPECT_EQ(regions[parts[r].smallest], r);
+        }
+      }
+    }
+  Regions two = row("1101000100");
+  EXPECT_EQ(count_parts(two, {10, 1, 1}, 2, nullptr)[1].smallest, 3u);
+}
+
 TEST(LabelIslands, CanBeInterrupted) {
   Progress progress;
   progress.cancel();
   Regions regions = row("1121");
   EXPECT_THROW(merge_small_islands(regions, {4, 1, 1}, 2, &progress), Interrupted);
+  EXPECT_THROW(count_parts(regions, {4, 1, 1}, 3, &progress), Interrupted);
 }
 
 }  // namespace

@@ -1,0 +1,78 @@
+// The cells that are chosen for a wanted number of tets.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/error.h"
+#include "common/samples.h"
+#include "mesher/mesher.h"
+#include "tests/mesher/fields.h"
+#include "tests/mesher/label_volumes.h"
+
+namespace tetwright::target_size_test {
+namespace {
+
+LabelInput ball(int side, double radius) {
+  const double centre = 0.5 * (side - 1);
+  return make_labels({side, side, side}, [=](int x, int y, int z) {
+    return (Vec3(x, y, z) - Vec3::Constant(centre)).squaredNorm() < radius * radius ? 1 : 0;
+  });
+}
+
+DenseMesh mesh_with(const LabelInput& labels, double cell) {
+  MesherOptions options;
+  options.voxel_size = cell;
+  return mesh_labels(labels, options, nullptr);
+}
+
+std::size_t dense_tets(const MesherInput& input, int resolution) {
+  MesherOptions options;
+  options.resolution = resolution;
+  return mesh_surfaces(input, options, nullptr).mesh.tets.size();
+}
+
+TEST(TargetSize, SurfacesHaveAmpleTetsAndMoreWithCreases) {
+  const MesherInput ball = make_mesher_input({{"", 1, make_sphere(1), ""}});
+  EXPECT_EQ(resolution_for_target(ball, 1, {}), 32);
+  const std::size_t for_ball = dense_tets(ball, resolution_for_target(ball, 5000, {}));
+  EXPECT_GT(for_ball, 25u * 5000);
+  EXPECT_LT(for_ball, 60u * 5000);
+  EXPECT_THROW(resolution_for_target(ball, 0, {}), UsageError);
+
+  const MesherInput cube = make_input({std::get<TriangleMesh>(make_sample("cube"))});
+  const int with_creases = resolution_for_target(cube, 5000, {}),
+            without = resolution_for_target(cube, 5000, {.rule = FeatureAngle::Rule::off});
+  EXPECT_NEAR(with_creases, std::sqrt(2.5) * without, 0.1 * without);
+}
+
+TEST(TargetSize, VolumesTakeLargerCellsForFewTetsAndSmallerOnesForMany) {
+  const LabelInput labels = ball(64, 28);
+  const double few = cell_size_for_target(labels, 500, {});
+  EXPECT_EQ(few, 4);
+  EXPECT_EQ(cell_size_for_target(labels, 2500, {}), 2);
+  EXPECT_EQ(cell_size_for_target(labels, 20000, {}), 1);
+  const double many = cell_size_for_target(labels, 500000, {});
+  EXPECT_LT(many, 1);
+  EXPECT_GE(many, 0.25);
+  EXPECT_THROW(cell_size_for_target(labels, 0, {}), UsageError);
+
+  // Ample tets, and the volume is kept.
+  const DenseMesh dense = mesh_with(labels, few);
+  EXPECT_GT(dense.mesh.tets.size(), 20u * 500);
+  EXPECT_LT(fidelity(labels, dense.mesh).worst_volume, 0.02);
+  MesherOptions uniform;
+  uniform.uniform = true;
+  EXPECT_EQ(cell_size_for_target(labels, 500, uniform), 1);
+}
+
+TEST(TargetSize, CellsOfVolumesStaySmallForSmallLabelsAndWhereLabelsAreThin) {
+  // Chords of larger cells would take more than 1 % off the ball.
+  EXPECT_EQ(cell_size_for_target(ball(64, 20), 100, {}), 2);
+  EXPECT_EQ(cell_size_for_target(ball(64, 9), 100, {}), 1);
+  // Sheets of two voxels take cells of a voxel wherever they are.
+  const LabelInput sheets = make_labels({48, 48, 48}, [](int, int, int z) { return 1 + z / 2 % 2; });
+  EXPECT_EQ(cell_size_for_target(sheets, 500, {}), 1);
+}
+
+}  // namespace
+}  // namespace tetwright::target_size_test
