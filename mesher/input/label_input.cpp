@@ -152,7 +152,7 @@ std::vector<LabelMaterial> name_materials(const LabelChoice& choice, const std::
   for (const auto& [tag, voxels] : counts) {
     const auto name = choice.names.find(tag);
     const bool named = name != choice.names.end() && !name->second.empty();
-    materials.push_back({named ? name->second : "label_" + std::to_string(tag), tag, voxels, voxels, {}});
+    materials.push_back({named ? name->second : "label_" + std::to_string(tag), tag, voxels, voxels});
   }
   std::vector<const LabelMaterial*> by_name;
   by_name.reserve(materials.size());

@@ -42,7 +42,7 @@ struct LabelMaterial {
   MaterialTag tag = 0;             ///< the label
   std::size_t voxels = 0;          ///< after merging small islands, 1 or more
   std::size_t voxels_in_file = 0;  ///< before merging
-  LabelParts parts;                ///< after merging
+  LabelParts parts = {};           ///< after merging
 };
 
 /// A label that is not meshed although it was chosen, because all of it was in small islands.
