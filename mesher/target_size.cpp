@@ -47,7 +47,7 @@ constexpr std::array<int, 2> large_cells{4, 2};
 constexpr double large_cells_dense_per_target = 20, max_share_of_voxel_cells = 0.5;
 /// A ball of so many large cells loses 1 % of its volume to chords: measured, 0.27 (cell / radius)^2. Labels
 /// of few voxels change more by smoothing.
-constexpr double min_cells_of_label = 590, few_voxels = 1000;
+constexpr double min_cells_of_part = 590, few_voxels = 1000;
 
 /// Dense tets of surfaces with finest cells of edge `h`, input units.
 double dense_tets(const MesherInput& input, double h) {
@@ -109,32 +109,33 @@ double cell_size_for_target(const LabelInput& labels, std::size_t target_tets, c
   if (target_tets == 0) throw UsageError("the target must be at least one tet");
   const FaceAreas areas = face_areas(labels);
   const double voxel = voxel_size(labels), target = static_cast<double>(target_tets);
-  const double smallest = longest_side(labels) / max_resolution;
+  const double smallest_cell = longest_side(labels) / max_resolution;
   // Tets grow with the square of the cells.
   const double at_voxel =
       std::max(1.0, std::floor(tets_per_face * (areas.inner + 0.5 * areas.outer) / (voxel * voxel)));
   const double finer = std::sqrt(label_dense_per_target * target / at_voxel);
-  if (finer > 1) return std::max(voxel / std::min(finer, static_cast<double>(max_cells_per_voxel)), smallest);
+  if (finer > 1)
+    return std::max(voxel / std::min(finer, static_cast<double>(max_cells_per_voxel)), smallest_cell);
 
   const auto dense_tets_of = [&](double cell) {
     MesherOptions of_cell = options;
     of_cell.voxel_size = cell;
     return static_cast<double>(estimate_mesh(labels, of_cell).tets);
   };
-  double smallest_label = std::numeric_limits<double>::max();  // voxels
+  double smallest = std::numeric_limits<double>::max();  // part of a label on average, voxels
   for (const LabelMaterial& m : labels.materials)
     if (const auto voxels = static_cast<double>(m.voxels); voxels > few_voxels)
-      smallest_label = std::min(smallest_label, voxels);
-  smallest_label *= std::abs(labels.directions.determinant());
+      smallest = std::min(smallest, voxels / static_cast<double>(m.parts.by_faces));
+  smallest *= std::abs(labels.directions.determinant());
   std::optional<double> of_voxel_cells;
   for (const int cells : large_cells) {
     if (at_voxel / (cells * cells) < large_cells_dense_per_target * target || options.uniform) continue;
-    const double cell = std::max(cells * voxel, smallest);
-    if (smallest_label < min_cells_of_label * cell * cell * cell) continue;
-    if (!of_voxel_cells) of_voxel_cells = dense_tets_of(std::max(voxel, smallest));
+    const double cell = std::max(cells * voxel, smallest_cell);
+    if (smallest < min_cells_of_part * cell * cell * cell) continue;
+    if (!of_voxel_cells) of_voxel_cells = dense_tets_of(std::max(voxel, smallest_cell));
     if (dense_tets_of(cell) <= max_share_of_voxel_cells * *of_voxel_cells) return cell;
   }
-  return std::max(voxel, smallest);
+  return std::max(voxel, smallest_cell);
 }
 
 double default_cell_size(const LabelInput& labels) {

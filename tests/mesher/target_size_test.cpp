@@ -69,6 +69,10 @@ TEST(TargetSize, CellsOfVolumesStaySmallForSmallLabelsAndWhereLabelsAreThin) {
   // Chords of larger cells would take more than 1 % off the ball.
   EXPECT_EQ(cell_size_for_target(ball(64, 20), 100, {}), 2);
   EXPECT_EQ(cell_size_for_target(ball(64, 9), 100, {}), 1);
+  const auto two_balls = [](int x, int y, int z) {
+    return (Vec3(x % 32, y, z) - Vec3::Constant(15.5)).squaredNorm() < 10 * 10 ? 1 : 0;
+  };
+  EXPECT_EQ(cell_size_for_target(make_labels({64, 32, 32}, two_balls), 50, {}), 1);
   // Sheets of two voxels take cells of a voxel wherever they are.
   const LabelInput sheets = make_labels({48, 48, 48}, [](int, int, int z) { return 1 + z / 2 % 2; });
   EXPECT_EQ(cell_size_for_target(sheets, 500, {}), 1);
