@@ -30,7 +30,7 @@ constexpr double cells_per_sheet = 1.5, min_refined = 0.125;
 constexpr double surface_dense_per_target = 40, label_dense_per_target = 5;
 /// The same of surfaces with creases. Their patches may be narrower than a cell, and what cells show of them
 /// is what can be kept: measured on nine parts at 10,000 tets, those with strips of half a cell (40) have
-/// three times less distance from creases at 100, and no more lost corners.
+/// three times less distance from creases at 100, and lose no corners.
 constexpr double creased_dense_per_target = 100;
 constexpr double max_dense_tets = 20e6;
 constexpr int min_target_resolution = 32;

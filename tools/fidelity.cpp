@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <unordered_map>
 #include <utility>
 
 namespace tetwright {
@@ -16,14 +17,16 @@ constexpr double alike_volume = 0.1;
 /// The same of labels, but for those of few voxels: how far their surface may move, voxels, were they cubes.
 constexpr double label_volume = 0.02, label_shift = 0.06, cube_sides = 6;
 
-/// The material's solid in the mesh: its faces to others and to outside, wound outwards.
-SolidShape solid_of(const TetMesh& mesh, MaterialTag tag) {
-  std::vector<Triangle> triangles;
+using Solids = std::unordered_map<MaterialTag, std::vector<Triangle>>;
+
+/// The faces of each material to others and to outside, wound outwards.
+Solids solids_of(const TetMesh& mesh) {
+  Solids solids;
   for (const InterfaceTriangle& t : mesh.interfaces) {
-    if (t.material == tag) triangles.push_back(t.ids);
-    if (t.other == tag) triangles.push_back({t.ids[0], t.ids[2], t.ids[1]});
+    solids[t.material].push_back(t.ids);
+    if (t.other) solids[*t.other].push_back({t.ids[0], t.ids[2], t.ids[1]});
   }
-  return solid_shape(mesh.points, triangles);
+  return solids;
 }
 
 /// The shells that count, the largest first.
@@ -147,7 +150,8 @@ std::vector<MaterialFidelity> compare_solids(const std::vector<ExpectedSolid>& e
                                              const TetMesh& mesh) {
   std::vector<MaterialFidelity> all;
   all.reserve(expected.size());
-  for (const ExpectedSolid& e : expected) all.push_back(compare(e, solid_of(mesh, e.tag)));
+  Solids solids = solids_of(mesh);
+  for (const ExpectedSolid& e : expected) all.push_back(compare(e, solid_shape(mesh.points, solids[e.tag])));
   return all;
 }
 
@@ -156,8 +160,9 @@ std::vector<MaterialFidelity> compare_labels(const std::vector<LabelMaterial>& l
                                              const TetMesh& mesh) {
   std::vector<MaterialFidelity> all;
   all.reserve(labels.size() + 1);
+  Solids solids = solids_of(mesh);
   for (const LabelMaterial& label : labels)
-    all.push_back(compare(label, voxel_volume, solid_of(mesh, label.tag)));
+    all.push_back(compare(label, voxel_volume, solid_shape(mesh.points, solids[label.tag])));
 
   std::vector<Triangle> boundary;
   for (const InterfaceTriangle& t : mesh.interfaces)

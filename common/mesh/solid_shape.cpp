@@ -76,7 +76,7 @@ SolidShape solid_shape(std::span<const Vec3> points, std::span<const Triangle> t
 
   std::vector<Index> shell_of(triangles.size());
   std::vector<std::ptrdiff_t> euler;
-  std::vector<std::uint8_t> has_fan(points.size(), 0);
+  std::vector<Index> fan_points;  // once for each fan
   for (Index t = 0; t < triangles.size(); ++t) {
     const Index root = chained.root(t);  // the first of them
     if (root == t) {
@@ -92,12 +92,14 @@ SolidShape solid_shape(std::span<const Vec3> points, std::span<const Triangle> t
     for (Index k = 0; k < 3; ++k) {
       if (!fans.is_root(3 * t + k)) continue;
       ++euler[shell_of[t]];
-      shape.touches_itself |= std::exchange(has_fan[triangles[t][k]], std::uint8_t{1}) != 0;
+      fan_points.push_back(triangles[t][k]);
     }
     const Vec3 a = points[triangles[t][0]] - shell.place, b = points[triangles[t][1]] - shell.place,
                c = points[triangles[t][2]] - shell.place;
     shell.volume += a.dot(b.cross(c)) / 6;
   }
+  parallel_sort(fan_points);
+  shape.touches_itself = std::adjacent_find(fan_points.begin(), fan_points.end()) != fan_points.end();
   for (std::size_t s = 0; s < shape.shells.size(); ++s) shape.shells[s].handles = (2 - euler[s]) / 2;
   return shape;
 }

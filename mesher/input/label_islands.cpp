@@ -262,9 +262,11 @@ std::vector<MergedIsland> Islands::merge(Index min_voxels) {
 }
 
 std::vector<std::size_t> Islands::parts(std::size_t regions, std::vector<Index>* smallest) {
+  // The mesh of a slice ends above and below it, and so does what is outside.
+  const bool slice = width_ == 1 || plane_ == width_ || regions_.size() == plane_;
   std::vector<std::uint8_t> reaches_border(runs(), 0);
   for (Index run = 0; run < runs(); ++run)
-    if (region_of(run) == outside_region && at_border(run)) reaches_border[sets_.root(run)] = 1;
+    if (region_of(run) == outside_region && (slice || at_border(run))) reaches_border[sets_.root(run)] = 1;
   std::vector<std::size_t> parts(regions, 0);
   std::vector<Index> fewest(regions, no_index);  // voxels
   for (Index run = 0; run < runs(); ++run) {

@@ -44,7 +44,8 @@ struct RegionParts {
 };
 
 /// The parts of regions 0 to `count` - 1; of the outside those that do not reach the border of the volume
-/// (nor touch one that does). Throws Interrupted; memory and time as for merge_small_islands().
+/// (nor touch one that does), which all of a slice does. Throws Interrupted; memory and time as for
+/// merge_small_islands().
 std::vector<RegionParts> count_parts(std::vector<RegionIndex>& regions, const std::array<int, 3>& size,
                                      std::size_t count, const Progress* progress);
 

@@ -288,7 +288,7 @@ std::size_t plain_parts(const Regions& regions, const Size& size, RegionIndex re
   std::vector<std::uint8_t> seen(regions.size(), 0);
   const auto at_border = [&](const Size& p) {
     for (int a = 0; a < 3; ++a)
-      if (size[a] > 1 && (p[a] == 0 || p[a] == size[a] - 1)) return true;
+      if (p[a] == 0 || p[a] == size[a] - 1) return true;
     return false;
   };
   const auto place = [&](const Size& p) {
