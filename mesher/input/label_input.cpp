@@ -228,8 +228,8 @@ class Preparation {
   Vec3 place(std::size_t voxel) const {
     const std::size_t nx = static_cast<std::size_t>(result_.size[0]);
     const std::size_t ny = static_cast<std::size_t>(result_.size[1]);
-    const Vec3 index(static_cast<double>(voxel % nx), static_cast<double>(voxel / nx % ny),
-                     static_cast<double>(voxel / nx / ny));
+    const std::size_t x = voxel % nx, y = voxel / nx % ny, z = voxel / (nx * ny);
+    const Vec3 index(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
     return result_.origin + result_.directions * index;
   }
   void add(const std::string& what, std::size_t count, const std::optional<Vec3>& at,
