@@ -381,9 +381,13 @@ ThinWallPlan plan_thin_walls(const ThinSurvey& survey) {
                     if (wall < exact_below) {
                       const double kept = std::max(wall, survey.limits.min_thickness),
                                    shown = std::max(kept, min_shown);
-                      const double tets = filling_tets_per_area * area_of(wall);
-                      found[task].filling += tets / (kept * kept);
-                      found[task].filling_thickened += tets / (shown * shown);
+                      // At most those that the dense mesh has there: a fold may have no thickness at all.
+                      const auto filling = [&](double thickness) {
+                        return std::min(filling_tets_per_area * area_of(wall) / (thickness * thickness),
+                                        tets_per_wall_cell);
+                      };
+                      found[task].filling += filling(kept);
+                      found[task].filling_thickened += filling(shown);
                     }
                     for (const Side kind : {Side::wall, Side::gap}) {
                       const double wanted =

@@ -184,6 +184,20 @@ TEST(ThinWalls, NothingThinTakesNothing) {
   EXPECT_FALSE(plan_thin_walls(survey).walls);
 }
 
+TEST(ThinWalls, WhatHasNoThicknessTakesNoMoreTetsThanItsCellsHave) {
+  const auto filling = [](double thickness) {
+    const MesherInput input = make_input({plate(thickness, 1)});
+    const GridFrame frame = make_grid_frame(input.low, input.high, 1, false);
+    const auto level_set = LevelSet::of_surface(input.bodies[0].surface, frame, nullptr);
+    return plan_thin_walls(survey_thin_walls(input.bodies[0].surface, *level_set, frame, {}, {}, nullptr))
+        .filling_tets;
+  };
+  const double plates_area = 16 * 16;
+  EXPECT_NEAR(filling(0.5), 0.66 * plates_area / 0.25, 0.3 * 0.66 * plates_area / 0.25);
+  // Eight for each cell, and a slanted plate passes fewer than three cells for each squared cell.
+  EXPECT_LT(filling(1e-5), 8 * 3 * plates_area);
+}
+
 ThinSurvey::Region region(double added, int needed) {
   ThinSurvey::Region r;
   for (int d = 0; d <= max_wall_refinement; ++d)
