@@ -126,6 +126,8 @@ struct DenseMesh {
   /// What simplify() takes as its reference: the field, or where surfaces have creases or labels are cut off
   /// by their volume's border a surface that knows these and the field.
   std::shared_ptr<const ReferenceSurface> reference;
+  /// The surfaces of all bodies as they were meshed, repaired; null for label volumes.
+  std::shared_ptr<const TriangleMesh> surface;
   MesherReport report;
 };
 

@@ -129,6 +129,18 @@ double patch_cell(const RepairedSurface& surface, const MesherOptions& options, 
   return std::clamp(mean_thickness, std::ldexp(cell, -halvings), cell);
 }
 
+/// The surfaces of all bodies in one.
+TriangleMesh all_surfaces(const MesherInput& input) {
+  TriangleMesh all;
+  for (const MesherInput::Body& body : input.bodies) {
+    const auto first = static_cast<Index>(all.points.size());
+    all.points.insert(all.points.end(), body.surface.points.begin(), body.surface.points.end());
+    for (const Triangle& t : body.surface.triangles)
+      all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return all;
+}
+
 /// The patches of all bodies.
 std::vector<SurfacePatches> patches_of(const MesherInput& input, const MesherOptions& options, double cell) {
   constexpr std::size_t max_patches = 0xfffe;  // beside that of faces on no surface
@@ -377,6 +389,7 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
       dense.reference = features;
     dense.report.seconds_cut += stages.seconds();
   }
+  dense.surface = std::make_shared<const TriangleMesh>(all_surfaces(input));
   dense.report.filling_tets = static_cast<std::size_t>(
       (dense.report.thickened.points > 0 ? bodies.filling_tets_thickened : bodies.filling_tets) *
       (std::any_of(patches.begin(), patches.end(), has_patches) ? filling_with_creases : 1));

@@ -27,7 +27,7 @@ constexpr double closing_margin = 1.27;
 /// For tets worse than this multiple of the bound, improve() may move points off the surface (dihedral angles
 /// up to 30 degrees). In the closing that would move the surface a quarter farther.
 constexpr double improve_margin = 1.5;
-constexpr int closing_fit_sweeps = 1;
+constexpr int sweeps_before_closing = 1, sweeps_after_closing = 2;
 /// Sweeps of fit_to_crease() before it.
 constexpr int crease_sweeps = 3;
 /// Share of the tets below the bound above which improve() begins in bulk. Scans and what programs make of
@@ -64,7 +64,7 @@ ImprovementTools tools_of(Engine& engine) {
   return {engine.mesh(), engine.runner(), engine.rules, engine.recorder()};
 }
 
-/// Sweeps of fit_to_surface() over all interface points.
+/// Sweeps of fit_to_samples() over all interface points.
 void fit(Engine& engine, int sweeps, float floor) {
   for (int i = 0; i < sweeps; ++i) {
     RoundRecorder::Round round(engine.recorder(), "close", engine.rules.max_error);
@@ -123,9 +123,11 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
                                .max_rounds = max_closing_rounds};
     // Where a point has arrived its neighbours may have more room.
     for (int i = 0; i < crease_sweeps; ++i) engine.fit_creases();
-    fit(engine, closing_fit_sweeps, quality_at(engine, plan.angle));
+    fit(engine, sweeps_before_closing, quality_at(engine, plan.angle));
     WholeMesh whole(engine);
     improve_area(tools_of(engine), whole, plan, 1);
+    // Shapes were had at the cost of places.
+    fit(engine, sweeps_after_closing, quality_at(engine, plan.angle));
   }
   if (report) {
     report->touching_points = engine.mesh().touching_points();

@@ -86,6 +86,7 @@ nlohmann::json make_dense(const std::string& scan, std::size_t tets, const std::
 nlohmann::json run_row(const std::string& dense, const std::string& scan, const RowOptions& options) {
   const ThreadLimit limit(options.threads);
   TetMesh mesh = read_tet_mesh(dense).mesh;
+  const TriangleMesh reference = read_surface(scan);
   nlohmann::json row = {{"threads", thread_count()}, {"tets_before", mesh.tets.size()}};
   Topology topology_before;
   double volume_before = 0;
@@ -99,7 +100,9 @@ nlohmann::json run_row(const std::string& dense, const std::string& scan, const 
   row["memory_before"] = peak_bytes_now();
   SimplifyReport report;
   const Stopwatch watch;
-  mesh = simplify(std::move(mesh), options.simplify, &report);
+  SimplifyOptions simplification = options.simplify;
+  simplification.surface = &reference;
+  mesh = simplify(std::move(mesh), simplification, &report);
   row["seconds"] = watch.seconds();
   row["peak_bytes"] = peak_bytes_now();
   row["seconds_build"] = report.seconds_build;
@@ -123,7 +126,7 @@ nlohmann::json run_row(const std::string& dense, const std::string& scan, const 
   row["findings"] = nlohmann::json::array();
   for (const MeshFinding& f : check_mesh(mesh)) row["findings"].push_back(mesh_finding_line(f));
   row["topology_differences"] = topology_differences(topology_before, topology(mesh));
-  const TriangleMesh reference = read_surface(scan), surface = boundary(mesh);
+  const TriangleMesh surface = boundary(mesh);
   const SurfaceDistance d = surface_distance(surface, reference);
   const double size = diagonal(reference);
   row["boundary_triangles"] = surface.triangles.size();

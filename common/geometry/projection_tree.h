@@ -31,7 +31,12 @@ class ProjectionTree {
   bool empty() const { return items_.empty(); }
   /// In the order of the tree.
   const std::vector<Item>& items() const { return items_; }
+  const std::vector<Vec3>& points() const { return points_; }
   const Vec3& corner(const Item& item, int k) const { return points_[item.corners[k]]; }
+  /// The nearest point of an item of items().
+  Vec3 closest_on(std::size_t item, const Vec3& p) const {
+    return closest_point(p, corner(items_[item], 0), corner(items_[item], 1), corner(items_[item], 2));
+  }
 
   /// The nearest point on the items for which `accepts(item)` holds, if it is nearer than `max_distance`.
   /// Safe to call concurrently.
@@ -41,13 +46,23 @@ class ProjectionTree {
     tree_.nearest(p, max_distance * max_distance, tree_.all(), [&](std::size_t i, double best) {
       const Item& item = items_[i];
       if (!accepts(item)) return best;
-      const Vec3 q = closest_point(p, corner(item, 0), corner(item, 1), corner(item, 2));
+      const Vec3 q = closest_on(i, p);
       const double d = (q - p).squaredNorm();
       if (d > best || (d == best && found)) return best;
       found = Hit{q, i};
       return d;
     });
     return found;
+  }
+  /// Whether an item is nearer than or at `max_distance`: faster than to know which one. Safe to call
+  /// concurrently.
+  bool any_within(const Vec3& p, double max_distance) const {
+    return tree_.nearest(p, max_distance * max_distance, tree_.all(), [&](std::size_t i, double best) {
+      const Item& item = items_[i];
+      if (best < 0 || squared_distance(p, corner(item, 0), corner(item, 1), corner(item, 2)) > best)
+        return best;
+      return -1.0;  // nothing is nearer: ends the search
+    }) < 0;
   }
   /// The same of the items of a kind.
   std::optional<Vec3> nearest(const Vec3& p, const Kind& kind, double max_distance) const {

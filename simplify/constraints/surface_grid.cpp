@@ -8,6 +8,8 @@
 
 #include "common/error.h"
 #include "common/parallel/parallel.h"
+#include "common/parallel/parallel_sort.h"
+#include "simplify/constraints/surface_samples.h"
 
 namespace tetwright {
 
@@ -147,6 +149,38 @@ void SurfaceGrid::build(const EditableMesh& mesh, double min_cell) {
   });
 }
 
+void SurfaceGrid::rebuild(const EditableMesh& mesh, double min_cell, const std::vector<Index>& new_points) {
+  if (!samples_) {
+    build(mesh, min_cell);
+    return;
+  }
+  struct Known {
+    Triangle ids;
+    std::uint32_t record;
+  };
+  const auto by_ids = [](const Known& a, const Known& b) { return a.ids < b.ids; };
+  std::vector<Known> before;
+  for (const std::uint32_t record : standing()) {
+    Triangle ids = records_[record].ids;
+    for (Index& p : ids) p = new_points[p];
+    std::sort(ids.begin(), ids.end());
+    before.push_back({ids, record});
+  }
+  const std::size_t old_records = records_.size();
+  build(mesh, min_cell);
+  std::vector<Known> after(records_.size());
+  for (std::uint32_t i = 0; i < records_.size(); ++i) after[i] = {records_[i].ids, i};
+  parallel_sort(before, by_ids);
+  parallel_sort(after, by_ids);
+  TETWRIGHT_CHECK(before.size() == after.size());
+  std::vector<std::uint32_t> new_record(old_records, SurfaceSamples::none);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    TETWRIGHT_CHECK(before[i].ids == after[i].ids);
+    new_record[before[i].record] = after[i].record;
+  }
+  samples_->renumber(new_record, records_.size());
+}
+
 void SurfaceGrid::reserve_twice() {
   records_.reserve(2 * records_.size());
   patches_.reserve(2 * patches_.size());
@@ -275,6 +309,7 @@ void SurfaceGrid::take_records(Edit& edit) {
     }
     edit.added_records.push_back(free_records_.take());
   }
+  if (samples_) samples_->resize(records_.size());
 }
 
 void SurfaceGrid::commit(const Edit& edit) {
@@ -297,6 +332,7 @@ void SurfaceGrid::commit(const Edit& edit) {
     if (!patches_.empty()) patches_[record] = edit.added[k].patch;
     insert(record);
   }
+  if (samples_) samples_->commit(edit);
 }
 
 PatchId SurfaceGrid::patch(const EditableMesh& mesh, const Triangle& ids) const {
@@ -319,15 +355,18 @@ FacePatches SurfaceGrid::patches() const {
   return out;
 }
 
-std::vector<MeshTriangle> SurfaceGrid::triangles() const {
+std::vector<std::uint32_t> SurfaceGrid::standing() const {
   std::vector<std::uint32_t> seen;
   for (const Cell& cell : cells_)
     for (const Entry& e : cell.entries) seen.push_back(e.record);
   std::sort(seen.begin(), seen.end());
   seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+  return seen;
+}
+
+std::vector<MeshTriangle> SurfaceGrid::triangles() const {
   std::vector<MeshTriangle> out;
-  out.reserve(seen.size());
-  for (std::uint32_t i : seen) out.push_back(records_[i]);
+  for (std::uint32_t i : standing()) out.push_back(records_[i]);
   return out;
 }
 

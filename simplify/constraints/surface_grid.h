@@ -6,10 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "common/geometry/triangle_distance.h"
 #include "common/geometry/triangle_intersection.h"
 #include "simplify/mesh/editable_mesh.h"
 
 namespace tetwright {
+
+class SurfaceSamples;
 
 /// The boundary and interface triangles of an EditableMesh with their coordinates, in a hashed spatial grid:
 /// the explicit test against self-intersection, which positive tets alone do not prevent (two parts of a
@@ -25,6 +28,13 @@ class SurfaceGrid {
   struct Added {
     MeshTriangle triangle;
     PatchId patch;
+    RegionId inside = outside_id, across = outside_id;  ///< that it separates
+  };
+  /// A sample of the input's surface that one of the triangles that come in takes over (SurfaceSamples).
+  struct HandedSample {
+    std::uint32_t sample;
+    std::uint32_t added;  ///< place in Edit::added
+    float distance;       ///< between them
   };
   /// What an operation takes away and puts in.
   struct Edit {
@@ -38,6 +48,10 @@ class SurfaceGrid {
     std::vector<std::array<Index, 2>> narrow_edges;
     /// Records for those that come in: filled by take_records().
     std::vector<std::uint32_t> added_records;
+    std::vector<HandedSample> handed;  ///< filled by SurfaceSamples::hand_over()
+    // Its memory.
+    std::vector<TriangleDistance> distances;
+    std::vector<std::uint32_t> takers;
 
     void clear() {
       removed.clear();
@@ -45,13 +59,21 @@ class SurfaceGrid {
       removed_records.clear();
       narrow_edges.clear();
       added_records.clear();
+      handed.clear();
     }
     bool empty() const { return removed.empty() && added.empty(); }
   };
 
   /// All interface triangles of the mesh; while no task runs. `min_cell` (working coordinates) is the
-  /// size that triangles are about to grow to.
+  /// size that triangles are about to grow to. The records are numbered as in interface_faces().
   void build(const EditableMesh& mesh, double min_cell);
+  /// build() for the same mesh with other numbers of its points, by the old ones: samples stay with their
+  /// triangles.
+  void rebuild(const EditableMesh& mesh, double min_cell, const std::vector<Index>& new_points);
+  std::size_t record_count() const { return records_.size(); }
+  /// Points that the triangles own from now on, or null; must outlive the last edit.
+  void set_samples(SurfaceSamples* samples) { samples_ = samples; }
+  const SurfaceSamples* samples() const { return samples_; }
 
   /// Room for twice as many triangles without copying what there is; memory is taken up only where it is
   /// written.
@@ -64,6 +86,9 @@ class SurfaceGrid {
   /// Whether no added triangle meets one that stands and stays, or another added one. Fills the edit; the
   /// points' ids become those of the places where they stand (EditableMesh::original). Safe concurrently.
   bool test(Edit& edit) const;
+  /// Gives the triangles of an edit the ids that records have, and finds the records of those that go: what
+  /// test() begins with.
+  void find_records(Edit& edit) const;
   /// Whether no triangle that comes in by one edit meets one of the other or is nearly folded onto it. Both
   /// were tested.
   static bool apart(const Edit& first, const Edit& second);
@@ -127,8 +152,8 @@ class SurfaceGrid {
   /// Appends to `narrow`, if there is one, the edges where they are nearly folded together.
   bool hits_standing(const MeshTriangle& t, std::span<const std::uint32_t> removed,
                      std::vector<std::array<Index, 2>>* narrow = nullptr) const;
-  /// Gives the triangles of an edit the ids that records have, and finds the records of those that go.
-  void find_records(Edit& edit) const;
+  /// The records of all that stand, ascending.
+  std::vector<std::uint32_t> standing() const;
   /// The record of a standing triangle, ids ascending.
   std::uint32_t record_of(const MeshTriangle& t) const;
 
@@ -140,6 +165,7 @@ class SurfaceGrid {
   std::vector<MeshTriangle> records_;  ///< ids ascending, points in the same order
   std::vector<PatchId> patches_;       ///< by record; empty if all are 0
   FreeSlots free_records_;
+  SurfaceSamples* samples_ = nullptr;
 };
 
 }  // namespace tetwright

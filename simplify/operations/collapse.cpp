@@ -62,7 +62,8 @@ bool surface_edit(Workspace& ws, const BlockRules& rules, std::size_t b) {
     const Vec3 &p = star.positions[s.first], &q = star.positions[s.second];
     edit.removed.push_back({ids, {star.centre_position, p, q}});
     if (s.first == b || s.second == b) continue;
-    edit.added.push_back({{{star.points[b], ids[1], ids[2]}, {star.positions[b], p, q}}, s.patch});
+    edit.added.push_back(
+        {{{star.points[b], ids[1], ids[2]}, {star.positions[b], p, q}}, s.patch, s.inside, s.across});
     if (!near_reference(rules, edit.added.back(), s.inside, s.across)) return false;
   }
   return true;
@@ -164,7 +165,7 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
   ws.proposal.edit.clear();
   if (!star.interface_triangles.empty()) {
     if (!surface_edit(ws, rules, b)) return Outcome::surface_error;
-    if (!ws.grid.test(ws.proposal.edit)) return Outcome::self_intersection;
+    if (const Outcome o = ws.test_surface(rules); o != Outcome::done) return o;
   }
   propose(ws, b);
   return ws.within_bounds(rules,

@@ -35,10 +35,11 @@ Outcome surface_edit(Workspace& ws, const BlockRules& rules, Index s, Index t, R
   SurfaceGrid::Edit& edit = ws.proposal.edit;
   edit.clear();
   edit.removed = {{{ring.a, ring.b, s}, {a, b, ps}}, {{ring.a, ring.b, t}, {a, b, pt}}};
-  edit.added = {{{{ring.a, s, t}, {a, ps, pt}}, patch}, {{{ring.b, s, t}, {b, ps, pt}}, patch}};
+  edit.added = {{{{ring.a, s, t}, {a, ps, pt}}, patch, inside, across},
+                {{{ring.b, s, t}, {b, ps, pt}}, patch, inside, across}};
   for (const SurfaceGrid::Added& n : edit.added)
     if (!near_reference(rules, n, inside, across)) return Outcome::surface_error;
-  return ws.grid.test(edit) ? Outcome::done : Outcome::self_intersection;
+  return ws.test_surface(rules);
 }
 
 /// The removal of an edge whose ring is gathered in the workspace.

@@ -147,8 +147,11 @@ Outcome propose(Workspace& ws, const BlockRules& rules, InsertionPlace place) {
   for (const Star::InterfaceTriangle& s : star.interface_triangles)
     proposal.edit.added.push_back({{{unnumbered_point, star.points[s.first], star.points[s.second]},
                                     {placement.position, star.positions[s.first], star.positions[s.second]}},
-                                   s.patch});
-  if (!proposal.edit.empty() && !ws.grid.test(proposal.edit)) return Outcome::self_intersection;
+                                   s.patch,
+                                   s.inside,
+                                   s.across});
+  if (!proposal.edit.empty())
+    if (const Outcome o = ws.test_surface(rules); o != Outcome::done) return o;
   proposal.volumes = star.volume_changes(placement.position - star.centre_position);
   proposal.change = Proposal::Change::replace;
   proposal.has_new_point = true;

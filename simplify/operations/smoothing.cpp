@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "common/tolerances.h"
+#include "simplify/operations/movement.h"
 
 namespace tetwright {
 
@@ -27,7 +28,6 @@ constexpr float min_smoothing_gain =
     1.01f;  ///< factor on the worst quality that is worth another round's work
 /// How far from its surface a point may be to be brought back onto it, in shortest edges.
 constexpr double projection_reach = 0.5;
-constexpr double fit_reach = 1;  ///< the same for fit_to_surface()
 
 /// The centroid of the neighbours that the centre may follow.
 Vec3 centroid(const Star& star, int dimension) {
@@ -52,74 +52,6 @@ Vec3 keep_volumes(const Star& star, Vec3 step) {
   const double g2 = g.squaredNorm();
   if (g2 > 0) step -= g * (g.dot(step) / g2);
   return step;
-}
-
-/// Fills the proposal's edit with the interface triangles before and after; false if one is too far from the
-/// reference. At junctions that points may leave, find_place() has tested the point itself: where three
-/// regions meet in a loop smaller than a tet, the triangles' centres may have no interface of their two
-/// regions nearby.
-bool surface_edit(Workspace& ws, const BlockRules& rules, const Vec3& to) {
-  const Star& star = ws.star;
-  const bool by_point = rules.leave_surface && star.dimension() < 2;
-  SurfaceGrid::Edit& edit = ws.proposal.edit;
-  for (const Star::InterfaceTriangle& s : star.interface_triangles) {
-    const Triangle ids{star.centre, star.points[s.first], star.points[s.second]};
-    const Vec3 &p = star.positions[s.first], &q = star.positions[s.second];
-    edit.removed.push_back({ids, {star.centre_position, p, q}});
-    edit.added.push_back({{ids, {to, p, q}}, s.patch});
-    if (!by_point && !near_reference(rules, edit.added.back(), s.inside, s.across)) return false;
-  }
-  return true;
-}
-
-/// Whether the centre may stand at `to`: fills `qualities` and answers done, or why not. `limit` is what the
-/// worst tet must exceed.
-Outcome rate(Star& star, const BlockRules& rules, const Vec3& to, float limit, std::vector<float>& qualities,
-             float& worst) {
-  if (!star.interface_triangles.empty() &&
-      star.surface_error(to - star.centre_position, rules.gamma, rules.losses_cancel) > rules.max_error)
-    return Outcome::surface_error;
-  worst = 1;
-  for (std::size_t k = 0; k < star.tets.size(); ++k) {
-    const Star::StarTet& t = star.tets[k];
-    qualities[k] =
-        rules.objective(to, star.positions[t.link[0]], star.positions[t.link[1]], star.positions[t.link[2]]);
-    if (!(qualities[k] > limit)) return Outcome::quality;
-    worst = std::min(worst, qualities[k]);
-  }
-  return Outcome::done;
-}
-
-/// Whether a point where patches meet stays near its crease at `to`.
-bool stays_near_crease(const Star& star, const BlockRules& rules, const Vec3& to) {
-  if (!(rules.max_crease_distance > 0) || !star.creases) return true;
-  std::optional<std::size_t> first;
-  for (std::size_t p = 0; p < star.points.size(); ++p) {
-    if (star.edge_dimension(p) != 1) continue;
-    if (first) return near_crease(rules, star, *first, to, p);
-    first = p;
-  }
-  return true;
-}
-
-/// Proposes the move where the surface allows it; `qualities` are those at `to`.
-Outcome move_to(Workspace& ws, const BlockRules& rules, const Vec3& to, const std::vector<float>& qualities) {
-  Star& star = ws.star;
-  Proposal& proposal = ws.proposal;
-  proposal.edit.clear();
-  if (!star.interface_triangles.empty()) {
-    if (!surface_edit(ws, rules, to) || !stays_near_crease(star, rules, to)) return Outcome::surface_error;
-    if (!ws.grid.test(proposal.edit)) return Outcome::self_intersection;
-  }
-  proposal.volumes = star.volume_changes(to - star.centre_position);
-  proposal.change = Proposal::Change::move;
-  proposal.centre = star.centre;
-  proposal.position = to;
-  proposal.mark_star(star);
-  proposal.rated.clear();
-  for (std::size_t k = 0; k < star.tets.size(); ++k)
-    proposal.rated.push_back({star.tets[k].tet, star.tets[k].slot, qualities[k]});
-  return ws.within_bounds(rules, 0);
 }
 
 /// Directions that a point of the given dimension may be moved in without leaving its surface or curve.
@@ -161,30 +93,11 @@ Vec3 shortest_of_hull(const std::array<Vec3, max_active>& gradients, std::size_t
   return v;
 }
 
-double shortest_edge(const Star& star) {
-  double shortest2 = std::numeric_limits<double>::infinity();
-  for (const Vec3& p : star.positions)
-    shortest2 = std::min(shortest2, (p - star.centre_position).squaredNorm());
-  return std::sqrt(shortest2);
-}
-
 /// Puts the worst tets first: most places are refused for their sake.
 void sort_by_quality(Star& star) {
   std::sort(star.tets.begin(), star.tets.end(), [](const Star::StarTet& x, const Star::StarTet& y) {
     return x.quality != y.quality ? x.quality < y.quality : x.tet < y.tet;
   });
-}
-
-/// Whether all interface triangles at the centre are in one plane.
-bool is_flat(const Star& star) {
-  const Vec3 normal = star.gradients.front().change.normalized();
-  return std::all_of(star.interface_triangles.begin(), star.interface_triangles.end(),
-                     [&](const Star::InterfaceTriangle& s) {
-                       const auto off = [&](std::size_t p) {
-                         return std::fabs(normal.dot(star.positions[p] - star.centre_position));
-                       };
-                       return std::max(off(s.first), off(s.second)) <= tolerance::flat_patch;
-                     });
 }
 
 /// Whether the centre may leave its surface or curve a little; points where patches meet never do, nor those
@@ -240,7 +153,7 @@ class PlacementSearch {
   /// How far the centre may be from where it belongs. False if it may not move.
   bool choose_bounds() {
     reach_ = projection_reach * shortest_;
-    // A surface point keeps its distance from the reference (fit_to_surface() chose it); farther away than
+    // A surface point keeps its distance from the reference (fit_to_samples() chose it); farther away than
     // the reach it stays in its plane.
     if (rules_.projection && dimension_ == 2 && !leave_surface_)
       if (const auto on = nearest(star_.centre_position, reach_)) {
@@ -429,62 +342,6 @@ Outcome optimise(Workspace& ws, const BlockRules& rules) {
   Placement& place = ws.placement;
   if (!find_place(ws, rules, dimension, min_smoothing_gain * star.worst, place)) return Outcome::quality;
   return move_to(ws, rules, place.position, place.qualities);
-}
-
-Outcome fit_to_crease(Workspace& ws, const BlockRules& rules, float floor) {
-  Star& star = ws.star;
-  if (!star.creases || star.frozen) return Outcome::no_candidate;
-  const int dimension = star.dimension();
-  const double reach = fit_reach * shortest_edge(star);
-  const Vec3& c = star.centre_position;
-  const auto on = dimension == 1   ? rules.projection->onto_curve(c, reach)
-                  : dimension == 0 ? rules.projection->onto_corner(c, reach)
-                                   : std::nullopt;
-  if (!on) return Outcome::no_candidate;
-  const Vec3 to = ws.mesh.snap(*on);
-  if ((to - c).norm() <= tolerance::flat_patch) return Outcome::no_candidate;
-  star.compute_gradients();
-  std::vector<float>& qualities = ws.qualities;
-  qualities.resize(star.tets.size());
-  float worst;
-  const Outcome o = rate(star, rules, to, std::min(floor, star.worst * 0.999f), qualities, worst);
-  return o == Outcome::done ? move_to(ws, rules, to, qualities) : o;
-}
-
-Outcome fit_to_surface(Workspace& ws, const BlockRules& rules, float floor) {
-  Star& star = ws.star;
-  if (!rules.projection || star.frozen || star.dimension() != 2) return Outcome::no_candidate;
-  star.compute_gradients();
-  if (rules.max_crease_distance > 0 && is_flat(star)) return Outcome::no_candidate;
-  const Vec3 normal = star.gradients.front().change.normalized();
-  double weights = 0, pull = 0;
-  const double reach = fit_reach * shortest_edge(star);
-  /// A place on the triangles that moves by `weight` of what the centre moves; what it is nearest to.
-  /// `known`: a place of the same surface, which bounds the search.
-  const auto sample = [&](const Vec3& at, double weight, const Star::InterfaceTriangle& s,
-                          const std::optional<Vec3>& known) -> std::optional<Vec3> {
-    auto on = known;
-    const double limit = known ? std::min(reach, (*known - at).norm()) : reach;
-    if (const auto nearer = rules.projection->onto_surface(at, s.inside, s.across, s.patch, limit))
-      on = nearer;
-    if (!on || (*on - at).norm() > reach) return {};
-    pull += weight * normal.dot(*on - at);
-    weights += weight * weight;
-    return on;
-  };
-  const Vec3& c = star.centre_position;
-  const Star::InterfaceTriangle& first = star.interface_triangles.front();
-  const auto on = sample(c, 1, first, {});
-  for (const Star::InterfaceTriangle& s : star.interface_triangles)
-    sample((c + star.positions[s.first] + star.positions[s.second]) / 3, 1.0 / 3, s, on);
-  if (!(weights > 0)) return Outcome::no_candidate;
-  const Vec3 to = ws.mesh.snap(c + normal * (pull / weights));
-  std::vector<float>& qualities = ws.qualities;
-  qualities.resize(star.tets.size());
-  float worst;
-  const float limit = std::min(floor, star.worst * 0.999f);
-  const Outcome o = rate(star, rules, to, limit, qualities, worst);
-  return o == Outcome::done ? move_to(ws, rules, to, qualities) : o;
 }
 
 }  // namespace tetwright

@@ -24,15 +24,4 @@ Outcome smooth(Workspace& ws, const BlockRules& rules);
 /// answers.
 Outcome optimise(Workspace& ws, const BlockRules& rules);
 
-/// Moves the centre of the gathered star, if it lies on an interface, along its normal to where its interface
-/// triangles fit the reference surface best in the least-squares sense, at the point itself and the centres
-/// of its triangles: a surface whose vertices stand *on* a convex body lies inside it. The worst tet must
-/// stay above `floor` or hardly get worse. Same answers; no_candidate for other points.
-Outcome fit_to_surface(Workspace& ws, const BlockRules& rules, float floor);
-
-/// Moves the centre of the gathered star, if it lies where patches meet, to the crease or the corner that it
-/// stands for, unless it is there: places come before shapes, as long as the worst tet stays above `floor` or
-/// hardly gets worse. Same answers; no_candidate for other points.
-Outcome fit_to_crease(Workspace& ws, const BlockRules& rules, float floor);
-
 }  // namespace tetwright

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "simplify/constraints/surface_samples.h"
 #include "simplify/operations/edge_turn.h"
 
 namespace tetwright {
@@ -22,6 +23,13 @@ Outcome Workspace::gather(Index point) {
 float Workspace::acceptance_limit(const BlockRules& rules, float worst) {
   const bool may_worsen = rules.accept_worse > 0 && random.uniform() < rules.accept_worse;
   return std::min(rules.good_enough, may_worsen ? rules.annealing_floor * worst : worst);
+}
+
+Outcome Workspace::test_surface(const BlockRules& rules) {
+  if (!grid.test(proposal.edit)) return Outcome::self_intersection;
+  const SurfaceSamples* samples = grid.samples();
+  return !samples || samples->hand_over(proposal.edit, rules.max_deviation) ? Outcome::done
+                                                                            : Outcome::surface_error;
 }
 
 Outcome Workspace::within_bounds(const BlockRules& rules, std::int64_t count_change) {

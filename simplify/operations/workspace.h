@@ -88,6 +88,9 @@ struct Workspace {
     }
     return outcome;
   }
+  /// Whether the proposal's edit of the surface neither meets other triangles nor leaves the input's surface
+  /// (BlockRules::max_deviation): done, self_intersection or surface_error.
+  Outcome test_surface(const BlockRules& rules);
   /// What all operations end with: whether no tets come to overlap around an edge, and the count may change
   /// by that much, and the volumes as the proposal says; then done.
   Outcome within_bounds(const BlockRules& rules, std::int64_t count_change);

@@ -11,7 +11,7 @@
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
 #include "simplify/operations/collapse.h"
-#include "simplify/operations/smoothing.h"
+#include "simplify/operations/fitting.h"
 
 namespace tetwright {
 
@@ -49,10 +49,27 @@ void Engine::compact() {
   const bool first = !std::exchange(compacted_, true);
   if (!first) constrained_.keep_patches();
   const std::size_t spare = mesh_.live_tets() / spare_share + min_spare;
-  mesh_.compact(spare, spare / 2);
-  grid_.build(mesh_, rules.objective.quality.ideal_edge / 2);
+  SlotNumbers numbers;
+  mesh_.compact(spare, spare / 2, &numbers);
+  const double min_cell = rules.objective.quality.ideal_edge / 2;
+  if (first) {
+    grid_.build(mesh_, min_cell);
+  } else {
+    grid_.rebuild(mesh_, min_cell, numbers.points);
+  }
   // What is embedded stays so: no operation undoes it.
   if (first) rules.embedded = mesh_.all_positive() && grid_.embedded();
+}
+
+void Engine::keep_input_surface(const TriangleMesh* surface) {
+  input_surface_ = std::make_unique<const InputSurface>(mesh_, surface);
+}
+
+void Engine::own_samples() {
+  compact();
+  samples_ = std::make_unique<SurfaceSamples>(mesh_, grid_.record_count(), *input_surface_,
+                                              rules.objective.quality.ideal_edge);
+  grid_.set_samples(samples_.get());
 }
 
 void Engine::compact_if_sparse() {
@@ -233,10 +250,8 @@ void Engine::fit_creases() {
 }
 
 void Engine::fit_interfaces(float floor) {
-  BlockRules fitting = rules;
-  fitting.projection = &projection_;
   runner_.each_star(interface_points(), Operation::fit,
-                    [&](Workspace& ws) { return fit_to_surface(ws, fitting, floor); });
+                    [&](Workspace& ws) { return fit_to_samples(ws, rules, floor); });
 }
 
 }  // namespace tetwright

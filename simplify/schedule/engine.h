@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "simplify/constraints/constrained_mesh.h"
+#include "simplify/constraints/surface_samples.h"
 #include "simplify/schedule/block_runner.h"
 #include "simplify/schedule/improvement_area.h"
 #include "simplify/schedule/round_recorder.h"
@@ -43,6 +45,12 @@ class Engine {
   /// Compacts the mesh and rebuilds the grid. Leaves free slots for operations that add tets. Every schedule
   /// calls it first, and rate_all() after setting its objective.
   void compact();
+  /// Keeps what the mesh as it came stands for: the `surface` (input units) that it was made from, or its own
+  /// one. Before the first operation.
+  void keep_input_surface(const TriangleMesh* surface);
+  /// From now on triangles own samples of that.
+  void own_samples();
+  bool owns_samples() const { return samples_ != nullptr; }
   /// compact() where so many slots are dead that it pays.
   void compact_if_sparse();
   /// Every tet's quality by rules.objective.
@@ -65,7 +73,7 @@ class Engine {
   /// The points of boundary and interfaces, in the order of the curve.
   std::vector<Index> interface_points() const;
 
-  /// fit_to_surface() for all interface points.
+  /// fit_to_samples() for all interface points.
   void fit_interfaces(float floor);
   /// fit_to_crease() for all boundary points that are off their crease or corner; what cannot go there is
   /// collapsed along its crease.
@@ -88,6 +96,8 @@ class Engine {
   EditableMesh& mesh_ = constrained_.mesh;
   SurfaceGrid& grid_ = constrained_.grid;
   SurfaceProjection projection_;
+  std::unique_ptr<const InputSurface> input_surface_;
+  std::unique_ptr<SurfaceSamples> samples_;
   BlockRunner runner_;
   RoundRecorder recorder_;
 };

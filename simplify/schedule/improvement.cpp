@@ -36,6 +36,9 @@ constexpr float perturbed_share = 0.95f;
 /// Share of the tets by which the count may fall that is kept for the last resort: edge removals would use up
 /// all of it, and no collapse could take the last slivers out.
 constexpr double kept_share = 0.125;
+/// BlockRules::max_deviation grows by so much with each round that is a last resort, up to so many times: the
+/// last slivers of fine detail need room. Grown without end it would double the largest distances.
+constexpr double deviation_growth = 1.25, max_deviation_factor = 3;
 
 /// The rounds of run_improvement().
 class ImprovementLoop {
@@ -55,6 +58,7 @@ class ImprovementLoop {
   int run() {
     surgery_ = surgery_rules(rules_, area_.usual_edge());
     surgery_.leave_surface = true;
+    max_deviation_ = max_deviation_factor * rules_.max_deviation;
     min_poor_ = 4 * area_.tet_count();
     int i = 0;
     for (; i < plan_.max_rounds; ++i) {
@@ -104,6 +108,9 @@ class ImprovementLoop {
   }
 
   void run_round(std::vector<ListedTet> poor) {
+    if (last_resort_)
+      rules_.max_deviation = surgery_.max_deviation =
+          std::min(max_deviation_, deviation_growth * rules_.max_deviation);
     const double kept = last_resort_ || plan_.target_tets <= plan_.min_tets
                             ? 0
                             : kept_share * static_cast<double>(plan_.target_tets - plan_.min_tets);
@@ -175,6 +182,7 @@ class ImprovementLoop {
   const ImprovementPlan& plan_;
   ImproveBounds bounds_;
   BlockRules surgery_;
+  double max_deviation_ = 0;
   std::vector<ListedTet> tried_;  ///< in the last round, by number
   std::size_t min_poor_ = 0;      ///< the minimum of poor tets after a round
   int idle_ = 0;                  ///< rounds in a row without gain

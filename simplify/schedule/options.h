@@ -6,6 +6,7 @@
 
 #include "common/geometry/quality.h"
 #include "common/reference_surface.h"
+#include "common/triangle_mesh.h"
 #include "simplify/mesh/outcome.h"
 
 namespace tetwright {
@@ -27,6 +28,9 @@ struct SimplifyOptions {
   /// What boundary and interface points are projected onto; null: they stay in planes of constant volume.
   /// Must outlive the call.
   const ReferenceSurface* reference = nullptr;
+  /// The surface as it was given (input units), where there is one: what the mesh's surface is fitted to and
+  /// kept near. Null: the mesh's own surface as it comes. Must outlive the call.
+  const TriangleMesh* surface = nullptr;
   std::uint64_t seed = 1;
   /// Points or tets of a batch (BlockRunner), at most; 0: from the number of items. Results depend on it,
   /// never on the number of threads.

@@ -8,9 +8,11 @@
 #include "common/error.h"
 #include "common/mesh/mesh_check.h"
 #include "common/mesh/topology.h"
+#include "simplify/constraints/surface_samples.h"
 #include "simplify/operations/collapse.h"
 #include "simplify/operations/edge_removal.h"
 #include "simplify/operations/face_removal.h"
+#include "simplify/operations/fitting.h"
 #include "simplify/operations/insertion.h"
 #include "simplify/operations/smoothing.h"
 #include "tests/simplify/meshes.h"
@@ -73,7 +75,7 @@ Outcome operate(Workspace& ws, BlockRules rules, Bytes& bytes, Index t) {
   const auto place = bytes.below(2) ? InsertionPlace::best : InsertionPlace::centre;
   const Tet points = ws.mesh.points(t);
   const auto gather = [&] { return ws.gather(points[bytes.below(4)]) == Outcome::done; };
-  switch (bytes.below(8)) {
+  switch (bytes.below(9)) {
     case 0:
       return remove_edge(ws, rules, t, static_cast<int>(bytes.below(6)), reach);
     case 1:
@@ -85,8 +87,10 @@ Outcome operate(Workspace& ws, BlockRules rules, Bytes& bytes, Index t) {
     case 4:
       return gather() ? optimise(ws, rules) : Outcome::no_candidate;
     case 5:
-      return insert_in_tet(ws, rules, t, place);
+      return gather() ? fit_to_samples(ws, rules, 0) : Outcome::no_candidate;
     case 6:
+      return insert_in_tet(ws, rules, t, place);
+    case 7:
       return insert_in_face(ws, rules, t, static_cast<int>(bytes.below(4)), place);
     default:
       return insert_in_edge(ws, rules, t, static_cast<int>(bytes.below(6)), place, true);
@@ -104,6 +108,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   mesh.compact(2048, 512);
   SurfaceGrid grid;
   grid.build(mesh, 0);
+  const InputSurface surface(mesh, nullptr);
+  SurfaceSamples samples(mesh, grid.record_count(), surface, mesh.space().scale());
+  grid.set_samples(&samples);
   VolumeLedger ledger;
   BlockRules rules;
   rules.objective.quality = TetQuality::for_target(mesh.total_volume(), 1);

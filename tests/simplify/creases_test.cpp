@@ -8,7 +8,7 @@
 #include "common/mesh/interfaces.h"
 #include "common/mesh/mesh_check.h"
 #include "common/mesh/mesh_statistics.h"
-#include "simplify/operations/smoothing.h"
+#include "simplify/operations/fitting.h"
 #include "simplify/simplify.h"
 #include "tests/simplify/meshes.h"
 #include "tests/simplify/workbench.h"

@@ -7,6 +7,7 @@
 #include "simplify/operations/collapse.h"
 #include "simplify/operations/edge_removal.h"
 #include "simplify/operations/face_removal.h"
+#include "simplify/operations/fitting.h"
 #include "simplify/operations/insertion.h"
 #include "simplify/operations/smoothing.h"
 #include "simplify/schedule/block_runner.h"
@@ -63,6 +64,7 @@ bool includes(const Set& all, const Set& some) {
 /// Blocks of every operation, several times; how many of each were done. What stays is compared after each.
 std::map<Operation, std::uint64_t> run_all(Workbench& w, const SurfaceProjection& projection) {
   const Kept before = kept(w.mesh);
+  w.own_samples(0.5 * w.mesh.space().scale());
   BlockRunner runner(w.mesh, w.grid, w.ledger, 1, 0, nullptr);
   w.rules.accept_worse = 0.5;
   w.rules.annealing_floor = 0.1f;
@@ -110,7 +112,7 @@ std::map<Operation, std::uint64_t> run_all(Workbench& w, const SurfaceProjection
     w.rules.max_distance = round == 1 ? 0.1 * w.mesh.space().scale() : 0;
     stars(Operation::smooth, [&](Workspace& ws) { return smooth(ws, w.rules); });
     stars(Operation::optimise, [&](Workspace& ws) { return optimise(ws, w.rules); });
-    stars(Operation::fit, [&](Workspace& ws) { return fit_to_surface(ws, w.rules, 0); });
+    stars(Operation::fit, [&](Workspace& ws) { return fit_to_samples(ws, w.rules, 0); });
     make_poor(w);
     for (const auto place : {InsertionPlace::best, InsertionPlace::centre}) {
       tets(Operation::insert_in_tet, 1,

@@ -4,6 +4,7 @@
 #include "simplify/operations/collapse.h"
 #include "simplify/operations/edge_removal.h"
 #include "simplify/operations/face_removal.h"
+#include "simplify/operations/fitting.h"
 #include "simplify/operations/insertion.h"
 #include "simplify/operations/smoothing.h"
 #include "tests/simplify/workbench.h"
@@ -57,7 +58,7 @@ Outcome random_operation(Workbench& w, Index t, const SurfaceProjection& project
   const FlipReach reach = random.below(2) ? FlipReach{7, 5} : FlipReach{3, 1};
   const Tet points = w.mesh.points(t);
   const auto star = [&] { return ws.gather(points[random.below(4)]); };
-  switch (random.below(9)) {
+  switch (random.below(10)) {
     case 0:
       return remove_edge(ws, rules, t, static_cast<int>(random.below(6)), reach);
     case 1:
@@ -70,8 +71,10 @@ Outcome random_operation(Workbench& w, Index t, const SurfaceProjection& project
     case 5:
       return star() == Outcome::done ? optimise(ws, rules) : Outcome::no_candidate;
     case 6:
-      return insert_in_tet(ws, rules, t, place);
+      return star() == Outcome::done ? fit_to_samples(ws, rules, 0) : Outcome::no_candidate;
     case 7:
+      return insert_in_tet(ws, rules, t, place);
+    case 8:
       return insert_in_face(ws, rules, t, static_cast<int>(random.below(4)), place);
     default:
       return insert_in_edge(ws, rules, t, static_cast<int>(random.below(6)), place, true);
@@ -91,6 +94,8 @@ TEST(RandomOperations, TenThousandLeaveEveryMeshSoundAndItsTopologyAsItWas) {
       Workbench w(mesh);
       w.mesh.compact(4096, 1024);
       w.grid.build(w.mesh, 0);
+      w.own_samples(w.mesh.space().scale());
+      if (round % 2) w.rules.max_deviation = 0.3 * w.mesh.space().scale();
       w.ws = std::make_unique<Workspace>(w.mesh, w.grid, w.ledger);
       w.ws->random = Random(seed);
       w.rules.objective.kind = seed % 2 ? Objective::Kind::shape : Objective::Kind::paper;
@@ -113,6 +118,9 @@ TEST(RandomOperations, TenThousandLeaveEveryMeshSoundAndItsTopologyAsItWas) {
           FAIL() << "operation " << i << ": " << d;
       }
       w.expect_sound();
+      if (round % 2) {
+        EXPECT_LE(w.samples->largest_distance(), w.rules.max_deviation);
+      }
     }
   EXPECT_EQ(tried, 10000u);
   EXPECT_GT(done, 1500u);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/geometry/predicates.h"
+#include "simplify/constraints/surface_samples.h"
 #include "simplify/operations/workspace.h"
 #include "tests/simplify/meshes.h"
 
@@ -72,6 +73,14 @@ struct Workbench {
     return answer;
   }
 
+  /// Triangles own samples of the surface, given (input units) or the mesh's own, from now on. The grid must
+  /// be as it was built.
+  void own_samples(double edge, const TriangleMesh* surface = nullptr) {
+    input_surface = std::make_unique<InputSurface>(mesh, surface);
+    samples = std::make_unique<SurfaceSamples>(mesh, grid.record_count(), *input_surface, edge);
+    grid.set_samples(samples.get());
+  }
+
   // The steps of a batch, for several proposals.
 
   void begin_batch(const std::vector<Proposal*>& proposals) {
@@ -130,6 +139,8 @@ struct Workbench {
 
   EditableMesh mesh;
   SurfaceGrid grid;
+  std::unique_ptr<InputSurface> input_surface;
+  std::unique_ptr<SurfaceSamples> samples;
   VolumeLedger ledger;  ///< no bounds unless opened
   BlockRules rules;
   std::unique_ptr<Workspace> ws;

@@ -13,9 +13,11 @@ ExitStatus run_prepare(const CommandLine& line) {
   CommandRun run(line);
   check_output_paths(line);
   DenseMesh dense = make_dense_mesh(read_scan(run), run);
-  const TetMesh mesh = simplify_to_target(std::move(dense.mesh), dense.reference.get(), run);
+  const TetMesh mesh =
+      simplify_to_target(std::move(dense.mesh), dense.reference.get(), dense.surface.get(), run);
   // Memory that writing the mesh needs.
   dense.reference.reset();
+  dense.surface.reset();
   if (line.write_sdf.empty()) dense.field.reset();
   return finish(mesh, dense.field.get(), run);
 }

@@ -5,7 +5,8 @@
 
 namespace tetwright {
 
-TetMesh simplify_to_target(TetMesh mesh, const ReferenceSurface* surface, CommandRun& run) {
+TetMesh simplify_to_target(TetMesh mesh, const ReferenceSurface* reference, const TriangleMesh* surface,
+                           CommandRun& run) {
   SimplifyOptions options;
   options.target_tets = run.line.target_tets;
   // Fewer tets than fill thin walls would be flat.
@@ -18,7 +19,8 @@ TetMesh simplify_to_target(TetMesh mesh, const ReferenceSurface* surface, Comman
   options.max_iterations = run.line.max_iterations;
   options.schedule = run.line.schedule;
   options.objective = run.line.objective;
-  options.reference = surface;
+  options.reference = reference;
+  options.surface = surface;
   options.fix_boundary = run.line.fix_boundary;
   options.seed = run.line.seed;
   options.name = run.report.inputs.front();

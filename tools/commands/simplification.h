@@ -7,7 +7,9 @@
 namespace tetwright {
 
 /// Simplifies to --target-tets with the options of `run.line`, for `prepare` and `simplify`. Points are
-/// projected onto `surface` unless that is null. Throws as simplify() does.
-TetMesh simplify_to_target(TetMesh mesh, const ReferenceSurface* surface, CommandRun& run);
+/// projected onto `reference`, surfaces fitted to `surface` and kept near it; what is null is the mesh's own.
+/// Throws as simplify() does.
+TetMesh simplify_to_target(TetMesh mesh, const ReferenceSurface* reference, const TriangleMesh* surface,
+                           CommandRun& run);
 
 }  // namespace tetwright

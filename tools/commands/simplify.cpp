@@ -13,7 +13,7 @@ ExitStatus run_simplify(const CommandLine& line) {
   CommandRun run(line);
   check_output_paths(line);
   TetInput input = read_tets(run);
-  TetMesh mesh = simplify_to_target(std::move(input.mesh), nullptr, run);
+  TetMesh mesh = simplify_to_target(std::move(input.mesh), nullptr, nullptr, run);
   if (input.with_fields) transfer_fields(*input.with_fields, mesh);
   input.with_fields.reset();
   return finish(mesh, nullptr, run);

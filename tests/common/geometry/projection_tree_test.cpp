@@ -34,8 +34,15 @@ TEST(ProjectionTree, FindsWhatASearchOfAllFinds) {
       EXPECT_NEAR((*found - p).norm(), best, 1e-12);
     }
     EXPECT_FALSE(tree.nearest(p, {5, 6, 0}, 10));
+    const auto hit = tree.nearest_of(p, 10, [](const auto&) { return true; });
+    ASSERT_TRUE(hit);
+    EXPECT_EQ(tree.closest_on(hit->item, p), hit->point);
+    const double distance = (hit->point - p).norm();
+    EXPECT_TRUE(tree.any_within(p, distance * (1 + 1e-12)));
+    EXPECT_FALSE(tree.any_within(p, distance * (1 - 1e-12)));
   }
   EXPECT_FALSE(ProjectionTree().nearest({0, 0, 0}, {}, 10));
+  EXPECT_FALSE(ProjectionTree().any_within({0, 0, 0}, 10));
 }
 
 }  // namespace

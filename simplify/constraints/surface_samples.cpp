@@ -1,0 +1,314 @@
+#include "simplify/constraints/surface_samples.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "common/parallel/parallel.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::size_t sample_grain = 1024;
+/// Samples for each equilateral triangle of the mesh to come. Its triangles are about twice as large: more
+/// than 12 for each make the result no better, 8 of them a twentieth poorer.
+constexpr double samples_per_triangle = 6;
+/// Area of an equilateral triangle over its edge squared: sqrt(3) / 4.
+constexpr double equilateral_area = 0.4330127018922193;
+/// Edges of the mesh's surface as it comes within which a part of the input stands for it, and it for the
+/// input.
+constexpr double reach_edges = 2;
+
+/// A point of a sequence that fills the unit square evenly (Roberts 2018, "The unreasonable effectiveness of
+/// quasirandom sequences": powers of the plastic number's inverse), folded into the lower triangle.
+std::array<double, 2> even_barycentric(std::size_t i) {
+  constexpr double first_step = 0.7548776662466927, second_step = 0.5698402909980532;
+  constexpr std::size_t period = 1 << 20;  // so that the products below keep their bits
+  const auto n = static_cast<double>(i % period);
+  double u = 0.5 + n * first_step, v = 0.5 + n * second_step;
+  u -= std::floor(u);
+  v -= std::floor(v);
+  if (u + v > 1) {
+    u = 1 - u;
+    v = 1 - v;
+  }
+  return {u, v};
+}
+
+double area(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a).norm() / 2; }
+
+/// A place on an item of the input's surface.
+struct Place {
+  Vec3 at;
+  std::size_t item;
+};
+
+/// Vertices of the triangles, and points on them where they are large: one for each `area_each`.
+std::vector<Place> spread_places(const ProjectionTree& surface, double area_each) {
+  std::vector<std::uint8_t> used(surface.points().size(), 0);
+  std::vector<Place> places;
+  double due = 0;
+  std::size_t drawn = 0;
+  for (std::size_t i = 0; i < surface.items().size(); ++i) {
+    const ProjectionTree::Item& item = surface.items()[i];
+    const Vec3 &a = surface.corner(item, 0), &b = surface.corner(item, 1), &c = surface.corner(item, 2);
+    due += area(a, b, c) / area_each;
+    for (const Index p : item.corners)
+      if (due > -1 && !std::exchange(used[p], 1)) {
+        places.push_back({surface.points()[p], i});
+        --due;
+      }
+    for (; due > 0; --due) {
+      const auto [u, v] = even_barycentric(drawn++);
+      places.push_back({a + u * (b - a) + v * (c - a), i});
+    }
+  }
+  return places;
+}
+
+}  // namespace
+
+InputSurface::Kind InputSurface::kind_of(RegionId inside, RegionId across, PatchId patch) {
+  return {std::min(inside, across), std::max(inside, across), patch};
+}
+
+InputSurface::Kind InputSurface::kind_of(const ProjectionTree::Item& item) {
+  return {item.kind[0], item.kind[1], static_cast<PatchId>(item.kind[2])};
+}
+
+InputSurface::InputSurface(const EditableMesh& mesh, const TriangleMesh* given) {
+  const std::vector<InterfaceFace> faces = mesh.interface_faces();
+  const auto corner = [&](std::size_t face, int k) { return mesh.position(faces[face].ids[k]); };
+  double total_edge = 0;
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    for (int k = 0; k < 3; ++k) total_edge += (corner(i, (k + 1) % 3) - corner(i, k)).norm();
+  reach_ = reach_edges * total_edge / static_cast<double>(std::max<std::size_t>(1, 3 * faces.size()));
+
+  std::vector<Vec3> points;
+  std::vector<ProjectionTree::Item> items;
+  std::vector<std::uint8_t> alone(faces.size(), 1);
+  if (given) {
+    for (const Vec3& p : given->points) points.push_back(mesh.space().to_working(p));
+    for (const Triangle& t : given->triangles) items.push_back({t, given_kind});
+    triangles_ = ProjectionTree(points, items);
+    parallel_for(0, faces.size(), sample_grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        alone[i] = !triangles_.any_within((corner(i, 0) + corner(i, 1) + corner(i, 2)) / 3, reach_);
+    });
+  }
+  std::vector<Index> number(mesh.point_slots(), no_index);
+  const std::size_t given_items = items.size();
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (!alone[i]) continue;
+    Triangle ids;
+    for (int k = 0; k < 3; ++k) {
+      Index& n = number[faces[i].ids[k]];
+      if (n == no_index) {
+        n = static_cast<Index>(points.size());
+        points.push_back(corner(i, k));
+      }
+      ids[k] = n;
+    }
+    const Kind kind = kind_of(faces[i].inside, faces[i].across, faces[i].patch);
+    items.push_back({ids, {kind.low, kind.high, kind.patch}});
+  }
+  if (items.size() > given_items) triangles_ = ProjectionTree(std::move(points), std::move(items));
+}
+
+SurfaceSamples::SurfaceSamples(const EditableMesh& mesh, std::size_t records, const InputSurface& surface,
+                               double edge)
+    : surface_(surface.triangles()) {
+  const std::vector<InterfaceFace> faces = mesh.interface_faces();
+  resize(records);
+  std::vector<ProjectionTree::Item> items;
+  std::vector<Vec3> points(mesh.point_slots(), Vec3::Zero());
+  items.reserve(faces.size());
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const InterfaceFace& f = faces[i];
+    kinds_[i] = InputSurface::kind_of(f.inside, f.across, f.patch);
+    for (const Index p : f.ids) points[p] = mesh.position(p);
+    items.push_back({f.ids, {static_cast<std::uint32_t>(i), 0, 0}});
+  }
+  const ProjectionTree mesh_faces(std::move(points), std::move(items));
+  const auto normal = [](const ProjectionTree& tree, const ProjectionTree::Item& item) -> Vec3 {
+    const Vec3& a = tree.corner(item, 0);
+    return (tree.corner(item, 1) - a).cross(tree.corner(item, 2) - a);
+  };
+  const std::vector<Place> places =
+      spread_places(surface_, equilateral_area * edge * edge / samples_per_triangle);
+  struct Owner {
+    std::uint32_t record;
+    double distance;
+  };
+  std::vector<Owner> owners(places.size(), {none, 0});
+  const std::size_t blocks = (places.size() + sample_grain - 1) / sample_grain;
+  parallel_for(0, blocks, 1, [&](std::size_t begin_block, std::size_t end_block) {
+    for (std::size_t block = begin_block; block < end_block; ++block) {
+      std::optional<std::size_t> last;  // the owner of the last place: the next one is not far away
+      for (std::size_t i = block * sample_grain; i < std::min(places.size(), (block + 1) * sample_grain);
+           ++i) {
+        const Vec3& at = places[i].at;
+        const ProjectionTree::Item& from = surface_.items()[places[i].item];
+        const bool given = InputSurface::is_given(from);
+        const Vec3 outwards = normal(surface_, from);
+        // The other side of a wall is not meant, nor another interface.
+        const auto accepts = [&](const ProjectionTree::Item& item) {
+          const Kind& kind = kinds_[item.kind[0]];
+          if (!given) return kind == InputSurface::kind_of(from);
+          return kind.high != outside_id || normal(mesh_faces, item).dot(outwards) > 0;
+        };
+        double limit = surface.reach();
+        if (last && accepts(mesh_faces.items()[*last]))
+          limit = std::min(limit, (mesh_faces.closest_on(*last, at) - at).norm());
+        else
+          last.reset();
+        if (const auto hit = mesh_faces.nearest_of(at, limit, accepts))
+          last = hit->item;
+        else if (!last)
+          continue;
+        owners[i] = {mesh_faces.items()[*last].kind[0], (mesh_faces.closest_on(*last, at) - at).norm()};
+      }
+    }
+  });
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (owners[i].record != none) add(places[i].at, owners[i].record, owners[i].distance);
+}
+
+void SurfaceSamples::add(const Vec3& position, std::uint32_t record, double distance) {
+  samples_.push_back({position, static_cast<float>(distance), first_[record]});
+  first_[record] = static_cast<std::uint32_t>(samples_.size() - 1);
+}
+
+void SurfaceSamples::resize(std::size_t records) {
+  first_.resize(records, none);
+  kinds_.resize(records);
+}
+
+bool SurfaceSamples::hand_over(SurfaceGrid::Edit& edit, double max_distance) const {
+  return hand_samples(edit, max_distance) && stays_near_surface(edit, max_distance);
+}
+
+bool SurfaceSamples::hand_samples(SurfaceGrid::Edit& edit, double max_distance) const {
+  edit.handed.clear();
+  edit.distances.clear();
+  for (const SurfaceGrid::Added& a : edit.added)
+    edit.distances.emplace_back(a.triangle.points[0], a.triangle.points[1], a.triangle.points[2]);
+  for (const std::uint32_t record : edit.removed_records) {
+    if (first_[record] == none) continue;
+    const Kind kind = kinds_[record];
+    const auto same_kind = [&](const SurfaceGrid::Added& a) {
+      return InputSurface::kind_of(a.inside, a.across, a.patch) == kind;
+    };
+    const bool all = std::none_of(edit.added.begin(), edit.added.end(), same_kind);
+    edit.takers.clear();
+    for (std::uint32_t k = 0; k < edit.added.size(); ++k)
+      if (all || same_kind(edit.added[k])) edit.takers.push_back(k);
+    if (edit.takers.empty()) return false;
+    for (std::uint32_t s = first_[record]; s != none; s = samples_[s].next) {
+      const Sample& sample = samples_[s];
+      double best2 = std::numeric_limits<double>::infinity();
+      std::uint32_t best = edit.takers.front();
+      for (const std::uint32_t k : edit.takers) {
+        const double d2 = edit.distances[k].squared(sample.position, best2);
+        if (d2 < best2) {
+          best2 = d2;
+          best = k;
+        }
+      }
+      const double d = std::sqrt(best2);
+      if (d > max_distance && d > static_cast<double>(sample.distance)) return false;
+      edit.handed.push_back({s, best, static_cast<float>(d)});
+    }
+  }
+  return true;
+}
+
+bool SurfaceSamples::stays_near_surface(const SurfaceGrid::Edit& edit, double max_distance) const {
+  if (!(max_distance < std::numeric_limits<double>::infinity())) return true;
+  double allowed = max_distance;
+  bool measured = false;
+  // Samples are on the surface.
+  const auto near = [&](const Vec3& p) {
+    const double allowed2 = allowed * allowed;
+    for (const SurfaceGrid::HandedSample& h : edit.handed)
+      if ((samples_[h.sample].position - p).squaredNorm() <= allowed2) return true;
+    return surface_.any_within(p, allowed);
+  };
+  const auto stays = [&](const Vec3& p) {
+    if (near(p)) return true;
+    if (measured) return false;
+    measured = true;
+    for (const SurfaceGrid::HandedSample& h : edit.handed)
+      allowed = std::max(allowed, static_cast<double>(samples_[h.sample].distance));
+    return allowed > max_distance && near(p);
+  };
+  // What is new of a triangle: where a corner stands that is among those of the removed ones, if it does.
+  const auto place_before = [&](Index id) -> std::optional<Vec3> {
+    for (const MeshTriangle& t : edit.removed)
+      for (int k = 0; k < 3; ++k)
+        if (t.ids[k] == id) return t.points[k];
+    return {};
+  };
+  const auto had_edge = [&](Index p, Index q) {
+    const auto has = [](const MeshTriangle& t, Index id) {
+      return std::find(t.ids.begin(), t.ids.end(), id) != t.ids.end();
+    };
+    return std::any_of(edit.removed.begin(), edit.removed.end(),
+                       [&](const MeshTriangle& t) { return has(t, p) && has(t, q); });
+  };
+  std::optional<Index> tested;  // a corner: one moves at most
+  for (const SurfaceGrid::Added& a : edit.added) {
+    const auto& p = a.triangle.points;
+    const auto& ids = a.triangle.ids;
+    if (!stays((p[0] + p[1] + p[2]) / 3)) return false;
+    std::array<bool, 3> moved{};
+    for (int k = 0; k < 3; ++k) {
+      moved[k] = place_before(ids[k]) != p[k];
+      if (!moved[k] || tested == ids[k]) continue;
+      tested = ids[k];
+      if (!stays(p[k])) return false;
+    }
+    for (int k = 0; k < 3; ++k) {
+      const int l = (k + 1) % 3;
+      if ((moved[k] || moved[l] || !had_edge(ids[k], ids[l])) && !stays((p[k] + p[l]) / 2)) return false;
+    }
+  }
+  return true;
+}
+
+double SurfaceSamples::largest_distance() const {
+  float largest = 0;
+  for (const Sample& s : samples_) largest = std::max(largest, s.distance);
+  return static_cast<double>(largest);
+}
+
+void SurfaceSamples::commit(const SurfaceGrid::Edit& edit) {
+  for (std::size_t k = 0; k < edit.added.size(); ++k) {
+    const SurfaceGrid::Added& a = edit.added[k];
+    first_[edit.added_records[k]] = none;
+    kinds_[edit.added_records[k]] = InputSurface::kind_of(a.inside, a.across, a.patch);
+  }
+  for (const SurfaceGrid::HandedSample& h : edit.handed) {
+    const std::uint32_t record = edit.added_records[h.added];
+    samples_[h.sample].distance = h.distance;
+    samples_[h.sample].next = std::exchange(first_[record], h.sample);
+  }
+}
+
+void SurfaceSamples::renumber(const std::vector<std::uint32_t>& new_record, std::size_t records) {
+  std::vector<std::uint32_t> first(records, none);
+  std::vector<Kind> kinds(records);
+  for (std::size_t i = 0; i < new_record.size(); ++i)
+    if (new_record[i] != none) {
+      first[new_record[i]] = first_[i];
+      kinds[new_record[i]] = kinds_[i];
+    }
+  first_ = std::move(first);
+  kinds_ = std::move(kinds);
+}
+
+}  // namespace tetwright

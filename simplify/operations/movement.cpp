@@ -1,0 +1,99 @@
+#include "simplify/operations/movement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "common/tolerances.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Fills the proposal's edit with the interface triangles before and after; false if one is too far from the
+/// reference. At junctions that points may leave, find_place() has tested the point itself: where three
+/// regions meet in a loop smaller than a tet, the triangles' centres may have no interface of their two
+/// regions nearby.
+bool surface_edit(Workspace& ws, const BlockRules& rules, const Vec3& to) {
+  const Star& star = ws.star;
+  const bool by_point = rules.leave_surface && star.dimension() < 2;
+  SurfaceGrid::Edit& edit = ws.proposal.edit;
+  for (const Star::InterfaceTriangle& s : star.interface_triangles) {
+    const Triangle ids{star.centre, star.points[s.first], star.points[s.second]};
+    const Vec3 &p = star.positions[s.first], &q = star.positions[s.second];
+    edit.removed.push_back({ids, {star.centre_position, p, q}});
+    edit.added.push_back({{ids, {to, p, q}}, s.patch, s.inside, s.across});
+    if (!by_point && !near_reference(rules, edit.added.back(), s.inside, s.across)) return false;
+  }
+  return true;
+}
+
+/// Whether a point where patches meet stays near its crease at `to`.
+bool stays_near_crease(const Star& star, const BlockRules& rules, const Vec3& to) {
+  if (!(rules.max_crease_distance > 0) || !star.creases) return true;
+  std::optional<std::size_t> first;
+  for (std::size_t p = 0; p < star.points.size(); ++p) {
+    if (star.edge_dimension(p) != 1) continue;
+    if (first) return near_crease(rules, star, *first, to, p);
+    first = p;
+  }
+  return true;
+}
+
+}  // namespace
+
+double shortest_edge(const Star& star) {
+  double shortest2 = std::numeric_limits<double>::infinity();
+  for (const Vec3& p : star.positions)
+    shortest2 = std::min(shortest2, (p - star.centre_position).squaredNorm());
+  return std::sqrt(shortest2);
+}
+
+bool is_flat(const Star& star) {
+  const Vec3 normal = star.gradients.front().change.normalized();
+  return std::all_of(star.interface_triangles.begin(), star.interface_triangles.end(),
+                     [&](const Star::InterfaceTriangle& s) {
+                       const auto off = [&](std::size_t p) {
+                         return std::fabs(normal.dot(star.positions[p] - star.centre_position));
+                       };
+                       return std::max(off(s.first), off(s.second)) <= tolerance::flat_patch;
+                     });
+}
+
+Outcome rate(Star& star, const BlockRules& rules, const Vec3& to, float limit, std::vector<float>& qualities,
+             float& worst) {
+  if (!star.interface_triangles.empty() &&
+      star.surface_error(to - star.centre_position, rules.gamma, rules.losses_cancel) > rules.max_error)
+    return Outcome::surface_error;
+  worst = 1;
+  for (std::size_t k = 0; k < star.tets.size(); ++k) {
+    const Star::StarTet& t = star.tets[k];
+    qualities[k] =
+        rules.objective(to, star.positions[t.link[0]], star.positions[t.link[1]], star.positions[t.link[2]]);
+    if (!(qualities[k] > limit)) return Outcome::quality;
+    worst = std::min(worst, qualities[k]);
+  }
+  return Outcome::done;
+}
+
+Outcome move_to(Workspace& ws, const BlockRules& rules, const Vec3& to, const std::vector<float>& qualities) {
+  Star& star = ws.star;
+  Proposal& proposal = ws.proposal;
+  proposal.edit.clear();
+  if (!star.interface_triangles.empty()) {
+    if (!surface_edit(ws, rules, to) || !stays_near_crease(star, rules, to)) return Outcome::surface_error;
+    if (const Outcome o = ws.test_surface(rules); o != Outcome::done) return o;
+  }
+  proposal.volumes = star.volume_changes(to - star.centre_position);
+  proposal.change = Proposal::Change::move;
+  proposal.centre = star.centre;
+  proposal.position = to;
+  proposal.mark_star(star);
+  proposal.rated.clear();
+  for (std::size_t k = 0; k < star.tets.size(); ++k)
+    proposal.rated.push_back({star.tets[k].tet, star.tets[k].slot, qualities[k]});
+  return ws.within_bounds(rules, 0);
+}
+
+}  // namespace tetwright
