@@ -287,6 +287,14 @@ void add_improve(CLI::App& app, CommandLine& c) {
 void add_check(CLI::App& app, CommandLine& c) {
   app.add_option("MESH", c.inputs, meshes)->required()->expected(1);
   app.add_option("--before", c.before, "Another mesh, whose topology MESH must have")->type_name("FILE");
+  app.add_option("--surface", c.surfaces,
+                 "Surfaces (as prepare reads them) that MESH is compared with, whatever it was made from: the "
+                 "largest distances both ways, proven, and creases; of one closed surface also volume and "
+                 "topology. With several, interfaces between materials count, too")
+      ->type_name("FILE");
+  add_length(app, "--tolerance", c.tolerance,
+             "Status 1 unless MESH and the surfaces are proven to be within this of each other everywhere, "
+             "input units or percent of the surfaces' diagonal");
   app.add_flag("--json", c.json, "Print JSON");
   add_material_field(app, c);
   add_common(app, c);
@@ -310,8 +318,8 @@ constexpr std::array<CommandEntry, 6> commands{{
     {Command::simplify, "Turns a tet mesh into one of fewer tets", add_simplify},
     {Command::improve, "Improves the shapes of a tet mesh and keeps about its count", add_improve},
     {Command::check,
-     "Reports validity, topology and quality of a tet mesh; status 1 if it is not valid (a warning, such as "
-     "an unused point, leaves it valid)",
+     "Reports validity, topology and quality of a tet mesh, and how far it is from surfaces; status 1 if it "
+     "is not valid (a warning, such as an unused point, leaves it valid)",
      add_check},
     {Command::sample, "Writes a built-in sample", add_sample},
 }};
@@ -389,6 +397,8 @@ void complete(const CLI::App& chosen, CommandLine& out) {
     out.outside_label_given = chosen.count("--outside-label") > 0;
     out.min_voxels_given = chosen.count("--min-voxels") > 0;
   }
+  if (out.command == Command::check && out.tolerance.value > 0 && out.surfaces.empty())
+    throw UsageError("--tolerance needs the surfaces that the mesh is compared with; give --surface FILE");
   if (out.resolution && out.voxel_size > 0) throw UsageError("give --resolution or --voxel-size, not both");
 }
 

@@ -35,6 +35,7 @@ struct CommandLine {
   std::vector<std::string> inputs;  ///< of `sample`: the name
   std::string output;
   std::string before;          ///< `check`: the mesh whose topology must be the same
+  std::vector<std::string> surfaces;  ///< `check`: what the mesh is compared with
   bool json = false;           ///< `check`
   std::string material_field;  ///< cell field of the tet mesh that is read; empty: chosen by its name
 
@@ -48,6 +49,7 @@ struct CommandLine {
   double only_below = 0;    ///< `improve`, steradians; 0: all tets
   bool free_count = false;  ///< `improve`
   bool fix_boundary = false;
+  LengthOption tolerance;  ///< 0: none
 
   int resolution = 0;     ///< 0: not given
   double voxel_size = 0;  ///< input units; 0: not given

@@ -14,6 +14,7 @@
 #include "tools/crease_fidelity.h"
 #include "tools/fidelity.h"
 #include "tools/patch_fidelity.h"
+#include "tools/surface_comparison.h"
 
 namespace tetwright {
 
@@ -78,8 +79,11 @@ struct CheckReport {
   bool measurable = true;
   std::vector<std::string> topology;                             ///< lines of text
   std::optional<std::vector<std::string>> topology_differences;  ///< from the mesh of --before, if given
+  std::optional<SurfaceComparison> surface;                      ///< with --surface
+  double tolerance = 0;  ///< input units; 0: none
 
   bool valid() const { return is_valid(findings); }
+  bool within_tolerance() const { return tolerance == 0 || (surface && surface->upper() <= tolerance); }
   bool topology_kept() const { return !topology_differences || topology_differences->empty(); }
 };
 

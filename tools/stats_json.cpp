@@ -174,6 +174,22 @@ nlohmann::json creases_json(const CreaseFidelity& c) {
           {"same", c.same()}};
 }
 
+nlohmann::json deviation_json(const SurfaceDeviation& d) {
+  return {{"lower", d.lower}, {"upper", d.upper}, {"place", place_json(d.place)}, {"rms", d.rms}};
+}
+
+nlohmann::json surface_json(const SurfaceComparison& c) {
+  nlohmann::json j = {{"diagonal", c.diagonal},
+                      {"from_mesh", deviation_json(c.from_mesh)},
+                      {"from_surface", deviation_json(c.from_surfaces)}};
+  if (c.solid)
+    j["solid"] = {{"expected", solid_json(c.solid->expected)},
+                  {"result", solid_json(c.solid->result)},
+                  {"same", c.solid->same()}};
+  if (c.creases) j["creases"] = creases_json(*c.creases);
+  return j;
+}
+
 nlohmann::json patches_json(const std::vector<PatchFidelity>& all) {
   nlohmann::json j = nlohmann::json::array();
   for (const PatchFidelity& p : all)
@@ -292,6 +308,8 @@ std::string check_json(const CommandLine& line, const RunReport& run, const Chec
     j["topology"] = check.topology;
   }
   if (check.topology_differences) j["topology_differences"] = *check.topology_differences;
+  if (check.surface) j["surface"] = surface_json(*check.surface);
+  if (check.tolerance > 0) j["tolerance"] = {{"distance", check.tolerance}, {"held", check.within_tolerance()}};
   return json_text(j);
 }
 

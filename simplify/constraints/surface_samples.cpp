@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/geometry/even_points.h"
 #include "common/parallel/parallel.h"
 
 namespace tetwright {
@@ -22,22 +23,6 @@ constexpr double equilateral_area = 0.4330127018922193;
 /// Edges of the mesh's surface as it comes within which a part of the input stands for it, and it for the
 /// input.
 constexpr double reach_edges = 2;
-
-/// A point of a sequence that fills the unit square evenly (Roberts 2018, "The unreasonable effectiveness of
-/// quasirandom sequences": powers of the plastic number's inverse), folded into the lower triangle.
-std::array<double, 2> even_barycentric(std::size_t i) {
-  constexpr double first_step = 0.7548776662466927, second_step = 0.5698402909980532;
-  constexpr std::size_t period = 1 << 20;  // so that the products below keep their bits
-  const auto n = static_cast<double>(i % period);
-  double u = 0.5 + n * first_step, v = 0.5 + n * second_step;
-  u -= std::floor(u);
-  v -= std::floor(v);
-  if (u + v > 1) {
-    u = 1 - u;
-    v = 1 - v;
-  }
-  return {u, v};
-}
 
 double area(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a).norm() / 2; }
 

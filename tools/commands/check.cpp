@@ -1,4 +1,7 @@
 #include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "common/formats/atomic_file.h"
 #include "common/formats/formats.h"
@@ -7,6 +10,7 @@
 #include "tools/commands/command_run.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/output_paths.h"
+#include "tools/commands/scan_input.h"
 #include "tools/report.h"
 #include "tools/stats_json.h"
 
@@ -36,12 +40,42 @@ CheckReport examine(TetMesh& mesh, CommandRun& run) {
   return check;
 }
 
+/// The surfaces of --surface, by file.
+void read_surfaces(CommandRun& run, std::vector<TriangleMesh>& surfaces, std::vector<std::string>& names) {
+  for (const std::string& file : run.line.surfaces) {
+    if (is_vdb(file)) {
+      for (NamedSurface& s : read_level_sets(file)) {
+        surfaces.push_back(std::move(s.surface));
+        names.push_back(file);
+      }
+      continue;
+    }
+    std::vector<Dropped> dropped;
+    surfaces.push_back(read_surface(file, &dropped));
+    names.push_back(file);
+    report_dropped(dropped, file, run.report, !run.line.json);
+  }
+}
+
+void compare_with_surfaces(TetMesh& mesh, CommandRun& run, CheckReport& check) {
+  std::vector<TriangleMesh> surfaces;
+  std::vector<std::string> names;
+  read_surfaces(run, surfaces, names);
+  check.surface = compare_with_surfaces(mesh, surfaces, names);
+  check.tolerance = run.line.tolerance.in_input_units(check.surface->diagonal);
+}
+
 void print_check(const CheckReport& check, const CommandRun& run) {
   for (const MeshFinding& f : check.findings)
     std::printf("%s: %s\n", is_warning(f.fault) ? "warning" : "error", mesh_finding_line(f).c_str());
   if (check.measurable) {
     print_report(run.line, run.report);
     for (const std::string& l : check.topology) std::printf("%s\n", l.c_str());
+    if (check.surface)
+      for (const std::string& l : comparison_lines(*check.surface)) std::printf("%s\n", l.c_str());
+    if (check.tolerance > 0)
+      std::printf("%s the tolerance of %.6g\n", check.within_tolerance() ? "within" : "not within",
+                  check.tolerance);
   }
   if (check.topology_differences)
     for (const std::string& d : *check.topology_differences) std::printf("topology differs: %s\n", d.c_str());
@@ -68,6 +102,7 @@ ExitStatus run_check(const CommandLine& line) {
       check.topology_differences =
           topology_differences(topology(read_checked(line.before, run, field_found)), signature);
   }
+  if (check.measurable && !line.surfaces.empty()) compare_with_surfaces(mesh, run, check);
   // The error of the reader lists the fields that there are.
   if (!line.material_field.empty() && !field_found)
     (void)read_tet_mesh(line.inputs.front(), {line.material_field});
@@ -78,7 +113,7 @@ ExitStatus run_check(const CommandLine& line) {
     std::printf("%s\n", check_json(line, run.report, check).c_str());
   else if (!line.quiet)
     print_check(check, run);
-  return check.valid() && check.topology_kept() ? ExitStatus::done : ExitStatus::short_of_request;
+  return check.valid() && check.topology_kept() && check.within_tolerance() ? ExitStatus::done : ExitStatus::short_of_request;
 }
 
 }  // namespace tetwright

@@ -1,0 +1,186 @@
+#include "common/geometry/surface_deviation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "common/geometry/even_points.h"
+#include "common/parallel/parallel.h"
+#include "common/parallel/parallel_sort.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr double relative_accuracy = 0.01;
+constexpr std::size_t max_pieces = std::size_t{1} << 22;
+constexpr int max_levels = 50;  ///< of halving: beyond, the bits of coordinates are used up
+constexpr std::size_t grain = 256;
+constexpr std::size_t rms_points = 100000;
+
+/// A point with the item that is nearest to it.
+struct Measured {
+  Vec3 at;
+  double distance = std::numeric_limits<double>::infinity();
+  std::uint32_t item = 0;
+};
+
+/// A triangle, or a part of one, and what no point of it is farther than.
+struct Piece {
+  std::array<Measured, 3> corners;
+  double upper;
+};
+
+double distance_to(const ProjectionTree& to, std::uint32_t item, const Vec3& p) {
+  const ProjectionTree::Item& t = to.items()[item];
+  return std::sqrt(squared_distance(p, to.corner(t, 0), to.corner(t, 1), to.corner(t, 2)));
+}
+
+/// `guess`: an item that may be near.
+Measured measure(const ProjectionTree& to, const Vec3& at, std::uint32_t guess) {
+  Measured m{at, distance_to(to, guess, at), guess};
+  if (const auto hit = to.nearest_of(at, m.distance, [](const ProjectionTree::Item&) { return true; }))
+    m = {at, (hit->point - at).norm(), static_cast<std::uint32_t>(hit->item)};
+  return m;
+}
+
+/// Measures points of which neighbours in the list are neighbours in space.
+std::vector<Measured> measure_all(const ProjectionTree& to, const std::vector<Vec3>& points) {
+  std::vector<Measured> out(points.size());
+  parallel_for(0, (points.size() + grain - 1) / grain, 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t block = first; block < last; ++block) {
+      std::uint32_t guess = 0;
+      for (std::size_t i = block * grain; i < std::min(points.size(), (block + 1) * grain); ++i) {
+        out[i] = measure(to, points[i], guess);
+        guess = out[i].item;
+      }
+    }
+  });
+  return out;
+}
+
+double upper_bound(const ProjectionTree& to, const std::array<Measured, 3>& corners) {
+  double longest = 0, farthest = 0;
+  for (int k = 0; k < 3; ++k) {
+    longest = std::max(longest, (corners[(k + 1) % 3].at - corners[k].at).norm());
+    farthest = std::max(farthest, corners[k].distance);
+  }
+  // No point of a triangle is farther than this from all corners.
+  double upper = farthest + longest / std::numbers::sqrt3;
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t item = corners[k].item;
+    if (k > 0 && (item == corners[0].item || (k == 2 && item == corners[1].item))) continue;
+    double of_item = 0;
+    for (const Measured& c : corners)
+      of_item = std::max(of_item, c.item == item ? c.distance : distance_to(to, item, c.at));
+    upper = std::min(upper, of_item);
+  }
+  return upper;
+}
+
+double rms_of(const ProjectionTree& from, const ProjectionTree& to) {
+  const auto area = [&](const ProjectionTree::Item& item) {
+    const Vec3& a = from.corner(item, 0);
+    return (from.corner(item, 1) - a).cross(from.corner(item, 2) - a).norm() / 2;
+  };
+  double total = 0;
+  for (const ProjectionTree::Item& item : from.items()) total += area(item);
+  if (!(total > 0)) return 0;
+  std::vector<Vec3> points;
+  points.reserve(rms_points + 1);
+  double due = 0.5;  // the first point when half of its share has passed
+  for (const ProjectionTree::Item& item : from.items()) {
+    const Vec3& a = from.corner(item, 0);
+    for (due += area(item) / total * rms_points; due >= 1; --due) {
+      const auto [u, v] = even_barycentric(points.size());
+      points.emplace_back(a + u * (from.corner(item, 1) - a) + v * (from.corner(item, 2) - a));
+    }
+  }
+  double sum = 0;
+  for (const Measured& m : measure_all(to, points)) sum += m.distance * m.distance;
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, points.size())));
+}
+
+}  // namespace
+
+SurfaceDeviation surface_deviation(const ProjectionTree& from, const ProjectionTree& to, double accuracy) {
+  SurfaceDeviation result;
+  if (from.empty()) return result;
+  if (to.empty()) {
+    result.lower = result.upper = result.rms = std::numeric_limits<double>::infinity();
+    result.place = from.corner(from.items().front(), 0);
+    return result;
+  }
+  const auto take = [&](const Measured& m) {
+    if (m.distance <= result.lower) return;
+    result.lower = m.distance;
+    result.place = m.at;
+  };
+  // The corners, in the order in which triangles have them.
+  std::vector<Index> number(from.points().size(), no_index);
+  std::vector<Vec3> points;
+  for (const ProjectionTree::Item& item : from.items())
+    for (const Index p : item.corners)
+      if (number[p] == no_index) {
+        number[p] = static_cast<Index>(points.size());
+        points.push_back(from.points()[p]);
+      }
+  const std::vector<Measured> corners = measure_all(to, points);
+  result.place = points.front();
+  for (const Measured& m : corners) take(m);
+  const auto enough = [&] {
+    return std::max(result.lower * (1 + relative_accuracy), result.lower + accuracy);
+  };
+
+  double settled = result.lower;  // what no point of the triangles that were let go is farther than
+  const std::size_t blocks = (from.items().size() + grain - 1) / grain;
+  std::vector<double> block_settled(blocks, 0);
+  const double limit = enough();
+  std::vector<Piece> open = parallel_collect<Piece>(
+      0, from.items().size(), grain, [&](std::size_t begin, std::size_t end, std::vector<Piece>& out) {
+        for (std::size_t i = begin; i < end; ++i) {
+          Piece piece;
+          for (int k = 0; k < 3; ++k) piece.corners[k] = corners[number[from.items()[i].corners[k]]];
+          piece.upper = upper_bound(to, piece.corners);
+          if (piece.upper > limit)
+            out.push_back(piece);
+          else
+            block_settled[begin / grain] = std::max(block_settled[begin / grain], piece.upper);
+        }
+      });
+  for (const double upper : block_settled) settled = std::max(settled, upper);
+  for (int level = 0; level < max_levels && !open.empty() && open.size() < max_pieces; ++level) {
+    std::vector<Piece> parts(4 * open.size());
+    parallel_for(0, open.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto& c = open[i].corners;
+        std::array<Measured, 3> middles;
+        for (int k = 0; k < 3; ++k)
+          middles[k] = measure(to, (c[k].at + c[(k + 1) % 3].at) / 2, c[k].item);
+        for (int k = 0; k < 3; ++k) parts[4 * i + k].corners = {c[k], middles[k], middles[(k + 2) % 3]};
+        parts[4 * i + 3].corners = middles;
+        for (int k = 0; k < 4; ++k)
+          parts[4 * i + k].upper = std::min(open[i].upper, upper_bound(to, parts[4 * i + k].corners));
+      }
+    });
+    for (std::size_t i = 3; i < parts.size(); i += 4)
+      for (const Measured& m : parts[i].corners) take(m);
+    open.clear();
+    for (const Piece& piece : parts) {
+      if (piece.upper > enough())
+        open.push_back(piece);
+      else
+        settled = std::max(settled, piece.upper);
+    }
+  }
+  for (const Piece& piece : open) settled = std::max(settled, piece.upper);
+  result.upper = std::max(settled, result.lower);
+  result.rms = rms_of(from, to);
+  return result;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "common/geometry/projection_tree.h"
+#include "common/types.h"
+
+namespace tetwright {
+
+/// How far a surface is from another: the largest distance of all its points, those between the corners too,
+/// is proven to be from `lower` to `upper`. Units of the input.
+struct SurfaceDeviation {
+  double lower = 0, upper = 0;
+  Vec3 place = Vec3::Zero();  ///< of the first surface, at the distance `lower` from the second
+  double rms = 0;             ///< of 100,000 points spread evenly by area, about
+};
+
+/// The deviation of `from` from `to`. The bounds are within 1 % of each other, or `accuracy` if that is more
+/// (above 0; input units); wider only where that would take more than four million triangles, which is not
+/// to be expected.
+///
+/// Branch and bound over triangles (Tang, Lee & Kim 2009, "Interactive Hausdorff distance computation for
+/// general polygonal models"): the distance from one triangle is convex, so that it is largest in a corner;
+/// any distance grows no faster than the way. Triangles that may be farther than what is known are cut in
+/// four. Infinite where `to` is empty and `from` is not. Parallel; the result does not depend on the threads.
+SurfaceDeviation surface_deviation(const ProjectionTree& from, const ProjectionTree& to, double accuracy);
+
+}  // namespace tetwright

@@ -1,0 +1,146 @@
+#include "common/geometry/surface_deviation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "common/parallel/parallel.h"
+#include "common/random.h"
+
+namespace tetwright {
+namespace {
+
+struct Surface {
+  std::vector<Vec3> points;
+  std::vector<ProjectionTree::Item> items;
+  ProjectionTree tree() const { return {points, items}; }
+};
+
+/// The graph of a function over n by n squares of [0, 1]^2, two triangles each.
+template <class Height>
+Surface graph(Index n, const Height& height) {
+  Surface s;
+  for (Index y = 0; y <= n; ++y)
+    for (Index x = 0; x <= n; ++x) {
+      const double u = static_cast<double>(x) / n, v = static_cast<double>(y) / n;
+      s.points.emplace_back(u, v, height(u, v));
+    }
+  for (Index y = 0; y < n; ++y)
+    for (Index x = 0; x < n; ++x) {
+      const Index a = y * (n + 1) + x, b = a + 1, c = a + n + 1, d = c + 1;
+      s.items.push_back({{a, b, d}, {}});
+      s.items.push_back({{a, d, c}, {}});
+    }
+  return s;
+}
+
+double flat(double, double) { return 0; }
+
+void expect_between(const SurfaceDeviation& d, double truth) {
+  EXPECT_LE(d.lower, truth * (1 + 1e-12) + 1e-15);
+  EXPECT_GE(d.upper, truth * (1 - 1e-12) - 1e-15);
+  EXPECT_LE(d.upper, std::max(1.01 * d.lower, d.lower + 1e-6) + 1e-15);
+}
+
+TEST(SurfaceDeviation, OfPlanesIsTheirDistance) {
+  const Surface below = graph(3, flat), above = graph(7, [](double, double) { return 0.25; });
+  for (const auto& d : {surface_deviation(below.tree(), above.tree(), 1e-6),
+                        surface_deviation(above.tree(), below.tree(), 1e-6)}) {
+    expect_between(d, 0.25);
+    EXPECT_NEAR(d.rms, 0.25, 1e-12);
+  }
+}
+
+TEST(SurfaceDeviation, OfASurfaceFromItselfIsNothing) {
+  const Surface wave = graph(20, [](double u, double v) { return std::sin(9 * u) * std::cos(7 * v); });
+  const SurfaceDeviation d = surface_deviation(wave.tree(), wave.tree(), 1e-6);
+  EXPECT_LT(d.lower, 1e-13);
+  EXPECT_LE(d.upper, 1e-6);
+  EXPECT_LT(d.rms, 1e-12);
+}
+
+// One triangle over a ridge: all its corners are on the other surface, and it is 0.3 off between them.
+TEST(SurfaceDeviation, IsFoundBetweenTheCorners) {
+  const Surface roof = graph(40, [](double u, double) { return 0.3 * (1 - std::abs(2 * u - 1)); });
+  Surface floor;
+  floor.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  floor.items = {{{0, 1, 2}, {}}, {{0, 2, 3}, {}}};
+  // The ridge is 0.3 above the floor; the floor below the ridge is nearer to the slopes.
+  expect_between(surface_deviation(roof.tree(), floor.tree(), 1e-6), 0.3);
+  const SurfaceDeviation d = surface_deviation(floor.tree(), roof.tree(), 1e-6);
+  expect_between(d, 0.3 / std::sqrt(1 + 0.36));
+  EXPECT_NEAR(d.place.x(), 0.5, 0.01);
+  // Straight under the slopes distances go from nothing to the largest, linearly.
+  EXPECT_NEAR(d.rms, d.lower / std::sqrt(3), 0.01 * d.lower);
+}
+
+TEST(SurfaceDeviation, IsThatOfASearchOfManyPoints) {
+  Random random(5);
+  for (int round = 0; round < 5; ++round) {
+    const auto number = [&] { return 2 * random.uniform() - 1; };
+    const auto soup = [&](Index count, double size) {
+      Surface s;
+      for (Index i = 0; i < count; ++i) {
+        const Vec3 c(number(), number(), number());
+        for (int k = 0; k < 3; ++k) s.points.push_back(c + size * Vec3(number(), number(), number()));
+        s.items.push_back({{3 * i, 3 * i + 1, 3 * i + 2}, {}});
+      }
+      return s;
+    };
+    const Surface from = soup(20, 0.8), to = soup(60, 0.5);
+    const SurfaceDeviation d = surface_deviation(from.tree(), to.tree(), 1e-6);
+    double farthest = 0;
+    constexpr int steps = 60;
+    for (const auto& item : from.items)
+      for (int i = 0; i <= steps; ++i)
+        for (int j = 0; i + j <= steps; ++j) {
+          const Vec3& a = from.points[item.corners[0]];
+          const Vec3 p = a + (from.points[item.corners[1]] - a) * i / steps +
+                         (from.points[item.corners[2]] - a) * j / steps;
+          double nearest = std::numeric_limits<double>::infinity();
+          for (const auto& t : to.items)
+            nearest = std::min(nearest, squared_distance(p, to.points[t.corners[0]], to.points[t.corners[1]],
+                                                         to.points[t.corners[2]]));
+          farthest = std::max(farthest, std::sqrt(nearest));
+        }
+    EXPECT_GE(d.upper, farthest);
+    EXPECT_GE(d.lower, 0.99 * farthest);  // a lower bound that is attained
+    EXPECT_LE(d.upper, 1.01 * d.lower + 1e-12);
+    double at_place = std::numeric_limits<double>::infinity();
+    for (const auto& t : to.items)
+      at_place = std::min(at_place, squared_distance(d.place, to.points[t.corners[0]],
+                                                     to.points[t.corners[1]], to.points[t.corners[2]]));
+    EXPECT_NEAR(std::sqrt(at_place), d.lower, 1e-12);
+  }
+}
+
+TEST(SurfaceDeviation, DoesNotDependOnTheThreads) {
+  const Surface wave = graph(60, [](double u, double v) { return 0.1 * std::sin(9 * u) * std::cos(7 * v); });
+  const Surface coarse = graph(9, [](double u, double v) { return 0.1 * std::sin(9 * u) * std::cos(7 * v); });
+  SurfaceDeviation alone;
+  {
+    const ThreadLimit one(1);
+    alone = surface_deviation(coarse.tree(), wave.tree(), 1e-7);
+  }
+  const ThreadLimit many(8);
+  const SurfaceDeviation d = surface_deviation(coarse.tree(), wave.tree(), 1e-7);
+  EXPECT_EQ(d.lower, alone.lower);
+  EXPECT_EQ(d.upper, alone.upper);
+  EXPECT_EQ(d.rms, alone.rms);
+  EXPECT_EQ(d.place, alone.place);
+}
+
+TEST(SurfaceDeviation, OfNothingAndFromNothing) {
+  const Surface square = graph(1, flat);
+  EXPECT_EQ(surface_deviation(ProjectionTree(), square.tree(), 1).upper, 0);
+  EXPECT_TRUE(std::isinf(surface_deviation(square.tree(), ProjectionTree(), 1).lower));
+  // A triangle that is a point.
+  Surface point;
+  point.points = {{0.5, 0.5, 2}};
+  point.items = {{{0, 0, 0}, {}}};
+  expect_between(surface_deviation(point.tree(), square.tree(), 1e-6), 2);
+}
+
+}  // namespace
+}  // namespace tetwright
