@@ -287,10 +287,11 @@ void add_improve(CLI::App& app, CommandLine& c) {
 void add_check(CLI::App& app, CommandLine& c) {
   app.add_option("MESH", c.inputs, meshes)->required()->expected(1);
   app.add_option("--before", c.before, "Another mesh, whose topology MESH must have")->type_name("FILE");
-  app.add_option("--surface", c.surfaces,
-                 "Surfaces (as prepare reads them) that MESH is compared with, whatever it was made from: the "
-                 "largest distances both ways, proven, and creases; of one closed surface also volume and "
-                 "topology. With several, interfaces between materials count, too")
+  app.add_option(
+         "--surface", c.surfaces,
+         "Surfaces (as prepare reads them) that MESH is compared with, whatever it was made from: the "
+         "largest distances both ways, proven, and creases; of one closed surface also volume and "
+         "topology. With several, interfaces between materials count, too")
       ->type_name("FILE");
   add_length(app, "--tolerance", c.tolerance,
              "Status 1 unless MESH and the surfaces are proven to be within this of each other everywhere, "

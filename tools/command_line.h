@@ -34,10 +34,10 @@ struct CommandLine {
   Command command = Command::prepare;
   std::vector<std::string> inputs;  ///< of `sample`: the name
   std::string output;
-  std::string before;          ///< `check`: the mesh whose topology must be the same
+  std::string before;                 ///< `check`: the mesh whose topology must be the same
   std::vector<std::string> surfaces;  ///< `check`: what the mesh is compared with
-  bool json = false;           ///< `check`
-  std::string material_field;  ///< cell field of the tet mesh that is read; empty: chosen by its name
+  bool json = false;                  ///< `check`
+  std::string material_field;         ///< cell field of the tet mesh that is read; empty: chosen by its name
 
   std::size_t target_tets = 0;
   double min_solid_angle = 0.1;  ///< steradians

@@ -80,7 +80,7 @@ struct CheckReport {
   std::vector<std::string> topology;                             ///< lines of text
   std::optional<std::vector<std::string>> topology_differences;  ///< from the mesh of --before, if given
   std::optional<SurfaceComparison> surface;                      ///< with --surface
-  double tolerance = 0;  ///< input units; 0: none
+  double tolerance = 0;                                          ///< input units; 0: none
 
   bool valid() const { return is_valid(findings); }
   bool within_tolerance() const { return tolerance == 0 || (surface && surface->upper() <= tolerance); }

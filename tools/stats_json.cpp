@@ -309,7 +309,8 @@ std::string check_json(const CommandLine& line, const RunReport& run, const Chec
   }
   if (check.topology_differences) j["topology_differences"] = *check.topology_differences;
   if (check.surface) j["surface"] = surface_json(*check.surface);
-  if (check.tolerance > 0) j["tolerance"] = {{"distance", check.tolerance}, {"held", check.within_tolerance()}};
+  if (check.tolerance > 0)
+    j["tolerance"] = {{"distance", check.tolerance}, {"held", check.within_tolerance()}};
   return json_text(j);
 }
 

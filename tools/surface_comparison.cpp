@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <utility>
 
-#include "common/message_text.h"
 #include "common/mesh/solid_shape.h"
+#include "common/message_text.h"
 
 namespace tetwright {
 
@@ -29,8 +29,7 @@ ProjectionTree tree_of(const std::vector<TriangleMesh>& surfaces) {
   for (const TriangleMesh& s : surfaces) {
     const auto first = static_cast<Index>(points.size());
     points.insert(points.end(), s.points.begin(), s.points.end());
-    for (const Triangle& t : s.triangles)
-      items.push_back({{first + t[0], first + t[1], first + t[2]}, {}});
+    for (const Triangle& t : s.triangles) items.push_back({{first + t[0], first + t[1], first + t[2]}, {}});
   }
   return {std::move(points), std::move(items)};
 }
@@ -121,9 +120,8 @@ std::vector<std::string> comparison_lines(const SurfaceComparison& c) {
     lines.emplace_back("volume and topology: not compared; that takes one closed surface");
   }
   if (c.creases)
-    lines.push_back("creases of the surface: at most " +
-                    length_text(c.creases->max_distance, c.diagonal) + " from those of the mesh, at " +
-                    place_text(c.creases->place) + "; its corners at most " +
+    lines.push_back("creases of the surface: at most " + length_text(c.creases->max_distance, c.diagonal) +
+                    " from those of the mesh, at " + place_text(c.creases->place) + "; its corners at most " +
                     length_text(c.creases->max_corner_distance, c.diagonal) + " from the mesh");
   return lines;
 }

@@ -18,7 +18,12 @@ namespace {
 
 constexpr double relative_accuracy = 0.01;
 constexpr std::size_t max_pieces = std::size_t{1} << 22;
-constexpr int max_levels = 50;  ///< of halving: beyond, the bits of coordinates are used up
+constexpr int max_levels = 150;  ///< of cuts in two: beyond, the bits of coordinates are used up
+/// Every so many levels pieces are cut in the middle of their longest edge, so that they shrink.
+constexpr int halving_period = 3;
+constexpr int bisections = 40;  ///< to find where another item becomes the nearest
+/// Nearer to an end than this share of an edge, the cut is made in the middle.
+constexpr double min_cut = 0.01;
 constexpr std::size_t grain = 256;
 constexpr std::size_t rms_points = 100000;
 
@@ -80,6 +85,44 @@ double upper_bound(const ProjectionTree& to, const std::array<Measured, 3>& corn
     upper = std::min(upper, of_item);
   }
   return upper;
+}
+
+/// Where on the edge between two corners both corners' items are as near.
+double transition(const ProjectionTree& to, const Measured& a, const Measured& b) {
+  double low = 0, high = 1;
+  for (int i = 0; i < bisections; ++i) {
+    const double middle = (low + high) / 2;
+    const Vec3 at = a.at + middle * (b.at - a.at);
+    (distance_to(to, a.item, at) <= distance_to(to, b.item, at) ? low : high) = middle;
+  }
+  return low;
+}
+
+/// Cuts a piece in two, by preference where the nearest item changes: parts that have one are settled, while
+/// halving alone would follow every edge of the other surface down to the accuracy.
+std::array<Piece, 2> cut(const ProjectionTree& to, const Piece& piece, bool halve) {
+  const auto& c = piece.corners;
+  int edge = 0;
+  double longest = -1, share = 0.5;
+  for (int k = 0; k < 3; ++k) {
+    const Measured &a = c[k], &b = c[(k + 1) % 3];
+    const double length = (b.at - a.at).norm();
+    // How much farther than its nearest item the other corner's is.
+    const double jump = a.item == b.item ? -1
+                                         : std::max(distance_to(to, b.item, a.at) - a.distance,
+                                                    distance_to(to, a.item, b.at) - b.distance);
+    if ((halve ? length : jump) <= longest) continue;
+    longest = halve ? length : jump;
+    edge = k;
+  }
+  const Measured &a = c[edge], &b = c[(edge + 1) % 3], &opposite = c[(edge + 2) % 3];
+  if (!halve) share = transition(to, a, b);
+  if (!(share > min_cut && share < 1 - min_cut)) share = 0.5;
+  const Measured between = measure(to, a.at + share * (b.at - a.at), a.item);
+  std::array<Piece, 2> parts{Piece{{a, between, opposite}, piece.upper},
+                             Piece{{between, b, opposite}, piece.upper}};
+  for (Piece& part : parts) part.upper = std::min(part.upper, upper_bound(to, part.corners));
+  return parts;
 }
 
 double rms_of(const ProjectionTree& from, const ProjectionTree& to) {
@@ -154,28 +197,20 @@ SurfaceDeviation surface_deviation(const ProjectionTree& from, const ProjectionT
       });
   for (const double upper : block_settled) settled = std::max(settled, upper);
   for (int level = 0; level < max_levels && !open.empty() && open.size() < max_pieces; ++level) {
-    std::vector<Piece> parts(4 * open.size());
+    std::vector<std::array<Piece, 2>> parts(open.size());
+    const bool halve = level % halving_period == halving_period - 1;
     parallel_for(0, open.size(), grain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const auto& c = open[i].corners;
-        std::array<Measured, 3> middles;
-        for (int k = 0; k < 3; ++k)
-          middles[k] = measure(to, (c[k].at + c[(k + 1) % 3].at) / 2, c[k].item);
-        for (int k = 0; k < 3; ++k) parts[4 * i + k].corners = {c[k], middles[k], middles[(k + 2) % 3]};
-        parts[4 * i + 3].corners = middles;
-        for (int k = 0; k < 4; ++k)
-          parts[4 * i + k].upper = std::min(open[i].upper, upper_bound(to, parts[4 * i + k].corners));
-      }
+      for (std::size_t i = begin; i < end; ++i) parts[i] = cut(to, open[i], halve);
     });
-    for (std::size_t i = 3; i < parts.size(); i += 4)
-      for (const Measured& m : parts[i].corners) take(m);
+    for (const std::array<Piece, 2>& two : parts) take(two[0].corners[1]);
     open.clear();
-    for (const Piece& piece : parts) {
-      if (piece.upper > enough())
-        open.push_back(piece);
-      else
-        settled = std::max(settled, piece.upper);
-    }
+    for (const std::array<Piece, 2>& two : parts)
+      for (const Piece& piece : two) {
+        if (piece.upper > enough())
+          open.push_back(piece);
+        else
+          settled = std::max(settled, piece.upper);
+      }
   }
   for (const Piece& piece : open) settled = std::max(settled, piece.upper);
   result.upper = std::max(settled, result.lower);

@@ -113,7 +113,8 @@ ExitStatus run_check(const CommandLine& line) {
     std::printf("%s\n", check_json(line, run.report, check).c_str());
   else if (!line.quiet)
     print_check(check, run);
-  return check.valid() && check.topology_kept() && check.within_tolerance() ? ExitStatus::done : ExitStatus::short_of_request;
+  return check.valid() && check.topology_kept() && check.within_tolerance() ? ExitStatus::done
+                                                                            : ExitStatus::short_of_request;
 }
 
 }  // namespace tetwright
