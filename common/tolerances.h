@@ -71,5 +71,7 @@ inline constexpr double ascent_share = 1e-3;
 inline constexpr double ascent_rounding = 1e-9;
 /// A mesh that is at its target counts as larger by this share, so that the schedule's logarithm is not 0.
 inline constexpr double at_target = 1e-9;
+/// Bounds of a SurfaceDeviation are this near to each other, in diagonals, where 1 % of it would be less.
+inline constexpr double deviation_share = 1e-6;
 
 }  // namespace tetwright::tolerance

@@ -12,6 +12,7 @@
 #include "common/reference_surface.h"
 #include "common/tet_mesh.h"
 #include "mesher/distance/vdb_files.h"
+#include "mesher/domain/fine_place.h"
 #include "mesher/domain/regions.h"
 #include "mesher/input/label_input.h"
 #include "mesher/input/mesher_input.h"
@@ -29,6 +30,9 @@ struct MesherOptions {
   std::optional<int> max_refinement;
   /// Gaps of a surface that are narrower are closed, and walls that are thinner left out; input units.
   double min_gap = 0, min_thickness = 0;
+  /// Where cells are halved besides, up to max_refinement times, as long as that at most doubles the mesh;
+  /// input units.
+  std::vector<FinePlace> fine_places;
   /// Which edges of the surfaces stay sharp.
   FeatureAngle feature_angle;
   /// Mesh the outside too, in a box (that of the volume for labels), as the material `outside` of tag 0.
@@ -149,6 +153,12 @@ MesherEstimate estimate_mesh(const MesherInput& input, const MesherOptions& opti
 /// encloses nothing), NothingToMeshError (no lattice point is inside), OutputError (the mesh would not fit in
 /// memory), Interrupted. Time is proportional to the number of cells times the number of materials.
 DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, Progress* progress);
+
+/// mesh_surfaces() with cells that bring the surfaces within half of `tolerance` (input units, above 0) of
+/// the mesh: begins with cells of twice that size or, if they are smaller, those of `options`, measures, and
+/// halves them up to max_refinement times where that is not enough. What is reached in the end is for the
+/// caller to find out. Throws as mesh_surfaces() does; UsageError where cells would be too small.
+DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double tolerance, Progress* progress);
 
 /// Meshes a segmented volume: a dense tet mesh with the same invariants and a material for each label. Where
 /// a label is thinner than two cells, cells are halved up to three times (not with `uniform`); the report

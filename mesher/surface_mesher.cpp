@@ -328,7 +328,7 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   const auto has_patches = [](const SurfacePatches& p) { return p.any(); };
   std::vector<NarrowPatches> narrow;
   for (std::size_t b = 0; b < input.bodies.size(); ++b)
-    narrow.push_back(find_narrow_patches(input.bodies[b].surface, patches[b], voxels,
+    narrow.push_back(find_narrow_patches(input.bodies[b].surface, patches[b], voxels, options.fine_places,
                                          std::min(budget.max_depth, budget.max_possible), budget.base_tets));
   BodyField bodies =
       build_field(input, voxels, options.keep_outside, {options.min_gap, options.min_thickness}, budget,

@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <optional>
 
 #include "common/error.h"
+#include "common/geometry/projection_tree.h"
+#include "common/parallel/parallel.h"
 #include "mesher/labels/label_faces.h"
 #include "mesher/labels/label_field.h"
 #include "mesher/mesh_estimate.h"
@@ -77,6 +80,44 @@ bool has_creases(const MesherInput& input, const FeatureAngle& angle) {
   });
 }
 
+/// The share of a tolerance that a dense mesh may use up.
+constexpr double dense_tolerance_share = 0.5;
+/// Cells at first, in tolerances: where surfaces are smooth their meshes are within half of one.
+constexpr double first_cell = 2;
+constexpr int min_tolerance_resolution = 96;
+constexpr int max_fine_rounds = 4;
+constexpr std::size_t place_grain = 256;
+
+/// The distances of the surface's points and of the centroids of its triangles from the boundary and the
+/// interfaces of the mesh, and these places.
+struct MeasuredPlaces {
+  std::vector<Vec3> at;
+  std::vector<double> distance;
+};
+
+MeasuredPlaces measure_places(const TriangleMesh& surface, const TetMesh& mesh) {
+  std::vector<ProjectionTree::Item> faces;
+  faces.reserve(mesh.interfaces.size());
+  for (const InterfaceTriangle& t : mesh.interfaces) faces.push_back({t.ids, {}});
+  const ProjectionTree tree(mesh.points, std::move(faces));
+  MeasuredPlaces places;
+  for (const Triangle& t : surface.triangles) {
+    for (const Index p : t) places.at.push_back(surface.points[p]);
+    places.at.emplace_back((surface.points[t[0]] + surface.points[t[1]] + surface.points[t[2]]) / 3);
+  }
+  places.distance.resize(places.at.size());
+  parallel_for(0, places.at.size(), place_grain, [&](std::size_t begin, std::size_t end) {
+    double near = std::numeric_limits<double>::infinity();
+    for (std::size_t i = begin; i < end; ++i) {
+      // The one before is not far away.
+      if (i > begin) near = places.distance[i - 1] + (places.at[i] - places.at[i - 1]).norm() * (1 + 1e-9);
+      const auto hit = tree.nearest_of(places.at[i], near, [](const auto&) { return true; });
+      places.distance[i] = hit ? (hit->point - places.at[i]).norm() : near;
+    }
+  });
+  return places;
+}
+
 }  // namespace
 
 int resolution_for_target(const MesherInput& input, std::size_t target_tets, const FeatureAngle& angle) {
@@ -103,6 +144,39 @@ int resolution_for_target(const MesherInput& input, std::size_t target_tets, con
       low = middle + 1;
   }
   return low;
+}
+
+DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double tolerance, Progress* progress) {
+  const double longest = longest_side(input);
+  const double cells = std::ceil(longest / (first_cell * tolerance));
+  if (!(cells <= max_resolution)) {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "a tolerance of %.6g takes more than %d cells along the longest side; give %.6g or more",
+                  tolerance, max_resolution, longest / (first_cell * max_resolution));
+    throw UsageError(text);
+  }
+  options.voxel_size = 0;
+  options.resolution = std::max({min_tolerance_resolution, options.resolution, static_cast<int>(cells)});
+  const double allowed = dense_tolerance_share * tolerance;
+  std::vector<int> halvings;
+  for (int round = 0;; ++round) {
+    DenseMesh dense = mesh_surfaces(input, options, progress);
+    if (round == max_fine_rounds || options.uniform) return dense;
+    const MeasuredPlaces places = measure_places(*dense.surface, dense.mesh);
+    halvings.resize(places.at.size(), 0);
+    bool finer = false;
+    for (std::size_t i = 0; i < places.at.size(); ++i) {
+      if (places.distance[i] <= allowed || halvings[i] == max_refinement) continue;
+      const auto more = static_cast<int>(std::ceil(std::log2(places.distance[i] / allowed)));
+      halvings[i] = std::min(max_refinement, halvings[i] + std::max(1, more));
+      finer = true;
+    }
+    if (!finer) return dense;
+    options.fine_places.clear();
+    for (std::size_t i = 0; i < places.at.size(); ++i)
+      if (halvings[i] > 0) options.fine_places.push_back({places.at[i], halvings[i]});
+  }
 }
 
 double cell_size_for_target(const LabelInput& labels, std::size_t target_tets, const MesherOptions& options) {

@@ -27,6 +27,8 @@ constexpr double closing_margin = 1.27;
 /// For tets worse than this multiple of the bound, improve() may move points off the surface (dihedral angles
 /// up to 30 degrees). In the closing that would move the surface a quarter farther.
 constexpr double improve_margin = 1.5;
+/// The share by which closing may change the count where none was asked for.
+constexpr double free_closing_slack = 0.3;
 constexpr int sweeps_before_closing = 1, sweeps_after_closing = 2;
 /// Sweeps of fit_to_crease() before it.
 constexpr int crease_sweeps = 3;
@@ -89,17 +91,20 @@ void check(const TetMesh& mesh, const std::string& name) {
 }  // namespace
 
 TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report, Progress* progress) {
-  if (options.target_tets == 0) throw UsageError("a target of 0 tets leaves nothing; give 1 or more");
+  if (options.target_tets == 0 && !(options.tolerance > 0 && options.schedule == Schedule::tuned))
+    throw UsageError("a target of 0 tets leaves nothing; give 1 or more");
+  if (!(options.tolerance >= 0)) throw UsageError("the tolerance must be at least 0");
   if (!(options.beta > 0) || !(options.gamma >= 0))
     throw UsageError("beta must be above 0 and gamma at least 0");
   check(mesh, options.name);
   const auto start = std::chrono::steady_clock::now();
   const std::size_t first_count = mesh.tets.size();
-  Engine engine(std::move(mesh),
-                {options.name, static_cast<double>(options.target_tets), options.beta, options.gamma,
-                 options.seed, options.batch_size, options.objective, options.reference, options.frozen,
-                 options.fix_boundary, options.schedule == Schedule::tuned},
-                report, progress);
+  Engine engine(
+      std::move(mesh),
+      {options.name, static_cast<double>(options.target_tets > 0 ? options.target_tets : first_count),
+       options.beta, options.gamma, options.seed, options.batch_size, options.objective, options.reference,
+       options.frozen, options.fix_boundary, options.schedule == Schedule::tuned},
+      report, progress);
   engine.recorder().begin_stage("simplify");
   const double build = seconds_since(start);
   if (options.schedule == Schedule::paper) {
@@ -111,13 +116,16 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
   if (options.schedule == Schedule::tuned) {
     engine.recorder().begin_stage("improve");
     engine.begin_improvement();
-    const auto count = static_cast<double>(std::min(options.target_tets, first_count));
+    const auto count = static_cast<double>(
+        options.target_tets > 0 ? std::min(options.target_tets, first_count) : engine.mesh().live_tets());
+    // Without a count shapes are worth some tets more.
+    const double slack = options.target_tets > 0 ? closing_slack : free_closing_slack;
     const ImprovementPlan plan{.kind = "close",
                                .angle = closing_margin * options.min_solid_angle,
                                .leave_surface_angle = closing_margin * options.min_solid_angle,
                                .target_tets = static_cast<std::size_t>(count),
-                               .min_tets = static_cast<std::size_t>(std::ceil(count * (1 - closing_slack))),
-                               .max_tets = static_cast<std::size_t>(count * (1 + closing_slack)),
+                               .min_tets = static_cast<std::size_t>(std::ceil(count * (1 - slack))),
+                               .max_tets = static_cast<std::size_t>(count * (1 + slack)),
                                .fast = false,
                                .brief = false,
                                .max_rounds = max_closing_rounds};
@@ -129,6 +137,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     // Shapes were had at the cost of places.
     fit(engine, sweeps_after_closing, quality_at(engine, plan.angle));
   }
+  if (report && options.tolerance > 0) report->deviation = engine.deviation();
   if (report) {
     report->touching_points = engine.mesh().touching_points();
     report->seconds_build = build;

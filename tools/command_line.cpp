@@ -188,8 +188,12 @@ void add_shaping(CLI::App& app, CommandLine& c, const char* iterations) {
 }
 
 void add_simplifying(CLI::App& app, CommandLine& c) {
-  add_whole_number(app, "--target-tets", c.target_tets, 1, max_target_tets, "Number of tets to reach")
-      ->required();
+  add_whole_number(app, "--target-tets", c.target_tets, 1, max_target_tets,
+                   "Number of tets to reach; with --tolerance it may be left out: as few as hold it");
+  add_length(
+      app, "--tolerance", c.tolerance,
+      "How far any point of the mesh's surface and of the input's may be from the other, input units or "
+      "percent of the diagonal; status 1 unless that is proven of the result");
   add_shaping(app, c, "Max number of block iterations, 1 to 10000");
   add_choice(app, "--schedule", c.schedule, {Schedule::tuned, Schedule::paper},
              "tuned: fast, ends with improvement; paper: operations in the order of Cutler et al. 2004");
@@ -398,6 +402,11 @@ void complete(const CLI::App& chosen, CommandLine& out) {
     out.outside_label_given = chosen.count("--outside-label") > 0;
     out.min_voxels_given = chosen.count("--min-voxels") > 0;
   }
+  if ((out.command == Command::prepare || out.command == Command::simplify) && out.target_tets == 0 &&
+      out.tolerance.value == 0)
+    throw UsageError("--target-tets is required; give the number of tets to reach, or --tolerance");
+  if (out.tolerance.value > 0 && out.schedule == Schedule::paper)
+    throw UsageError("--schedule paper bounds no distances; leave out --tolerance, or --schedule");
   if (out.command == Command::check && out.tolerance.value > 0 && out.surfaces.empty())
     throw UsageError("--tolerance needs the surfaces that the mesh is compared with; give --surface FILE");
   if (out.resolution && out.voxel_size > 0) throw UsageError("give --resolution or --voxel-size, not both");

@@ -68,6 +68,7 @@ struct RunReport {
   std::vector<MaterialFidelity> fidelity;
   std::map<MaterialTag, std::string> material_names;
   std::optional<SimplifyReport> simplify;
+  double tolerance = 0;  ///< input units; 0: none
   double seconds_read = 0, seconds_mesh = 0, seconds_write = 0, seconds_total = 0;
   std::vector<Shortfall> shortfall;
 };

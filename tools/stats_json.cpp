@@ -281,6 +281,11 @@ std::string stats_json(const CommandLine& line, const RunReport& run) {
   if (run.mesher) j["fidelity"] = fidelity_json(run.fidelity);
   if (!run.features.empty()) j["features"] = features_json(run.features);
   if (!run.patches.empty()) j["patches"] = patches_json(run.patches);
+  if (run.simplify && run.simplify->deviation)
+    j["tolerance"] = {{"distance", run.tolerance},
+                      {"held", run.simplify->deviation->upper() <= run.tolerance},
+                      {"from_mesh", deviation_json(run.simplify->deviation->from_mesh)},
+                      {"from_surface", deviation_json(run.simplify->deviation->from_surface)}};
   if (run.crease_fidelity) j["creases"] = creases_json(*run.crease_fidelity);
   j["iterations"] = nlohmann::json::array();
   if (run.simplify)

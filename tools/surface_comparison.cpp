@@ -4,15 +4,16 @@
 #include <cstdio>
 #include <utility>
 
+#include "common/geometry/projection_tree.h"
 #include "common/mesh/solid_shape.h"
+
 #include "common/message_text.h"
+#include "common/tolerances.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Bounds of distances are this near to each other, as a share of the diagonal, where 1 % would be less.
-constexpr double accuracy_share = 1e-6;
 /// Creases of a mesh are looked for where those of its surface were found: find_patches(), automatic.
 constexpr double crease_degrees = 35;
 
@@ -97,7 +98,7 @@ SurfaceComparison compare_with_surfaces(TetMesh& mesh, const std::vector<Triangl
       for (const Index p : t) box.add(s.points[p]);
   c.diagonal = (box.high - box.low).norm();
   const ProjectionTree of_mesh = tree_of(mesh, surfaces.size() > 1), of_surfaces = tree_of(surfaces);
-  const double accuracy = accuracy_share * c.diagonal;
+  const double accuracy = tolerance::deviation_share * c.diagonal;
   c.from_mesh = surface_deviation(of_mesh, of_surfaces, accuracy);
   c.from_surfaces = surface_deviation(of_surfaces, of_mesh, accuracy);
   if (surfaces.size() == 1) c.solid = compare_solid(mesh, surfaces.front(), names.front());

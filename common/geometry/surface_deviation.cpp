@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/geometry/even_points.h"
+#include "common/geometry/projection_tree.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 

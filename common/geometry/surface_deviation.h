@@ -1,9 +1,10 @@
 #pragma once
 
-#include "common/geometry/projection_tree.h"
 #include "common/types.h"
 
 namespace tetwright {
+
+class ProjectionTree;
 
 /// How far a surface is from another: the largest distance of all its points, those between the corners too,
 /// is proven to be from `lower` to `upper`. Units of the input.

@@ -23,11 +23,6 @@ constexpr double place_distance = 0.5;
 /// Dense tets for each cell that is split, about: half of its eight parts are inside.
 constexpr double tets_of_split = 42;
 
-struct Narrow {
-  Vec3 place;  ///< voxels
-  int depth;   ///< halvings that it needs
-};
-
 struct Split {
   int depth;  ///< of the cell
   MortonKey key;
@@ -35,8 +30,9 @@ struct Split {
   bool operator<(const Split& o) const { return depth != o.depth ? depth < o.depth : key < o.key; }
 };
 
-std::vector<Narrow> narrow_places(const RepairedSurface& surface, const SurfacePatches& patches,
-                                  const GridFrame& frame, int max_depth) {
+/// In voxels.
+std::vector<FinePlace> narrow_places(const RepairedSurface& surface, const SurfacePatches& patches,
+                                     const GridFrame& frame, int max_depth) {
   const SurfaceCreases creases = find_creases(surface.points, surface.triangles, patches.patches);
   std::vector<Vec3> points;
   points.reserve(surface.points.size());
@@ -46,9 +42,9 @@ std::vector<Narrow> narrow_places(const RepairedSurface& surface, const SurfaceP
     segments.push_back({{s.ends[0], s.ends[1], s.ends[1]}, {s.patches[0], s.patches[1], 0}});
   for (const Index c : creases.corners) corners.push_back({{c, c, c}, {}});
   const ProjectionTree segment_tree(points, std::move(segments)), corner_tree(points, std::move(corners));
-  return parallel_collect<Narrow>(
+  return parallel_collect<FinePlace>(
       0, creases.segments.size(), segment_grain,
-      [&](std::size_t begin, std::size_t end, std::vector<Narrow>& out) {
+      [&](std::size_t begin, std::size_t end, std::vector<FinePlace>& out) {
         for (std::size_t i = begin; i < end; ++i) {
           const SurfaceCreases::Segment& segment = creases.segments[i];
           const std::array<std::uint16_t, 2>& own = segment.patches;
@@ -77,13 +73,16 @@ std::vector<Narrow> narrow_places(const RepairedSurface& surface, const SurfaceP
 }  // namespace
 
 NarrowPatches find_narrow_patches(const RepairedSurface& surface, const SurfacePatches& patches,
-                                  const GridFrame& frame, int max_depth, double max_tets) {
-  if (!patches.any() || max_depth <= 0) return {};
-  const std::vector<Narrow> places = narrow_places(surface, patches, frame, max_depth);
+                                  const GridFrame& frame, const std::vector<FinePlace>& asked, int max_depth,
+                                  double max_tets) {
+  if (max_depth <= 0) return {};
+  std::vector<FinePlace> places;
+  if (patches.any()) places = narrow_places(surface, patches, frame, max_depth);
+  for (const FinePlace& p : asked) places.push_back({frame.to_grid(p.place), p.halvings});
   for (; max_depth > 0; --max_depth) {
     std::vector<Split> splits;
-    for (const Narrow& n : places)
-      for (int depth = 0; depth < std::min(n.depth, max_depth); ++depth) {
+    for (const FinePlace& n : places)
+      for (int depth = 0; depth < std::min(n.halvings, max_depth); ++depth) {
         const Vec3 cell = n.place * std::ldexp(1, depth);
         const auto along = [&](int axis, int step) {
           return std::max(0, static_cast<int>(std::floor(cell[axis])) + step);

@@ -3,13 +3,14 @@
 #include <vector>
 
 #include "common/features/surface_patches.h"
+#include "mesher/domain/fine_place.h"
 #include "mesher/domain/finer_cells.h"
 #include "mesher/domain/grid_frame.h"
 #include "mesher/input/surface_repair.h"
 
 namespace tetwright {
 
-/// Where patches are narrow.
+/// Where patches are narrow, or cells smaller for other reasons.
 struct NarrowPatches {
   FinerCells finer;
   std::vector<MortonKey> voxels;  ///< of which cells are smaller, ascending: their distances must be exact
@@ -18,7 +19,9 @@ struct NarrowPatches {
 /// Where a patch is so narrow that cells would not show both its creases: cells there are halved until its
 /// width has two of them, at most `max_depth` times and as long as that adds no more than about `max_tets`
 /// dense tets (else nowhere so deep). Near a corner, where creases meet, a patch ends and is not narrow.
+/// `asked`: other places where cells are halved, input units.
 NarrowPatches find_narrow_patches(const RepairedSurface& surface, const SurfacePatches& patches,
-                                  const GridFrame& frame, int max_depth, double max_tets);
+                                  const GridFrame& frame, const std::vector<FinePlace>& asked, int max_depth,
+                                  double max_tets);
 
 }  // namespace tetwright

@@ -216,6 +216,18 @@ bool SurfaceSamples::stays_near_surface(const SurfaceGrid::Edit& edit, double ma
   if (!(max_distance < std::numeric_limits<double>::infinity())) return true;
   double allowed = max_distance;
   bool measured = false;
+  // The places of a triangle in between, where it is large.
+  const auto inside_stays = [&](const std::array<Vec3, 3>& p) {
+    const double longest2 =
+        std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
+    if (!(longest2 > spacing_ * spacing_)) return true;
+    const int steps = static_cast<int>(std::ceil(std::sqrt(longest2) / spacing_));
+    const Vec3 u = (p[1] - p[0]) / steps, v = (p[2] - p[0]) / steps;
+    for (int i = 0; i <= steps; ++i)
+      for (int j = 0; i + j <= steps; ++j)
+        if (!surface_.any_within(p[0] + i * u + j * v, allowed)) return false;
+    return true;
+  };
   // Samples are on the surface.
   const auto near = [&](const Vec3& p) {
     const double allowed2 = allowed * allowed;
@@ -261,6 +273,7 @@ bool SurfaceSamples::stays_near_surface(const SurfaceGrid::Edit& edit, double ma
       const int l = (k + 1) % 3;
       if ((moved[k] || moved[l] || !had_edge(ids[k], ids[l])) && !stays((p[k] + p[l]) / 2)) return false;
     }
+    if (!inside_stays(p)) return false;
   }
   return true;
 }

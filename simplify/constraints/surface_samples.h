@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -59,6 +60,8 @@ class SurfaceSamples {
   /// triangle farther from the surface than that, and than one of the samples was: its centre, the middles of
   /// its new edges, and a corner that moved. Safe while nothing is committed.
   bool hand_over(SurfaceGrid::Edit& edit, double max_distance) const;
+  /// From now on the places on an added triangle that are tested are at most this far from each other.
+  void set_spacing(double spacing) { spacing_ = spacing; }
 
   /// Calls f(position) for each sample of a triangle.
   template <class F>
@@ -90,6 +93,7 @@ class SurfaceSamples {
   bool stays_near_surface(const SurfaceGrid::Edit& edit, double max_distance) const;
 
   const ProjectionTree& surface_;
+  double spacing_ = std::numeric_limits<double>::infinity();
   std::vector<Sample> samples_;
   std::vector<std::uint32_t> first_;  ///< by record
   std::vector<Kind> kinds_;           ///< by record

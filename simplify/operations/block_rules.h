@@ -51,6 +51,8 @@ struct BlockRules {
   /// How far a sample of the input's surface may be from the triangle that owns it, and a new triangle from
   /// the input's surface, unless they were as far before (needs SurfaceGrid::samples()).
   double max_deviation = std::numeric_limits<double>::infinity();
+  /// What max_deviation must never exceed.
+  double tolerance = std::numeric_limits<double>::infinity();
   /// The mesh has patches (needs `projection`): points move on them and along the creases between them, and
   /// nowhere else where they are flat. A segment of a crease strays from the creases as they came by no more
   /// than this, or than those did that it replaces; 0: no patches.

@@ -48,8 +48,11 @@ class Engine {
   /// Keeps what the mesh as it came stands for: the `surface` (input units) that it was made from, or its own
   /// one. Before the first operation.
   void keep_input_surface(const TriangleMesh* surface);
-  /// From now on triangles own samples of that.
-  void own_samples();
+  /// From now on triangles own samples of that, some ten for each triangle with edges of this length.
+  void own_samples(double edge);
+  void set_spacing(double spacing) { spacing_ = spacing; }
+  /// How far the mesh's surface is from that, proven.
+  DeviationReport deviation() const;
   bool owns_samples() const { return samples_ != nullptr; }
   /// compact() where so many slots are dead that it pays.
   void compact_if_sparse();
@@ -98,6 +101,7 @@ class Engine {
   SurfaceProjection projection_;
   std::unique_ptr<const InputSurface> input_surface_;
   std::unique_ptr<SurfaceSamples> samples_;
+  double spacing_ = std::numeric_limits<double>::infinity();
   BlockRunner runner_;
   RoundRecorder recorder_;
 };

@@ -58,7 +58,7 @@ class ImprovementLoop {
   int run() {
     surgery_ = surgery_rules(rules_, area_.usual_edge());
     surgery_.leave_surface = true;
-    max_deviation_ = max_deviation_factor * rules_.max_deviation;
+    max_deviation_ = std::min(rules_.tolerance, max_deviation_factor * rules_.max_deviation);
     min_poor_ = 4 * area_.tet_count();
     int i = 0;
     for (; i < plan_.max_rounds; ++i) {

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/geometry/quality.h"
+#include "common/geometry/surface_deviation.h"
 #include "common/reference_surface.h"
 #include "common/triangle_mesh.h"
 #include "simplify/mesh/outcome.h"
@@ -18,7 +21,7 @@ enum class Schedule : std::uint8_t {
 };
 
 struct SimplifyOptions {
-  std::size_t target_tets = 10000;  ///< at least 1
+  std::size_t target_tets = 10000;  ///< at least 1; with a tolerance 0: as few as it holds
   double min_solid_angle = 0.1;     ///< steradians; tets below it are what the closing rounds work on
   double beta = 5;           ///< the paper's: largest edge, in ideal edges, that Quality does not penalise
   double gamma = 10;         ///< the paper's: weight of the volume error against the length of an edge
@@ -31,6 +34,11 @@ struct SimplifyOptions {
   /// The surface as it was given (input units), where there is one: what the mesh's surface is fitted to and
   /// kept near. Null: the mesh's own surface as it comes. Must outlive the call.
   const TriangleMesh* surface = nullptr;
+  /// How far any point of the mesh's surface and of `surface` may be from the other, input units; 0: no
+  /// bound but the count. Where `surface` is null, the mesh's own surface as it comes. What is farther from
+  /// the start does not come nearer for it: SimplifyReport::deviation says what was reached. The tuned
+  /// schedule's.
+  double tolerance = 0;
   std::uint64_t seed = 1;
   /// Points or tets of a batch (BlockRunner), at most; 0: from the number of items. Results depend on it,
   /// never on the number of threads.
@@ -76,10 +84,19 @@ struct IterationReport {
   double seconds = 0;
 };
 
+/// How far the result is from the surface that it stands for, proven; input units. Parts of the input mesh's
+/// own surface that are far from SimplifyOptions::surface (caps of holes, layers, the box of an outside that
+/// is meshed) stand for themselves.
+struct DeviationReport {
+  SurfaceDeviation from_mesh, from_surface;
+  double upper() const { return std::max(from_mesh.upper, from_surface.upper); }
+};
+
 struct SimplifyReport {
   std::vector<IterationReport> iterations;
   std::size_t touching_points = 0;  ///< where parts touch without a common face: they stay as they are
   std::vector<std::uint64_t> decided_by_worker;  ///< items of blocks; the sum does not depend on the threads
+  std::optional<DeviationReport> deviation;      ///< with a tolerance
   double seconds_build = 0, seconds_simplify = 0, seconds_close = 0;
 };
 

@@ -40,6 +40,14 @@ constexpr double samples_below = 8;
 /// 0.43 with 0.2 and 1.1, 0.33 with 0.18 and 1.05, which takes longer and leaves less to shapes.
 constexpr double first_deviation = 0.2;
 constexpr double deviation_growth = 1.05;
+/// The share of SimplifyOptions::tolerance that samples may be off: between them a triangle may be farther.
+/// Bunny at 0.5 % ends at 0.98 and 0.99 of it with 0.92, which is as much as fits.
+constexpr double sampled_tolerance = 0.9;
+/// With a tolerance samples are as dense as for triangles with edges of so many sampled tolerances, at least.
+constexpr double tolerances_to_edge = 4;
+/// Without a count, from one target to the next; a stage has ended when an iteration over all tets removes
+/// less than this share of them.
+constexpr double stage_share = 0.6, stage_min_removed = 0.1;
 /// Every iteration fits surfaces below so many times the target: from 4 times the target on makes the result
 /// no better, none in the loop a tenth poorer.
 constexpr double fits_below = 2;
@@ -75,13 +83,11 @@ void flip_and_smooth_block(Engine& engine, float limit) {
       [] { return false; });
 }
 
-}  // namespace
-
-void run_tuned_schedule(Engine& engine, const SimplifyOptions& options) {
+/// Whether the target was reached.
+bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loop_target) {
   EditableMesh& mesh = engine.mesh();
   BlockRules& rules = engine.rules;
-  const auto target = static_cast<double>(options.target_tets);
-  const std::size_t loop_target = options.target_tets;
+  const auto target = static_cast<double>(loop_target);
   const double log_first =
       portable_log(std::max(static_cast<double>(mesh.live_tets()) / target, 1 + tolerance::at_target));
   const double max_error = max_useful_error * std::max(1.0, options.gamma / 10);
@@ -92,15 +98,13 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options) {
   rules.distance_weight = distance_weight;
   // Rounded up: for small targets the slack is less than one tet.
   rules.count.min = static_cast<std::size_t>(std::ceil(target * (1 - closing_slack)));
-  engine.compact();
-  engine.keep_input_surface(options.surface);
   engine.rate_all();
   double percent = percent_step;
   int idle = 0;
   for (int i = 0; i < options.max_iterations && mesh.live_tets() > loop_target; ++i) {
     if (!engine.owns_samples() && (static_cast<double>(mesh.live_tets()) < samples_below * target ||
                                    engine.ledger().strain() > fit_above_strain)) {
-      engine.own_samples();
+      engine.own_samples(rules.objective.quality.ideal_edge);
       rules.max_deviation = first_deviation * rules.objective.quality.ideal_edge;
     } else {
       engine.compact_if_sparse();
@@ -135,14 +139,43 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options) {
         10 * it.counts.of(Operation::collapse, Outcome::surface_error) > it.counts.tried(Operation::collapse);
     if (removed < min_removed) {
       rules.max_error = std::min(max_error, error_growth * rules.max_error);
-      rules.max_deviation *= deviation_growth;
+      rules.max_deviation = std::min(rules.tolerance, deviation_growth * rules.max_deviation);
     }
+    if (options.target_tets == 0 && removed < stage_min_removed && percent >= 100) break;
     idle = removed < idle_below && percent >= 100 && !error_refuses ? idle + 1 : 0;
     if (idle == max_idle_iterations) break;
     percent = std::min(100.0, percent + percent_step);
     engine.recorder().update(1 - log_now / log_first);
   }
   rules.accept_worse = 0;
+  return mesh.live_tets() <= loop_target;
+}
+
+}  // namespace
+
+void run_tuned_schedule(Engine& engine, const SimplifyOptions& options) {
+  EditableMesh& mesh = engine.mesh();
+  BlockRules& rules = engine.rules;
+  engine.compact();
+  engine.keep_input_surface(options.surface);
+  if (options.tolerance > 0) {
+    rules.tolerance = rules.max_deviation = sampled_tolerance * options.tolerance * mesh.space().scale();
+    engine.set_spacing(rules.tolerance);
+    const double edge = tolerances_to_edge * rules.tolerance;
+    engine.own_samples(options.target_tets > 0 ? std::min(rules.objective.quality.ideal_edge, edge) : edge);
+  }
+  if (options.target_tets > 0) {
+    simplify_to(engine, options, options.target_tets);
+    return;
+  }
+  // As few as the tolerance holds: sizes of tets follow one target after the other.
+  bool reached = true;
+  while (reached && mesh.live_tets() > 1) {
+    const auto target = static_cast<std::size_t>(stage_share * static_cast<double>(mesh.live_tets()));
+    rules.objective.quality =
+        TetQuality::for_target(mesh.total_volume(), static_cast<double>(target), options.beta);
+    reached = simplify_to(engine, options, std::max<std::size_t>(1, target));
+  }
 }
 
 }  // namespace tetwright

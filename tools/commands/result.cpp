@@ -69,6 +69,8 @@ std::string rules_behind_count(const CommandLine& line, const RunReport& report,
   if (reached > asked && report.mesher && static_cast<double>(report.mesher->filling_tets) > asked)
     return "walls so thin that fewer tets would be flat; ask for " +
            std::to_string(report.mesher->filling_tets) + " or more, or leave them out with --min-thickness";
+  if (reached > asked && report.tolerance > 0)
+    return std::to_string(report.result->tets) + " tets: the tolerance holds the rest back";
   if (reached > asked) return rules_limiting_count(*report.simplify, line.max_iterations);
   return static_cast<double>(report.dense->tets) < asked
              ? "the dense mesh, which has too few tets; raise --resolution"
@@ -85,12 +87,31 @@ void find_count_and_shape_shortfall(const CommandLine& line, RunReport& report) 
   const bool improved = line.command == Command::improve;
   const double asked = static_cast<double>(improved ? report.dense->tets : line.target_tets);
   const double reached = static_cast<double>(report.result->tets);
-  if (!line.free_count && std::fabs(reached - asked) > (improved ? improve_slack : target_slack) * asked)
+  if ((improved || line.target_tets > 0) && !line.free_count &&
+      std::fabs(reached - asked) > (improved ? improve_slack : target_slack) * asked)
     add("target_tets", improved ? "about the same count" : "--target-tets", asked, reached,
         rules_behind_count(line, report, asked, reached));
   if (line.min_solid_angle_given && report.result->min_solid_angle < line.min_solid_angle)
     add("min_solid_angle", "--min-solid-angle", line.min_solid_angle, report.result->min_solid_angle,
         rules_limiting_shapes(*report.simplify));
+}
+
+/// A tolerance that is not proven to be held.
+void find_deviation(RunReport& report) {
+  if (!report.simplify || !report.simplify->deviation) return;
+  const DeviationReport& d = *report.simplify->deviation;
+  if (d.upper() <= report.tolerance) return;
+  const bool mesh = d.from_mesh.upper >= d.from_surface.upper;
+  const SurfaceDeviation& worst = mesh ? d.from_mesh : d.from_surface;
+  const char* limit = report.mesher
+                          ? "the dense mesh is that far there; give a larger --resolution, or a larger "
+                            "tolerance"
+                          : "the mesh's own surface; give a larger tolerance";
+  report.shortfall.push_back({"tolerance", report.tolerance, worst.upper, limit,
+                              "short of --tolerance: " + number(report.tolerance) + " was asked, " +
+                                  number(worst.upper) + " reached from the " +
+                                  (mesh ? "mesh to the surface" : "surface to the mesh") + ", at " +
+                                  place_text(worst.place) + "; held back by: " + limit});
 }
 
 /// Tets below the bound where it is the default: a finding and no shortfall.
@@ -322,6 +343,7 @@ ExitStatus finish(const TetMesh& mesh, const MaterialField* field, CommandRun& r
     report_touching_points(report.inputs.front(), report);
     report_volumes(mesh, report.inputs.front(), report);
     find_count_and_shape_shortfall(run.line, report);
+    find_deviation(report);
     report_poor_shapes(run.line, report);
   } else {
     report.result = report.dense;  // the dense mesh is the result

@@ -10,6 +10,7 @@
 #include "common/formats/formats.h"
 #include "common/formats/label_names.h"
 #include "mesher/input/split_solids.h"
+#include "tools/commands/simplification.h"
 
 namespace tetwright {
 
@@ -175,7 +176,8 @@ MesherOptions common_options(const CommandLine& line) {
   return options;
 }
 
-DenseMesh mesh_input(const MesherInput& surfaces, const CommandLine& line, Progress* progress) {
+DenseMesh mesh_input(const MesherInput& surfaces, CommandRun& run) {
+  const CommandLine& line = run.line;
   MesherOptions options = common_options(line);
   if (line.uniform && line.max_refinement.value_or(0) > 0)
     throw UsageError("--uniform has cells of one size; leave out --max-refinement, or --uniform");
@@ -186,18 +188,26 @@ DenseMesh mesh_input(const MesherInput& surfaces, const CommandLine& line, Progr
   options.max_refinement = line.max_refinement;
   options.min_gap = line.min_gap.in_input_units(diagonal);
   options.min_thickness = line.min_thickness.in_input_units(diagonal);
-  if (!line.resolution && line.voxel_size == 0 && line.command == Command::prepare)
+  const bool choose = !line.resolution && line.voxel_size == 0 && line.command == Command::prepare;
+  if (choose && line.target_tets > 0)
     options.resolution = resolution_for_target(surfaces, line.target_tets, line.feature_angle);
-  return mesh_surfaces(surfaces, options, progress);
+  if (line.tolerance.value == 0) return mesh_surfaces(surfaces, options, &run.progress);
+  run.report.tolerance = tolerance_of(line, diagonal);
+  if (!choose) return mesh_surfaces(surfaces, options, &run.progress);
+  if (line.target_tets == 0) options.resolution = 0;
+  return mesh_within(surfaces, options, run.report.tolerance, &run.progress);
 }
 
-DenseMesh mesh_input(const LabelInput& labels, const CommandLine& line, Progress* progress) {
+DenseMesh mesh_input(const LabelInput& labels, CommandRun& run) {
+  const CommandLine& line = run.line;
   MesherOptions options = common_options(line);
   if (!line.resolution && line.voxel_size == 0)
-    options.voxel_size = line.command == Command::prepare
+    options.voxel_size = line.command == Command::prepare && line.target_tets > 0
                              ? cell_size_for_target(labels, line.target_tets, options)
                              : default_cell_size(labels);
-  return mesh_labels(labels, options, progress);
+  DenseMesh dense = mesh_labels(labels, options, &run.progress);
+  if (line.tolerance.value > 0) run.report.tolerance = tolerance_of(line, diagonal_of(dense.mesh));
+  return dense;
 }
 
 }  // namespace
@@ -221,8 +231,7 @@ ScanInput read_scan(CommandRun& run) {
 
 DenseMesh make_dense_mesh(ScanInput input, CommandRun& run) {
   const Stopwatch watch;
-  DenseMesh dense =
-      std::visit([&](const auto& scan) { return mesh_input(scan, run.line, &run.progress); }, input);
+  DenseMesh dense = std::visit([&](const auto& scan) { return mesh_input(scan, run); }, input);
   if (run.line.command == Command::mesh) {
     dense.reference.reset();
     if (run.line.write_sdf.empty()) dense.field.reset();

@@ -6,6 +6,7 @@
 #include "common/formats/formats.h"
 #include "common/mesh/foreign_mesh.h"
 #include "tools/commands/scan_input.h"
+#include "tools/commands/simplification.h"
 
 namespace tetwright {
 
@@ -68,6 +69,7 @@ TetInput read_tets(CommandRun& run) {
     throw UsageError("--target-tets " + std::to_string(run.line.target_tets) + " is above the " +
                      std::to_string(input.mesh.tets.size()) + " tets of " + file + "; give fewer");
   run.report.dense = mesh_statistics(input.mesh, run.line.min_solid_angle);
+  if (run.line.tolerance.value > 0) run.report.tolerance = tolerance_of(run.line, diagonal_of(input.mesh));
   return input;
 }
 

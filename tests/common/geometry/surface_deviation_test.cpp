@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/geometry/projection_tree.h"
 #include "common/parallel/parallel.h"
 #include "common/random.h"
 
