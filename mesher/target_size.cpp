@@ -7,10 +7,12 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "common/error.h"
 #include "common/geometry/projection_tree.h"
 #include "common/parallel/parallel.h"
+#include "common/parallel/parallel_sort.h"
 #include "mesher/labels/label_faces.h"
 #include "mesher/labels/label_field.h"
 #include "mesher/mesh_estimate.h"
@@ -85,37 +87,47 @@ constexpr double dense_tolerance_share = 0.5;
 /// Cells at first, in tolerances: where surfaces are smooth their meshes are within half of one.
 constexpr double first_cell = 2;
 constexpr int min_tolerance_resolution = 96;
+/// Cells within which the surface and the mesh stand for each other.
+constexpr double reach_cells = 2;
 constexpr int max_fine_rounds = 4;
 constexpr std::size_t place_grain = 256;
 
-/// The distances of the surface's points and of the centroids of its triangles from the boundary and the
-/// interfaces of the mesh, and these places.
-struct MeasuredPlaces {
-  std::vector<Vec3> at;
-  std::vector<double> distance;
-};
-
-MeasuredPlaces measure_places(const TriangleMesh& surface, const TetMesh& mesh) {
-  std::vector<ProjectionTree::Item> faces;
-  faces.reserve(mesh.interfaces.size());
-  for (const InterfaceTriangle& t : mesh.interfaces) faces.push_back({t.ids, {}});
-  const ProjectionTree tree(mesh.points, std::move(faces));
-  MeasuredPlaces places;
-  for (const Triangle& t : surface.triangles) {
-    for (const Index p : t) places.at.push_back(surface.points[p]);
-    places.at.emplace_back((surface.points[t[0]] + surface.points[t[1]] + surface.points[t[2]]) / 3);
+/// Vertices and centroids of the triangles.
+std::vector<Vec3> places_on(const ProjectionTree& surface) {
+  std::vector<Vec3> places;
+  std::vector<std::uint8_t> used(surface.points().size(), 0);
+  for (const ProjectionTree::Item& t : surface.items()) {
+    for (const Index p : t.corners)
+      if (!std::exchange(used[p], 1)) places.push_back(surface.points()[p]);
+    places.emplace_back((surface.corner(t, 0) + surface.corner(t, 1) + surface.corner(t, 2)) / 3);
   }
-  places.distance.resize(places.at.size());
-  parallel_for(0, places.at.size(), place_grain, [&](std::size_t begin, std::size_t end) {
-    double near = std::numeric_limits<double>::infinity();
-    for (std::size_t i = begin; i < end; ++i) {
-      // The one before is not far away.
-      if (i > begin) near = places.distance[i - 1] + (places.at[i] - places.at[i - 1]).norm() * (1 + 1e-9);
-      const auto hit = tree.nearest_of(places.at[i], near, [](const auto&) { return true; });
-      places.distance[i] = hit ? (hit->point - places.at[i]).norm() : near;
-    }
-  });
   return places;
+}
+
+/// Places of one surface that are farther from the other than `allowed`, with the halvings of cells there
+/// that would bring them as near as that if distances fell in proportion. What is farther than `reach` stands
+/// for something else: a cap, a layer, the box of an outside.
+void add_far_places(const ProjectionTree& from, const ProjectionTree& to, double allowed, double reach,
+                    std::vector<FinePlace>& far) {
+  const std::vector<Vec3> places = places_on(from);
+  const std::vector<FinePlace> found = parallel_collect<FinePlace>(
+      0, places.size(), place_grain, [&](std::size_t begin, std::size_t end, std::vector<FinePlace>& out) {
+        for (std::size_t i = begin; i < end; ++i) {
+          if (to.any_within(places[i], allowed)) continue;
+          const auto hit = to.nearest_of(places[i], reach, [](const auto&) { return true; });
+          if (!hit) continue;
+          const double halvings = std::ceil(std::log2((hit->point - places[i]).norm() / allowed));
+          out.push_back({places[i], static_cast<int>(std::clamp<double>(halvings, 1, max_refinement))});
+        }
+      });
+  far.insert(far.end(), found.begin(), found.end());
+}
+
+ProjectionTree tree_of(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
+  std::vector<ProjectionTree::Item> items;
+  items.reserve(triangles.size());
+  for (const Triangle& t : triangles) items.push_back({t, {}});
+  return {points, std::move(items)};
 }
 
 }  // namespace
@@ -158,24 +170,30 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
   }
   options.voxel_size = 0;
   options.resolution = std::max({min_tolerance_resolution, options.resolution, static_cast<int>(cells)});
+  // What cells cannot show is shown thicker by as much as a tolerance is wide, or closed.
+  if (!options.max_refinement) options.max_refinement = max_wall_refinement;
   const double allowed = dense_tolerance_share * tolerance;
-  std::vector<int> halvings;
+  const double reach = reach_cells * longest / options.resolution;
+  std::optional<DenseMesh> best;
+  std::size_t min_far = std::numeric_limits<std::size_t>::max();
   for (int round = 0;; ++round) {
     DenseMesh dense = mesh_surfaces(input, options, progress);
-    if (round == max_fine_rounds || options.uniform) return dense;
-    const MeasuredPlaces places = measure_places(*dense.surface, dense.mesh);
-    halvings.resize(places.at.size(), 0);
-    bool finer = false;
-    for (std::size_t i = 0; i < places.at.size(); ++i) {
-      if (places.distance[i] <= allowed || halvings[i] == max_refinement) continue;
-      const auto more = static_cast<int>(std::ceil(std::log2(places.distance[i] / allowed)));
-      halvings[i] = std::min(max_refinement, halvings[i] + std::max(1, more));
-      finer = true;
-    }
-    if (!finer) return dense;
-    options.fine_places.clear();
-    for (std::size_t i = 0; i < places.at.size(); ++i)
-      if (halvings[i] > 0) options.fine_places.push_back({places.at[i], halvings[i]});
+    std::vector<Triangle> faces;
+    faces.reserve(dense.mesh.interfaces.size());
+    for (const InterfaceTriangle& t : dense.mesh.interfaces) faces.push_back(t.ids);
+    const ProjectionTree mesh = tree_of(dense.mesh.points, faces),
+                         surface = tree_of(dense.surface->points, dense.surface->triangles);
+    std::vector<FinePlace> far;
+    add_far_places(surface, mesh, allowed, reach, far);
+    add_far_places(mesh, surface, allowed, reach, far);
+    // Smaller cells gain nothing where thin walls choose theirs, and may show that gaps are closed there.
+    if (far.size() >= min_far) return std::move(*best);
+    if (far.empty() || round == max_fine_rounds || options.uniform) return dense;
+    min_far = far.size();
+    best = std::move(dense);
+    // Where cells were halved before, once more.
+    for (FinePlace& place : far) place.halvings = std::min(max_refinement, place.halvings + round);
+    options.fine_places.insert(options.fine_places.end(), far.begin(), far.end());
   }
 }
 
