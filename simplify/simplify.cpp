@@ -28,7 +28,7 @@ constexpr double closing_margin = 1.27;
 /// up to 30 degrees). In the closing that would move the surface a quarter farther.
 constexpr double improve_margin = 1.5;
 /// The share by which closing may change the count where none was asked for.
-constexpr double free_closing_slack = 0.3;
+constexpr double free_closing_slack = 1;
 constexpr int sweeps_before_closing = 1, sweeps_after_closing = 2;
 /// Sweeps of fit_to_crease() before it.
 constexpr int crease_sweeps = 3;

@@ -168,6 +168,18 @@ std::vector<ListedTet> Engine::poor_tets(float limit) const {
   return tets_where([&](Index t) { return mesh_.quality(t) <= limit; });
 }
 
+double Engine::share_below(double angle) const {
+  Objective shape = rules.objective;
+  shape.kind = Objective::Kind::shape;
+  const auto bound = static_cast<float>(shape_quality_bound(shape.shape, angle));
+  const auto below = tets_where([&](Index t) {
+    const Tet& p = mesh_.points(t);
+    return shape(mesh_.position(p[0]), mesh_.position(p[1]), mesh_.position(p[2]), mesh_.position(p[3])) <
+           bound;
+  });
+  return static_cast<double>(below.size()) / static_cast<double>(std::max<std::size_t>(1, mesh_.live_tets()));
+}
+
 template <class Mark>
 std::vector<Index> Engine::marked_points(const Mark& mark) const {
   std::vector<std::uint8_t> marks(mesh_.point_slots(), 0);

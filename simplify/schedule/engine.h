@@ -70,6 +70,9 @@ class Engine {
   std::vector<ListedTet> poor_tets(float limit) const;
   /// The points of these tets, each once, in the order of the curve.
   std::vector<Index> poor_points(float limit) const;
+  /// The share of the tets whose shape is worse than this solid angle (steradians) stands for, whatever they
+  /// are rated by.
+  double share_below(double angle) const;
   /// The tets that share a point with a listed one, in the order of the curve, and their points, each once.
   std::vector<ListedTet> tets_around(const std::vector<ListedTet>& tets) const;
   std::vector<Index> points_around(const std::vector<ListedTet>& tets) const;
