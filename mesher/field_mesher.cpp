@@ -14,9 +14,11 @@
 #include "mesher/cut/cutting.h"
 #include "mesher/cut/point_mover.h"
 #include "mesher/cut/wall_restoring.h"
+#include "mesher/distance/thin_survey.h"
 #include "mesher/lattice/labelled_lattice.h"
 #include "mesher/lattice/lattice.h"
 #include "mesher/lattice/octree.h"
+#include "mesher/lattice/sized_cells.h"
 #include "mesher/mesh_estimate.h"
 
 namespace tetwright {
@@ -189,6 +191,9 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
                      const std::function<void(const std::vector<std::uint8_t>&)>& validate_regions) {
   DenseMesh result;
   Progress* progress = stages.progress();
+  if (options.max_cell && !options.uniform)
+    finer = combine(std::move(finer),
+                    find_sized_cells(*field, options.max_cell, options.keep_outside, progress));
   report.refinement = finer.refinement;
   if (finer.refinement > 0) field = field->refined(finer.refinement);
   Octree octree = build_octree(*field, {options.uniform, options.adaptivity, finer.coarsest_interface_level},

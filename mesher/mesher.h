@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include "common/mesh/solid_shape.h"
 #include "common/progress.h"
 #include "common/reference_surface.h"
+#include "common/sizes/size_field.h"
 #include "common/tet_mesh.h"
 #include "mesher/distance/vdb_files.h"
 #include "mesher/domain/fine_place.h"
@@ -33,6 +35,9 @@ struct MesherOptions {
   /// Where cells are halved besides, up to max_refinement times, as long as that at most doubles the mesh;
   /// input units.
   std::vector<FinePlace> fine_places;
+  /// The largest cell that is wanted at a place, input units: cells inside, and with keep_outside all, are
+  /// split until they are no larger, at surfaces down to a finest cell. Empty: any. Not with `uniform`.
+  std::function<double(const Vec3&)> max_cell;
   /// Which edges of the surfaces stay sharp.
   FeatureAngle feature_angle;
   /// Mesh the outside too, in a box (that of the volume for labels), as the material `outside` of tag 0.
@@ -184,5 +189,11 @@ double cell_size_for_target(const LabelInput& labels, std::size_t target_tets, c
 /// have a choice, or 100 where surfaces have creases at this angle: at least 32, and at most some 20 million
 /// dense tets. Throws UsageError for a target of 0, InputError as find_patches() does.
 int resolution_for_target(const MesherInput& input, std::size_t target_tets, const FeatureAngle& angle);
+
+/// Sets the resolution, at least that of `options`, and the fine places of `options` so that dense cells are
+/// small enough for edges of the lengths that `wish` wants at the surfaces, or that are at most `max_edge`
+/// long. `wish` may be null, `max_edge` infinite.
+void choose_cells_for_sizes(const MesherInput& input, const SizeField* wish, double max_edge,
+                            MesherOptions& options);
 
 }  // namespace tetwright

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/error.h"
+#include "common/geometry/even_points.h"
 #include "common/geometry/projection_tree.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
@@ -81,6 +82,17 @@ bool has_creases(const MesherInput& input, const FeatureAngle& angle) {
     return !s.intersects_itself && find_patches(s.points, s.triangles, {angle, 0}, {}, b.file).any();
   });
 }
+
+/// Cells of a dense mesh for edges of a wanted length, over that: 1 / 2.5, so that the simplifier has a
+/// choice.
+constexpr double cell_per_edge = 0.4;
+/// The same of the largest cells inside, which are halved until they are as small: half as small on average.
+constexpr double inner_cell_per_edge = 0.8;
+/// Cells along the longest side for wanted sizes, at most; where smaller ones are wanted, cells are halved and
+/// edges split.
+constexpr double max_sized_resolution = 256;
+/// Places of each surface where sizes are asked for.
+constexpr double sized_places = 20000;
 
 /// The share of a tolerance that a dense mesh may use up.
 constexpr double dense_tolerance_share = 0.5;
@@ -195,6 +207,61 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
     for (FinePlace& place : far) place.halvings = std::min(max_refinement, place.halvings + round);
     options.fine_places.insert(options.fine_places.end(), far.begin(), far.end());
   }
+}
+
+void choose_cells_for_sizes(const MesherInput& input, const SizeField* wish, double max_edge,
+                            MesherOptions& options) {
+  const double longest = longest_side(input);
+  const double most = std::min<double>(max_resolution, max_sized_resolution);
+  const auto need = [&](double cell) {
+    options.resolution = std::max(
+        {options.resolution, min_target_resolution, static_cast<int>(std::min(most, std::ceil(longest / cell)))});
+  };
+  if (!wish && !std::isfinite(max_edge)) return;
+  options.max_cell = [wish, max_edge](const Vec3& place) {
+    return inner_cell_per_edge * (wish ? wish->at(place) : max_edge);
+  };
+  if (!wish) {
+    need(cell_per_edge * max_edge);
+    return;
+  }
+  struct SizedPlace {
+    Vec3 place;
+    double cell;
+  };
+  std::vector<SizedPlace> places;
+  double area = 0, cells = 0;
+  for (const MesherInput::Body& body : input.bodies) {
+    const RepairedSurface& s = body.surface;
+    const double area_each = s.area / sized_places;
+    double due = 0.5;
+    std::size_t drawn = 0;
+    for (const Triangle& t : s.triangles) {
+      const Vec3 &a = s.points[t[0]], u = s.points[t[1]] - a, v = s.points[t[2]] - a;
+      const double of_triangle = u.cross(v).norm() / 2;
+      for (due += of_triangle / area_each; due >= 1; --due) {
+        const auto [x, y] = even_barycentric(drawn++);
+        const Vec3 place = a + x * u + y * v;
+        const double cell = cell_per_edge * wish->at(place);
+        places.push_back({place, cell});
+        area += area_each;
+        cells += area_each / (cell * cell);
+      }
+    }
+  }
+  if (places.empty()) return;
+  // Where cells of one size make as many as those of the wanted sizes, or somewhat smaller ones, so that few
+  // have to be halved; never smaller than the smallest.
+  const double smallest = std::min_element(places.begin(), places.end(), [](const auto& x, const auto& y) {
+                            return x.cell < y.cell;
+                          })->cell;
+  options.resolution = 0;
+  need(std::max(smallest, std::sqrt(area / cells)));
+  const double base = longest / options.resolution;
+  for (const SizedPlace& p : places)
+    if (const double halvings = std::ceil(std::log2(base / p.cell) - 0.5); halvings >= 1)
+      options.fine_places.push_back(
+          {p.place, static_cast<int>(std::min<double>(halvings, max_refinement))});
 }
 
 double cell_size_for_target(const LabelInput& labels, std::size_t target_tets, const MesherOptions& options) {

@@ -13,6 +13,7 @@
 #include "simplify/schedule/improve_area.h"
 #include "simplify/schedule/paper_schedule.h"
 #include "simplify/schedule/schedule_constants.h"
+#include "simplify/schedule/size_rounds.h"
 #include "simplify/schedule/tuned_schedule.h"
 
 namespace tetwright {
@@ -29,6 +30,10 @@ constexpr double closing_margin = 1.27;
 constexpr double improve_margin = 1.5;
 /// The share by which closing may change the count where none was asked for.
 constexpr double free_closing_slack = 1;
+/// The same where sizes of edges decide it.
+constexpr double sized_closing_slack = 0.1;
+/// More tets than can be numbered are not asked for.
+constexpr double max_sized_tets = 1 << 30;
 constexpr int sweeps_before_closing = 1, sweeps_after_closing = 2;
 /// Sweeps of fit_to_crease() before it.
 constexpr int crease_sweeps = 3;
@@ -91,8 +96,11 @@ void check(const TetMesh& mesh, const std::string& name) {
 }  // namespace
 
 TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report, Progress* progress) {
-  if (options.target_tets == 0 && !(options.tolerance > 0 && options.schedule == Schedule::tuned))
+  const bool tuned = options.schedule == Schedule::tuned;
+  if (options.target_tets == 0 && !((options.tolerance > 0 || options.sizes) && tuned))
     throw UsageError("a target of 0 tets leaves nothing; give 1 or more");
+  if (!(options.min_edge >= 0) || !(options.max_edge > options.min_edge))
+    throw UsageError("the max edge must be above the min edge, and that at least 0");
   if (!(options.tolerance >= 0)) throw UsageError("the tolerance must be at least 0");
   if (!(options.beta > 0) || !(options.gamma >= 0))
     throw UsageError("beta must be above 0 and gamma at least 0");
@@ -103,23 +111,43 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
       std::move(mesh),
       {options.name, static_cast<double>(options.target_tets > 0 ? options.target_tets : first_count),
        options.beta, options.gamma, options.seed, options.batch_size, options.objective, options.reference,
-       options.frozen, options.fix_boundary, options.schedule == Schedule::tuned},
+       options.frozen, options.fix_boundary, tuned},
       report, progress);
+  // Wanted sizes decide the count.
+  std::size_t target = options.target_tets;
+  const bool bounded = options.sizes || options.min_edge > 0 || std::isfinite(options.max_edge);
+  if (bounded && tuned) {
+    engine.set_sizes(options.sizes, options.min_edge, options.max_edge);
+    if (options.sizes) {
+      target = std::max<std::size_t>(1, static_cast<std::size_t>(std::min(engine.tets_for_sizes(), max_sized_tets)));
+      engine.rules.objective.quality = TetQuality::for_target(
+          engine.mesh().total_volume(), static_cast<double>(target), options.beta);
+    }
+  }
   engine.recorder().begin_stage("simplify");
   const double build = seconds_since(start);
   if (options.schedule == Schedule::paper) {
     run_paper_schedule(engine, options);
   } else {
-    run_tuned_schedule(engine, options);
+    run_tuned_schedule(engine, options, target);
   }
   const double loop_end = seconds_since(start);
   if (options.schedule == Schedule::tuned) {
     engine.recorder().begin_stage("improve");
     engine.begin_improvement();
-    const auto count = static_cast<double>(
-        options.target_tets > 0 ? std::min(options.target_tets, first_count) : engine.mesh().live_tets());
+    if (bounded) {
+      WholeMesh whole(engine);
+      run_size_rounds(tools_of(engine), whole,
+                      {.kind = "close",
+                       .angle = closing_margin * options.min_solid_angle,
+                       .min_tets = 1,
+                       .max_tets = std::numeric_limits<std::int64_t>::max()});
+    }
+    const bool counted = target > 0 && !bounded;
+    const auto count =
+        static_cast<double>(counted ? std::min(target, first_count) : engine.mesh().live_tets());
     // Without a count shapes are worth some tets more.
-    const double slack = options.target_tets > 0 ? closing_slack : free_closing_slack;
+    const double slack = counted ? closing_slack : bounded ? sized_closing_slack : free_closing_slack;
     const ImprovementPlan plan{.kind = "close",
                                .angle = closing_margin * options.min_solid_angle,
                                .leave_surface_angle = closing_margin * options.min_solid_angle,

@@ -189,11 +189,25 @@ void add_shaping(CLI::App& app, CommandLine& c, const char* iterations) {
 
 void add_simplifying(CLI::App& app, CommandLine& c) {
   add_whole_number(app, "--target-tets", c.target_tets, 1, max_target_tets,
-                   "Number of tets to reach; with --tolerance it may be left out: as few as hold it");
+                   "Number of tets to reach; with --tolerance it may be left out: as few as hold it. With "
+                   "--size-field the sizes decide");
   add_length(
       app, "--tolerance", c.tolerance,
       "How far any point of the mesh's surface and of the input's may be from the other, input units or "
       "percent of the diagonal; status 1 unless that is proven of the result");
+  app.add_option("--size-field", c.size_field,
+                 "Edge lengths wanted, input units: the point field of a tet or surface mesh, or a float grid "
+                 "(.vdb)")
+      ->type_name("FILE");
+  add_length(app, "--max-edge", c.max_edge,
+             "Max length of edges, input units or percent of the diagonal; longer ones are split");
+  add_length(app, "--min-edge", c.min_edge,
+             "Min length of edges, input units or percent of the diagonal; shorter ones are collapsed where "
+             "surfaces and shapes allow");
+  add_number(app, "--grading", c.grading, positive,
+             "How much the edge lengths of --size-field may grow from one place to another, over their "
+             "distance; where it says more they are made smaller")
+      ->default_str(short_text(c.grading));
   add_shaping(app, c, "Max number of block iterations, 1 to 10000");
   add_choice(app, "--schedule", c.schedule, {Schedule::tuned, Schedule::paper},
              "tuned: fast, ends with improvement; paper: operations in the order of Cutler et al. 2004");
@@ -403,8 +417,18 @@ void complete(const CLI::App& chosen, CommandLine& out) {
     out.min_voxels_given = chosen.count("--min-voxels") > 0;
   }
   if ((out.command == Command::prepare || out.command == Command::simplify) && out.target_tets == 0 &&
-      out.tolerance.value == 0)
-    throw UsageError("--target-tets is required; give the number of tets to reach, or --tolerance");
+      out.tolerance.value == 0 && out.size_field.empty())
+    throw UsageError(
+        "--target-tets is required; give the number of tets to reach, --tolerance, or --size-field");
+  if (out.command == Command::prepare || out.command == Command::simplify) {
+    if (chosen.count("--grading") > 0 && out.size_field.empty())
+      throw UsageError("--grading is for the edge lengths of a size field; give --size-field FILE");
+    if (out.schedule == Schedule::paper &&
+        (!out.size_field.empty() || out.min_edge.value > 0 || out.max_edge.value > 0))
+      throw UsageError(
+          "--schedule paper bounds no edges; leave out --size-field, --min-edge and --max-edge, or "
+          "--schedule");
+  }
   if (out.tolerance.value > 0 && out.schedule == Schedule::paper)
     throw UsageError("--schedule paper bounds no distances; leave out --tolerance, or --schedule");
   if (out.command == Command::check && out.tolerance.value > 0 && out.surfaces.empty())

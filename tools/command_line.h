@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/features/surface_patches.h"
+#include "common/sizes/size_field.h"
 #include "common/types.h"
 #include "mesher/mesher.h"
 #include "simplify/simplify.h"
@@ -50,6 +51,9 @@ struct CommandLine {
   bool free_count = false;  ///< `improve`
   bool fix_boundary = false;
   LengthOption tolerance;  ///< 0: none
+  std::string size_field;  ///< file; empty: none
+  LengthOption min_edge, max_edge;
+  double grading = default_grading;  ///< growth of the wanted edge length over distance
 
   int resolution = 0;     ///< 0: not given
   double voxel_size = 0;  ///< input units; 0: not given

@@ -124,6 +124,12 @@ void print_report(const CommandLine& line, const RunReport& run) {
                 100 * c.max_distance / c.diagonal, 100 * c.p99_distance / c.diagonal,
                 c.corners - c.lost_corners, c.corners);
   }
+  if (run.edge_lengths && run.edge_lengths->wished > 0)
+    std::printf("edge lengths: %.1f %% within %.3g times the wanted ones, median %.2f times; %.4g to %.4g\n",
+                100 * run.edge_lengths->within_share(), edge_length_factor, run.edge_lengths->median,
+                run.edge_lengths->shortest, run.edge_lengths->longest);
+  else if (run.edge_lengths)
+    std::printf("edge lengths: %.4g to %.4g\n", run.edge_lengths->shortest, run.edge_lengths->longest);
   if (run.mesher)
     std::printf("resolution %d (cells of %.4g), ", run.mesher->resolution, run.mesher->cell_size);
   std::printf("%.2f s: read %.2f", run.seconds_total, run.seconds_read);

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,9 +11,11 @@
 #include "common/features/surface_patches.h"
 #include "common/mesh/mesh_check.h"
 #include "common/mesh/mesh_statistics.h"
+#include "common/sizes/size_field.h"
 #include "mesher/mesher.h"
 #include "simplify/simplify.h"
 #include "tools/crease_fidelity.h"
+#include "tools/edge_lengths.h"
 #include "tools/fidelity.h"
 #include "tools/patch_fidelity.h"
 #include "tools/surface_comparison.h"
@@ -51,6 +55,15 @@ struct VolumeReport {
   std::size_t merged_islands, merged_voxels;
 };
 
+/// What --size-field, --min-edge, --max-edge and --grading ask for.
+struct RequestedSizes {
+  SizeLimits limits;
+  std::shared_ptr<const SizeSource> source;  ///< null: no size field
+  std::shared_ptr<const SizeField> wish;     ///< likewise
+
+  bool any() const { return wish || limits.min_edge > 0 || std::isfinite(limits.max_edge); }
+};
+
 /// Everything that a run of the program reports. What a command does not do stays empty.
 struct RunReport {
   std::vector<std::string> inputs;
@@ -69,6 +82,8 @@ struct RunReport {
   std::map<MaterialTag, std::string> material_names;
   std::optional<SimplifyReport> simplify;
   double tolerance = 0;  ///< input units; 0: none
+  RequestedSizes sizes;
+  std::optional<EdgeLengthReport> edge_lengths;  ///< where sizes are asked for
   double seconds_read = 0, seconds_mesh = 0, seconds_write = 0, seconds_total = 0;
   std::vector<Shortfall> shortfall;
 };

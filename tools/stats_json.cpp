@@ -174,6 +174,19 @@ nlohmann::json creases_json(const CreaseFidelity& c) {
           {"same", c.same()}};
 }
 
+nlohmann::json edge_lengths_json(const EdgeLengthReport& e) {
+  nlohmann::json j{{"edges", e.edges},
+                   {"shortest", e.shortest},
+                   {"longest", e.longest},
+                   {"above_max", e.above_max.count},
+                   {"below_min", e.below_min.count}};
+  if (e.wished > 0) {
+    j["within_percent"] = 100 * e.within_share();
+    j["median_ratio"] = e.median;
+  }
+  return j;
+}
+
 nlohmann::json deviation_json(const SurfaceDeviation& d) {
   return {{"lower", d.lower}, {"upper", d.upper}, {"place", place_json(d.place)}, {"rms", d.rms}};
 }
@@ -286,6 +299,7 @@ std::string stats_json(const CommandLine& line, const RunReport& run) {
                       {"held", run.simplify->deviation->upper() <= run.tolerance},
                       {"from_mesh", deviation_json(run.simplify->deviation->from_mesh)},
                       {"from_surface", deviation_json(run.simplify->deviation->from_surface)}};
+  if (run.edge_lengths) j["edge_lengths"] = edge_lengths_json(*run.edge_lengths);
   if (run.crease_fidelity) j["creases"] = creases_json(*run.crease_fidelity);
   j["iterations"] = nlohmann::json::array();
   if (run.simplify)

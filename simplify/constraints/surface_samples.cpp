@@ -32,8 +32,10 @@ struct Place {
   std::size_t item;
 };
 
-/// Vertices of the triangles, and points on them where they are large: one for each `area_each`.
-std::vector<Place> spread_places(const ProjectionTree& surface, double area_each) {
+/// Vertices of the triangles, and points on them where they are large: one for each `area_each`, times the
+/// square of the scale there.
+std::vector<Place> spread_places(const ProjectionTree& surface, double area_each,
+                                 const std::function<double(const Vec3&)>& scale) {
   std::vector<std::uint8_t> used(surface.points().size(), 0);
   std::vector<Place> places;
   double due = 0;
@@ -41,7 +43,8 @@ std::vector<Place> spread_places(const ProjectionTree& surface, double area_each
   for (std::size_t i = 0; i < surface.items().size(); ++i) {
     const ProjectionTree::Item& item = surface.items()[i];
     const Vec3 &a = surface.corner(item, 0), &b = surface.corner(item, 1), &c = surface.corner(item, 2);
-    due += area(a, b, c) / area_each;
+    const double here = scale((a + b + c) / 3);
+    due += area(a, b, c) / (area_each * here * here);
     for (const Index p : item.corners)
       if (due > -1 && !std::exchange(used[p], 1)) {
         places.push_back({surface.points()[p], i});
@@ -105,7 +108,7 @@ InputSurface::InputSurface(const EditableMesh& mesh, const TriangleMesh* given) 
 }
 
 SurfaceSamples::SurfaceSamples(const EditableMesh& mesh, std::size_t records, const InputSurface& surface,
-                               double edge)
+                               double edge, const std::function<double(const Vec3&)>& scale)
     : surface_(surface.triangles()) {
   const std::vector<InterfaceFace> faces = mesh.interface_faces();
   resize(records);
@@ -124,7 +127,7 @@ SurfaceSamples::SurfaceSamples(const EditableMesh& mesh, std::size_t records, co
     return (tree.corner(item, 1) - a).cross(tree.corner(item, 2) - a);
   };
   const std::vector<Place> places =
-      spread_places(surface_, equilateral_area * edge * edge / samples_per_triangle);
+      spread_places(surface_, equilateral_area * edge * edge / samples_per_triangle, scale);
   struct Owner {
     std::uint32_t record;
     double distance;

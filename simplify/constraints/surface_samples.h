@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -52,8 +53,11 @@ class SurfaceSamples {
   static constexpr std::uint32_t none = 0xffffffffu;
 
   /// For a mesh whose grid was just built. `edge`: of a triangle of the mesh to come, for which there will be
-  /// some ten samples, vertices of the input first. `surface` must outlive this.
-  SurfaceSamples(const EditableMesh& mesh, std::size_t records, const InputSurface& surface, double edge);
+  /// some ten samples, vertices of the input first; at a place it is scale(place) times that. `surface` must
+  /// outlive this.
+  SurfaceSamples(
+      const EditableMesh& mesh, std::size_t records, const InputSurface& surface, double edge,
+      const std::function<double(const Vec3&)>& scale = [](const Vec3&) { return 1; });
 
   /// Gives the samples of an edit's removed triangles (its records must be known) to added ones. False if a
   /// sample would be farther from its triangle than `max_distance`, and than before; or a place on an added

@@ -24,14 +24,16 @@ enum class Outcome : std::uint8_t {
   count,              ///< fewer tets than wanted would be left, or more
   too_large,          ///< the star holds more points than are worth the time
   volume,             ///< a material's volume would leave its bounds (VolumeLedger)
+  edge_length,        ///< an edge would be longer or shorter than it should be (EdgeSizes)
 };
-inline constexpr std::size_t outcome_count = 14;
+inline constexpr std::size_t outcome_count = 15;
 
 /// As the statistics call them: their keys are fixed.
 inline constexpr std::array<std::string_view, outcome_count> outcome_names{
     "done",          "lock_taken", "stale",     "no_candidate",   "material_rule",
     "surface_error", "inverts",    "quality",   "link_condition", "self_intersection",
-    "no_room",       "count",      "too_large", "volume"};
+    "no_room",       "count",      "too_large", "volume",
+    "edge_length"};
 
 /// The kinds of operation that are counted.
 enum class Operation : std::uint8_t {

@@ -53,7 +53,9 @@ bool near_reference(const BlockRules& rules, const SurfaceGrid::Added& t, Region
   if (!rules.projection || !(rules.max_distance > 0)) return true;
   const auto& p = t.triangle.points;
   const Vec3 centre = (p[0] + p[1] + p[2]) / 3;
-  return rules.projection->onto_surface(centre, inside, across, t.patch, rules.max_distance).has_value();
+  return rules.projection
+      ->onto_surface(centre, inside, across, t.patch, rules.max_distance * rules.scale_at(centre))
+      .has_value();
 }
 
 float quality_of(const EditableMesh& mesh, const BlockRules& rules, const Tet& t) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "simplify/constraints/edge_sizes.h"
 #include "simplify/constraints/surface_grid.h"
 #include "simplify/constraints/surface_projection.h"
 #include "simplify/mesh/editable_mesh.h"
@@ -45,6 +46,12 @@ struct BlockRules {
   /// Collapses take only edges up to the first length, and make none longer than the second.
   double max_collapsed_edge = std::numeric_limits<double>::infinity(),
          max_edge = std::numeric_limits<double>::infinity();
+  /// What lengths edges should have; null: any. No operation then leaves an edge that is longer, or shorter,
+  /// than its bound and than all edges that it changes were. Where there is a wish, `max_error`,
+  /// `max_distance` and `max_deviation` are for edges of the average length, see scale_at().
+  const EdgeSizes* sizes = nullptr;
+  /// Collapses take only edges that `sizes` calls too short.
+  bool collapse_short_only = false;
   /// How far the centre of a new interface triangle may be from the reference (needs `projection`); 0: not
   /// checked. Unlike E it does not add up over several operations.
   double max_distance = 0;
@@ -70,6 +77,10 @@ struct BlockRules {
   /// volume.
   const SurfaceProjection* projection = nullptr;
 
+  /// The wanted length of edges at a place over the average one of the mesh to come; 1 without a wish.
+  double scale_at(const Vec3& place) const {
+    return sizes && sizes->has_wish() ? objective.scale_at(place) : 1;
+  }
   /// Sets `projection`, and what keeps patches where there are some. `diagonal` of the mesh's bounding box.
   void project_onto(const SurfaceProjection& surfaces, double diagonal);
 };

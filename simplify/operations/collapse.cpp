@@ -15,6 +15,7 @@ int depth(Outcome o) {
   switch (o) {
     case Outcome::count:
       return 7;
+    case Outcome::edge_length:
     case Outcome::self_intersection:
     case Outcome::volume:
       return 6;
@@ -157,7 +158,8 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
   }
   // Beside the paper's volumes: the tip of a spike has next to none.
   if (!star.interface_triangles.empty() && rules.distance_weight > 0 &&
-      rules.distance_weight * distance_left(star, b) > rules.max_error)
+      rules.distance_weight * distance_left(star, b) >
+          rules.max_error * rules.scale_at(star.centre_position))
     return Outcome::surface_error;
   if (!(rules.embedded && star.interface_triangles.empty()) &&
       !ws.link_condition.holds(ws.mesh, ws.grid, star, b))
@@ -201,12 +203,16 @@ Outcome collapse(Workspace& ws, const BlockRules& rules) {
 
   std::vector<CollapseTarget>& targets = ws.targets;
   targets.clear();
+  const double max_error = rules.max_error * rules.scale_at(star.centre_position);
   Outcome refusal = Outcome::material_rule;
   for (std::size_t p = 0; p < star.points.size(); ++p) {
     if (star.edge_dimension(p) != dimension) continue;
     if ((star.positions[p] - star.centre_position).norm() > rules.max_collapsed_edge) continue;
+    if (rules.collapse_short_only &&
+        !(rules.sizes->excess(star.centre_position, star.positions[p]).shorter > 1))
+      continue;
     const double weight = collapse_weight(star, p, rules);
-    if (weight > rules.max_error) {
+    if (weight > max_error) {
       refusal = Outcome::surface_error;
       continue;
     }

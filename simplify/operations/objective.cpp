@@ -17,4 +17,11 @@ double Objective::precise_signed_value(const Vec3& a, const Vec3& b, const Vec3&
       0.0, orient3d_value(a, b, c, d) / (longest2 * std::sqrt(longest2)) - tolerance::inverted_quality);
 }
 
+double Objective::sized_quality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
+  TetQuality local = quality;
+  local.ideal_edge = sizes->wish((a + b + c + d) / 4) / edge_to_ideal;
+  local.ideal_volume = local.ideal_edge * local.ideal_edge * local.ideal_edge;
+  return local.cubed(a, b, c, d);
+}
+
 }  // namespace tetwright

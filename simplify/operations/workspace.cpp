@@ -7,6 +7,39 @@
 
 namespace tetwright {
 
+namespace {
+
+/// Whether no edge is too long, or too short, that the proposal makes: or at least none by more than one that
+/// it takes away.
+bool keeps_sizes(const Workspace& ws, const EdgeSizes& sizes) {
+  const Proposal& p = ws.proposal;
+  EdgeSizes::Excess before{1, 1}, after{0, 0};
+  const auto add = [&](EdgeSizes::Excess& worst, const Vec3& a, const Vec3& b) {
+    const EdgeSizes::Excess e = sizes.excess(a, b);
+    worst.longer = std::max(worst.longer, e.longer);
+    worst.shorter = std::max(worst.shorter, e.shorter);
+  };
+  if (p.change == Proposal::Change::replace) {
+    const auto add_tet = [&](EdgeSizes::Excess& worst, const Tet& t) {
+      const auto at = [&](Index id) { return id == unnumbered_point ? p.position : ws.mesh.position(id); };
+      for (const auto& e : tet_edges) add(worst, at(t[e[0]]), at(t[e[1]]));
+    };
+    for (const Index t : p.removed) add_tet(before, ws.mesh.points(t));
+    for (const NewTet& t : p.added) add_tet(after, t.points);
+  } else {
+    const Star& star = ws.star;
+    const bool moves = p.change == Proposal::Change::move;
+    const Vec3& to = moves ? p.position : ws.mesh.position(p.target);
+    for (std::size_t i = 0; i < star.points.size(); ++i) {
+      add(before, star.centre_position, star.positions[i]);
+      if (moves || star.points[i] != p.target) add(after, to, star.positions[i]);
+    }
+  }
+  return after.longer <= before.longer && after.shorter <= before.shorter;
+}
+
+}  // namespace
+
 Outcome Workspace::gather(Index point) {
   const Outcome o = star.gather(mesh, point);
   if (o != Outcome::done || !mesh.interface_patches()) return o;
@@ -28,13 +61,17 @@ float Workspace::acceptance_limit(const BlockRules& rules, float worst) {
 Outcome Workspace::test_surface(const BlockRules& rules) {
   if (!grid.test(proposal.edit)) return Outcome::self_intersection;
   const SurfaceSamples* samples = grid.samples();
-  return !samples || samples->hand_over(proposal.edit, rules.max_deviation) ? Outcome::done
-                                                                            : Outcome::surface_error;
+  if (!samples || proposal.edit.removed.empty()) return Outcome::done;
+  const double allowed =
+      std::min(rules.tolerance,
+               rules.max_deviation * rules.scale_at(proposal.edit.removed.front().points.front()));
+  return samples->hand_over(proposal.edit, allowed) ? Outcome::done : Outcome::surface_error;
 }
 
 Outcome Workspace::within_bounds(const BlockRules& rules, std::int64_t count_change) {
   if (!ledger.allows(proposal.volumes)) return Outcome::volume;
   if (folds_over(*this)) return Outcome::self_intersection;
+  if (rules.sizes && !keeps_sizes(*this, *rules.sizes)) return Outcome::edge_length;
   proposal.count_change = count_change;
   proposal.count_bounds = rules.count;
   return rules.count.allow(mesh.live_tets(), count_change) ? Outcome::done : Outcome::count;

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -65,9 +66,28 @@ void Engine::keep_input_surface(const TriangleMesh* surface) {
   input_surface_ = std::make_unique<const InputSurface>(mesh_, surface);
 }
 
+void Engine::set_sizes(const SizeField* wish, double min_edge, double max_edge) {
+  sizes_.emplace(wish, min_edge, max_edge, mesh_.space());
+  rules.sizes = rules.objective.sizes = &*sizes_;
+}
+
+double Engine::tets_for_sizes() const {
+  double count = 0;
+  for (Index t = 0; t < mesh_.tet_slots(); ++t) {
+    if (mesh_.dead(t)) continue;
+    const Tet& p = mesh_.points(t);
+    const Vec3 centre =
+        (mesh_.position(p[0]) + mesh_.position(p[1]) + mesh_.position(p[2]) + mesh_.position(p[3])) / 4;
+    const double edge = sizes_->wish(centre) / Objective::edge_to_ideal;
+    count += std::fabs(mesh_.signed_volume(t)) / (edge * edge * edge);
+  }
+  return count;
+}
+
 void Engine::own_samples(double edge) {
   compact();
-  samples_ = std::make_unique<SurfaceSamples>(mesh_, grid_.record_count(), *input_surface_, edge);
+  samples_ = std::make_unique<SurfaceSamples>(mesh_, grid_.record_count(), *input_surface_, edge,
+                                              [&](const Vec3& place) { return rules.scale_at(place); });
   samples_->set_spacing(spacing_);
   grid_.set_samples(samples_.get());
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,10 @@ class Engine {
   /// From now on triangles own samples of that, some ten for each triangle with edges of this length.
   void own_samples(double edge);
   void set_spacing(double spacing) { spacing_ = spacing; }
+  /// Wanted edge lengths and their bounds, input units, which rules follow from now on; `wish` may be null.
+  void set_sizes(const SizeField* wish, double min_edge, double max_edge);
+  /// How many well-shaped tets with edges of the wanted lengths fill the mesh.
+  double tets_for_sizes() const;
   /// How far the mesh's surface is from that, proven.
   DeviationReport deviation() const;
   bool owns_samples() const { return samples_ != nullptr; }
@@ -105,6 +110,7 @@ class Engine {
   std::unique_ptr<const InputSurface> input_surface_;
   std::unique_ptr<SurfaceSamples> samples_;
   double spacing_ = std::numeric_limits<double>::infinity();
+  std::optional<EdgeSizes> sizes_;
   BlockRunner runner_;
   RoundRecorder recorder_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "common/geometry/quality.h"
 #include "common/geometry/surface_deviation.h"
 #include "common/reference_surface.h"
+#include "common/sizes/size_field.h"
 #include "common/triangle_mesh.h"
 #include "simplify/mesh/outcome.h"
 
@@ -39,6 +41,10 @@ struct SimplifyOptions {
   /// the start does not come nearer for it: SimplifyReport::deviation says what was reached. The tuned
   /// schedule's.
   double tolerance = 0;
+  /// The edge lengths that are wanted, or null, and their bounds, input units; the tuned schedule's. With a
+  /// wish it decides the number of tets, and target_tets may be 0. `sizes` must outlive the call.
+  const SizeField* sizes = nullptr;
+  double min_edge = 0, max_edge = std::numeric_limits<double>::infinity();
   std::uint64_t seed = 1;
   /// Points or tets of a batch (BlockRunner), at most; 0: from the number of items. Results depend on it,
   /// never on the number of threads.

@@ -48,8 +48,8 @@ constexpr double loop_tolerance = 0.8, closing_tolerance = 0.87;
 /// 0.5 % is up to 4.6 % farther between them, with these 1 %.
 constexpr double tolerances_to_edge = 2.5, tolerances_between_places = 0.5;
 /// Without a count, from one target to the next; a stage has ended when an iteration over all tets removes
-/// less than this share of them.
-constexpr double stage_share = 0.6, stage_min_removed = 0.1;
+/// less than this share of them. With wanted sizes, too: what they leave is for size rounds.
+constexpr double stage_share = 0.6, stage_min_removed = 0.1, sized_min_removed = 0.03;
 /// Without a count annealing accepts no worse tets while so many are below the bound: nothing but the
 /// tolerance ends the loop, and on the way to where that refuses all, bunny at 0.2 % had 41 % of them, for 23
 /// % fewer tets.
@@ -89,8 +89,10 @@ void flip_and_smooth_block(Engine& engine, float limit) {
       [] { return false; });
 }
 
-/// Whether the target was reached.
-bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loop_target) {
+/// Whether the target was reached. `counted`: it is what is wanted, not a stage on the way to as few as the
+/// tolerance holds.
+bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loop_target,
+                 bool counted = true) {
   EditableMesh& mesh = engine.mesh();
   BlockRules& rules = engine.rules;
   const auto target = static_cast<double>(loop_target);
@@ -121,7 +123,7 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
     rules.count.max = it.tets_before;
     const double log_now = portable_log(static_cast<double>(it.tets_before) / target);
     rules.accept_worse = first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
-    if (options.target_tets == 0 && engine.share_below(options.min_solid_angle) > max_poor_share)
+    if (!counted && engine.share_below(options.min_solid_angle) > max_poor_share)
       rules.accept_worse = 0;
     const float limit = engine.cutoff(percent);
     it.cutoff = portable_cbrt(limit);
@@ -149,7 +151,8 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
       rules.max_error = std::min(max_error, error_growth * rules.max_error);
       rules.max_deviation = std::min(rules.tolerance, deviation_growth * rules.max_deviation);
     }
-    if (options.target_tets == 0 && removed < stage_min_removed && percent >= 100) break;
+    const bool sized = rules.sizes && rules.sizes->has_wish();
+    if (removed < (sized ? sized_min_removed : counted ? 0 : stage_min_removed) && percent >= 100) break;
     idle = removed < idle_below && percent >= 100 && !error_refuses ? idle + 1 : 0;
     if (idle == max_idle_iterations) break;
     percent = std::min(100.0, percent + percent_step);
@@ -161,7 +164,7 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
 
 }  // namespace
 
-void run_tuned_schedule(Engine& engine, const SimplifyOptions& options) {
+void run_tuned_schedule(Engine& engine, const SimplifyOptions& options, std::size_t loop_target) {
   EditableMesh& mesh = engine.mesh();
   BlockRules& rules = engine.rules;
   engine.compact();
@@ -170,17 +173,17 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options) {
     rules.tolerance = rules.max_deviation = loop_tolerance * options.tolerance * mesh.space().scale();
     engine.set_spacing(tolerances_between_places * rules.tolerance);
     const double edge = tolerances_to_edge * rules.tolerance;
-    engine.own_samples(options.target_tets > 0 ? std::min(rules.objective.quality.ideal_edge, edge) : edge);
+    engine.own_samples(loop_target > 0 ? std::min(rules.objective.quality.ideal_edge, edge) : edge);
   }
-  if (options.target_tets > 0) {
-    simplify_to(engine, options, options.target_tets);
+  if (loop_target > 0) {
+    simplify_to(engine, options, loop_target);
   } else {
     // As few as the tolerance holds: sizes of tets follow one target after the other.
     bool reached = true;
     while (reached && mesh.live_tets() > 1) {
       const double target = std::max(1.0, std::floor(stage_share * static_cast<double>(mesh.live_tets())));
       rules.objective.quality = TetQuality::for_target(mesh.total_volume(), target, options.beta);
-      reached = simplify_to(engine, options, static_cast<std::size_t>(target));
+      reached = simplify_to(engine, options, static_cast<std::size_t>(target), false);
     }
   }
   if (options.tolerance > 0) {

@@ -7,6 +7,6 @@ namespace tetwright {
 
 /// The block loop with the tuned schedule (README.md, The tuned schedule), down to the target. Throws
 /// Interrupted.
-void run_tuned_schedule(Engine& engine, const SimplifyOptions& options);
+void run_tuned_schedule(Engine& engine, const SimplifyOptions& options, std::size_t loop_target);
 
 }  // namespace tetwright

@@ -17,7 +17,6 @@ TEST(WrongCalls, AreStatusTwo) {
   expect_refused("prepare " + in + " -o " + out + " --target-tets 100 --gama 3", 2, {"--gama"});
   expect_refused("prepare " + in + " -o " + out + " --target-tets 100 --tolerance -1", 2, {"--tolerance"});
   expect_refused("prepare " + in + " -o " + out + " --tolerance 1 --schedule paper", 2, {"--tolerance"});
-  expect_refused("simplify " + in + " -o " + out + " --tolerance 1", 2, {"--tolerance"});
   expect_refused("prepare " + in + " -o " + out + " --target-tets 100 --beta nan", 2, {});
   expect_refused("prepare " + in + " -o " + out + " --target-tets 100 --threads 0", 2, {"--threads"});
   expect_refused("mesh " + in + " -o " + out + " --resolution 2", 2, {"--resolution"});

@@ -26,6 +26,9 @@ constexpr double volume_note_share = 0.02;
 /// Share of tets below the bound, in percent, above which it is reported.
 constexpr double poor_note_percent = 0.1;
 
+/// Share of the edges that a size field must have within edge_length_factor.
+constexpr double min_edges_within = 0.95;
+
 /// Lost labels that are named one by one.
 constexpr std::size_t max_lost_named = 5;
 
@@ -69,6 +72,9 @@ std::string rules_behind_count(const CommandLine& line, const RunReport& report,
   if (reached > asked && report.mesher && static_cast<double>(report.mesher->filling_tets) > asked)
     return "walls so thin that fewer tets would be flat; ask for " +
            std::to_string(report.mesher->filling_tets) + " or more, or leave them out with --min-thickness";
+  if (report.sizes.wish) return "the sizes of --size-field, which decide the number of tets";
+  if (report.sizes.any())
+    return reached > asked ? "the lengths that --max-edge allows" : "the lengths that --min-edge allows";
   if (reached > asked && report.tolerance > 0)
     return std::to_string(report.result->tets) + " tets: the tolerance holds the rest back";
   if (reached > asked) return rules_limiting_count(*report.simplify, line.max_iterations);
@@ -112,6 +118,34 @@ void find_deviation(RunReport& report) {
                                   number(worst.upper) + " reached from the " +
                                   (mesh ? "mesh to the surface" : "surface to the mesh") + ", at " +
                                   place_text(worst.place) + "; held back by: " + limit});
+}
+
+/// Edges that have not the lengths that are asked for.
+void find_edge_lengths(const TetMesh& mesh, RunReport& report) {
+  const RequestedSizes& sizes = report.sizes;
+  if (!report.simplify || !sizes.any()) return;
+  report.edge_lengths =
+      compare_edge_lengths(mesh, sizes.wish.get(), sizes.limits.min_edge, sizes.limits.max_edge);
+  const EdgeLengthReport& e = *report.edge_lengths;
+  const auto offend = [&](const char* what, const char* option, double asked,
+                          const EdgeLengthReport::Offender& worst, const char* way, const char* limit) {
+    if (worst.count == 0) return;
+    report.shortfall.push_back({what, asked, worst.length, limit,
+                                std::string("short of ") + option + ": " + std::to_string(worst.count) +
+                                    " of " + std::to_string(e.edges) + " edges are " + way + ", by most " +
+                                    number(worst.length) + " instead of " + number(asked) + " at " +
+                                    place_text(worst.place) + "; held back by: " + limit});
+  };
+  const char* held = "surfaces, creases and shapes there";
+  offend("max_edge", "--max-edge", sizes.limits.max_edge, e.above_max, "longer", held);
+  offend("min_edge", "--min-edge", sizes.limits.min_edge, e.below_min, "shorter", held);
+  if (e.within_share() >= min_edges_within) return;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "short of --size-field: %.3g %% of the edges are within %.3g times the wanted length, not "
+                "%.3g %%; held back by: ",
+                100 * e.within_share(), edge_length_factor, 100 * min_edges_within);
+  report.shortfall.push_back({"size_field", min_edges_within, e.within_share(), held, text + std::string(held)});
 }
 
 /// Tets below the bound where it is the default: a finding and no shortfall.
@@ -344,6 +378,7 @@ ExitStatus finish(const TetMesh& mesh, const MaterialField* field, CommandRun& r
     report_volumes(mesh, report.inputs.front(), report);
     find_count_and_shape_shortfall(run.line, report);
     find_deviation(report);
+    find_edge_lengths(mesh, report);
     report_poor_shapes(run.line, report);
   } else {
     report.result = report.dense;  // the dense mesh is the result

@@ -10,6 +10,7 @@
 #include "common/formats/formats.h"
 #include "common/formats/label_names.h"
 #include "mesher/input/split_solids.h"
+#include "tools/commands/edge_sizes_input.h"
 #include "tools/commands/simplification.h"
 
 namespace tetwright {
@@ -185,17 +186,30 @@ DenseMesh mesh_input(const MesherInput& surfaces, CommandRun& run) {
     throw UsageError(
         "--min-thickness leaves out walls of surfaces without layers; leave out --layer, or --min-thickness");
   const double diagonal = (surfaces.high - surfaces.low).norm();
+  read_sizes(run, {surfaces.low, surfaces.high});
+  for (const MesherInput::Body& body : surfaces.bodies) require_sizes_at(run, body.surface.points);
   options.max_refinement = line.max_refinement;
   options.min_gap = line.min_gap.in_input_units(diagonal);
   options.min_thickness = line.min_thickness.in_input_units(diagonal);
   const bool choose = !line.resolution && line.voxel_size == 0 && line.command == Command::prepare;
   if (choose && line.target_tets > 0)
     options.resolution = resolution_for_target(surfaces, line.target_tets, line.feature_angle);
+  if (choose) choose_cells_for_sizes(surfaces, run.report.sizes.wish.get(), run.report.sizes.limits.max_edge, options);
   if (line.tolerance.value == 0) return mesh_surfaces(surfaces, options, &run.progress);
   run.report.tolerance = tolerance_of(line, diagonal);
   if (!choose) return mesh_surfaces(surfaces, options, &run.progress);
-  if (line.target_tets == 0) options.resolution = 0;
+  if (line.target_tets == 0 && !run.report.sizes.wish) options.resolution = 0;
   return mesh_within(surfaces, options, run.report.tolerance, &run.progress);
+}
+
+Box3 box_of(const LabelInput& labels) {
+  Box3 box;
+  for (int k = 0; k < 8; ++k) {
+    const Vec3 corner((k & 1) * labels.size[0], (k >> 1 & 1) * labels.size[1], (k >> 2) * labels.size[2]);
+    // Voxels reach half a spacing beyond their centres.
+    box.add(labels.origin + labels.directions * (corner - Vec3::Constant(0.5)));
+  }
+  return box;
 }
 
 DenseMesh mesh_input(const LabelInput& labels, CommandRun& run) {
@@ -205,6 +219,7 @@ DenseMesh mesh_input(const LabelInput& labels, CommandRun& run) {
     options.voxel_size = line.command == Command::prepare && line.target_tets > 0
                              ? cell_size_for_target(labels, line.target_tets, options)
                              : default_cell_size(labels);
+  read_sizes(run, box_of(labels));
   DenseMesh dense = mesh_labels(labels, options, &run.progress);
   if (line.tolerance.value > 0) run.report.tolerance = tolerance_of(line, diagonal_of(dense.mesh));
   return dense;
@@ -236,6 +251,7 @@ DenseMesh make_dense_mesh(ScanInput input, CommandRun& run) {
     dense.reference.reset();
     if (run.line.write_sdf.empty()) dense.field.reset();
   }
+  require_sizes_at(run, dense.mesh.points);
   run.report.features = dense.report.features;
   run.report.creases = std::move(dense.report.creases);
   run.report.mesher = std::move(dense.report);

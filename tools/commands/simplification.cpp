@@ -54,6 +54,10 @@ TetMesh simplify_to_target(TetMesh mesh, const ReferenceSurface* reference, cons
   options.reference = reference;
   options.surface = surface;
   options.tolerance = run.report.tolerance;
+  const RequestedSizes& sizes = run.report.sizes;
+  options.sizes = sizes.wish.get();
+  options.min_edge = sizes.limits.min_edge;
+  options.max_edge = sizes.limits.max_edge;
   options.fix_boundary = run.line.fix_boundary;
   options.seed = run.line.seed;
   options.name = run.report.inputs.front();

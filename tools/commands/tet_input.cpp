@@ -5,6 +5,7 @@
 #include "common/error.h"
 #include "common/formats/formats.h"
 #include "common/mesh/foreign_mesh.h"
+#include "tools/commands/edge_sizes_input.h"
 #include "tools/commands/scan_input.h"
 #include "tools/commands/simplification.h"
 
@@ -68,6 +69,10 @@ TetInput read_tets(CommandRun& run) {
   if (run.line.target_tets > input.mesh.tets.size())
     throw UsageError("--target-tets " + std::to_string(run.line.target_tets) + " is above the " +
                      std::to_string(input.mesh.tets.size()) + " tets of " + file + "; give fewer");
+  Box3 box;
+  for (const Vec3& p : input.mesh.points) box.add(p);
+  read_sizes(run, box);
+  require_sizes_at(run, input.mesh.points);
   run.report.dense = mesh_statistics(input.mesh, run.line.min_solid_angle);
   if (run.line.tolerance.value > 0) run.report.tolerance = tolerance_of(run.line, diagonal_of(input.mesh));
   return input;

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <limits>
+
+#include "common/sizes/size_field.h"
+#include "simplify/mesh/working_space.h"
+
+namespace tetwright {
+
+/// The lengths that edges should have: those that a field wants, within a factor, and bounds that hold
+/// everywhere. Working coordinates. All functions may be called concurrently.
+class EdgeSizes {
+ public:
+  /// `wish` may be null: then only the bounds hold. `min_edge` and `max_edge` in input units.
+  EdgeSizes(const SizeField* wish, double min_edge, double max_edge, const WorkingSpace& space)
+      : wish_(wish),
+        space_(space),
+        min_edge_(min_edge * space.scale()),
+        max_edge_(max_edge * space.scale()) {}
+
+  bool has_wish() const { return wish_ != nullptr; }
+  /// The wanted length at a place. Needs a wish.
+  double wish(const Vec3& at) const { return wish_->at(space_.to_input(at)) * space_.scale(); }
+
+  /// Longest and shortest lengths that an edge with this middle should have.
+  double upper(const Vec3& middle) const {
+    return wish_ ? std::min(max_edge_, long_edge * wish(middle)) : max_edge_;
+  }
+  double lower(const Vec3& middle) const {
+    return wish_ ? std::max(min_edge_, short_edge * wish(middle)) : min_edge_;
+  }
+  /// The length of an edge over the longest, and the shortest one over its length: above 1 where it breaks a
+  /// bound, by so much.
+  struct Excess {
+    double longer, shorter;
+  };
+  Excess excess(const Vec3& p, const Vec3& q) const {
+    const Vec3 middle = (p + q) / 2;
+    const double length = (q - p).norm();
+    if (!wish_) return {length / max_edge_, min_edge_ / length};
+    const double wanted = wish(middle);
+    return {length / std::min(max_edge_, long_edge * wanted),
+            std::max(min_edge_, short_edge * wanted) / length};
+  }
+
+ private:
+  /// Lengths over the wanted one within which edges are let be: halving a longer one makes none that is
+  /// collapsed again (as in Botsch & Kobbelt 2004).
+  static constexpr double short_edge = 0.7, long_edge = 1.4;
+
+  const SizeField* wish_;
+  WorkingSpace space_;
+  double min_edge_, max_edge_;
+};
+
+}  // namespace tetwright

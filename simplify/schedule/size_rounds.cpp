@@ -1,0 +1,126 @@
+#include "simplify/schedule/size_rounds.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "simplify/operations/collapse.h"
+#include "simplify/operations/insertion.h"
+#include "simplify/schedule/bulk_improvement.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr int max_rounds = 20;
+/// Share of the edges, each counted once for each tet, that may be left out of bounds.
+constexpr double few = 0.002;
+/// A round that leaves more than this share of what the best one before left gains too little; so many may.
+constexpr double idle_above = 0.95;
+constexpr int max_idle = 2;
+/// Of the bound of shapes: what collapses and splits must leave. Flips and better places mend it.
+constexpr float resize_floor = 0.3f;
+constexpr int shape_rounds = 2;  ///< of flips and better places between
+
+class SizeRounds {
+ public:
+  SizeRounds(const ImprovementTools& tools, ImprovementArea& area, const SizePlan& plan)
+      : tools_(tools),
+        mesh_(tools.mesh),
+        sizes_(*tools.rules.sizes),
+        area_(area),
+        plan_(plan),
+        bound_(static_cast<float>(shape_quality_bound(tools.rules.objective.shape, plan.angle))),
+        resizing_(tools.rules) {
+    resizing_.max_error = std::numeric_limits<double>::infinity();
+    resizing_.good_enough = resize_floor * bound_;
+    resizing_.count = {plan.min_tets, plan.max_tets};
+  }
+
+  void run() {
+    double fewest = 1;
+    int idle = 0;
+    for (int i = 0; i < max_rounds; ++i) {
+      const double share = share_out_of_bounds();
+      if (share <= few) break;
+      idle = share > idle_above * fewest ? idle + 1 : 0;
+      if (idle > max_idle) break;
+      fewest = std::min(fewest, share);
+      {
+        RoundRecorder::Round round(tools_.recorder, plan_.kind, 0);
+        round.report().percent = 100 * share;
+        collapse_short();
+        split_long();
+        round.finish();
+      }
+      (void)run_bulk_improvement(tools_, area_,
+                                 {.kind = plan_.kind,
+                                  .poor = bound_,
+                                  .min_tets = plan_.min_tets,
+                                  .max_tets = plan_.max_tets,
+                                  .max_rounds = shape_rounds,
+                                  .remodel = false});
+    }
+  }
+
+ private:
+  double share_out_of_bounds() {
+    std::size_t out = 0, all = 0;
+    for (const ListedTet& t : area_.poor_tets(1))
+      for (const auto& e : tet_edges) {
+        const EdgeSizes::Excess excess =
+            sizes_.excess(mesh_.position(t.points[e[0]]), mesh_.position(t.points[e[1]]));
+        out += excess.longer > 1 || excess.shorter > 1;
+        ++all;
+      }
+    return static_cast<double>(out) / static_cast<double>(std::max<std::size_t>(1, all));
+  }
+
+  void collapse_short() {
+    BlockRules rules = resizing_;
+    rules.collapse_short_only = true;
+    tools_.runner.each_star(area_.poor_points(1), Operation::collapse,
+                            [&](Workspace& ws) { return collapse(ws, rules); });
+  }
+
+  /// A point in the middle of the tet's edge that is too long by the largest factor.
+  void split_long() {
+    tools_.runner.tets(
+        area_.poor_tets(1),
+        [&](Workspace& ws, const ListedTet& item, int) {
+          if (!exists(mesh_, item)) return Outcome::stale;
+          int longest = -1;
+          double most = 1;
+          for (int e = 0; e < 6; ++e) {
+            const double longer = sizes_
+                                      .excess(mesh_.position(item.points[tet_edges[e][0]]),
+                                              mesh_.position(item.points[tet_edges[e][1]]))
+                                      .longer;
+            if (longer <= most) continue;
+            longest = e;
+            most = longer;
+          }
+          if (longest < 0) return Outcome::no_candidate;
+          return insert_in_edge(ws, resizing_, item.tet, longest, InsertionPlace::centre, true);
+        },
+        [] { return false; });
+  }
+
+  const ImprovementTools& tools_;
+  const EditableMesh& mesh_;
+  const EdgeSizes& sizes_;
+  ImprovementArea& area_;
+  const SizePlan& plan_;
+  float bound_;
+  BlockRules resizing_;
+};
+
+}  // namespace
+
+void run_size_rounds(const ImprovementTools& tools, ImprovementArea& area, const SizePlan& plan) {
+  SizeRounds(tools, area, plan).run();
+}
+
+}  // namespace tetwright
