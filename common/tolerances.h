@@ -24,7 +24,7 @@ inline constexpr float band_share = 1e-5F;
 /// corners are surely not on one line: rounding leaves less than 1e-28. Below it an exact predicate decides.
 inline constexpr double collinear_squared = 1e-24;
 /// Volume or area, squared and relative to the edges' product, squared too, below which a tet or triangle
-/// counts as flat in the transfer of fields: the rounding of orient3d_value is about 1e-15, and below it
+/// counts as flat where fields are interpolated: the rounding of orient3d_value is about 1e-15, and below it
 /// weights would be noise.
 inline constexpr double flat_squared = 1e-28;
 /// Subtracted from the quality of a tet that is flat or inverted (its volume over its longest edge cubed), so
