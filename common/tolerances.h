@@ -51,6 +51,10 @@ inline constexpr double box_distance = 1e-6;
 /// Cells and voxels that differ by less than this coincide, or only touch.
 inline constexpr double coinciding_cells = 1e-6;
 
+/// In diagonals of a mesh: a place this near to its tets counts as in them, since the boundary of another
+/// mesh of the same body is rounded.
+inline constexpr double within_mesh = 1e-6;
+
 /// In working coordinates of the simplifier, where points are on a lattice of 2^-30: this far from a plane
 /// they are on it.
 inline constexpr double flat_patch = 0x1p-28;
