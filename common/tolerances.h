@@ -24,7 +24,7 @@ inline constexpr float band_share = 1e-5F;
 /// corners are surely not on one line: rounding leaves less than 1e-28. Below it an exact predicate decides.
 inline constexpr double collinear_squared = 1e-24;
 /// Volume or area, squared and relative to the edges' product, squared too, below which a tet or triangle
-/// counts as flat in the transfer of fields: the rounding of orient3d_value is about 1e-15, and below it
+/// counts as flat where fields are interpolated: the rounding of orient3d_value is about 1e-15, and below it
 /// weights would be noise.
 inline constexpr double flat_squared = 1e-28;
 /// Subtracted from the quality of a tet that is flat or inverted (its volume over its longest edge cubed), so
@@ -50,6 +50,10 @@ inline constexpr double projected_triangle = 1e-3;
 inline constexpr double box_distance = 1e-6;
 /// Cells and voxels that differ by less than this coincide, or only touch.
 inline constexpr double coinciding_cells = 1e-6;
+
+/// In diagonals of a mesh: a place this near to its tets counts as in them, since the boundary of another
+/// mesh of the same body is rounded.
+inline constexpr double within_mesh = 1e-6;
 
 /// In working coordinates of the simplifier, where points are on a lattice of 2^-30: this far from a plane
 /// they are on it.

@@ -30,15 +30,25 @@ struct SurfaceFormat {
   const char* extension;
   TriangleMesh (*read)(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped);
   std::string (*write)(const TriangleMesh& mesh);
+  /// Null: the format has no fields of points. Nothing: the file is a tet mesh.
+  std::optional<SurfaceWithFields> (*read_with_fields)(std::string_view bytes, const std::string& name);
 };
-constexpr std::array<SurfaceFormat, 5> surface_formats{{{".ply", read_ply, write_ply},
-                                                        {".obj", read_obj, write_obj},
-                                                        {".stl", read_stl, write_stl},
-                                                        {".off", read_off, write_off},
-                                                        {".vtp", read_vtp, nullptr}}};
+
+template <SurfaceWithFields (*read)(std::string_view, const std::string&)>
+std::optional<SurfaceWithFields> always_surface(std::string_view bytes, const std::string& name) {
+  return read(bytes, name);
+}
+
+constexpr std::array<SurfaceFormat, 5> surface_formats{
+    {{".ply", read_ply, write_ply, always_surface<read_ply_with_fields>},
+     {".obj", read_obj, write_obj, nullptr},
+     {".stl", read_stl, write_stl, nullptr},
+     {".off", read_off, write_off, nullptr},
+     {".vtp", read_vtp, nullptr, always_surface<read_vtp_with_fields>}}};
 /// Those of tet meshes that may hold a surface instead.
 constexpr std::array<SurfaceFormat, 2> shared_formats{
-    {{".msh", read_msh_surface, nullptr}, {".mesh", read_medit_surface, nullptr}}};
+    {{".msh", read_msh_surface, nullptr, read_msh_surface_with_fields},
+     {".mesh", read_medit_surface, nullptr, nullptr}}};
 
 template <ReadTetMesh (*read)(std::string_view, const std::string&, const ReadTetMeshOptions&)>
 ReadTetMesh read_one_file(const std::string& path, const ReadTetMeshOptions& options) {
@@ -72,11 +82,12 @@ struct TetFormat {
   const char* extension;
   ReadTetMesh (*read)(const std::string& path, const ReadTetMeshOptions& options);
   void (*write)(const TetMesh& mesh, const ByteSink& sink);  ///< null: the format is only read
+  bool point_fields = true;
 };
 constexpr std::array<TetFormat, 6> tet_formats{
     {{".vtu", read_one_file<read_vtu>, write_vtu},
      {".msh", read_one_file<read_msh>, write_as_one<write_msh>},
-     {".mesh", read_one_file<read_medit>, write_as_one<write_medit>},
+     {".mesh", read_one_file<read_medit>, write_as_one<write_medit>, false},
      {".vtk", read_one_file<read_vtk>, nullptr},
      {".node", read_node_with_ele, nullptr},
      {".ele", read_ele_with_node, nullptr}}};
@@ -193,6 +204,22 @@ bool holds_face_groups(const std::string& path) {
   return find_format(shared_formats, path, FileUse::read) != nullptr;
 }
 
+bool may_hold_point_fields(const std::string& path) {
+  if (const TetFormat* tets = find_format(tet_formats, path, FileUse::read)) return tets->point_fields;
+  const SurfaceFormat* surface = find_format(surface_formats, path, FileUse::read);
+  return surface && surface->read_with_fields;
+}
+
+std::string point_field_extensions() {
+  std::string out;
+  const auto add = [&](const char* extension) { out.append(out.empty() ? "" : " ").append(extension); };
+  for (const TetFormat& format : tet_formats)
+    if (format.point_fields) add(format.extension);
+  for (const SurfaceFormat& format : surface_formats)
+    if (format.read_with_fields) add(format.extension);
+  return out;
+}
+
 std::string file_stem(const std::string& path) {
   const std::string name = std::filesystem::path(path).filename().string();
   return name.substr(0, name.size() - extension_of(path).size());
@@ -207,6 +234,17 @@ TriangleMesh read_surface(const std::string& path, std::vector<Dropped>* dropped
 
 ReadTetMesh read_tet_mesh(const std::string& path, const ReadTetMeshOptions& options) {
   return need_format(tet_formats, path, FileKind::tet_mesh, FileUse::read).read(path, options);
+}
+
+std::optional<SurfaceWithFields> read_surface_with_fields(const std::string& path) {
+  const SurfaceFormat* format = find_format(shared_formats, path, FileUse::read);
+  if (!format) format = find_format(surface_formats, path, FileUse::read);
+  if (!format && file_kind(path) == FileKind::tet_mesh) return {};
+  if (!format || !format->read_with_fields)
+    throw UsageError(path + ": " + in_quotes(extension_of(path)) +
+                     " is no extension of files with numbers of points; known are " +
+                     point_field_extensions());
+  return format->read_with_fields(read_whole_file(path), path);
 }
 
 LabelVolume read_label_volume(const std::string& path) {

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/formats/dropped.h"
 #include "common/formats/read_tet_mesh_result.h"
+#include "common/formats/surface_with_fields.h"
 #include "common/label_volume.h"
 #include "common/triangle_mesh.h"
 
@@ -35,6 +37,13 @@ bool may_hold_surface(const std::string& path);
 /// Whether tet meshes with this extension are written with their boundary and interface triangles, by groups.
 bool holds_face_groups(const std::string& path);
 
+/// Whether files with this extension may give numbers to points, which then are the fields of
+/// read_surface_with_fields() or of read_tet_mesh().
+bool may_hold_point_fields(const std::string& path);
+
+/// Their extensions, as known_extensions() gives them.
+std::string point_field_extensions();
+
 /// The name of a file without folders and extension; .nii.gz and .inr.gz are removed whole.
 std::string file_stem(const std::string& path);
 
@@ -46,6 +55,11 @@ std::string file_stem(const std::string& path);
 TriangleMesh read_surface(const std::string& path, std::vector<Dropped>* dropped = nullptr);
 ReadTetMesh read_tet_mesh(const std::string& path, const ReadTetMeshOptions& options = {});
 LabelVolume read_label_volume(const std::string& path);
+
+/// Reads the surface of a file together with the fields of its points; nothing for a tet mesh, by its
+/// extension or since there are tets in it. Throws UsageError for surfaces of an extension that
+/// may_hold_point_fields() doesn't know, else as read_surface() does.
+std::optional<SurfaceWithFields> read_surface_with_fields(const std::string& path);
 
 /// Writes a file whole or not at all; coordinates come back bit by bit. With `files` it appears when these
 /// are committed (see atomic_file.h), and writing can be cancelled. Throws UsageError if the extension is not

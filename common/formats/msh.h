@@ -1,11 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "common/formats/read_tet_mesh_result.h"
-#include "common/triangle_mesh.h"
+#include "common/formats/surface_with_fields.h"
 
 namespace tetwright {
 
@@ -27,6 +28,11 @@ ReadTetMesh read_msh(std::string_view bytes, const std::string& name, const Read
 /// null. Throws InputError as read_msh() does, and for a file with tets.
 TriangleMesh read_msh_surface(std::string_view bytes, const std::string& name,
                               std::vector<Dropped>* dropped = nullptr);
+
+/// The same with $NodeData as fields, with nan for points that a section does not list; nothing for a file
+/// with tets.
+std::optional<SurfaceWithFields> read_msh_surface_with_fields(std::string_view bytes,
+                                                              const std::string& name);
 
 /// The content of a file of version 2.2, ASCII; coordinates are read back bit by bit. The interface triangles
 /// of the mesh, if it has any, follow the tets; each of the BoundaryGroups is a physical group of

@@ -50,6 +50,16 @@ class MshReader {
     return surface;
   }
 
+  std::optional<SurfaceWithFields> read_surface_with_fields() {
+    surface_ = true;
+    read_sections();
+    if (!result_.mesh.tets.empty()) return {};
+    std::size_t room = bytes_.size();
+    read_node_data(room);
+    return SurfaceWithFields{others_.surface(std::move(result_.mesh.points), in_.name(), nullptr),
+                             std::move(result_.mesh.point_fields)};
+  }
+
  private:
   void read_sections() {
     if (in_.at_end()) in_.fail("the file is empty");
@@ -349,16 +359,21 @@ class MshReader {
       geometrical_.push_back(checked_material(geometrical, in_.name(), in_.line()));
   }
 
-  void read_data() {
-    const TetMesh& mesh = result_.mesh;
-    std::size_t room = bytes_.size();
+  /// `room` is that of read_msh_data().
+  void read_node_data(std::size_t& room) {
     for (TextScanner& in : node_data_) {
-      MeshField field = read_msh_data(in, "node", nodes_, mesh.points.size(), false, room);
+      MeshField field = read_msh_data(in, "node", nodes_, result_.mesh.points.size(), false, room);
       if (field.values.empty())
         empty_fields_.push_back(field.name);
       else
         result_.mesh.point_fields.push_back(std::move(field));
     }
+  }
+
+  void read_data() {
+    const TetMesh& mesh = result_.mesh;
+    std::size_t room = bytes_.size();
+    read_node_data(room);
     if (element_data_.empty()) return;
     if (const std::optional<std::int64_t> twice = elements_.sort())
       in_.fail("element " + std::to_string(*twice) + " appears twice");
@@ -438,6 +453,12 @@ TriangleMesh read_msh_surface(std::string_view bytes, const std::string& name,
                               std::vector<Dropped>* dropped) {
   const ReadTetMeshOptions options;
   return MshReader(bytes, name, options).read_surface(dropped);
+}
+
+std::optional<SurfaceWithFields> read_msh_surface_with_fields(std::string_view bytes,
+                                                              const std::string& name) {
+  const ReadTetMeshOptions options;
+  return MshReader(bytes, name, options).read_surface_with_fields();
 }
 
 }  // namespace tetwright

@@ -7,6 +7,7 @@
 #include "common/error.h"
 #include "common/formats/byte_order.h"
 #include "common/formats/label_groups.h"
+#include "common/formats/mesh_fields.h"
 #include "common/formats/surface_builder.h"
 #include "common/formats/text_scanner.h"
 #include "common/number_text.h"
@@ -176,6 +177,7 @@ class AsciiBody {
   /// The smallest number of bytes that a number takes.
   static std::size_t size(Type) { return 2; }
   double coordinate(Type) { return in_.coordinate(); }
+  double number(Type) { return in_.number("property"); }
   std::int64_t integer(Type, std::string_view what) { return in_.integer(what); }
   void skip(Type, std::size_t n) {
     for (std::size_t i = 0; i < n; ++i)
@@ -195,7 +197,8 @@ class BinaryBody {
   std::string place() const { return "byte " + std::to_string(offset_); }
   std::size_t left() const { return bytes_.size() - offset_; }
   static std::size_t size(Type type) { return type_size(type); }
-  double coordinate(Type type) {
+  double coordinate(Type type) { return number(type); }
+  double number(Type type) {
     const char* at = take(type, 1);
     switch (type) {
       case Type::float32:
@@ -253,18 +256,32 @@ void check_count(const Body& body, const Element& element) {
               " bytes follow; the file is cut short");
 }
 
+/// What read_element() fills.
+struct PlyContent {
+  explicit PlyContent(const std::string& name) : surface(name) {}
+  SurfaceBuilder surface;
+  LabelGroups labels;
+  /// One for each property of element `vertex`, in its order; without values for those that are not taken.
+  std::vector<std::vector<double>> point_values;
+};
+
 template <class Body>
-void read_element(Body& body, const Element& element, SurfaceBuilder& surface, LabelGroups& labels) {
+void read_element(Body& body, const Element& element, bool with_fields, PlyContent& content) {
+  SurfaceBuilder& surface = content.surface;
   // Without a property an element takes no bytes, however many there are.
   if (element.properties.empty()) return;
   check_count(body, element);
   const auto place = [&] { return body.place(); };
-  if (element.is_vertex()) surface.reserve(static_cast<std::size_t>(element.count), 0);
+  if (element.is_vertex()) {
+    surface.reserve(static_cast<std::size_t>(element.count), 0);
+    content.point_values.resize(element.properties.size());
+  }
   if (element.is_face()) surface.reserve(0, static_cast<std::size_t>(element.count));
   std::vector<std::int64_t> polygon;
   Vec3 point;
   for (std::uint64_t i = 0; i < element.count; ++i) {
-    for (const Property& p : element.properties) {
+    for (std::size_t k = 0; k < element.properties.size(); ++k) {
+      const Property& p = element.properties[k];
       if (p.count_type) {
         const std::int64_t n = body.integer(*p.count_type, "length of a list");
         if (n < 0 || static_cast<std::uint64_t>(n) > body.left() / body.size(p.type))
@@ -278,7 +295,9 @@ void read_element(Body& body, const Element& element, SurfaceBuilder& surface, L
           body.skip(p.type, length);
         }
       } else if (p.role == Role::label) {
-        surface.begin_group(labels.index_of(body.integer(p.type, "label of a face")));
+        surface.begin_group(content.labels.index_of(body.integer(p.type, "label of a face")));
+      } else if (p.role == Role::skipped && with_fields && element.is_vertex()) {
+        content.point_values[k].push_back(body.number(p.type));
       } else if (p.role == Role::skipped) {
         body.skip(p.type, 1);
       } else {
@@ -306,9 +325,9 @@ void note_dropped(const PlyHeader& header, SurfaceBuilder& surface) {
   }
 }
 
-}  // namespace
-
-TriangleMesh read_ply(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped) {
+/// `point_fields` is filled unless it is null.
+TriangleMesh read(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped,
+                  std::vector<MeshField>* point_fields) {
   TextScanner in(bytes, name);
   const PlyHeader header = read_ply_header(in);
   const Element* vertex = nullptr;
@@ -330,11 +349,10 @@ TriangleMesh read_ply(std::string_view bytes, const std::string& name, std::vect
   if (!face->has(Role::vertices))
     throw InputError(name, face->line, "element \"face\" has no list \"vertex_indices\"");
 
-  SurfaceBuilder surface(name);
-  LabelGroups labels;
+  PlyContent content(name);
   const auto read_all = [&](auto body) {
     for (const Element& e : header.elements) {
-      read_element(body, e, surface, labels);
+      read_element(body, e, point_fields != nullptr, content);
       if (&e == face) break;  // nothing behind it is needed
     }
   };
@@ -343,8 +361,25 @@ TriangleMesh read_ply(std::string_view bytes, const std::string& name, std::vect
   else
     read_all(
         BinaryBody(bytes, in.offset(), name, (header.encoding == Encoding::little) != little_endian_machine));
-  note_dropped(header, surface);
-  return surface.finish(dropped, labels.groups());
+  note_dropped(header, content.surface);
+  if (point_fields)
+    for (std::size_t k = 0; k < vertex->properties.size(); ++k)
+      if (const Property& p = vertex->properties[k]; p.role == Role::skipped && !p.count_type)
+        point_fields->push_back(
+            {field_name(p.name), 1, is_integer(p.type), std::move(content.point_values[k])});
+  return content.surface.finish(dropped, content.labels.groups());
+}
+
+}  // namespace
+
+TriangleMesh read_ply(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped) {
+  return read(bytes, name, dropped, nullptr);
+}
+
+SurfaceWithFields read_ply_with_fields(std::string_view bytes, const std::string& name) {
+  SurfaceWithFields result;
+  result.surface = read(bytes, name, nullptr, &result.point_fields);
+  return result;
 }
 
 std::string write_ply(const TriangleMesh& mesh) {

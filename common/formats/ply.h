@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/formats/dropped.h"
-#include "common/triangle_mesh.h"
+#include "common/formats/surface_with_fields.h"
 
 namespace tetwright {
 
@@ -18,6 +18,10 @@ namespace tetwright {
 /// allocated.
 TriangleMesh read_ply(std::string_view bytes, const std::string& name,
                       std::vector<Dropped>* dropped = nullptr);
+
+/// The same with the other properties of element `vertex` that are no lists, by their names; they may be nan
+/// or infinite.
+SurfaceWithFields read_ply_with_fields(std::string_view bytes, const std::string& name);
 
 /// The content of a file, binary little endian with 64-bit coordinates, which are read back bit by bit.
 std::string write_ply(const TriangleMesh& mesh);

@@ -38,9 +38,9 @@ void note_arrays(pugi::xml_node parent, const std::string& what, const std::stri
   append_dropped_names(dropped, what, names);
 }
 
-}  // namespace
-
-TriangleMesh read_vtp(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped) {
+/// `point_fields` is filled unless it is null.
+TriangleMesh read(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped,
+                  std::vector<MeshField>* point_fields) {
   const VtuData data(bytes, name);
   const pugi::xml_node piece = data.piece("PolyData");
   const auto count = [&](const char* attribute) {
@@ -82,12 +82,25 @@ TriangleMesh read_vtp(std::string_view bytes, const std::string& name, std::vect
       begin = end;
     }
   }
+  if (point_fields) *point_fields = data.fields(piece.child("PointData"), points.size());
   TriangleMesh mesh = surface.finish(dropped, groups.groups());
   if (dropped) {
     note_arrays(piece.child("PointData"), "fields of points", "", *dropped);
     note_arrays(piece.child("CellData"), "fields of cells", label_name, *dropped);
   }
   return mesh;
+}
+
+}  // namespace
+
+TriangleMesh read_vtp(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped) {
+  return read(bytes, name, dropped, nullptr);
+}
+
+SurfaceWithFields read_vtp_with_fields(std::string_view bytes, const std::string& name) {
+  SurfaceWithFields result;
+  result.surface = read(bytes, name, nullptr, &result.point_fields);
+  return result;
 }
 
 }  // namespace tetwright

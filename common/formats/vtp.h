@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/formats/dropped.h"
-#include "common/triangle_mesh.h"
+#include "common/formats/surface_with_fields.h"
 
 namespace tetwright {
 
@@ -18,5 +18,8 @@ namespace tetwright {
 /// Our own, on pugixml: libvtk9.1 takes 105 MB, without what it depends on.
 TriangleMesh read_vtp(std::string_view bytes, const std::string& name,
                       std::vector<Dropped>* dropped = nullptr);
+
+/// The same with the arrays of numbers of PointData.
+SurfaceWithFields read_vtp_with_fields(std::string_view bytes, const std::string& name);
 
 }  // namespace tetwright

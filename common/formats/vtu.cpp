@@ -20,14 +20,6 @@ namespace tetwright {
 namespace {
 
 constexpr const char* names_field = "material_names";
-constexpr std::int64_t max_vtu_components = 1 << 16;
-
-/// Other arrays hold text.
-bool holds_numbers(pugi::xml_node array) {
-  const std::string_view type = array.attribute("type").as_string();
-  return std::string_view(array.name()) == "DataArray" &&
-         (type.starts_with("Int") || type.starts_with("UInt") || type.starts_with("Float"));
-}
 
 class VtuReader {
  public:
@@ -40,9 +32,9 @@ class VtuReader {
     cells_ = data_.count(piece, "NumberOfCells");
     result_.mesh.points = data_.points(piece, points_);
     read_cells(piece);
-    result_.mesh.point_fields = read_fields(piece.child("PointData"), points_, nullptr);
+    result_.mesh.point_fields = data_.fields(piece.child("PointData"), points_);
     result_.mesh.cell_fields =
-        read_fields(piece.child("CellData"), cells_, tet_to_cell_.empty() ? nullptr : &tet_to_cell_);
+        data_.fields(piece.child("CellData"), cells_, tet_to_cell_.empty() ? nullptr : &tet_to_cell_);
     read_names(grid);
     take_material(result_, options_, name_);
     note_dropped_arrays(grid, piece);
@@ -96,37 +88,6 @@ class VtuReader {
     if (tets == 0)
       data_.fail(cells, "there are no linear tets (type 10) among its " + std::to_string(cells_) +
                             " cells; a tet mesh is needed");
-  }
-
-  /// Reads the arrays of numbers of PointData or CellData. They have `n` tuples in the file; those of
-  /// `chosen` are kept, or all if it is null.
-  std::vector<MeshField> read_fields(pugi::xml_node data, std::size_t n,
-                                     const std::vector<std::size_t>* chosen) const {
-    std::vector<MeshField> fields;
-    for (const pugi::xml_node node : data.children("DataArray")) {
-      if (!holds_numbers(node)) continue;
-      const bool integer = !std::string_view(node.attribute("type").as_string()).starts_with("Float");
-      MeshField field;
-      field.name = field_name(node.attribute("Name").as_string());
-      const std::string_view text = node.attribute("NumberOfComponents").as_string("1");
-      std::int64_t components = 0;
-      if (!parse_number(text, components) || components < 1 || components > max_vtu_components)
-        data_.fail(node, "NumberOfComponents is " + in_quotes(text) + ", not a number from 1 to " +
-                             std::to_string(max_vtu_components));
-      field.components = static_cast<int>(components);
-      const auto per_item = static_cast<std::size_t>(components);
-      field.values = data_.numbers(node, per_item * n);
-      data_.expect_size(node, field.values.size(), per_item * n);
-      if (chosen) {
-        for (std::size_t i = 0; i < chosen->size(); ++i)
-          for (std::size_t k = 0; k < per_item; ++k)
-            field.values[i * per_item + k] = field.values[(*chosen)[i] * per_item + k];
-        field.values.resize(chosen->size() * per_item);
-      }
-      field.integer = integer && all_whole(field);
-      fields.push_back(std::move(field));
-    }
-    return fields;
   }
 
   void read_names(pugi::xml_node grid) {

@@ -13,6 +13,7 @@
 #include "common/error.h"
 #include "common/formats/base64.h"
 #include "common/formats/byte_order.h"
+#include "common/formats/mesh_fields.h"
 #include "common/formats/text_scanner.h"
 #include "common/parallel/parallel.h"
 
@@ -24,6 +25,7 @@ namespace {
 constexpr std::uint64_t max_zlib_ratio = 1032;
 /// Bytes of an uncompressed array that are decoded at a time.
 constexpr std::size_t piece_bytes = std::size_t{1} << 20;
+constexpr std::int64_t max_vtu_components = 1 << 16;
 
 /// Has the interface of Base64Reader, for bytes that are not encoded.
 class RawReader {
@@ -46,6 +48,12 @@ std::string cut_short() {
 }
 
 }  // namespace
+
+bool holds_numbers(pugi::xml_node array) {
+  const std::string_view type = array.attribute("type").as_string();
+  return std::string_view(array.name()) == "DataArray" &&
+         (type.starts_with("Int") || type.starts_with("UInt") || type.starts_with("Float"));
+}
 
 VtuData::VtuData(std::string_view bytes, std::string name)
     : name_(std::move(name)), file_size_(bytes.size()) {
@@ -130,6 +138,35 @@ std::vector<Vec3> VtuData::points(pugi::xml_node piece, std::size_t n) const {
 void VtuData::expect_size(pugi::xml_node array, std::size_t size, std::size_t expected) const {
   if (size != expected)
     fail(array, std::to_string(size) + " values, but " + std::to_string(expected) + " were expected");
+}
+
+std::vector<MeshField> VtuData::fields(pugi::xml_node data, std::size_t n,
+                                       const std::vector<std::size_t>* chosen) const {
+  std::vector<MeshField> fields;
+  for (const pugi::xml_node node : data.children("DataArray")) {
+    if (!holds_numbers(node)) continue;
+    const bool integer = !std::string_view(node.attribute("type").as_string()).starts_with("Float");
+    MeshField field;
+    field.name = field_name(node.attribute("Name").as_string());
+    const std::string_view text = node.attribute("NumberOfComponents").as_string("1");
+    std::int64_t components = 0;
+    if (!parse_number(text, components) || components < 1 || components > max_vtu_components)
+      fail(node, "NumberOfComponents is " + in_quotes(text) + ", not a number from 1 to " +
+                     std::to_string(max_vtu_components));
+    field.components = static_cast<int>(components);
+    const auto per_item = static_cast<std::size_t>(components);
+    field.values = numbers(node, per_item * n);
+    expect_size(node, field.values.size(), per_item * n);
+    if (chosen) {
+      for (std::size_t i = 0; i < chosen->size(); ++i)
+        for (std::size_t k = 0; k < per_item; ++k)
+          field.values[i * per_item + k] = field.values[(*chosen)[i] * per_item + k];
+      field.values.resize(chosen->size() * per_item);
+    }
+    field.integer = integer && all_whole(field);
+    fields.push_back(std::move(field));
+  }
+  return fields;
 }
 
 void VtuData::fail(const std::string& message) const { throw InputError(name_ + ": " + message); }

@@ -9,9 +9,13 @@
 #include <vector>
 
 #include "common/formats/atomic_file.h"
+#include "common/tet_mesh.h"
 #include "common/types.h"
 
 namespace tetwright {
+
+/// Whether a child of PointData or CellData is an array of numbers; others hold text.
+bool holds_numbers(pugi::xml_node array);
 
 /// The data arrays of a VTK XML file, in whatever encoding the file has. For vtu.cpp and vtp.cpp.
 class VtuData {
@@ -42,6 +46,10 @@ class VtuData {
   std::vector<std::int64_t> integers(pugi::xml_node array, std::size_t max_count) const;
   /// Whole numbers from 0 to 2^32 - 1, in half the memory.
   std::vector<std::uint32_t> counts(pugi::xml_node array, std::size_t max_count) const;
+  /// The arrays of numbers of PointData or CellData, which have a tuple for each of `n` items; of `chosen`
+  /// items alone, unless it is null. Throws InputError for an array of another size.
+  std::vector<MeshField> fields(pugi::xml_node data, std::size_t n,
+                                const std::vector<std::size_t>* chosen = nullptr) const;
 
   /// Throws InputError with the byte offset of `node`.
   [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/tolerances.h"
+
 namespace tetwright {
 
 namespace {
@@ -32,6 +34,39 @@ Vec3 closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
 
 double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   return (p - closest_point(p, a, b, c)).squaredNorm();
+}
+
+std::array<double, 3> weights_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const std::array<Vec3, 3> corners{a, b, c};
+  std::array<double, 3> w{1, 0, 0};
+  const Vec3 normal = (b - a).cross(c - a);
+  const double area = normal.squaredNorm();
+  if (area > tolerance::flat_squared * (b - a).squaredNorm() * (c - a).squaredNorm()) {
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+      w[i] = std::max(0.0, normal.dot((corners[(i + 1) % 3] - p).cross(corners[(i + 2) % 3] - p)));
+      sum += w[i];
+    }
+    if (sum > 0) {
+      for (double& x : w) x /= sum;
+      return w;
+    }
+    w = {1, 0, 0};
+  }
+  int from = 0;
+  double longest = 0;
+  for (int i = 0; i < 3; ++i)
+    if (const double length = (corners[(i + 1) % 3] - corners[i]).squaredNorm(); length > longest) {
+      longest = length;
+      from = i;
+    }
+  if (longest == 0) return w;
+  const int to = (from + 1) % 3;
+  const double t = std::clamp((p - corners[from]).dot(corners[to] - corners[from]) / longest, 0.0, 1.0);
+  w = {0, 0, 0};
+  w[from] = 1 - t;
+  w[to] = t;
+  return w;
 }
 
 }  // namespace tetwright

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "common/types.h"
 
 namespace tetwright {
@@ -10,5 +12,9 @@ Vec3 closest_point(const Vec3& point, const Vec3& a, const Vec3& b, const Vec3& 
 
 /// Squared distance of a point from a triangle, as for closest_point().
 double squared_distance(const Vec3& point, const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// The barycentric weights of a point of a triangle: none negative, their sum is 1 but for rounding. Those of
+/// a degenerate triangle are on its longest edge.
+std::array<double, 3> weights_in_triangle(const Vec3& point, const Vec3& a, const Vec3& b, const Vec3& c);
 
 }  // namespace tetwright

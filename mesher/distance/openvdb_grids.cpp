@@ -51,6 +51,18 @@ typename Grid::Ptr read_grid(VdbGrid& stored, const std::string& file) {
   return grid;
 }
 
+/// Where a linear transform puts grid points.
+GridPlacement placement_of(const openvdb::math::Transform& transform) {
+  // OpenVDB multiplies row vectors from the left: steps along the axes are rows.
+  const openvdb::math::Mat4d to_world = transform.baseMap()->getAffineMap()->getMat4();
+  GridPlacement placement;
+  for (int row = 0; row < 3; ++row) {
+    placement.origin[row] = to_world(3, row);
+    for (int column = 0; column < 3; ++column) placement.directions(row, column) = to_world(column, row);
+  }
+  return placement;
+}
+
 /// Throws InputError at a number that is no label.
 template <class Grid>
 void check_labels(const Grid& grid, const std::string& file, const std::string& name) {
@@ -85,13 +97,9 @@ LabelVolume label_volume(const Grid& grid, std::size_t max_voxels, const std::st
                      "the active voxels of the grid '" + name + "' reach over " + size +
                          " voxels, more than " + std::to_string(max_voxels) +
                          "; crop the volume or make it coarser");
-  // OpenVDB multiplies row vectors from the left: steps along the axes are rows.
-  const openvdb::math::Mat4d to_world = grid.transform().baseMap()->getAffineMap()->getMat4();
   const openvdb::Vec3d first = grid.indexToWorld(box.min());
-  for (int row = 0; row < 3; ++row) {
-    volume.origin[row] = first[row];
-    for (int column = 0; column < 3; ++column) volume.directions(row, column) = to_world(column, row);
-  }
+  volume.origin = Vec3(first[0], first[1], first[2]);
+  volume.directions = placement_of(grid.transform()).directions;
   check_geometry(volume, file);
   volume.labels.resize(static_cast<std::size_t>(box.volume()));
   openvdb::tools::Dense<MaterialTag, openvdb::tools::LayoutXYZ> dense(box, volume.labels.data());
@@ -116,7 +124,13 @@ DistanceGrid::DistanceGrid(DistanceGrid&&) noexcept = default;
 DistanceGrid& DistanceGrid::operator=(DistanceGrid&&) noexcept = default;
 
 DistanceGrid DistanceGrid::from_vdb(VdbGrid& stored, const std::string& file) {
-  return DistanceGrid(std::make_unique<Impl>(read_grid<openvdb::FloatGrid>(stored, file)));
+  if (stored.type != "double")
+    return DistanceGrid(std::make_unique<Impl>(read_grid<openvdb::FloatGrid>(stored, file)));
+  const auto doubles = read_grid<openvdb::DoubleGrid>(stored, file);
+  const auto tree = std::make_shared<Tree>(doubles->tree());
+  const auto floats = openvdb::FloatGrid::create(tree);
+  floats->setTransform(doubles->transformPtr());
+  return DistanceGrid(std::make_unique<Impl>(floats));
 }
 
 DistanceGrid DistanceGrid::copy() const {
@@ -138,6 +152,16 @@ float DistanceGrid::active_or(int x, int y, int z, float otherwise) const {
   float value;
   return impl_->grid->constTree().probeValue({x, y, z}, value) ? value : otherwise;
 }
+
+void DistanceGrid::for_each_active(
+    const std::function<void(const IndexPlace&, const IndexPlace&, float)>& f) const {
+  for (auto value = impl_->grid->cbeginValueOn(); value; ++value) {
+    const openvdb::CoordBBox box = value.getBoundingBox();
+    f({box.min().x(), box.min().y(), box.min().z()}, {box.max().x(), box.max().y(), box.max().z()}, *value);
+  }
+}
+
+GridPlacement DistanceGrid::placement() const { return placement_of(impl_->grid->transform()); }
 
 std::vector<GridLeaf<float>> DistanceGrid::leaves() {
   std::vector<Leaf*> nodes;

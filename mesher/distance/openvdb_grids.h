@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -19,6 +20,12 @@
 namespace tetwright {
 
 struct VdbGrid;
+
+/// Where the grid points of a stored grid lie: (x, y, z) at origin + directions * (x, y, z), input units.
+struct GridPlacement {
+  Vec3 origin;
+  Eigen::Matrix3d directions;
+};
 
 // All that the project uses of OpenVDB, without its headers.
 
@@ -61,8 +68,8 @@ class DistanceGrid {
   /// value elsewhere. Throws Interrupted.
   static DistanceGrid unsigned_distances(std::span<const Vec3> points, std::span<const Triangle> triangles,
                                          Progress* progress);
-  /// The stored grid, which must be of floats and have its bytes; they are gone afterwards. Throws InputError
-  /// that begins with `file` if OpenVDB can't read it.
+  /// The stored grid, which must be of floats, or of doubles, which are rounded, and have its bytes; they are
+  /// gone afterwards. Throws InputError that begins with `file` if OpenVDB can't read it.
   static DistanceGrid from_vdb(VdbGrid& stored, const std::string& file);
 
   DistanceGrid copy() const;
@@ -72,6 +79,13 @@ class DistanceGrid {
   bool has_both_signs() const;
   /// The active value of a grid point, or `otherwise`.
   float active_or(int x, int y, int z, float otherwise) const;
+  /// Calls f(first, last, value) for each active grid point (first is last) and each active tile, which has
+  /// the same value from its first grid point to its last; in OpenVDB's order.
+  using IndexPlace = std::array<int, 3>;
+  void for_each_active(
+      const std::function<void(const IndexPlace& first, const IndexPlace& last, float value)>& f) const;
+  /// Where the grid's own transform, which must be linear, puts its grid points.
+  GridPlacement placement() const;
   /// All leaves, in OpenVDB's order.
   std::vector<GridLeaf<const float>> leaves() const;
   std::vector<GridLeaf<float>> leaves();

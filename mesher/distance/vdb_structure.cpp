@@ -197,7 +197,7 @@ void transform(Cursor& cursor) {
 
 /// The bytes of a value of the types that are walked over; 0 for others.
 std::size_t value_bytes(std::string_view type) {
-  return type == "float" || type == "int32" ? 4 : type == "int64" ? 8 : 0;
+  return type == "float" || type == "int32" ? 4 : type == "double" || type == "int64" ? 8 : 0;
 }
 
 template <class T>
@@ -273,7 +273,7 @@ std::vector<VdbGrid> take_apart_vdb(std::string_view bytes) {
     grid.type = type.substr(std::min(type.size(), type.find('_') + 1));
     grid.type = grid.type.substr(0, grid.type.find('_'));
     const std::size_t bytes_each = value_bytes(grid.type);
-    const bool is_float = grid.type == "float";
+    const bool is_float = grid.type == "float", halves = as_half && (is_float || grid.type == "double");
     const bool known =
         bytes_each > 0 && type == "Tree_" + grid.type + std::string(usual_tree) && !shares_tree;
     if (known) {
@@ -284,9 +284,9 @@ std::vector<VdbGrid> take_apart_vdb(std::string_view bytes) {
         const std::string_view transform_bytes = ahead.since(transform_start);
         const std::size_t tree_start = ahead.position();
         // Whole numbers are whole whatever is said of them.
-        TreeWalk(ahead, compression, bytes_each, as_half && is_float).tree();
-        grid.alone = file_of_one(header, is_float ? full_type : type, compression, as_half && is_float,
-                                 transform_bytes, ahead.since(tree_start));
+        TreeWalk(ahead, compression, bytes_each, halves).tree();
+        grid.alone = file_of_one(header, halves ? full_type : type, compression, halves, transform_bytes,
+                                 ahead.since(tree_start));
         cursor = ahead;
         continue;
       } catch (const std::runtime_error& e) {

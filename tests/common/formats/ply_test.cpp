@@ -1,6 +1,7 @@
 #include "common/formats/ply.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "tests/common/formats/expect_error.h"
 #include "tests/common/formats/tricky_meshes.h"
@@ -70,6 +71,26 @@ TEST(Ply, BinaryOfBothByteOrdersWithMoreInIt) {
     EXPECT_EQ(mesh.points[3], Vec3(0.1 * 3, 3, -3));
     EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 1, 2}, {0, 2, 3}}));
   }
+}
+
+TEST(Ply, PropertiesOfPointsAreFields) {
+  for (bool big : {false, true}) {
+    const SurfaceWithFields read = read_ply_with_fields(rich_binary(big), "f");
+    EXPECT_EQ(read.surface.points[3], Vec3(0.1 * 3, 3, -3));
+    EXPECT_EQ(read.point_fields, (std::vector<MeshField>{{"red", 1, true, {255, 255, 255, 255}}}));
+  }
+  const std::string lists = "property float z\nproperty list uchar int l\nproperty double d\nproperty int i";
+  std::string text = header("ascii") + "0 0 0 2 7 8 inf -3\n1 0 0 0 0.1 4\n0 1 0 1 9 1e400 5\n3 0 1 2\n";
+  text.replace(text.find("property float z"), 16, lists);
+  const double inf = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(read_ply_with_fields(text, "f").point_fields,
+            (std::vector<MeshField>{{"d", 1, false, {inf, 0.1, inf}}, {"i", 1, true, {-3, 4, 5}}}));
+  const auto read = [](std::string_view bytes, const char* name) { read_ply_with_fields(bytes, name); };
+  text.replace(text.find("0.1"), 3, "0,1");
+  expect_input_error(read, text, "line 16", "\"0,1\"");
+  const std::string bytes = rich_binary(false);
+  for (std::size_t n = 0; n < bytes.size(); ++n)
+    (void)error_of<InputError>([&] { (void)read_ply_with_fields(bytes.substr(0, n), "f"); });
 }
 
 TEST(Ply, WhatIsDroppedIsNamed) {

@@ -1,5 +1,7 @@
 #include "common/formats/vtp.h"
 
+#include <cmath>
+
 #include "tests/common/formats/expect_error.h"
 
 namespace tetwright::vtp_test {
@@ -44,6 +46,32 @@ TEST(Vtp, OtherFieldsAreNamed) {
     ASSERT_EQ(dropped.size(), 2u);
     EXPECT_EQ(dropped[1].what.substr(0, 15), "fields of cells");
   }
+}
+
+TEST(Vtp, ArraysOfPointsAreFields) {
+  const auto with = [](const std::string& arrays) {
+    std::string text = file("");
+    return text.replace(text.find("<CellData>"), 0, "<PointData>" + arrays + "</PointData>");
+  };
+  const std::string arrays =
+      "<DataArray type=\"Float32\" Name=\"a\" format=\"ascii\">1 2 0.5 nan 4</DataArray>"
+      "<DataArray type=\"String\" Name=\"text\" format=\"ascii\">1 2 3 4 5</DataArray>"
+      "<DataArray type=\"UInt8\" Name=\"b\" NumberOfComponents=\"2\" format=\"ascii\">0 1 2 3 4 5 6 7 8 "
+      "9</DataArray>";
+  const SurfaceWithFields read = read_vtp_with_fields(with(arrays), "f");
+  EXPECT_EQ(read.surface.triangles.size(), 3u);
+  ASSERT_EQ(read.point_fields.size(), 2u);
+  EXPECT_EQ(read.point_fields[0].name, "a");
+  EXPECT_EQ(read.point_fields[0].values[2], 0.5);
+  EXPECT_TRUE(std::isnan(read.point_fields[0].values[3]));
+  EXPECT_EQ(read.point_fields[1], (MeshField{"b", 2, true, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}}));
+  const auto read_all = [](std::string_view bytes, const char* name) { read_vtp_with_fields(bytes, name); };
+  const std::string few = with("<DataArray type=\"Int8\" Name=\"c\" format=\"ascii\">1 2</DataArray>");
+  expect_input_error(read_all, few, "\"c\"", "5 were expected");
+  // Who does not ask for fields reads the file all the same.
+  std::vector<Dropped> dropped;
+  EXPECT_EQ(read_vtp(few, "f", &dropped).points.size(), 5u);
+  EXPECT_EQ(dropped, (std::vector<Dropped>{{"lines", 1}, {"fields of points (\"c\")", 1}}));
 }
 
 TEST(Vtp, BadInput) {

@@ -34,6 +34,19 @@ TEST(PointTriangle, NeverFartherThanAnyPointOfTheTriangle) {
   }
 }
 
+TEST(PointTriangle, WeightsGiveThePoint) {
+  const Vec3 a(0, 0, 0), b(4, 0, 0), c(0, 3, 0);
+  const auto place = [](const std::array<double, 3>& w, const Vec3& p, const Vec3& q, const Vec3& r) -> Vec3 {
+    EXPECT_NEAR(w[0] + w[1] + w[2], 1, 1e-15);
+    return w[0] * p + w[1] * q + w[2] * r;
+  };
+  for (const Vec3& p : {Vec3(1, 1, 0), Vec3(4, 0, 0), Vec3(2, 1.5, 0), Vec3(0, 0.25, 0)})
+    EXPECT_LT((place(weights_in_triangle(p, a, b, c), a, b, c) - p).norm(), 1e-14);
+  const Vec3 half = (a + b) / 2, on(1, 0, 0);
+  EXPECT_LT((place(weights_in_triangle(on, a, half, b), a, half, b) - on).norm(), 1e-14);
+  EXPECT_EQ(weights_in_triangle(b, b, b, b), (std::array<double, 3>{1, 0, 0}));
+}
+
 TEST(PointTriangle, DegenerateOnesAreSegmentsAndPoints) {
   const Vec3 a(0, 0, 0), b(2, 0, 0);
   EXPECT_DOUBLE_EQ(squared_distance({1, 5, 0}, a, b, a), 25);
