@@ -192,8 +192,8 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   DenseMesh result;
   Progress* progress = stages.progress();
   if (options.max_cell && !options.uniform)
-    finer = combine(std::move(finer),
-                    find_sized_cells(*field, options.max_cell, options.keep_outside, progress));
+    finer =
+        combine(std::move(finer), find_sized_cells(*field, options.max_cell, options.keep_outside, progress));
   report.refinement = finer.refinement;
   if (finer.refinement > 0) field = field->refined(finer.refinement);
   Octree octree = build_octree(*field, {options.uniform, options.adaptivity, finer.coarsest_interface_level},

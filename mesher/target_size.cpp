@@ -88,8 +88,8 @@ bool has_creases(const MesherInput& input, const FeatureAngle& angle) {
 constexpr double cell_per_edge = 0.4;
 /// The same of the largest cells inside, which are halved until they are as small: half as small on average.
 constexpr double inner_cell_per_edge = 0.8;
-/// Cells along the longest side for wanted sizes, at most; where smaller ones are wanted, cells are halved and
-/// edges split.
+/// Cells along the longest side for wanted sizes, at most; where smaller ones are wanted, cells are halved
+/// and edges split.
 constexpr double max_sized_resolution = 256;
 /// Places of each surface where sizes are asked for.
 constexpr double sized_places = 20000;
@@ -214,8 +214,8 @@ void choose_cells_for_sizes(const MesherInput& input, const SizeField* wish, dou
   const double longest = longest_side(input);
   const double most = std::min<double>(max_resolution, max_sized_resolution);
   const auto need = [&](double cell) {
-    options.resolution = std::max(
-        {options.resolution, min_target_resolution, static_cast<int>(std::min(most, std::ceil(longest / cell)))});
+    options.resolution = std::max({options.resolution, min_target_resolution,
+                                   static_cast<int>(std::min(most, std::ceil(longest / cell)))});
   };
   if (!wish && !std::isfinite(max_edge)) return;
   options.max_cell = [wish, max_edge](const Vec3& place) {
@@ -260,8 +260,7 @@ void choose_cells_for_sizes(const MesherInput& input, const SizeField* wish, dou
   const double base = longest / options.resolution;
   for (const SizedPlace& p : places)
     if (const double halvings = std::ceil(std::log2(base / p.cell) - 0.5); halvings >= 1)
-      options.fine_places.push_back(
-          {p.place, static_cast<int>(std::min<double>(halvings, max_refinement))});
+      options.fine_places.push_back({p.place, static_cast<int>(std::min<double>(halvings, max_refinement))});
 }
 
 double cell_size_for_target(const LabelInput& labels, std::size_t target_tets, const MesherOptions& options) {

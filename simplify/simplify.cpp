@@ -119,9 +119,10 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
   if (bounded && tuned) {
     engine.set_sizes(options.sizes, options.min_edge, options.max_edge);
     if (options.sizes) {
-      target = std::max<std::size_t>(1, static_cast<std::size_t>(std::min(engine.tets_for_sizes(), max_sized_tets)));
-      engine.rules.objective.quality = TetQuality::for_target(
-          engine.mesh().total_volume(), static_cast<double>(target), options.beta);
+      target = std::max<std::size_t>(
+          1, static_cast<std::size_t>(std::min(engine.tets_for_sizes(), max_sized_tets)));
+      engine.rules.objective.quality =
+          TetQuality::for_target(engine.mesh().total_volume(), static_cast<double>(target), options.beta);
     }
   }
   engine.recorder().begin_stage("simplify");

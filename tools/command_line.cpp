@@ -195,9 +195,10 @@ void add_simplifying(CLI::App& app, CommandLine& c) {
       app, "--tolerance", c.tolerance,
       "How far any point of the mesh's surface and of the input's may be from the other, input units or "
       "percent of the diagonal; status 1 unless that is proven of the result");
-  app.add_option("--size-field", c.size_field,
-                 "Edge lengths wanted, input units: the point field of a tet or surface mesh, or a float grid "
-                 "(.vdb)")
+  app.add_option(
+         "--size-field", c.size_field,
+         "Edge lengths wanted, input units: the point field of a tet or surface mesh, or a float grid "
+         "(.vdb)")
       ->type_name("FILE");
   add_length(app, "--max-edge", c.max_edge,
              "Max length of edges, input units or percent of the diagonal; longer ones are split");

@@ -22,10 +22,12 @@ struct EdgeLengthReport {
   double shortest = 0, longest = 0;
   Offender above_max, below_min;
   // With a wish; else 0.
-  std::size_t within = 0;     ///< edges within edge_length_factor of it
-  double median = 0;          ///< of lengths over wanted ones
-  std::size_t wished = 0;     ///< edges in all, or 0 without a wish
-  double within_share() const { return wished ? static_cast<double>(within) / static_cast<double>(wished) : 1; }
+  std::size_t within = 0;  ///< edges within edge_length_factor of it
+  double median = 0;       ///< of lengths over wanted ones
+  std::size_t wished = 0;  ///< edges in all, or 0 without a wish
+  double within_share() const {
+    return wished ? static_cast<double>(within) / static_cast<double>(wished) : 1;
+  }
 };
 
 /// `wish` may be null; `min_edge` 0 and `max_edge` infinite are no bounds.

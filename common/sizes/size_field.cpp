@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/parallel/parallel.h"
+#include "common/portable_math.h"
 
 namespace tetwright {
 
@@ -23,13 +24,14 @@ constexpr std::size_t place_grain = 1024;
 
 }  // namespace
 
-SizeField::SizeField(const SizeSource& source, const Box3& box, const SizeLimits& limits) : limits_(limits) {
-  const Vec3 sides = box.high - box.low;
+SizeField::SizeField(const SizeSource& source, const Vec3& low, const Vec3& high, const SizeLimits& limits)
+    : limits_(limits) {
+  const Vec3 sides = high - low;
   const double longest = sides.maxCoeff();
   // Flat boxes: as if they were a node thick.
   const Vec3 solid = sides.cwiseMax(longest / max_nodes_along);
-  spacing_ = std::max(std::cbrt(solid.prod() / nodes_wanted), longest / max_nodes_along);
-  low_ = box.low - Vec3::Constant(margin * spacing_);
+  spacing_ = std::max(portable_cbrt(solid.prod() / nodes_wanted), longest / max_nodes_along);
+  low_ = low - Vec3::Constant(margin * spacing_);
   for (int a = 0; a < 3; ++a)
     size_[static_cast<std::size_t>(a)] =
         static_cast<std::size_t>(std::ceil(sides[a] / spacing_)) + 2 * margin + 1;
@@ -51,9 +53,8 @@ void SizeField::sample(const SizeSource& source) {
         if (!wanted) continue;
         const std::size_t i = row * size_[0] + x;
         known_[i] = 1;
-        values_[i] =
-            static_cast<float>(std::clamp(wanted->length, limits_.min_edge, limits_.max_edge) +
-                               limits_.grading * wanted->distance);
+        values_[i] = static_cast<float>(std::clamp(wanted->length, limits_.min_edge, limits_.max_edge) +
+                                        limits_.grading * wanted->distance);
       }
   });
 }
@@ -85,7 +86,8 @@ void SizeField::limit_growth() {
   std::vector<Step> before;  // the half of a node's 26 neighbours that comes before it
   for (int k = 0; k < 13; ++k) {
     const int x = k % 3 - 1, y = k / 3 % 3 - 1, z = k / 9 - 1;
-    before.push_back({x, y, z, static_cast<float>(limits_.grading * spacing_ * std::sqrt(x * x + y * y + z * z))});
+    before.push_back(
+        {x, y, z, static_cast<float>(limits_.grading * spacing_ * std::sqrt(x * x + y * y + z * z))});
   }
   const std::array<int, 3> size{static_cast<int>(size_[0]), static_cast<int>(size_[1]),
                                 static_cast<int>(size_[2])};
@@ -125,8 +127,8 @@ double SizeField::at(const Vec3& place) const {
   double sum = 0;
   for (int k = 0; k < 8; ++k) {
     const int dx = k & 1, dy = k >> 1 & 1, dz = k >> 2;
-    const double weight = (dx ? share[0] : 1 - share[0]) * (dy ? share[1] : 1 - share[1]) *
-                          (dz ? share[2] : 1 - share[2]);
+    const double weight =
+        (dx ? share[0] : 1 - share[0]) * (dy ? share[1] : 1 - share[1]) * (dz ? share[2] : 1 - share[2]);
     sum += weight * static_cast<double>(values_[index(first[0] + dx, first[1] + dy, first[2] + dz)]);
   }
   return std::min(sum, limits_.max_edge);

@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "common/geometry/box_tree.h"
 #include "common/sizes/size_source.h"
 #include "common/types.h"
 
@@ -33,9 +32,9 @@ struct SizeLimits {
 /// may be called concurrently.
 class SizeField {
  public:
-  /// For places in `box`, which must not be empty; of its sides at least one must be above 0. Time: a query
-  /// of the source for each node.
-  SizeField(const SizeSource& source, const Box3& box, const SizeLimits& limits);
+  /// For places in the box from `low` to `high`, of which at least one side must be above 0. Time: a query of
+  /// the source for each node.
+  SizeField(const SizeSource& source, const Vec3& low, const Vec3& high, const SizeLimits& limits);
 
   /// The wanted edge length at a place of the box; of one outside that of the nearest place in it.
   double at(const Vec3& place) const;

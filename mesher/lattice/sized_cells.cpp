@@ -31,6 +31,14 @@ std::vector<MortonKey> root_cells(const GridFrame& frame) {
 FinerCells find_sized_cells(const MaterialField& field, const MaxCell& max_cell, bool outside,
                             Progress* progress) {
   const GridFrame& frame = field.frame();
+  // At the centre and the corners: lengths that grow slowly are not much smaller anywhere between.
+  const auto too_large = [&](const Vec3& centre, double side) {
+    const auto asks = [&](const Vec3& at) { return side * frame.cell_size > max_cell(frame.to_input(at)); };
+    if (asks(centre)) return true;
+    for (int k = 0; k < 8; ++k)
+      if (asks(centre + side * (Vec3(k & 1, k >> 1 & 1, k >> 2) - Vec3::Constant(0.5)))) return true;
+    return false;
+  };
   std::vector<std::vector<MortonKey>> split_by_step;  // from the root cells on
   std::vector<MortonKey> cells = root_cells(frame);
   double total = 0;
@@ -43,7 +51,7 @@ FinerCells find_sized_cells(const MaterialField& field, const MaxCell& max_cell,
           for (std::size_t i = begin; i < end; ++i) {
             const std::array<int, 3> low = morton_decode(cells[i]);
             const Vec3 centre = side * (Vec3(low[0], low[1], low[2]) + Vec3::Constant(0.5));
-            if (side * frame.cell_size <= max_cell(frame.to_input(centre))) continue;
+            if (!too_large(centre, side)) continue;
             const NearestRegion there = sampler->nearest(centre);
             const bool whole = there.margin >= std::min(half_diagonal * side, field.band());
             const bool small = half_diagonal * side <= field.band();

@@ -46,7 +46,7 @@ class EdgeSizes {
  private:
   /// Lengths over the wanted one within which edges are let be: halving a longer one makes none that is
   /// collapsed again (as in Botsch & Kobbelt 2004).
-  static constexpr double short_edge = 0.7, long_edge = 1.4;
+  static constexpr double short_edge = 0.7, long_edge = 1.48;
 
   const SizeField* wish_;
   WorkingSpace space_;

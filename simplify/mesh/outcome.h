@@ -32,8 +32,7 @@ inline constexpr std::size_t outcome_count = 15;
 inline constexpr std::array<std::string_view, outcome_count> outcome_names{
     "done",          "lock_taken", "stale",     "no_candidate",   "material_rule",
     "surface_error", "inverts",    "quality",   "link_condition", "self_intersection",
-    "no_room",       "count",      "too_large", "volume",
-    "edge_length"};
+    "no_room",       "count",      "too_large", "volume",         "edge_length"};
 
 /// The kinds of operation that are counted.
 enum class Operation : std::uint8_t {

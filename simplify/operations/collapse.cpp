@@ -158,8 +158,7 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
   }
   // Beside the paper's volumes: the tip of a spike has next to none.
   if (!star.interface_triangles.empty() && rules.distance_weight > 0 &&
-      rules.distance_weight * distance_left(star, b) >
-          rules.max_error * rules.scale_at(star.centre_position))
+      rules.distance_weight * distance_left(star, b) > rules.max_error * rules.scale_at(star.centre_position))
     return Outcome::surface_error;
   if (!(rules.embedded && star.interface_triangles.empty()) &&
       !ws.link_condition.holds(ws.mesh, ws.grid, star, b))

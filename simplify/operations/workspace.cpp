@@ -62,9 +62,8 @@ Outcome Workspace::test_surface(const BlockRules& rules) {
   if (!grid.test(proposal.edit)) return Outcome::self_intersection;
   const SurfaceSamples* samples = grid.samples();
   if (!samples || proposal.edit.removed.empty()) return Outcome::done;
-  const double allowed =
-      std::min(rules.tolerance,
-               rules.max_deviation * rules.scale_at(proposal.edit.removed.front().points.front()));
+  const double allowed = std::min(
+      rules.tolerance, rules.max_deviation * rules.scale_at(proposal.edit.removed.front().points.front()));
   return samples->hand_over(proposal.edit, allowed) ? Outcome::done : Outcome::surface_error;
 }
 

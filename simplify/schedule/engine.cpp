@@ -105,7 +105,7 @@ DeviationReport Engine::deviation() const {
   }
   const ProjectionTree surface(std::move(points), std::move(items));
   const double accuracy = tolerance::deviation_share * (box.high - box.low).norm();
-  const auto in_input_units = [&](SurfaceDeviation d) {
+  const auto in_input_units = [&](const SurfaceDeviation& d) {
     const double scale = mesh_.space().scale();
     return SurfaceDeviation{d.lower / scale, d.upper / scale, mesh_.space().to_input(d.place), d.rms / scale};
   };

@@ -18,7 +18,7 @@ constexpr int max_rounds = 20;
 /// Share of the edges, each counted once for each tet, that may be left out of bounds.
 constexpr double few = 0.002;
 /// A round that leaves more than this share of what the best one before left gains too little; so many may.
-constexpr double idle_above = 0.95;
+constexpr double idle_above = 0.97;
 constexpr int max_idle = 2;
 /// Of the bound of shapes: what collapses and splits must leave. Flips and better places mend it.
 constexpr float resize_floor = 0.3f;

@@ -49,7 +49,7 @@ constexpr double loop_tolerance = 0.8, closing_tolerance = 0.87;
 constexpr double tolerances_to_edge = 2.5, tolerances_between_places = 0.5;
 /// Without a count, from one target to the next; a stage has ended when an iteration over all tets removes
 /// less than this share of them. With wanted sizes, too: what they leave is for size rounds.
-constexpr double stage_share = 0.6, stage_min_removed = 0.1, sized_min_removed = 0.03;
+constexpr double stage_share = 0.6, stage_min_removed = 0.1, sized_min_removed = 0.01;
 /// Without a count annealing accepts no worse tets while so many are below the bound: nothing but the
 /// tolerance ends the loop, and on the way to where that refuses all, bunny at 0.2 % had 41 % of them, for 23
 /// % fewer tets.
@@ -123,8 +123,7 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
     rules.count.max = it.tets_before;
     const double log_now = portable_log(static_cast<double>(it.tets_before) / target);
     rules.accept_worse = first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
-    if (!counted && engine.share_below(options.min_solid_angle) > max_poor_share)
-      rules.accept_worse = 0;
+    if (!counted && engine.share_below(options.min_solid_angle) > max_poor_share) rules.accept_worse = 0;
     const float limit = engine.cutoff(percent);
     it.cutoff = portable_cbrt(limit);
     engine.fit_creases();

@@ -49,6 +49,10 @@ TEST(StatsJson, FollowsItsSchema) {
   EXPECT_EQ(j["result"]["materials"][0]["name"], "t");
   EXPECT_GT(j["peak_bytes"], 0);
   EXPECT_FALSE(j["iterations"].empty());
+  const auto bounded = stats("prepare " + (f / "t.ply") + " -o " + (f / "p.vtu") +
+                             " --tolerance 2% --max-edge 20% --target-tets 2000");
+  EXPECT_TRUE(bounded["tolerance"]["held"]);
+  EXPECT_GT(bounded["edge_lengths"]["edges"], 0);
   // The schema refuses unknown keys and wrong types.
   j["surprise"] = 1;
   EXPECT_NE(violations(j), "");

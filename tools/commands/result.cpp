@@ -145,7 +145,8 @@ void find_edge_lengths(const TetMesh& mesh, RunReport& report) {
                 "short of --size-field: %.3g %% of the edges are within %.3g times the wanted length, not "
                 "%.3g %%; held back by: ",
                 100 * e.within_share(), edge_length_factor, 100 * min_edges_within);
-  report.shortfall.push_back({"size_field", min_edges_within, e.within_share(), held, text + std::string(held)});
+  report.shortfall.push_back(
+      {"size_field", min_edges_within, e.within_share(), held, text + std::string(held)});
 }
 
 /// Tets below the bound where it is the default: a finding and no shortfall.

@@ -194,7 +194,8 @@ DenseMesh mesh_input(const MesherInput& surfaces, CommandRun& run) {
   const bool choose = !line.resolution && line.voxel_size == 0 && line.command == Command::prepare;
   if (choose && line.target_tets > 0)
     options.resolution = resolution_for_target(surfaces, line.target_tets, line.feature_angle);
-  if (choose) choose_cells_for_sizes(surfaces, run.report.sizes.wish.get(), run.report.sizes.limits.max_edge, options);
+  if (choose)
+    choose_cells_for_sizes(surfaces, run.report.sizes.wish.get(), run.report.sizes.limits.max_edge, options);
   if (line.tolerance.value == 0) return mesh_surfaces(surfaces, options, &run.progress);
   run.report.tolerance = tolerance_of(line, diagonal);
   if (!choose) return mesh_surfaces(surfaces, options, &run.progress);
@@ -251,7 +252,8 @@ DenseMesh make_dense_mesh(ScanInput input, CommandRun& run) {
     dense.reference.reset();
     if (run.line.write_sdf.empty()) dense.field.reset();
   }
-  require_sizes_at(run, dense.mesh.points);
+  // The outside has the sizes of the nearest place where the field has none.
+  if (!run.line.keep_outside) require_sizes_at(run, dense.mesh.points);
   run.report.features = dense.report.features;
   run.report.creases = std::move(dense.report.creases);
   run.report.mesher = std::move(dense.report);
