@@ -1,6 +1,6 @@
 #pragma once
 
-#include <limits>
+#include <algorithm>
 
 #include "common/sizes/size_field.h"
 #include "simplify/mesh/working_space.h"

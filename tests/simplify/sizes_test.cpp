@@ -52,6 +52,18 @@ TetMesh block() {
   return mesh;
 }
 
+/// Sizes for the block that grow by a tenth of x.
+SizeField growing_from(double smallest) {
+  return {Source([=](const Vec3& p) { return smallest + 0.1 * p.x(); }), {0, 0, 0}, {24, 12, 12}, {}};
+}
+
+SimplifyOptions wanting(const SizeField& wish) {
+  SimplifyOptions options;
+  options.target_tets = 0;
+  options.sizes = &wish;
+  return options;
+}
+
 void expect_kept(const TetMesh& before, const TetMesh& after) {
   for (const MeshFinding& f : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(f);
   for (const std::string& d : topology_differences(topology(before), topology(after))) ADD_FAILURE() << d;
@@ -61,12 +73,8 @@ void expect_kept(const TetMesh& before, const TetMesh& after) {
 TEST(Sizes, EdgesHaveTheWantedLengths) {
   const TetMesh mesh = block();
   // From what is there already to three times as much, across an interface.
-  const Source source([](const Vec3& p) { return 1.2 + 0.1 * p.x(); });
-  const SizeField wish(source, {0, 0, 0}, {24, 12, 12}, {});
-  SimplifyOptions options;
-  options.target_tets = 0;
-  options.sizes = &wish;
-  const TetMesh after = simplify(mesh, options);
+  const SizeField wish = growing_from(1.2);
+  const TetMesh after = simplify(mesh, wanting(wish));
   expect_kept(mesh, after);
   EXPECT_LT(share_within(mesh, wish), 0.7);
   EXPECT_GE(share_within(after, wish), 0.95);
@@ -74,12 +82,8 @@ TEST(Sizes, EdgesHaveTheWantedLengths) {
 
 TEST(Sizes, LongEdgesAreSplit) {
   const TetMesh mesh = block();
-  const Source source([](const Vec3& p) { return 0.5 + 0.1 * p.x(); });
-  const SizeField wish(source, {0, 0, 0}, {24, 12, 12}, {});
-  SimplifyOptions options;
-  options.target_tets = 0;
-  options.sizes = &wish;
-  const TetMesh after = simplify(mesh, options);
+  const SizeField wish = growing_from(0.5);
+  const TetMesh after = simplify(mesh, wanting(wish));
   expect_kept(mesh, after);
   EXPECT_GE(share_within(after, wish), 0.9);
   double near = 0, count = 0;
@@ -107,14 +111,10 @@ TEST(Sizes, NoEdgeBecomesLongerThanTheBound) {
 
 TEST(Sizes, TheSameForAnyNumberOfThreads) {
   const TetMesh mesh = block();
-  const Source source([](const Vec3& p) { return 0.8 + 0.1 * p.x(); });
-  const SizeField wish(source, {0, 0, 0}, {24, 12, 12}, {});
-  SimplifyOptions options;
-  options.target_tets = 0;
-  options.sizes = &wish;
+  const SizeField wish = growing_from(0.8);
   const auto with_threads = [&](unsigned threads) {
     const ThreadLimit limit(threads);
-    return simplify(mesh, options);
+    return simplify(mesh, wanting(wish));
   };
   const TetMesh one = with_threads(1), four = with_threads(4);
   EXPECT_EQ(one.tets, four.tets);
