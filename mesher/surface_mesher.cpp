@@ -326,13 +326,16 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   budget.max_tets = std::max(max_added_tets, budget.base_tets);
   std::vector<SurfacePatches> patches = patches_of(input, options, report.cell_size);
   const auto has_patches = [](const SurfacePatches& p) { return p.any(); };
-  std::vector<NarrowPatches> narrow;
+  const int max_depth = std::min(budget.max_depth, budget.max_possible);
+  const NarrowPatches asked = cells_around(options.fine_places, voxels, max_depth, budget.base_tets);
+  std::vector<BodyCells> cells;
   for (std::size_t b = 0; b < input.bodies.size(); ++b)
-    narrow.push_back(find_narrow_patches(input.bodies[b].surface, patches[b], voxels, options.fine_places,
-                                         std::min(budget.max_depth, budget.max_possible), budget.base_tets));
+    cells.push_back(
+        {find_narrow_patches(input.bodies[b].surface, patches[b], voxels, max_depth, budget.base_tets),
+         asked});
   BodyField bodies =
       build_field(input, voxels, options.keep_outside, {options.min_gap, options.min_thickness}, budget,
-                  std::move(narrow), progress);
+                  std::move(cells), progress);
   const std::shared_ptr<const MaterialField> field = bodies.field;
   report.seconds_sdf = stages.seconds();
 

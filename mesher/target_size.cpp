@@ -101,7 +101,12 @@ constexpr double first_cell = 2;
 constexpr int min_tolerance_resolution = 96;
 /// Cells within which the surface and the mesh stand for each other.
 constexpr double reach_cells = 2;
-constexpr int max_fine_rounds = 4;
+constexpr int max_fine_rounds = 4, max_worse_rounds = 2;
+/// Where halving cells at places gains nothing more: up to this share of the tolerance samples can be kept;
+/// else all cells become smaller.
+constexpr double enough_share = 0.8;
+constexpr double resolution_growth = 1.5;
+constexpr int max_attempts = 12;
 constexpr std::size_t place_grain = 256;
 
 /// Vertices and centroids of the triangles.
@@ -116,29 +121,47 @@ std::vector<Vec3> places_on(const ProjectionTree& surface) {
   return places;
 }
 
-/// Places of one surface that are farther from the other than `allowed`, with the halvings of cells there
-/// that would bring them as near as that if distances fell in proportion. What is farther than `reach` stands
-/// for something else: a cap, a layer, the box of an outside.
-void add_far_places(const ProjectionTree& from, const ProjectionTree& to, double allowed, double reach,
-                    std::vector<FinePlace>& far) {
+/// Where a dense mesh and its surface are too far from each other.
+struct Misfit {
+  std::vector<FinePlace>
+      places;  ///< with the halvings of cells that would do if distances fell in proportion
+  double worst = 0;
+};
+
+/// Adds the places of one surface that are farther from the other than `allowed`. What is farther than
+/// `reach` stands for something else: a cap, a layer, the box of an outside.
+void add_misfit(const ProjectionTree& from, const ProjectionTree& to, double allowed, double reach,
+                Misfit& misfit) {
+  struct Far {
+    FinePlace place;
+    double distance;
+  };
   const std::vector<Vec3> places = places_on(from);
-  const std::vector<FinePlace> found = parallel_collect<FinePlace>(
-      0, places.size(), place_grain, [&](std::size_t begin, std::size_t end, std::vector<FinePlace>& out) {
+  const std::vector<Far> found = parallel_collect<Far>(
+      0, places.size(), place_grain, [&](std::size_t begin, std::size_t end, std::vector<Far>& out) {
         for (std::size_t i = begin; i < end; ++i) {
           if (to.any_within(places[i], allowed)) continue;
           const auto hit = to.nearest_of(places[i], reach, [](const auto&) { return true; });
           if (!hit) continue;
-          const double halvings = std::ceil(std::log2((hit->point - places[i]).norm() / allowed));
-          out.push_back({places[i], static_cast<int>(std::clamp<double>(halvings, 1, max_refinement))});
+          const double distance = (hit->point - places[i]).norm();
+          const double halvings =
+              std::clamp<double>(std::ceil(std::log2(distance / allowed)), 1, max_refinement);
+          out.push_back({{places[i], static_cast<int>(halvings)}, distance});
         }
       });
-  far.insert(far.end(), found.begin(), found.end());
+  for (const Far& f : found) {
+    misfit.places.push_back(f.place);
+    misfit.worst = std::max(misfit.worst, f.distance);
+  }
 }
 
-ProjectionTree tree_of(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
+/// `Face` has the points of a triangle, `corners(face)` says which.
+template <class Face, class Corners>
+ProjectionTree tree_of(const std::vector<Vec3>& points, const std::vector<Face>& faces,
+                       const Corners& corners) {
   std::vector<ProjectionTree::Item> items;
-  items.reserve(triangles.size());
-  for (const Triangle& t : triangles) items.push_back({t, {}});
+  items.reserve(faces.size());
+  for (const Face& f : faces) items.push_back({corners(f), {}});
   return {points, std::move(items)};
 }
 
@@ -173,40 +196,64 @@ int resolution_for_target(const MesherInput& input, std::size_t target_tets, con
 DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double tolerance, Progress* progress) {
   const double longest = longest_side(input);
   const double cells = std::ceil(longest / (first_cell * tolerance));
+  options.voxel_size = 0;
   if (!(cells <= max_resolution)) {
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  "a tolerance of %.6g takes more than %d cells along the longest side; give %.6g or more",
-                  tolerance, max_resolution, longest / (first_cell * max_resolution));
+    options.resolution = max_resolution;
+    const MesherEstimate most = estimate_mesh(input, options);
+    const double more = (cells / max_resolution) * (cells / max_resolution);
+    char text[250];
+    std::snprintf(
+        text, sizeof text,
+        "a tolerance of %.6g takes %.0f cells along the longest side, about %.3g tets and %.3g GB; at "
+        "most %d cells are possible, for %.6g or more",
+        tolerance, cells, more * static_cast<double>(most.tets), more * static_cast<double>(most.bytes) / 1e9,
+        max_resolution, longest / (first_cell * max_resolution));
     throw UsageError(text);
   }
-  options.voxel_size = 0;
   options.resolution = std::max({min_tolerance_resolution, options.resolution, static_cast<int>(cells)});
   // What cells cannot show is shown thicker by as much as a tolerance is wide, or closed.
   if (!options.max_refinement) options.max_refinement = max_wall_refinement;
+  const std::vector<FinePlace> fine_places = options.fine_places;  // of wanted sizes
   const double allowed = dense_tolerance_share * tolerance;
-  const double reach = reach_cells * longest / options.resolution;
   std::optional<DenseMesh> best;
-  std::size_t min_far = std::numeric_limits<std::size_t>::max();
-  for (int round = 0;; ++round) {
+  Misfit of_best;
+  int worse = 0;  // rounds since the best one
+  for (int round = 0, attempts = 0; attempts < max_attempts; ++attempts) {
     DenseMesh dense = mesh_surfaces(input, options, progress);
-    std::vector<Triangle> faces;
-    faces.reserve(dense.mesh.interfaces.size());
-    for (const InterfaceTriangle& t : dense.mesh.interfaces) faces.push_back(t.ids);
-    const ProjectionTree mesh = tree_of(dense.mesh.points, faces),
-                         surface = tree_of(dense.surface->points, dense.surface->triangles);
-    std::vector<FinePlace> far;
-    add_far_places(surface, mesh, allowed, reach, far);
-    add_far_places(mesh, surface, allowed, reach, far);
-    // Smaller cells gain nothing where thin walls choose theirs, and may show that gaps are closed there.
-    if (far.size() >= min_far) return std::move(*best);
-    if (far.empty() || round == max_fine_rounds || options.uniform) return dense;
-    min_far = far.size();
-    best = std::move(dense);
-    // Where cells were halved before, once more.
-    for (FinePlace& place : far) place.halvings = std::min(max_refinement, place.halvings + round);
-    options.fine_places.insert(options.fine_places.end(), far.begin(), far.end());
+    Misfit misfit;
+    {
+      const ProjectionTree mesh = tree_of(dense.mesh.points, dense.mesh.interfaces,
+                                          [](const InterfaceTriangle&t) { return t.ids; }),
+                           surface = tree_of(dense.surface->points, dense.surface->triangles,
+                                             [](const Triangle&t) { return t; });
+      const double reach = reach_cells * longest / options.resolution;
+      add_misfit(surface, mesh, allowed, reach, misfit);
+      add_misfit(mesh, surface, allowed, reach, misfit);
+    }
+    if (misfit.places.empty()) return dense;
+    ++worse;
+    if (!best || misfit.worst < of_best.worst) {
+      best = std::move(dense);
+      of_best = misfit;
+      worse = 0;
+    }
+    if (++round <= max_fine_rounds && worse < max_worse_rounds && !options.uniform) {
+      // Where cells were halved before, once more.
+      for (FinePlace& place : misfit.places)
+        place.halvings = std::min(max_refinement, place.halvings + round - 1);
+      options.fine_places.insert(options.fine_places.end(), misfit.places.begin(), misfit.places.end());
+      continue;
+    }
+    if (of_best.worst <= enough_share * tolerance) break;
+    // Smaller cells everywhere.
+    round = worse = 0;
+    options.fine_places = fine_places;
+    options.resolution = static_cast<int>(std::ceil(resolution_growth * options.resolution));
+    if (options.resolution > max_resolution ||
+        static_cast<double>(estimate_mesh(input, options).tets) > max_dense_tets)
+      break;
   }
+  return std::move(*best);
 }
 
 void choose_cells_for_sizes(const MesherInput& input, const SizeField* wish, double max_edge,

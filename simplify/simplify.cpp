@@ -12,6 +12,7 @@
 #include "simplify/schedule/engine.h"
 #include "simplify/schedule/improve_area.h"
 #include "simplify/schedule/paper_schedule.h"
+#include "simplify/schedule/poor_spots.h"
 #include "simplify/schedule/schedule_constants.h"
 #include "simplify/schedule/size_rounds.h"
 #include "simplify/schedule/tuned_schedule.h"
@@ -163,6 +164,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     fit(engine, sweeps_before_closing, quality_at(engine, plan.angle));
     WholeMesh whole(engine);
     improve_area(tools_of(engine), whole, plan, 1);
+    if (!counted && !bounded) refine_poor_spots(tools_of(engine), whole, plan, options.min_solid_angle);
     // Shapes were had at the cost of places.
     fit(engine, sweeps_after_closing, quality_at(engine, plan.angle));
   }

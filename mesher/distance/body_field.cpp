@@ -1,5 +1,8 @@
 #include "mesher/distance/body_field.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "common/error.h"
 #include "mesher/distance/level_set_field.h"
 
@@ -7,25 +10,31 @@ namespace tetwright {
 
 BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool keep_outside,
                       const ThinWalls::Limits& limits, const RefinementBudget& budget,
-                      std::vector<NarrowPatches> narrow, Progress* progress) {
+                      std::vector<BodyCells> cells, Progress* progress) {
   BodyField result;
   std::vector<std::shared_ptr<const LevelSet>> surfaces;
   std::vector<ThinSurvey> surveys(input.bodies.size());
-  narrow.resize(input.bodies.size());
+  cells.resize(input.bodies.size());
   std::vector<ThinSurvey*> all;
   for (std::size_t b = 0; b < input.bodies.size(); ++b) {
     const RepairedSurface& surface = input.bodies[b].surface;
+    NarrowPatches &narrow = cells[b].narrow, &asked = cells[b].asked;
+    std::vector<MortonKey> exact;
+    std::set_union(narrow.voxels.begin(), narrow.voxels.end(), asked.voxels.begin(), asked.voxels.end(),
+                   std::back_inserter(exact));
     surfaces.push_back(LevelSet::of_surface(surface, voxels, progress));
     surveys[b] =
         survey_thin_walls(surface, *surfaces[b], voxels,
                           {limits.min_gap / voxels.cell_size, limits.min_thickness / voxels.cell_size},
-                          narrow[b].voxels, progress);
-    // Where walls are thin the survey alone chooses cells: it changes distances for just these.
+                          std::move(exact), progress);
+    // Smaller cells in narrow patches would tear thin walls beside them.
     if (!surveys[b].voxels.empty()) {
-      narrow[b] = {};
-      surveys[b].exact = {};
+      narrow = {};
+      surveys[b].exact = std::move(asked.voxels);
+      follow_cells(surveys[b], asked.finer);
     }
-    result.finer = combine(std::move(result.finer), std::move(narrow[b].finer));
+    result.finer = combine(std::move(result.finer), std::move(narrow.finer));
+    result.finer = combine(std::move(result.finer), std::move(asked.finer));
     all.push_back(&surveys[b]);
   }
   choose_depths(all, budget);

@@ -22,10 +22,16 @@ struct BodyField {
   double filling_tets = 0, filling_tets_thickened = 0;  ///< of all bodies, see ThinWallPlan
 };
 
-/// `limits` in input units; `narrow` of each body, or empty. Throws InputError for layers thicker than the
+/// What one body asks for besides its thin walls.
+struct BodyCells {
+  NarrowPatches narrow;  ///< dropped where the body has thin walls, which alone choose cells then
+  NarrowPatches asked;   ///< MesherOptions::fine_places
+};
+
+/// `limits` in input units; `cells` of each body, or empty. Throws InputError for layers thicker than the
 /// body, Interrupted.
 BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool keep_outside,
                       const ThinWalls::Limits& limits, const RefinementBudget& budget,
-                      std::vector<NarrowPatches> narrow, Progress* progress);
+                      std::vector<BodyCells> cells, Progress* progress);
 
 }  // namespace tetwright

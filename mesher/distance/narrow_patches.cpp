@@ -70,15 +70,8 @@ std::vector<FinePlace> narrow_places(const RepairedSurface& surface, const Surfa
       });
 }
 
-}  // namespace
-
-NarrowPatches find_narrow_patches(const RepairedSurface& surface, const SurfacePatches& patches,
-                                  const GridFrame& frame, const std::vector<FinePlace>& asked, int max_depth,
-                                  double max_tets) {
-  if (max_depth <= 0) return {};
-  std::vector<FinePlace> places;
-  if (patches.any()) places = narrow_places(surface, patches, frame, max_depth);
-  for (const FinePlace& p : asked) places.push_back({frame.to_grid(p.place), p.halvings});
+/// Halves cells at places in voxels and around them, at most so often that `max_tets` hold.
+NarrowPatches halve_cells(const std::vector<FinePlace>& places, int max_depth, double max_tets) {
   for (; max_depth > 0; --max_depth) {
     std::vector<Split> splits;
     for (const FinePlace& n : places)
@@ -111,6 +104,21 @@ NarrowPatches find_narrow_patches(const RepairedSurface& surface, const SurfaceP
     return narrow;
   }
   return {};
+}
+
+}  // namespace
+
+NarrowPatches find_narrow_patches(const RepairedSurface& surface, const SurfacePatches& patches,
+                                  const GridFrame& frame, int max_depth, double max_tets) {
+  if (max_depth <= 0 || !patches.any()) return {};
+  return halve_cells(narrow_places(surface, patches, frame, max_depth), max_depth, max_tets);
+}
+
+NarrowPatches cells_around(const std::vector<FinePlace>& asked, const GridFrame& frame, int max_depth,
+                           double max_tets) {
+  std::vector<FinePlace> places;
+  for (const FinePlace& p : asked) places.push_back({frame.to_grid(p.place), p.halvings});
+  return halve_cells(places, max_depth, max_tets);
 }
 
 }  // namespace tetwright

@@ -19,9 +19,11 @@ struct NarrowPatches {
 /// Where a patch is so narrow that cells would not show both its creases: cells there are halved until its
 /// width has two of them, at most `max_depth` times and as long as that adds no more than about `max_tets`
 /// dense tets (else nowhere so deep). Near a corner, where creases meet, a patch ends and is not narrow.
-/// `asked`: other places where cells are halved, input units.
 NarrowPatches find_narrow_patches(const RepairedSurface& surface, const SurfacePatches& patches,
-                                  const GridFrame& frame, const std::vector<FinePlace>& asked, int max_depth,
-                                  double max_tets);
+                                  const GridFrame& frame, int max_depth, double max_tets);
+
+/// The same around places that are asked for, input units.
+NarrowPatches cells_around(const std::vector<FinePlace>& asked, const GridFrame& frame, int max_depth,
+                           double max_tets);
 
 }  // namespace tetwright

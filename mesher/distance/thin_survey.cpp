@@ -290,6 +290,18 @@ ThinSurvey survey_thin_walls(const RepairedSurface& surface, const LevelSet& lev
   return survey;
 }
 
+void follow_cells(ThinSurvey& survey, const FinerCells& finer) {
+  for (int depth = 0; depth < finer.refinement; ++depth)
+    for (const MortonKey cell : finer.cells[static_cast<std::size_t>(finer.refinement - depth)]) {
+      const MortonKey voxel = cell >> (3 * depth);
+      const auto at = std::lower_bound(survey.voxels.begin(), survey.voxels.end(), voxel);
+      if (at == survey.voxels.end() || *at != voxel) continue;
+      ThinSurvey::Region& region =
+          survey.regions[survey.region[static_cast<std::size_t>(at - survey.voxels.begin())]];
+      region.asked = std::max(region.asked, depth + 1);
+    }
+}
+
 void choose_depths(const std::vector<ThinSurvey*>& surveys, const RefinementBudget& budget) {
   std::vector<ThinSurvey::Region*> regions;
   for (ThinSurvey* survey : surveys)
@@ -298,7 +310,7 @@ void choose_depths(const std::vector<ThinSurvey*>& surveys, const RefinementBudg
   const auto added = [](const ThinSurvey::Region& r, int depth) { return r.tets[depth] - r.tets[0]; };
   for (ThinSurvey::Region* r : regions) {
     const int needed = std::min(r->needed, budget.max_possible);
-    r->depth = std::min(needed, budget.max_depth);
+    r->depth = std::max(std::min(needed, budget.max_depth), std::min(r->asked, budget.max_possible));
     if (budget.deeper_where_cheap)
       while (r->depth < needed && added(*r, r->depth + 1) <= budget.base_tets) ++r->depth;
   }

@@ -22,6 +22,7 @@ struct ThinSurvey {
     /// Dense tets that it takes if cells are halved so many times where it asks for it, predicted.
     std::array<double, max_wall_refinement + 1> tets{};
     int needed = 0;  ///< halvings that would show all of it
+    int asked = 0;   ///< halvings of cells in it for other reasons
     int depth = 0;   ///< halvings that it gets
   };
 
@@ -40,6 +41,9 @@ struct ThinSurvey {
 ThinSurvey survey_thin_walls(const RepairedSurface& surface, const LevelSet& level_set,
                              const GridFrame& frame, const ThinWalls::Limits& limits,
                              std::vector<MortonKey> exact, Progress* progress);
+
+/// Regions in which cells are split for other reasons are shown by cells as small, crumbs too.
+void follow_cells(ThinSurvey& survey, const FinerCells& finer);
 
 /// What refinement may take.
 struct RefinementBudget {

@@ -52,6 +52,7 @@ class SurfaceGrid {
     // Its memory.
     std::vector<TriangleDistance> distances;
     std::vector<std::uint32_t> takers;
+    std::vector<std::uint8_t> near_sample;
 
     void clear() {
       removed.clear();

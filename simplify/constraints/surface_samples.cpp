@@ -215,20 +215,43 @@ bool SurfaceSamples::hand_samples(SurfaceGrid::Edit& edit, double max_distance) 
   return true;
 }
 
-bool SurfaceSamples::stays_near_surface(const SurfaceGrid::Edit& edit, double max_distance) const {
+bool SurfaceSamples::stays_near_surface(SurfaceGrid::Edit& edit, double max_distance) const {
   if (!(max_distance < std::numeric_limits<double>::infinity())) return true;
   double allowed = max_distance;
   bool measured = false;
   // The places of a triangle in between, where it is large.
-  const auto inside_stays = [&](const std::array<Vec3, 3>& p) {
+  const auto inside_stays = [&](std::uint32_t added) {
+    const auto& p = edit.added[added].triangle.points;
     const double longest2 =
         std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
     if (!(longest2 > spacing_ * spacing_)) return true;
     const int steps = static_cast<int>(std::ceil(std::sqrt(longest2) / spacing_));
-    const Vec3 u = (p[1] - p[0]) / steps, v = (p[2] - p[0]) / steps;
+    const Vec3 u = (p[1] - p[0]) / steps, v = (p[2] - p[0]) / steps, n = u.cross(v);
+    // Most are near a sample of the triangle, which is on the surface.
+    const std::size_t row = static_cast<std::size_t>(steps) + 1;
+    edit.near_sample.assign(row * row, 0);
+    if (n.squaredNorm() > 0) {
+      const Vec3 to_i = v.cross(n) / n.squaredNorm(), to_j = n.cross(u) / n.squaredNorm();
+      const double reach_i = allowed * to_i.norm(), reach_j = allowed * to_j.norm();
+      const auto first = [](double x) { return static_cast<int>(std::ceil(std::max(x, 0.0))); };
+      const auto last = [](double x, int end) {
+        return static_cast<int>(std::floor(std::min<double>(x, end)));
+      };
+      for (const SurfaceGrid::HandedSample& h : edit.handed) {
+        if (h.added != added) continue;
+        const Vec3 from = samples_[h.sample].position - p[0];
+        const double at_i = from.dot(to_i), at_j = from.dot(to_j);
+        for (int i = first(at_i - reach_i); i <= last(at_i + reach_i, steps); ++i)
+          for (int j = first(at_j - reach_j); j <= last(at_j + reach_j, steps - i); ++j)
+            if ((from - i * u - j * v).squaredNorm() <= allowed * allowed)
+              edit.near_sample[static_cast<std::size_t>(i) * row + static_cast<std::size_t>(j)] = 1;
+      }
+    }
     for (int i = 0; i <= steps; ++i)
       for (int j = 0; i + j <= steps; ++j)
-        if (!surface_.any_within(p[0] + i * u + j * v, allowed)) return false;
+        if (!edit.near_sample[static_cast<std::size_t>(i) * row + static_cast<std::size_t>(j)] &&
+            !surface_.any_within(p[0] + i * u + j * v, allowed))
+          return false;
     return true;
   };
   // Samples are on the surface.
@@ -261,9 +284,9 @@ bool SurfaceSamples::stays_near_surface(const SurfaceGrid::Edit& edit, double ma
                        [&](const MeshTriangle& t) { return has(t, p) && has(t, q); });
   };
   std::optional<Index> tested;  // a corner: one moves at most
-  for (const SurfaceGrid::Added& a : edit.added) {
-    const auto& p = a.triangle.points;
-    const auto& ids = a.triangle.ids;
+  for (std::uint32_t added = 0; added < edit.added.size(); ++added) {
+    const auto& p = edit.added[added].triangle.points;
+    const auto& ids = edit.added[added].triangle.ids;
     if (!stays((p[0] + p[1] + p[2]) / 3)) return false;
     std::array<bool, 3> moved{};
     for (int k = 0; k < 3; ++k) {
@@ -276,7 +299,7 @@ bool SurfaceSamples::stays_near_surface(const SurfaceGrid::Edit& edit, double ma
       const int l = (k + 1) % 3;
       if ((moved[k] || moved[l] || !had_edge(ids[k], ids[l])) && !stays((p[k] + p[l]) / 2)) return false;
     }
-    if (!inside_stays(p)) return false;
+    if (!inside_stays(added)) return false;
   }
   return true;
 }

@@ -94,7 +94,7 @@ class SurfaceSamples {
   };
   void add(const Vec3& position, std::uint32_t record, double distance);
   bool hand_samples(SurfaceGrid::Edit& edit, double max_distance) const;
-  bool stays_near_surface(const SurfaceGrid::Edit& edit, double max_distance) const;
+  bool stays_near_surface(SurfaceGrid::Edit& edit, double max_distance) const;
 
   const ProjectionTree& surface_;
   double spacing_ = std::numeric_limits<double>::infinity();

@@ -26,7 +26,7 @@ Found find(double width_in_cells, int max_depth, double max_tets = 1e9) {
   const GridFrame frame = make_grid_frame(input.low, input.high, cell, false);
   const SurfacePatches patches = find_patches(surface.points, surface.triangles, {}, {}, "p.off");
   EXPECT_EQ(patches.count, 7U);
-  return {find_narrow_patches(surface, patches, frame, {}, max_depth, max_tets), frame};
+  return {find_narrow_patches(surface, patches, frame, max_depth, max_tets), frame};
 }
 
 TEST(NarrowPatches, GetCellsOfHalfTheirWidth) {
