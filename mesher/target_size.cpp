@@ -98,7 +98,7 @@ constexpr double sized_places = 20000;
 constexpr double dense_tolerance_share = 0.5;
 /// Cells at first, in tolerances: where surfaces are smooth their meshes are within half of one.
 constexpr double first_cell = 2;
-constexpr int min_tolerance_resolution = 96;
+constexpr int min_tolerance_resolution = 64;
 /// Cells within which the surface and the mesh stand for each other.
 constexpr double reach_cells = 2;
 constexpr int max_fine_rounds = 4, max_worse_rounds = 2;

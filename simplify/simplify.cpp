@@ -7,6 +7,7 @@
 
 #include "common/error.h"
 #include "common/memory.h"
+#include "common/message_text.h"
 #include "simplify/remesher.h"
 #include "simplify/schedule/bulk_improvement.h"
 #include "simplify/schedule/engine.h"
@@ -31,10 +32,6 @@ constexpr double closing_margin = 1.27;
 constexpr double improve_margin = 1.5;
 /// The share by which closing may change the count where none was asked for.
 constexpr double free_closing_slack = 1;
-/// The same where sizes of edges decide it.
-constexpr double sized_closing_slack = 0.1;
-/// More tets than can be numbered are not asked for.
-constexpr double max_sized_tets = 1 << 30;
 constexpr int sweeps_before_closing = 1, sweeps_after_closing = 2;
 /// Sweeps of fit_to_crease() before it.
 constexpr int crease_sweeps = 3;
@@ -94,6 +91,20 @@ void check(const TetMesh& mesh, const std::string& name) {
                  "free some, or use a machine or a container limit with more");
 }
 
+/// The number of tets that wanted lengths decide; that their bounds allow.
+std::size_t target_for_sizes(const Engine& engine, const SimplifyOptions& options) {
+  double tets = static_cast<double>(options.target_tets);
+  if (options.sizes)
+    tets = engine.tets_for_sizes();
+  else if (options.target_tets > 0)
+    tets = std::max(std::min(tets, engine.tets_for_edge(within_bounds * options.min_edge)),
+                    engine.tets_for_edge(options.max_edge / within_bounds));
+  require_memory(program_bytes + bytes_per_tet * tets,
+                 options.name + ": about " + short_number(tets) + " tets with edges of the wanted lengths",
+                 "give larger ones");
+  return options.target_tets == 0 && !options.sizes ? 0 : static_cast<std::size_t>(std::max(1.0, tets));
+}
+
 }  // namespace
 
 TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report, Progress* progress) {
@@ -114,17 +125,14 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
        options.beta, options.gamma, options.seed, options.batch_size, options.objective, options.reference,
        options.frozen, options.fix_boundary, tuned},
       report, progress);
-  // Wanted sizes decide the count.
   std::size_t target = options.target_tets;
   const bool bounded = options.sizes || options.min_edge > 0 || std::isfinite(options.max_edge);
   if (bounded && tuned) {
     engine.set_sizes(options.sizes, options.min_edge, options.max_edge);
-    if (options.sizes) {
-      target = std::max<std::size_t>(
-          1, static_cast<std::size_t>(std::min(engine.tets_for_sizes(), max_sized_tets)));
+    target = target_for_sizes(engine, options);
+    if (target != options.target_tets)
       engine.rules.objective.quality =
           TetQuality::for_target(engine.mesh().total_volume(), static_cast<double>(target), options.beta);
-    }
   }
   engine.recorder().begin_stage("simplify");
   const double build = seconds_since(start);
@@ -145,11 +153,16 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
                        .min_tets = 1,
                        .max_tets = std::numeric_limits<std::int64_t>::max()});
     }
-    const bool counted = target > 0 && !bounded;
+    const auto near_target = [&](std::size_t tets) {
+      return std::fabs(static_cast<double>(tets) - static_cast<double>(target)) <=
+             closing_slack * static_cast<double>(target);
+    };
+    const bool counted = target > 0 && !options.sizes && (!bounded || near_target(engine.mesh().live_tets()));
     const auto count =
         static_cast<double>(counted ? std::min(target, first_count) : engine.mesh().live_tets());
-    // Without a count shapes are worth some tets more.
-    const double slack = counted ? closing_slack : bounded ? sized_closing_slack : free_closing_slack;
+    // Without a count shapes are worth some tets more, and edges shorter than wanted.
+    const double slack = counted ? closing_slack : free_closing_slack;
+    if (options.sizes) engine.allow_shorter_edges();
     const ImprovementPlan plan{.kind = "close",
                                .angle = closing_margin * options.min_solid_angle,
                                .leave_surface_angle = closing_margin * options.min_solid_angle,
@@ -164,7 +177,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     fit(engine, sweeps_before_closing, quality_at(engine, plan.angle));
     WholeMesh whole(engine);
     improve_area(tools_of(engine), whole, plan, 1);
-    if (!counted && !bounded) refine_poor_spots(tools_of(engine), whole, plan, options.min_solid_angle);
+    if (!counted) refine_poor_spots(tools_of(engine), whole, plan, options.min_solid_angle);
     // Shapes were had at the cost of places.
     fit(engine, sweeps_after_closing, quality_at(engine, plan.angle));
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -22,6 +23,17 @@ struct SizeLimits {
   double max_edge = std::numeric_limits<double>::infinity();
   double grading = default_grading;  ///< above 0: growth of the length over distance
 };
+
+/// Lengths of edges vary around what is wanted: so far within the bounds, as a factor, what is wanted keeps
+/// nearly all of them there.
+inline constexpr double within_bounds = 1.48;
+
+/// The limits of what may be wanted where edges have these.
+inline SizeLimits wanted_within(SizeLimits edges) {
+  const double middle = std::sqrt(edges.min_edge * edges.max_edge);
+  const double low = within_bounds * edges.min_edge, high = edges.max_edge / within_bounds;
+  return low <= high ? SizeLimits{low, high, edges.grading} : SizeLimits{middle, middle, edges.grading};
+}
 
 /// The edge length that is wanted at each place of a box: what a source says, between the limits, and nowhere
 /// growing faster than the grading allows (Persson 2006, "Mesh size functions for implicit geometries and

@@ -11,36 +11,45 @@ namespace tetwright {
 /// everywhere. Working coordinates. All functions may be called concurrently.
 class EdgeSizes {
  public:
-  /// `wish` may be null: then only the bounds hold. `min_edge` and `max_edge` in input units.
-  EdgeSizes(const SizeField* wish, double min_edge, double max_edge, const WorkingSpace& space)
+  /// `wish` may be null: then only the bounds hold. `min_edge` and `max_edge` in input units, `extent` of the
+  /// mesh: longer edges than that are not wanted.
+  EdgeSizes(const SizeField* wish, double min_edge, double max_edge, double extent, const WorkingSpace& space)
       : wish_(wish),
         space_(space),
         min_edge_(min_edge * space.scale()),
-        max_edge_(max_edge * space.scale()) {}
+        max_edge_(max_edge * space.scale()),
+        extent_(extent) {}
+
+  /// From now on edges may be shorter than wanted, not than the bound: for shapes, where layers are thinner
+  /// than the wanted length. While no task runs.
+  void allow_shorter() { shorter_allowed_ = true; }
 
   bool has_wish() const { return wish_ != nullptr; }
   /// The wanted length at a place. Needs a wish.
-  double wish(const Vec3& at) const { return wish_->at(space_.to_input(at)) * space_.scale(); }
+  double wish(const Vec3& at) const {
+    return std::min(extent_, wish_->at(space_.to_input(at)) * space_.scale());
+  }
 
   /// Longest and shortest lengths that an edge with this middle should have.
   double upper(const Vec3& middle) const {
     return wish_ ? std::min(max_edge_, long_edge * wish(middle)) : max_edge_;
   }
   double lower(const Vec3& middle) const {
-    return wish_ ? std::max(min_edge_, short_edge * wish(middle)) : min_edge_;
+    return wish_ && !shorter_allowed_ ? std::max(min_edge_, short_edge * wish(middle)) : min_edge_;
   }
   /// The length of an edge over the longest, and the shortest one over its length: above 1 where it breaks a
   /// bound, by so much.
   struct Excess {
     double longer, shorter;
   };
-  Excess excess(const Vec3& p, const Vec3& q) const {
+  /// `short_share`: of the shortest length beside the bound.
+  Excess excess(const Vec3& p, const Vec3& q, double short_share = 1) const {
     const Vec3 middle = (p + q) / 2;
     const double length = (q - p).norm();
     if (!wish_) return {length / max_edge_, min_edge_ / length};
     const double wanted = wish(middle);
     return {length / std::min(max_edge_, long_edge * wanted),
-            std::max(min_edge_, short_edge * wanted) / length};
+            (shorter_allowed_ ? min_edge_ : std::max(min_edge_, short_share * short_edge * wanted)) / length};
   }
 
  private:
@@ -50,7 +59,8 @@ class EdgeSizes {
 
   const SizeField* wish_;
   WorkingSpace space_;
-  double min_edge_, max_edge_;
+  double min_edge_, max_edge_, extent_;
+  bool shorter_allowed_ = false;
 };
 
 }  // namespace tetwright

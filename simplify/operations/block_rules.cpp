@@ -27,7 +27,7 @@ double crease_distance(const SurfaceProjection& projection, const Vec3& p, const
 
 void BlockRules::project_onto(const SurfaceProjection& surfaces, double diagonal) {
   projection = &surfaces;
-  max_crease_distance = surfaces.has_patches() ? max_crease_share * diagonal : 0;
+  max_crease_distance = surfaces.has_patches() ? std::min(max_crease_share * diagonal, tolerance) : 0;
 }
 
 bool near_crease(const BlockRules& rules, const Star& star, std::size_t first, const Vec3& to,

@@ -9,13 +9,18 @@ namespace tetwright {
 
 namespace {
 
+/// What goes with an edge that is too long may leave edges of this share of the shortest length: where its tets
+/// are flat, halving it makes short ones, and nothing else shortens it.
+constexpr double short_share_beside_long = 0.5;
+
 /// Whether no edge is too long, or too short, that the proposal makes: or at least none by more than one that
 /// it takes away.
 bool keeps_sizes(const Workspace& ws, const EdgeSizes& sizes) {
   const Proposal& p = ws.proposal;
   EdgeSizes::Excess before{1, 1}, after{0, 0};
+  double short_share = 1;
   const auto add = [&](EdgeSizes::Excess& worst, const Vec3& a, const Vec3& b) {
-    const EdgeSizes::Excess e = sizes.excess(a, b);
+    const EdgeSizes::Excess e = sizes.excess(a, b, short_share);
     worst.longer = std::max(worst.longer, e.longer);
     worst.shorter = std::max(worst.shorter, e.shorter);
   };
@@ -25,6 +30,7 @@ bool keeps_sizes(const Workspace& ws, const EdgeSizes& sizes) {
       for (const auto& e : tet_edges) add(worst, at(t[e[0]]), at(t[e[1]]));
     };
     for (const Index t : p.removed) add_tet(before, ws.mesh.points(t));
+    if (before.longer > 1) short_share = short_share_beside_long;
     for (const NewTet& t : p.added) add_tet(after, t.points);
   } else {
     const Star& star = ws.star;

@@ -67,8 +67,13 @@ void Engine::keep_input_surface(const TriangleMesh* surface) {
 }
 
 void Engine::set_sizes(const SizeField* wish, double min_edge, double max_edge) {
-  sizes_.emplace(wish, min_edge, max_edge, mesh_.space());
+  sizes_.emplace(wish, min_edge, max_edge, mesh_.diagonal(), mesh_.space());
   rules.sizes = rules.objective.sizes = &*sizes_;
+}
+
+double Engine::tets_for_edge(double length) const {
+  const double ideal = length * mesh_.space().scale() / Objective::edge_to_ideal;
+  return mesh_.total_volume() / (ideal * ideal * ideal);
 }
 
 double Engine::tets_for_sizes() const {

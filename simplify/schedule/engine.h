@@ -56,6 +56,10 @@ class Engine {
   void set_sizes(const SizeField* wish, double min_edge, double max_edge);
   /// How many well-shaped tets with edges of the wanted lengths fill the mesh.
   double tets_for_sizes() const;
+  /// The same for one length everywhere, input units.
+  double tets_for_edge(double length) const;
+  /// EdgeSizes::allow_shorter().
+  void allow_shorter_edges() { sizes_->allow_shorter(); }
   /// How far the mesh's surface is from that, proven.
   DeviationReport deviation() const;
   bool owns_samples() const { return samples_ != nullptr; }

@@ -43,6 +43,8 @@ constexpr double deviation_growth = 1.05;
 /// The share of SimplifyOptions::tolerance that samples may be off in the loop, and in closing, which needs
 /// room for shapes: between samples surfaces may be farther, on scans by up to 15 %.
 constexpr double loop_tolerance = 0.8, closing_tolerance = 0.87;
+/// Of the diagonal: larger tolerances bound nothing, and samples for them would be too few to fit to.
+constexpr double max_tolerance = 0.1;
 /// With a tolerance samples are as dense as for triangles with edges of so many sampled tolerances, at least,
 /// and places of triangles that must be near the surface are so many of them apart: with 4 and 1 the bunny at
 /// 0.5 % is up to 4.6 % farther between them, with these 1 %.
@@ -169,7 +171,9 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options, std::siz
   engine.compact();
   engine.keep_input_surface(options.surface);
   if (options.tolerance > 0) {
-    rules.tolerance = rules.max_deviation = loop_tolerance * options.tolerance * mesh.space().scale();
+    rules.tolerance = rules.max_deviation =
+        loop_tolerance * std::min(options.tolerance * mesh.space().scale(), max_tolerance * mesh.diagonal());
+    rules.max_crease_distance = std::min(rules.max_crease_distance, rules.tolerance);
     engine.set_spacing(tolerances_between_places * rules.tolerance);
     const double edge = tolerances_to_edge * rules.tolerance;
     engine.own_samples(loop_target > 0 ? std::min(rules.objective.quality.ideal_edge, edge) : edge);

@@ -21,7 +21,8 @@ void read_sizes(CommandRun& run, const Box3& box) {
   if (line.size_field.empty()) return;
   sizes.source = read_size_field(line.size_field);
   if (!(diagonal > 0)) return;  // nothing to mesh, which is said elsewhere
-  sizes.wish = std::make_shared<const SizeField>(*sizes.source, box.low, box.high, sizes.limits);
+  sizes.wish =
+      std::make_shared<const SizeField>(*sizes.source, box.low, box.high, wanted_within(sizes.limits));
 }
 
 void require_sizes_at(const CommandRun& run, const std::vector<Vec3>& places) {

@@ -73,8 +73,9 @@ std::string rules_behind_count(const CommandLine& line, const RunReport& report,
     return "walls so thin that fewer tets would be flat; ask for " +
            std::to_string(report.mesher->filling_tets) + " or more, or leave them out with --min-thickness";
   if (report.sizes.wish) return "the sizes of --size-field, which decide the number of tets";
-  if (report.sizes.any())
-    return reached > asked ? "the lengths that --max-edge allows" : "the lengths that --min-edge allows";
+  if (reached > asked && std::isfinite(report.sizes.limits.max_edge))
+    return "the lengths that --max-edge allows";
+  if (reached < asked && report.sizes.limits.min_edge > 0) return "the lengths that --min-edge allows";
   if (reached > asked && report.tolerance > 0)
     return std::to_string(report.result->tets) + " tets: the tolerance holds the rest back";
   if (reached > asked) return rules_limiting_count(*report.simplify, line.max_iterations);
