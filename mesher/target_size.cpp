@@ -107,6 +107,9 @@ constexpr int max_fine_rounds = 4, max_worse_rounds = 2;
 constexpr double enough_share = 0.8;
 constexpr double resolution_growth = 1.5;
 constexpr int max_attempts = 12;
+/// Of the largest distance, that smaller cells must leave less than: the border of a hole has no more to
+/// give.
+constexpr double min_level_gain = 0.9;
 constexpr std::size_t place_grain = 256;
 
 /// Vertices and centroids of the triangles.
@@ -217,7 +220,8 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
   const double allowed = dense_tolerance_share * tolerance;
   std::optional<DenseMesh> best;
   Misfit of_best;
-  int worse = 0;  // rounds since the best one
+  int worse = 0;                                                 // rounds since the best one
+  double level_worst = std::numeric_limits<double>::infinity();  // with all larger cells
   for (int round = 0, attempts = 0; attempts < max_attempts; ++attempts) {
     DenseMesh dense = mesh_surfaces(input, options, progress);
     Misfit misfit;
@@ -244,7 +248,8 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
       options.fine_places.insert(options.fine_places.end(), misfit.places.begin(), misfit.places.end());
       continue;
     }
-    if (of_best.worst <= enough_share * tolerance) break;
+    if (of_best.worst <= enough_share * tolerance || of_best.worst > min_level_gain * level_worst) break;
+    level_worst = of_best.worst;
     // Smaller cells everywhere.
     round = worse = 0;
     options.fine_places = fine_places;

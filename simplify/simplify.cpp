@@ -8,6 +8,7 @@
 #include "common/error.h"
 #include "common/memory.h"
 #include "common/message_text.h"
+#include "simplify/constraints/surface_samples.h"
 #include "simplify/remesher.h"
 #include "simplify/schedule/bulk_improvement.h"
 #include "simplify/schedule/engine.h"
@@ -177,9 +178,9 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     fit(engine, sweeps_before_closing, quality_at(engine, plan.angle));
     WholeMesh whole(engine);
     improve_area(tools_of(engine), whole, plan, 1);
-    if (!counted) refine_poor_spots(tools_of(engine), whole, plan, options.min_solid_angle);
     // Shapes were had at the cost of places.
     fit(engine, sweeps_after_closing, quality_at(engine, plan.angle));
+    if (!counted) refine_poor_spots(tools_of(engine), whole, plan, options.min_solid_angle);
   }
   if (report && options.tolerance > 0) report->deviation = engine.deviation();
   if (report) {
@@ -189,6 +190,11 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     report->seconds_close = seconds_since(start) - loop_end;
   }
   return std::move(engine).take();
+}
+
+DeviationReport deviation(const TetMesh& mesh, const TriangleMesh& surface) {
+  const EditableMesh editable(TetMesh(mesh), "mesh");
+  return InputSurface(editable, &surface).deviation(editable);
 }
 
 namespace {

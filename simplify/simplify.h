@@ -19,6 +19,11 @@ namespace tetwright {
 TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report = nullptr,
                  Progress* progress = nullptr);
 
+/// How far a mesh's surface is from the one that it was made from, proven. `surface` in input units, wound
+/// outwards. Works on a copy. Throws InputError as simplify() does. Parallel; the result does not depend on
+/// the threads.
+DeviationReport deviation(const TetMesh& mesh, const TriangleMesh& surface);
+
 /// Improves the shapes of a mesh at about its count: what closes simplify(), by itself. The same guarantees,
 /// threads and errors.
 TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* report = nullptr,

@@ -187,14 +187,18 @@ void add_shaping(CLI::App& app, CommandLine& c, const char* iterations) {
       ->default_str(std::to_string(c.max_iterations));
 }
 
-void add_simplifying(CLI::App& app, CommandLine& c) {
-  add_whole_number(app, "--target-tets", c.target_tets, 1, max_target_tets,
-                   "Number of tets to reach; with --tolerance it may be left out: as few as hold it. With "
-                   "--size-field the sizes decide");
+void add_tolerance(CLI::App& app, CommandLine& c) {
   add_length(
       app, "--tolerance", c.tolerance,
       "How far any point of the mesh's surface and of the input's may be from the other, input units or "
       "percent of the diagonal; status 1 unless that is proven of the result");
+}
+
+void add_simplifying(CLI::App& app, CommandLine& c) {
+  add_whole_number(app, "--target-tets", c.target_tets, 1, max_target_tets,
+                   "Number of tets to reach; with --tolerance it may be left out: as few as hold it. With "
+                   "--size-field the sizes decide");
+  add_tolerance(app, c);
   app.add_option(
          "--size-field", c.size_field,
          "Edge lengths wanted, input units: the point field of a tet or surface mesh, or a float grid "
@@ -261,7 +265,8 @@ void add_prepare(CLI::App& app, CommandLine& c) {
 void add_mesh(CLI::App& app, CommandLine& c) {
   app.add_option("INPUT", c.inputs, scans);
   add_output(app, c, mesh_out);
-  add_meshing(app, c, "128; for segmented volumes one cell to a voxel");
+  add_meshing(app, c, "128, or with --tolerance what that needs; for segmented volumes one cell to a voxel");
+  add_tolerance(app, c);
   add_labels(app, c);
   add_common(app, c);
   add_seed(app, c);

@@ -124,6 +124,20 @@ void print_report(const CommandLine& line, const RunReport& run) {
                 100 * c.max_distance / c.diagonal, 100 * c.p99_distance / c.diagonal,
                 c.corners - c.lost_corners, c.corners);
   }
+  if (run.deviation) {
+    const DeviationReport& d = *run.deviation;
+    std::printf(
+        "distances: at most %.4g from the mesh to the surface, %.4g from the surface to the mesh; %.4g "
+        "asked\n",
+        d.from_mesh.upper, d.from_surface.upper, run.tolerance);
+    if (d.apart_area > 0)
+      std::printf(
+          "compared with the dense mesh, as it is far from the surface (caps, layers, a box): area %.4g\n",
+          d.apart_area);
+    if (d.hidden_area > 0)
+      std::printf("not compared, as the mesh does not show it (inner walls): area %.4g of the surface\n",
+                  d.hidden_area);
+  }
   if (run.edge_lengths && run.edge_lengths->wished > 0)
     std::printf("edge lengths: %.1f %% within %.3g times the wanted ones, median %.2f times; %.4g to %.4g\n",
                 100 * run.edge_lengths->within_share(), edge_length_factor, run.edge_lengths->median,

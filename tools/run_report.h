@@ -81,7 +81,8 @@ struct RunReport {
   std::vector<MaterialFidelity> fidelity;
   std::map<MaterialTag, std::string> material_names;
   std::optional<SimplifyReport> simplify;
-  double tolerance = 0;  ///< input units; 0: none
+  double tolerance = 0;                      ///< input units; 0: none
+  std::optional<DeviationReport> deviation;  ///< of the result, with a tolerance
   RequestedSizes sizes;
   std::optional<EdgeLengthReport> edge_lengths;  ///< where sizes are asked for
   double seconds_read = 0, seconds_mesh = 0, seconds_write = 0, seconds_total = 0;

@@ -294,11 +294,13 @@ std::string stats_json(const CommandLine& line, const RunReport& run) {
   if (run.mesher) j["fidelity"] = fidelity_json(run.fidelity);
   if (!run.features.empty()) j["features"] = features_json(run.features);
   if (!run.patches.empty()) j["patches"] = patches_json(run.patches);
-  if (run.simplify && run.simplify->deviation)
+  if (run.deviation)
     j["tolerance"] = {{"distance", run.tolerance},
-                      {"held", run.simplify->deviation->upper() <= run.tolerance},
-                      {"from_mesh", deviation_json(run.simplify->deviation->from_mesh)},
-                      {"from_surface", deviation_json(run.simplify->deviation->from_surface)}};
+                      {"held", run.deviation->upper() <= run.tolerance},
+                      {"from_mesh", deviation_json(run.deviation->from_mesh)},
+                      {"from_surface", deviation_json(run.deviation->from_surface)},
+                      {"apart_area", run.deviation->apart_area},
+                      {"hidden_area", run.deviation->hidden_area}};
   if (run.edge_lengths) j["edge_lengths"] = edge_lengths_json(*run.edge_lengths);
   if (run.crease_fidelity) j["creases"] = creases_json(*run.crease_fidelity);
   j["iterations"] = nlohmann::json::array();

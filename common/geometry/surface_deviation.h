@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "common/types.h"
 
 namespace tetwright {
@@ -12,6 +14,17 @@ struct SurfaceDeviation {
   double lower = 0, upper = 0;
   Vec3 place = Vec3::Zero();  ///< of the first surface, at the distance `lower` from the second
   double rms = 0;             ///< of 100,000 points spread evenly by area, about
+};
+
+/// How far a mesh is from the surface that it stands for, proven; input units. Parts of the dense mesh's own
+/// surface that are far from the one given (caps of holes, layers, the box of an outside that is meshed)
+/// stand for themselves; parts of that one that are far from the dense mesh (inner walls that were removed)
+/// for nothing.
+struct DeviationReport {
+  SurfaceDeviation from_mesh, from_surface;
+  double apart_area = 0;   ///< of what stands for itself
+  double hidden_area = 0;  ///< of what stands for nothing
+  double upper() const { return std::max(from_mesh.upper, from_surface.upper); }
 };
 
 /// The deviation of `from` from `to`. The bounds are within 1 % of each other, or `accuracy` if that is more

@@ -9,6 +9,7 @@
 
 #include "common/geometry/even_points.h"
 #include "common/parallel/parallel.h"
+#include "common/tolerances.h"
 
 namespace tetwright {
 
@@ -58,6 +59,17 @@ std::vector<Place> spread_places(const ProjectionTree& surface, double area_each
   return places;
 }
 
+/// The mesh's boundary and interface triangles.
+ProjectionTree faces_of(const EditableMesh& mesh) {
+  std::vector<Vec3> points(mesh.point_slots(), Vec3::Zero());
+  std::vector<ProjectionTree::Item> items;
+  for (const InterfaceFace& f : mesh.interface_faces()) {
+    for (const Index p : f.ids) points[p] = mesh.position(p);
+    items.push_back({f.ids, {}});
+  }
+  return {std::move(points), std::move(items)};
+}
+
 }  // namespace
 
 InputSurface::Kind InputSurface::kind_of(RegionId inside, RegionId across, PatchId patch) {
@@ -105,6 +117,46 @@ InputSurface::InputSurface(const EditableMesh& mesh, const TriangleMesh* given) 
     items.push_back({ids, {kind.low, kind.high, kind.patch}});
   }
   if (items.size() > given_items) triangles_ = ProjectionTree(std::move(points), std::move(items));
+
+  const ProjectionTree own = faces_of(mesh);
+  hidden_.resize(triangles_.items().size());
+  parallel_for(0, hidden_.size(), sample_grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const ProjectionTree::Item& item = triangles_.items()[i];
+      const Vec3 &a = triangles_.corner(item, 0), &b = triangles_.corner(item, 1),
+                 &c = triangles_.corner(item, 2);
+      const std::array<Vec3, 4> places{a, b, c, (a + b + c) / 3};
+      hidden_[i] = std::none_of(places.begin(), places.end(),
+                                [&](const Vec3& p) { return own.any_within(p, reach_); });
+    }
+  });
+}
+
+DeviationReport InputSurface::deviation(const EditableMesh& mesh) const {
+  DeviationReport report;
+  const double scale = mesh.space().scale();
+  std::vector<ProjectionTree::Item> shown;
+  Box3 box;
+  for (std::size_t i = 0; i < hidden_.size(); ++i) {
+    const ProjectionTree::Item& item = triangles_.items()[i];
+    const double size =
+        area(triangles_.corner(item, 0), triangles_.corner(item, 1), triangles_.corner(item, 2)) /
+        (scale * scale);
+    if (hidden_[i])
+      report.hidden_area += size;
+    else
+      shown.push_back(item);
+    if (!is_given(item)) report.apart_area += size;
+    for (int k = 0; k < 3; ++k) box.add(triangles_.corner(item, k));
+  }
+  const double accuracy = tolerance::deviation_share * (box.high - box.low).norm();
+  const auto in_input_units = [&](const SurfaceDeviation& d) {
+    return SurfaceDeviation{d.lower / scale, d.upper / scale, mesh.space().to_input(d.place), d.rms / scale};
+  };
+  const ProjectionTree input(triangles_.points(), std::move(shown)), own = faces_of(mesh);
+  report.from_mesh = in_input_units(surface_deviation(own, input, accuracy));
+  report.from_surface = in_input_units(surface_deviation(input, own, accuracy));
+  return report;
 }
 
 SurfaceSamples::SurfaceSamples(const EditableMesh& mesh, std::size_t records, const InputSurface& surface,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/geometry/projection_tree.h"
+#include "common/geometry/surface_deviation.h"
 #include "common/triangle_mesh.h"
 #include "simplify/constraints/surface_grid.h"
 #include "simplify/mesh/editable_mesh.h"
@@ -34,10 +35,13 @@ class InputSurface {
   static Kind kind_of(const ProjectionTree::Item& item);
   /// What stands for the other, mesh and input, is within this distance.
   double reach() const { return reach_; }
+  /// How far the mesh's surface is from this one now, proven; input units. Of the same mesh. Parallel.
+  DeviationReport deviation(const EditableMesh& mesh) const;
 
  private:
   static constexpr ProjectionTree::Kind given_kind{0, 0, 0};
   ProjectionTree triangles_;
+  std::vector<std::uint8_t> hidden_;  ///< by item of these, 1 where no part of it is near the mesh as it came
   double reach_ = 0;
 };
 

@@ -9,8 +9,8 @@ namespace tetwright {
 
 namespace {
 
-/// What goes with an edge that is too long may leave edges of this share of the shortest length: where its tets
-/// are flat, halving it makes short ones, and nothing else shortens it.
+/// What goes with an edge that is too long may leave edges of this share of the shortest length: where its
+/// tets are flat, halving it makes short ones, and nothing else shortens it.
 constexpr double short_share_beside_long = 0.5;
 
 /// Whether no edge is too long, or too short, that the proposal makes: or at least none by more than one that

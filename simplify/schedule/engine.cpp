@@ -97,27 +97,7 @@ void Engine::own_samples(double edge) {
   grid_.set_samples(samples_.get());
 }
 
-DeviationReport Engine::deviation() const {
-  std::vector<Vec3> points(mesh_.point_slots(), Vec3::Zero());
-  std::vector<ProjectionTree::Item> items;
-  Box3 box;
-  for (const InterfaceFace& f : mesh_.interface_faces()) {
-    for (const Index p : f.ids) {
-      points[p] = mesh_.position(p);
-      box.add(points[p]);
-    }
-    items.push_back({f.ids, {}});
-  }
-  const ProjectionTree surface(std::move(points), std::move(items));
-  const double accuracy = tolerance::deviation_share * (box.high - box.low).norm();
-  const auto in_input_units = [&](const SurfaceDeviation& d) {
-    const double scale = mesh_.space().scale();
-    return SurfaceDeviation{d.lower / scale, d.upper / scale, mesh_.space().to_input(d.place), d.rms / scale};
-  };
-  const ProjectionTree& input = input_surface_->triangles();
-  return {in_input_units(surface_deviation(surface, input, accuracy)),
-          in_input_units(surface_deviation(input, surface, accuracy))};
-}
+DeviationReport Engine::deviation() const { return input_surface_->deviation(mesh_); }
 
 void Engine::compact_if_sparse() {
   if (mesh_.dead_share() > compact_above) compact();

@@ -90,14 +90,6 @@ struct IterationReport {
   double seconds = 0;
 };
 
-/// How far the result is from the surface that it stands for, proven; input units. Parts of the input mesh's
-/// own surface that are far from SimplifyOptions::surface (caps of holes, layers, the box of an outside that
-/// is meshed) stand for themselves.
-struct DeviationReport {
-  SurfaceDeviation from_mesh, from_surface;
-  double upper() const { return std::max(from_mesh.upper, from_surface.upper); }
-};
-
 struct SimplifyReport {
   std::vector<IterationReport> iterations;
   std::size_t touching_points = 0;  ///< where parts touch without a common face: they stay as they are

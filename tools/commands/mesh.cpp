@@ -1,3 +1,4 @@
+#include "simplify/simplify.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/output_paths.h"
 #include "tools/commands/result.h"
@@ -9,6 +10,7 @@ ExitStatus run_mesh(const CommandLine& line) {
   CommandRun run(line);
   check_output_paths(line);
   const DenseMesh dense = make_dense_mesh(read_scan(run), run);
+  if (run.report.tolerance > 0) run.report.deviation = deviation(dense.mesh, *dense.surface);
   return finish(dense.mesh, dense.field.get(), run);
 }
 

@@ -105,8 +105,8 @@ void find_count_and_shape_shortfall(const CommandLine& line, RunReport& report) 
 
 /// A tolerance that is not proven to be held.
 void find_deviation(RunReport& report) {
-  if (!report.simplify || !report.simplify->deviation) return;
-  const DeviationReport& d = *report.simplify->deviation;
+  if (!report.deviation) return;
+  const DeviationReport& d = *report.deviation;
   if (d.upper() <= report.tolerance) return;
   const bool mesh = d.from_mesh.upper >= d.from_surface.upper;
   const SurfaceDeviation& worst = mesh ? d.from_mesh : d.from_surface;
@@ -379,12 +379,12 @@ ExitStatus finish(const TetMesh& mesh, const MaterialField* field, CommandRun& r
     report_touching_points(report.inputs.front(), report);
     report_volumes(mesh, report.inputs.front(), report);
     find_count_and_shape_shortfall(run.line, report);
-    find_deviation(report);
     find_edge_lengths(mesh, report);
     report_poor_shapes(run.line, report);
   } else {
     report.result = report.dense;  // the dense mesh is the result
   }
+  find_deviation(report);
   find_lost_labels(run.line, report);
   find_changed_solids(run.line, mesh, report);
   find_thin_walls(run.line, report);

@@ -191,10 +191,11 @@ DenseMesh mesh_input(const MesherInput& surfaces, CommandRun& run) {
   options.max_refinement = line.max_refinement;
   options.min_gap = line.min_gap.in_input_units(diagonal);
   options.min_thickness = line.min_thickness.in_input_units(diagonal);
-  const bool choose = !line.resolution && line.voxel_size == 0 && line.command == Command::prepare;
+  const bool choose = !line.resolution && line.voxel_size == 0;
+  const bool prepares = line.command == Command::prepare;
   if (choose && line.target_tets > 0)
     options.resolution = resolution_for_target(surfaces, line.target_tets, line.feature_angle);
-  if (choose)
+  if (choose && prepares)
     choose_cells_for_sizes(surfaces, run.report.sizes.wish.get(), run.report.sizes.limits.max_edge, options);
   if (line.tolerance.value == 0) return mesh_surfaces(surfaces, options, &run.progress);
   run.report.tolerance = tolerance_of(line, diagonal);
@@ -221,6 +222,11 @@ DenseMesh mesh_input(const LabelInput& labels, CommandRun& run) {
                              ? cell_size_for_target(labels, line.target_tets, options)
                              : default_cell_size(labels);
   read_sizes(run, box_of(labels));
+  if (line.tolerance.value > 0 && line.command == Command::mesh)
+    throw UsageError(
+        "--tolerance of 'mesh' is for surfaces: the dense mesh of a volume is what 'prepare --tolerance' "
+        "keeps "
+        "near");
   DenseMesh dense = mesh_labels(labels, options, &run.progress);
   if (line.tolerance.value > 0) run.report.tolerance = tolerance_of(line, diagonal_of(dense.mesh));
   return dense;

@@ -62,7 +62,9 @@ TetMesh simplify_to_target(TetMesh mesh, const ReferenceSurface* reference, cons
   options.seed = run.line.seed;
   options.name = run.report.inputs.front();
   run.report.simplify.emplace();
-  return simplify(std::move(mesh), options, &*run.report.simplify, &run.progress);
+  TetMesh result = simplify(std::move(mesh), options, &*run.report.simplify, &run.progress);
+  run.report.deviation = run.report.simplify->deviation;
+  return result;
 }
 
 }  // namespace tetwright
