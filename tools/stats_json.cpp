@@ -199,7 +199,9 @@ nlohmann::json surface_json(const SurfaceComparison& c) {
     j["solid"] = {{"expected", solid_json(c.solid->expected)},
                   {"result", solid_json(c.solid->result)},
                   {"same", c.solid->same()}};
+  // A distance from nothing is null.
   if (c.creases) j["creases"] = creases_json(*c.creases);
+  if (c.mesh_creases) j["mesh_creases"] = creases_json(*c.mesh_creases);
   return j;
 }
 

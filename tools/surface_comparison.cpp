@@ -1,12 +1,17 @@
 #include "tools/surface_comparison.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <map>
+#include <numbers>
+#include <span>
 #include <utility>
 
+#include "common/features/edge_uses.h"
+#include "common/features/inner_edges.h"
 #include "common/geometry/projection_tree.h"
 #include "common/mesh/solid_shape.h"
-
 #include "common/message_text.h"
 #include "common/tolerances.h"
 
@@ -16,11 +21,24 @@ namespace {
 
 /// Creases of a mesh are looked for where those of its surface were found: find_patches(), automatic.
 constexpr double crease_degrees = 35;
+/// What turns that far is as good as a crease on the other side: none is lost for a degree.
+constexpr double counterpart_degrees = crease_degrees / 2;
 
-ProjectionTree tree_of(const TetMesh& mesh, bool with_interfaces) {
-  std::vector<ProjectionTree::Item> items;
+/// The surfaces of a mesh that are compared: of one surface its boundary, as that of one material.
+TetMesh compared_part(const TetMesh& mesh, bool with_interfaces) {
+  TetMesh part;
+  part.points = mesh.points;
   for (const InterfaceTriangle& t : mesh.interfaces)
-    if (with_interfaces || !t.other) items.push_back({t.ids, {}});
+    if (with_interfaces)
+      part.interfaces.push_back({t.ids, t.material, t.other});
+    else if (!t.other)
+      part.interfaces.push_back({t.ids, 0, {}});
+  return part;
+}
+
+ProjectionTree tree_of(const TetMesh& mesh) {
+  std::vector<ProjectionTree::Item> items;
+  for (const InterfaceTriangle& t : mesh.interfaces) items.push_back({t.ids, {}});
   return {mesh.points, std::move(items)};
 }
 
@@ -35,7 +53,7 @@ ProjectionTree tree_of(const std::vector<TriangleMesh>& surfaces) {
   return {std::move(points), std::move(items)};
 }
 
-/// Nothing where the surface is not closed.
+/// Nothing where the surface is not closed. `mesh` has its boundary as that of one material.
 std::optional<MaterialFidelity> compare_solid(const TetMesh& mesh, const TriangleMesh& surface,
                                               const std::string& name) {
   ExpectedSolid expected;
@@ -47,25 +65,50 @@ std::optional<MaterialFidelity> compare_solid(const TetMesh& mesh, const Triangl
     expected.shape = solid_shape(surface.points, turned);
   }
   if (!expected.shape.manifold) return {};
-  // All materials as one.
-  TetMesh whole;
-  whole.points = mesh.points;
-  for (const InterfaceTriangle& t : mesh.interfaces)
-    if (!t.other) whole.interfaces.push_back({t.ids, expected.tag, {}});
-  return compare_solids({expected}, whole).front();
+  return compare_solids({expected}, mesh).front();
 }
 
-std::optional<CreaseFidelity> compare_creases_of(TetMesh& mesh, const std::vector<TriangleMesh>& surfaces,
-                                                 const std::vector<std::string>& names) {
+/// The edges that turn by more than `counterpart_degrees`, whether or not they are creases.
+CreaseCurves counterparts(std::span<const Vec3> points, std::span<const Triangle> triangles) {
+  SurfaceCreases sharp;
+  for (const InnerEdge& e : inner_edges(points, triangles, edge_uses(triangles, {})))
+    if (e.turn > counterpart_degrees * std::numbers::pi / 180) sharp.segments.push_back({e.ends, {}});
+  CreaseCurves curves;
+  curves.add(sharp, points);
+  return curves;
+}
+
+/// The creases of both sides, those of the mesh only where the surfaces have any.
+void compare_creases_of(TetMesh& mesh, const std::vector<TriangleMesh>& surfaces,
+                        const std::vector<std::string>& names, SurfaceComparison& c) {
   CreaseCurves expected;
+  std::vector<CreaseCurves> of_surfaces;
+  std::vector<Vec3> surface_points;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const TriangleMesh& s = surfaces[i];
     const SurfacePatches patches = find_patches(s.points, s.triangles, {}, {}, names[i]);
     if (patches.any()) expected.add(find_creases(s.points, s.triangles, patches.patches), s.points);
+    of_surfaces.push_back(counterparts(s.points, s.triangles));
+    surface_points.insert(surface_points.end(), s.points.begin(), s.points.end());
   }
-  if (expected.segments.empty()) return {};
+  if (expected.segments.empty()) return;
+  of_surfaces.push_back(expected);
   find_mesh_patches(mesh, {FeatureAngle::Rule::degrees, crease_degrees}, "the mesh");
-  return compare_creases(expected, mesh);
+  const CreaseCurves of_mesh = mesh_creases(mesh);
+  std::vector<CreaseCurves> counterparts_of_mesh{of_mesh, mesh_junctions(mesh)};
+  std::map<MaterialPair, std::vector<Triangle>> by_pair;
+  std::vector<char> used(mesh.points.size(), 0);
+  for (const InterfaceTriangle& t : mesh.interfaces) {
+    by_pair[t.pair()].push_back(t.ids);
+    for (const Index p : t.ids) used[p] = 1;
+  }
+  for (const auto& [pair, triangles] : by_pair)
+    counterparts_of_mesh.push_back(counterparts(mesh.points, triangles));
+  std::vector<Vec3> mesh_points;
+  for (std::size_t p = 0; p < used.size(); ++p)
+    if (used[p]) mesh_points.push_back(mesh.points[p]);
+  c.creases = compare_creases(expected, counterparts_of_mesh, mesh_points, c.diagonal);
+  c.mesh_creases = compare_creases(of_mesh, of_surfaces, surface_points, c.diagonal);
 }
 
 std::string length_text(double length, double diagonal) {
@@ -81,15 +124,49 @@ std::string deviation_line(const char* what, const SurfaceDeviation& d, double d
          place_text(d.place) + "; rms " + length_text(d.rms, diagonal);
 }
 
+/// "creases of the surface: at most 0.1 (2 % of the diagonal) from those of the mesh, at (1, 2, 3); 1 of 8
+/// corners lost, up to 0.1 (2 % of the diagonal) from points of the mesh, at (0, 0, 1)".
+std::string crease_line(const CreaseFidelity& c, const std::string& of, const std::string& from) {
+  std::string line = "creases of the " + of + ": ";
+  line += std::isfinite(c.max_distance) ? "at most " + length_text(c.max_distance, c.diagonal) +
+                                              " from those of the " + from + ", at " + place_text(c.place)
+                                        : "the " + from + " has none";
+  if (c.corners > 0)
+    line += "; " + std::to_string(c.lost_corners) + " of " + std::to_string(c.corners) +
+            " corners lost, at most " + length_text(c.max_corner_distance, c.diagonal) +
+            " from points of the " + from + ", at " + place_text(c.corner_place);
+  return line;
+}
+
 }  // namespace
 
+std::vector<SurfaceComparison::Bound> SurfaceComparison::bounds() const {
+  const auto bound = [](double upper, const char* what, const char* from, const Vec3& place) {
+    const std::string text =
+        std::string(what) + " up to " + short_number(upper) + " from " + from + ", at " + place_text(place);
+    return Bound{upper, text};
+  };
+  std::vector<Bound> all{bound(from_mesh.upper, "the mesh is", "the surface", from_mesh.place),
+                         bound(from_surfaces.upper, "the surface is", "the mesh", from_surfaces.place)};
+  if (creases) {
+    if (std::isfinite(creases->max_distance))
+      all.push_back(
+          bound(creases->max_distance, "creases of the surface are", "those of the mesh", creases->place));
+    else
+      all.push_back({creases->max_distance, "the mesh has none of the creases of the surface"});
+    all.push_back(bound(creases->max_corner_distance, "corners of the surface are", "points of the mesh",
+                        creases->corner_place));
+  }
+  return all;
+}
+
 double SurfaceComparison::upper() const {
-  double upper = std::max(from_mesh.upper, from_surfaces.upper);
-  if (creases) upper = std::max({upper, creases->max_distance, creases->max_corner_distance});
+  double upper = 0;
+  for (const Bound& b : bounds()) upper = std::max(upper, b.upper);
   return upper;
 }
 
-SurfaceComparison compare_with_surfaces(TetMesh& mesh, const std::vector<TriangleMesh>& surfaces,
+SurfaceComparison compare_with_surfaces(const TetMesh& mesh, const std::vector<TriangleMesh>& surfaces,
                                         const std::vector<std::string>& names) {
   SurfaceComparison c;
   Box3 box;
@@ -97,12 +174,13 @@ SurfaceComparison compare_with_surfaces(TetMesh& mesh, const std::vector<Triangl
     for (const Triangle& t : s.triangles)
       for (const Index p : t) box.add(s.points[p]);
   c.diagonal = (box.high - box.low).norm();
-  const ProjectionTree of_mesh = tree_of(mesh, surfaces.size() > 1), of_surfaces = tree_of(surfaces);
+  TetMesh part = compared_part(mesh, surfaces.size() > 1);
+  const ProjectionTree of_mesh = tree_of(part), of_surfaces = tree_of(surfaces);
   const double accuracy = tolerance::deviation_share * c.diagonal;
   c.from_mesh = surface_deviation(of_mesh, of_surfaces, accuracy);
   c.from_surfaces = surface_deviation(of_surfaces, of_mesh, accuracy);
-  if (surfaces.size() == 1) c.solid = compare_solid(mesh, surfaces.front(), names.front());
-  c.creases = compare_creases_of(mesh, surfaces, names);
+  if (surfaces.size() == 1) c.solid = compare_solid(part, surfaces.front(), names.front());
+  compare_creases_of(part, surfaces, names, c);
   return c;
 }
 
@@ -120,11 +198,18 @@ std::vector<std::string> comparison_lines(const SurfaceComparison& c) {
   } else {
     lines.emplace_back("volume and topology: not compared; that takes one closed surface");
   }
-  if (c.creases)
-    lines.push_back("creases of the surface: at most " + length_text(c.creases->max_distance, c.diagonal) +
-                    " from those of the mesh, at " + place_text(c.creases->place) + "; its corners at most " +
-                    length_text(c.creases->max_corner_distance, c.diagonal) + " from the mesh");
+  if (c.creases) lines.push_back(crease_line(*c.creases, "surface", "mesh"));
+  if (c.mesh_creases && c.mesh_creases->length > 0)
+    lines.push_back(crease_line(*c.mesh_creases, "mesh", "surface"));
   return lines;
+}
+
+std::string tolerance_line(const SurfaceComparison& c, double tolerance) {
+  std::string far;
+  for (const SurfaceComparison::Bound& b : c.bounds())
+    if (!(b.upper <= tolerance)) far += (far.empty() ? ": " : "; ") + b.what;
+  return (far.empty() ? "within the tolerance of " : "not within the tolerance of ") +
+         short_number(tolerance) + far;
 }
 
 }  // namespace tetwright

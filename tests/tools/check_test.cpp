@@ -1,7 +1,10 @@
 // `check`: what it prints, and its exit status.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "tests/tools/program.h"
 
@@ -97,9 +100,84 @@ TEST(Check, DistancesFromASurfaceAreProven) {
   EXPECT_FALSE(longer["surface"]["solid"]["same"]);
   EXPECT_EQ(run(check + (f / "longer.off") + " --tolerance 0.26").status, 0);
   const Answer words = run(check + (f / "longer.off") + " --tolerance 0.2");
-  EXPECT_NE(words.out.find("not within the tolerance of 0.2\n"), std::string::npos) << words.out;
+  EXPECT_NE(words.out.find("not within the tolerance of 0.2: the mesh is up to 0.25"), std::string::npos)
+      << words.out;
   EXPECT_NE(words.out.find("distance of the surface from the mesh: at most 0.25"), std::string::npos)
       << words.out;
+}
+
+/// The points of a prism with ten sides, whose edges turn by 36 degrees; those of the first one by less, if
+/// `first` is below 1. The axis comes last.
+std::string decagon_points(double first, const std::string& after) {
+  std::string text;
+  for (int z = 0; z < 2; ++z)
+    for (int i = 0; i < 10; ++i) {
+      const double angle = i * std::numbers::pi / 5, radius = i == 0 ? first : 1;
+      text += std::to_string(radius * std::cos(angle)) + " " + std::to_string(radius * std::sin(angle)) +
+              " " + std::to_string(z) + after + "\n";
+    }
+  return text + "0 0 0" + after + "\n0 0 1" + after + "\n";
+}
+
+std::string decagon_off() {
+  std::string text = "OFF\n22 40 0\n" + decagon_points(1, "");
+  for (int i = 0; i < 10; ++i) {
+    const int j = (i + 1) % 10;
+    for (const std::array<int, 3>& t :
+         {std::array{i, j, 10 + j}, {i, 10 + j, 10 + i}, {20, j, i}, {21, 10 + i, 10 + j}})
+      text += "3 " + std::to_string(t[0]) + " " + std::to_string(t[1]) + " " + std::to_string(t[2]) + "\n";
+  }
+  return text;
+}
+
+std::string decagon_mesh(double first) {
+  std::string text = "MeshVersionFormatted 2\nDimension 3\nVertices\n22\n" + decagon_points(first, " 0") +
+                     "Tetrahedra\n30\n";
+  for (int i = 0; i < 10; ++i) {
+    const int b = i, c = (i + 1) % 10;
+    for (const std::array<int, 4>& t :
+         {std::array{20, b, c, 10 + c}, {20, b, 10 + c, 10 + b}, {20, 10 + b, 10 + c, 21}}) {
+      for (const int p : t) text += std::to_string(p + 1) + " ";
+      text += "7\n";
+    }
+  }
+  return text + "End\n";
+}
+
+TEST(Check, ACreaseIsNotLostForADegree) {
+  const TemporaryFolder f;
+  put(f / "decagon.off", decagon_off());
+  put(f / "decagon.mesh", decagon_mesh(0.99));
+  const std::string check = "check " + (f / "decagon.mesh") + " --surface " + (f / "decagon.off");
+  const Answer same = run(check + " --json --tolerance 0.011");
+  EXPECT_EQ(same.status, 0) << same.out;
+  const auto creases = nlohmann::json::parse(same.out)["surface"]["creases"];
+  EXPECT_NEAR(creases["max_distance"], 0.01, 1e-4);
+  EXPECT_EQ(creases["corners"], 20);
+  // It is farther than this, and what fails is named with its place.
+  const Answer far = run(check + " --tolerance 0.005");
+  EXPECT_EQ(far.status, 1);
+  for (const char* said :
+       {"not within the tolerance of 0.005: the mesh is up to 0.009", "; the surface is up to 0.01",
+        "; creases of the surface are up to 0.01 from those of the mesh, at (1, 0, ",
+        "; corners of the surface are up to 0.01 from points of the mesh, at (1, 0, 0)\n",
+        "2 of 20 corners lost, at most 0.01 "})
+    EXPECT_NE(far.out.find(said), std::string::npos) << far.out << "lacks: " << said;
+}
+
+TEST(Check, AMeshWithoutTheCreasesIsNotWithinAnyTolerance) {
+  const TemporaryFolder f;
+  put(f / "cube.off", box_off(1, 1, 1));
+  ASSERT_EQ(run("sample sphere -o " + (f / "ball.off")).status, 0);
+  ASSERT_EQ(run("mesh " + (f / "ball.off") + " -o " + (f / "ball.vtu") + " --resolution 32").status, 0);
+  const std::string check = "check " + (f / "ball.vtu") + " --surface " + (f / "cube.off");
+  const Answer answer = run(check + " --tolerance 1.7");
+  EXPECT_EQ(answer.status, 1);
+  EXPECT_NE(answer.out.find("not within the tolerance of 1.7: the mesh has none of the creases"),
+            std::string::npos)
+      << answer.out;
+  EXPECT_TRUE(
+      nlohmann::json::parse(run(check + " --json").out)["surface"]["creases"]["max_distance"].is_null());
 }
 
 TEST(Check, AToleranceNeedsASurface) {

@@ -73,9 +73,7 @@ void print_check(const CheckReport& check, const CommandRun& run) {
     for (const std::string& l : check.topology) std::printf("%s\n", l.c_str());
     if (check.surface)
       for (const std::string& l : comparison_lines(*check.surface)) std::printf("%s\n", l.c_str());
-    if (check.tolerance > 0)
-      std::printf("%s the tolerance of %.6g\n", check.within_tolerance() ? "within" : "not within",
-                  check.tolerance);
+    if (check.tolerance > 0) std::printf("%s\n", tolerance_line(*check.surface, check.tolerance).c_str());
   }
   if (check.topology_differences)
     for (const std::string& d : *check.topology_differences) std::printf("topology differs: %s\n", d.c_str());
