@@ -14,6 +14,7 @@
 #include "common/mesh/solid_shape.h"
 #include "common/message_text.h"
 #include "common/tolerances.h"
+#include "mesher/input/mesher_input.h"
 
 namespace tetwright {
 
@@ -53,17 +54,24 @@ ProjectionTree tree_of(const std::vector<TriangleMesh>& surfaces) {
   return {std::move(points), std::move(items)};
 }
 
+/// The surfaces as `prepare` takes them: equal points joined, triangles wound alike.
+MesherInput repaired(const std::vector<TriangleMesh>& surfaces, const std::vector<std::string>& names) {
+  std::vector<MaterialSurface> materials;
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    materials.push_back({"",
+                         static_cast<MaterialTag>(i + 1),
+                         {.points = surfaces[i].points, .triangles = surfaces[i].triangles},
+                         names[i]});
+  return make_mesher_input(std::move(materials));
+}
+
 /// Nothing where the surface is not closed. `mesh` has its boundary as that of one material.
-std::optional<MaterialFidelity> compare_solid(const TetMesh& mesh, const TriangleMesh& surface,
-                                              const std::string& name) {
+std::optional<MaterialFidelity> compare_solid(const TetMesh& mesh, const MesherInput::Body& body) {
+  const RepairedSurface& surface = body.surface;
+  if (surface.closed < surface.triangles.size()) return {};
   ExpectedSolid expected;
-  expected.name = name;
+  expected.name = body.file;
   expected.shape = solid_shape(surface.points, surface.triangles);
-  if (expected.shape.volume() < 0) {
-    std::vector<Triangle> turned = surface.triangles;
-    for (Triangle& t : turned) std::swap(t[1], t[2]);
-    expected.shape = solid_shape(surface.points, turned);
-  }
   if (!expected.shape.manifold) return {};
   return compare_solids({expected}, mesh).front();
 }
@@ -79,17 +87,19 @@ CreaseCurves counterparts(std::span<const Vec3> points, std::span<const Triangle
 }
 
 /// The creases of both sides, those of the mesh only where the surfaces have any.
-void compare_creases_of(TetMesh& mesh, const std::vector<TriangleMesh>& surfaces,
-                        const std::vector<std::string>& names, SurfaceComparison& c) {
+void compare_creases_of(TetMesh& mesh, const MesherInput& surfaces, SurfaceComparison& c) {
   CreaseCurves expected;
   std::vector<CreaseCurves> of_surfaces;
   std::vector<Vec3> surface_points;
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    const TriangleMesh& s = surfaces[i];
-    const SurfacePatches patches = find_patches(s.points, s.triangles, {}, {}, names[i]);
-    if (patches.any()) expected.add(find_creases(s.points, s.triangles, patches.patches), s.points);
+  for (const MesherInput::Body& body : surfaces.bodies) {
+    const RepairedSurface& s = body.surface;
     of_surfaces.push_back(counterparts(s.points, s.triangles));
     surface_points.insert(surface_points.end(), s.points.begin(), s.points.end());
+    c.intersecting |= s.intersects_itself;
+    // Where parts meet there are creases that no edge shows, and others run within the solid.
+    if (s.intersects_itself) continue;
+    const SurfacePatches patches = find_patches(s.points, s.triangles, {}, {}, body.file);
+    if (patches.any()) expected.add(find_creases(s.points, s.triangles, patches.patches), s.points);
   }
   if (expected.segments.empty()) return;
   of_surfaces.push_back(expected);
@@ -169,6 +179,7 @@ double SurfaceComparison::upper() const {
 SurfaceComparison compare_with_surfaces(const TetMesh& mesh, const std::vector<TriangleMesh>& surfaces,
                                         const std::vector<std::string>& names) {
   SurfaceComparison c;
+  const MesherInput input = repaired(surfaces, names);
   Box3 box;
   for (const TriangleMesh& s : surfaces)
     for (const Triangle& t : s.triangles)
@@ -179,8 +190,8 @@ SurfaceComparison compare_with_surfaces(const TetMesh& mesh, const std::vector<T
   const double accuracy = tolerance::deviation_share * c.diagonal;
   c.from_mesh = surface_deviation(of_mesh, of_surfaces, accuracy);
   c.from_surfaces = surface_deviation(of_surfaces, of_mesh, accuracy);
-  if (surfaces.size() == 1) c.solid = compare_solid(part, surfaces.front(), names.front());
-  compare_creases_of(part, surfaces, names, c);
+  if (input.bodies.size() == 1) c.solid = compare_solid(part, input.bodies.front());
+  compare_creases_of(part, input, c);
   return c;
 }
 
@@ -198,6 +209,10 @@ std::vector<std::string> comparison_lines(const SurfaceComparison& c) {
   } else {
     lines.emplace_back("volume and topology: not compared; that takes one closed surface");
   }
+  if (c.intersecting)
+    lines.emplace_back(
+        "creases: not compared where a surface intersects itself; its volume and topology are those of all "
+        "its parts, as if they were apart");
   if (c.creases) lines.push_back(crease_line(*c.creases, "surface", "mesh"));
   if (c.mesh_creases && c.mesh_creases->length > 0)
     lines.push_back(crease_line(*c.mesh_creases, "mesh", "surface"));

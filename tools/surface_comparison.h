@@ -27,6 +27,7 @@ struct SurfaceComparison {
   /// Where the surfaces have any: their creases beside the mesh's edges that turn at least half as far as a
   /// crease does, and the mesh's creases beside such edges of the surfaces.
   std::optional<CreaseFidelity> creases, mesh_creases;
+  bool intersecting = false;  ///< some surface intersects itself: its creases are not compared
 
   /// What is proven: no point of one is farther from the other than this, no place of a crease of the
   /// surfaces from such an edge of the mesh, no corner of them from a point of it. Creases of the mesh are
@@ -37,8 +38,10 @@ struct SurfaceComparison {
 };
 
 /// Compares the boundary of the mesh, and its interfaces too if there are several surfaces, with all of them
-/// together, whatever the mesh was made from. `names` are those of the surfaces, for messages. The mesh has
-/// its interfaces. Throws InputError as find_patches() does.
+/// together, whatever the mesh was made from. Distances are from the surfaces as they are given; volume,
+/// topology and creases are theirs once equal points are joined and triangles wound alike. `names` are those
+/// of the surfaces' files, for messages. The mesh has its interfaces. Throws InputError as
+/// make_mesher_input() and find_patches() do.
 SurfaceComparison compare_with_surfaces(const TetMesh& mesh, const std::vector<TriangleMesh>& surfaces,
                                         const std::vector<std::string>& names);
 

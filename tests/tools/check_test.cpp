@@ -5,6 +5,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "tests/tools/program.h"
 
@@ -178,6 +181,54 @@ TEST(Check, AMeshWithoutTheCreasesIsNotWithinAnyTolerance) {
       << answer.out;
   EXPECT_TRUE(
       nlohmann::json::parse(run(check + " --json").out)["surface"]["creases"]["max_distance"].is_null());
+}
+
+TEST(Check, EqualPointsOfASurfaceAreJoined) {
+  // A box of which each triangle has points of its own, some wound the other way.
+  const TemporaryFolder f;
+  const std::string box = box_off(2, 1, 1);
+  std::istringstream in(box);
+  std::string line;
+  std::getline(in, line);
+  std::getline(in, line);
+  std::vector<std::string> points(8);
+  for (std::string& p : points) std::getline(in, p);
+  std::string soup = "OFF\n36 12 0\n", triangles;
+  for (int t = 0; t < 12; ++t) {
+    int n = 0;
+    std::array<std::size_t, 3> p{};
+    in >> n >> p[0] >> p[1] >> p[2];
+    for (const std::size_t k : p) soup += points[k] + "\n";
+    const int first = 3 * t, turn = t % 2;
+    triangles += "3 " + std::to_string(first) + " " + std::to_string(first + 1 + turn) + " " +
+                 std::to_string(first + 2 - turn) + "\n";
+  }
+  put(f / "soup.off", soup + triangles);
+  put(f / "box.off", box);
+  ASSERT_EQ(run("mesh " + (f / "box.off") + " -o " + (f / "box.vtu") + " --resolution 16").status, 0);
+  const std::string check = "check " + (f / "box.vtu") + " --surface " + (f / "soup.off");
+  const auto surface = nlohmann::json::parse(run(check + " --json").out)["surface"];
+  EXPECT_TRUE(surface["solid"]["same"]) << surface;
+  EXPECT_NEAR(surface["solid"]["expected"]["volume"], 2, 1e-9);
+  EXPECT_EQ(surface["creases"]["corners"], 8);
+  EXPECT_LT(surface["creases"]["max_distance"], 1e-5);
+}
+
+TEST(Check, ASurfaceWithoutExtentIsRefused) {
+  const TemporaryFolder f;
+  put(f / "tet.mesh", medit("1 2 3 4"));
+  put(f / "point.off", "OFF\n3 1 0\n0 0 0\n0 0 0\n0 0 0\n3 0 1 2\n");
+  const auto scaled = [](const char* size) {
+    const std::string s = size;
+    return "OFF\n4 4 0\n0 0 0\n" + s + " 0 0\n0 " + s + " 0\n0 0 " + s +
+           "\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+  };
+  put(f / "tiny.off", scaled("1e-200"));
+  put(f / "huge.off", scaled("1e200"));
+  const std::string check = "check " + (f / "tet.mesh") + " --surface ";
+  expect_refused(check + (f / "point.off"), 3, {"point.off: all triangles are flat"});
+  expect_refused(check + (f / "tiny.off"), 3, {"tiny.off: ", "scale the surface to between 1e-50 and 1e50"});
+  expect_refused(check + (f / "huge.off"), 3, {"huge.off: ", "scale the surface to between 1e-50 and 1e50"});
 }
 
 TEST(Check, AToleranceNeedsASurface) {
