@@ -193,6 +193,8 @@ nlohmann::json deviation_json(const SurfaceDeviation& d) {
 
 nlohmann::json surface_json(const SurfaceComparison& c) {
   nlohmann::json j = {{"diagonal", c.diagonal},
+                      {"outside_tets", c.outside_tets},
+                      {"inverted", c.inverted},
                       {"from_mesh", deviation_json(c.from_mesh)},
                       {"from_surface", deviation_json(c.from_surfaces)}};
   if (c.solid)

@@ -8,12 +8,16 @@
 #include <span>
 #include <utility>
 
+#include "common/error.h"
 #include "common/features/edge_uses.h"
 #include "common/features/inner_edges.h"
+#include "common/geometry/predicates.h"
 #include "common/geometry/projection_tree.h"
+#include "common/mesh/interfaces.h"
 #include "common/mesh/solid_shape.h"
 #include "common/message_text.h"
 #include "common/tolerances.h"
+#include "mesher/domain/regions.h"
 #include "mesher/input/mesher_input.h"
 
 namespace tetwright {
@@ -25,15 +29,45 @@ constexpr double crease_degrees = 35;
 /// What turns that far is as good as a crease on the other side: none is lost for a degree.
 constexpr double counterpart_degrees = crease_degrees / 2;
 
-/// The surfaces of a mesh that are compared: of one surface its boundary, as that of one material.
-TetMesh compared_part(const TetMesh& mesh, bool with_interfaces) {
+/// The tets that stand for something: without the outside, and turned if all of them are inverted.
+TetMesh compared_tets(const TetMesh& mesh, SurfaceComparison& c) {
   TetMesh part;
   part.points = mesh.points;
-  for (const InterfaceTriangle& t : mesh.interfaces)
-    if (with_interfaces)
-      part.interfaces.push_back({t.ids, t.material, t.other});
-    else if (!t.other)
-      part.interfaces.push_back({t.ids, 0, {}});
+  const auto is_outside = [&](MaterialTag tag) {
+    const auto name = mesh.material_names.find(tag);
+    return name != mesh.material_names.end() && name->second == outside_name;
+  };
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    if (is_outside(mesh.materials[t])) continue;
+    part.tets.push_back(mesh.tets[t]);
+    part.materials.push_back(mesh.materials[t]);
+  }
+  c.outside_tets = mesh.tets.size() - part.tets.size();
+  if (part.tets.empty())
+    throw UsageError(
+        "all tets of the mesh are of the material 'outside', so that it has no part to compare with "
+        "surfaces; give that another name, or leave out --surface");
+  c.inverted = std::all_of(part.tets.begin(), part.tets.end(), [&](const Tet& t) {
+    return orient3d(part.points[t[0]], part.points[t[1]], part.points[t[2]], part.points[t[3]]) < 0;
+  });
+  if (c.inverted)
+    for (Tet& t : part.tets) std::swap(t[2], t[3]);
+  return part;
+}
+
+/// The surfaces of a mesh that are compared: of one surface its boundary, as that of one material.
+TetMesh compared_part(const TetMesh& mesh, bool with_interfaces, SurfaceComparison& c) {
+  TetMesh part = compared_tets(mesh, c);
+  std::vector<InterfaceTriangle> all =
+      c.outside_tets > 0 || c.inverted ? find_interfaces(part) : mesh.interfaces;
+  for (InterfaceTriangle& t : all) {
+    t.patch = 0;
+    if (!with_interfaces && !t.other) t.material = 0;
+  }
+  if (!with_interfaces) std::erase_if(all, [](const InterfaceTriangle& t) { return t.other.has_value(); });
+  part.interfaces = std::move(all);
+  part.tets.clear();
+  part.materials.clear();
   return part;
 }
 
@@ -185,7 +219,7 @@ SurfaceComparison compare_with_surfaces(const TetMesh& mesh, const std::vector<T
     for (const Triangle& t : s.triangles)
       for (const Index p : t) box.add(s.points[p]);
   c.diagonal = (box.high - box.low).norm();
-  TetMesh part = compared_part(mesh, surfaces.size() > 1);
+  TetMesh part = compared_part(mesh, surfaces.size() > 1, c);
   const ProjectionTree of_mesh = tree_of(part), of_surfaces = tree_of(surfaces);
   const double accuracy = tolerance::deviation_share * c.diagonal;
   c.from_mesh = surface_deviation(of_mesh, of_surfaces, accuracy);
@@ -196,9 +230,14 @@ SurfaceComparison compare_with_surfaces(const TetMesh& mesh, const std::vector<T
 }
 
 std::vector<std::string> comparison_lines(const SurfaceComparison& c) {
-  std::vector<std::string> lines{
-      deviation_line("distance of the mesh from the surface", c.from_mesh, c.diagonal),
-      deviation_line("distance of the surface from the mesh", c.from_surfaces, c.diagonal)};
+  std::vector<std::string> lines;
+  if (c.outside_tets > 0)
+    lines.push_back("left out of what is compared with the surface: the " + std::to_string(c.outside_tets) +
+                    " tets of the material 'outside'");
+  if (c.inverted)
+    lines.emplace_back("all tets are inverted; compared with the surface as if they were turned");
+  lines.push_back(deviation_line("distance of the mesh from the surface", c.from_mesh, c.diagonal));
+  lines.push_back(deviation_line("distance of the surface from the mesh", c.from_surfaces, c.diagonal));
   if (c.solid) {
     char volumes[120];
     std::snprintf(volumes, sizeof volumes, "volume %.6g, of the surface %.6g; ", c.solid->result.volume,

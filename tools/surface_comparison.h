@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,7 +21,9 @@ struct SurfaceComparison {
     std::string what;  ///< "the mesh is up to 1.5 from the surface, at (0, 1, 2)"
   };
 
-  double diagonal = 0;  ///< of the surfaces' bounding box
+  double diagonal = 0;           ///< of the surfaces' bounding box
+  std::size_t outside_tets = 0;  ///< of the material that --keep-outside makes: not compared
+  bool inverted = false;         ///< all other tets, which count as turned
   SurfaceDeviation from_mesh, from_surfaces;
   /// Of one closed surface: volume, components, handles and cavities beside those of the mesh's boundary.
   std::optional<MaterialFidelity> solid;
@@ -37,11 +40,12 @@ struct SurfaceComparison {
   double upper() const;
 };
 
-/// Compares the boundary of the mesh, and its interfaces too if there are several surfaces, with all of them
-/// together, whatever the mesh was made from. Distances are from the surfaces as they are given; volume,
-/// topology and creases are theirs once equal points are joined and triangles wound alike. `names` are those
-/// of the surfaces' files, for messages. The mesh has its interfaces. Throws InputError as
-/// make_mesher_input() and find_patches() do.
+/// Compares the boundary of the mesh without the outside that it may keep, and its interfaces too if there
+/// are several surfaces, with all of them together, whatever the mesh was made from. Distances are from the
+/// surfaces as they are given; volume, topology and creases are theirs once equal points are joined and
+/// triangles wound alike. `names` are those of the surfaces' files, for messages. The mesh has its
+/// interfaces. Throws InputError as make_mesher_input() and find_patches() do, and UsageError where only the
+/// outside is meshed.
 SurfaceComparison compare_with_surfaces(const TetMesh& mesh, const std::vector<TriangleMesh>& surfaces,
                                         const std::vector<std::string>& names);
 

@@ -231,6 +231,30 @@ TEST(Check, ASurfaceWithoutExtentIsRefused) {
   expect_refused(check + (f / "huge.off"), 3, {"huge.off: ", "scale the surface to between 1e-50 and 1e50"});
 }
 
+TEST(Check, TheOutsideThatIsKeptIsNotCompared) {
+  const TemporaryFolder f;
+  put(f / "box.off", box_off(2, 1, 1));
+  ASSERT_EQ(
+      run("mesh " + (f / "box.off") + " -o " + (f / "box.vtu") + " --resolution 16 --keep-outside").status,
+      0);
+  const Answer a = run("check " + (f / "box.vtu") + " --tolerance 0.1% --surface " + (f / "box.off"));
+  EXPECT_EQ(a.status, 0) << a.out;
+  EXPECT_NE(a.out.find("left out of what is compared with the surface: the "), std::string::npos) << a.out;
+  EXPECT_NE(a.out.find("of the surface 2; same components, handles and cavities"), std::string::npos)
+      << a.out;
+}
+
+TEST(Check, AnInvertedMeshIsNotAnotherSolid) {
+  const TemporaryFolder f;
+  put(f / "tet.off", tetrahedron_off);
+  put(f / "tet.mesh", medit("1 3 2 4"));
+  const Answer a = run("check " + (f / "tet.mesh") + " --tolerance 0.1% --surface " + (f / "tet.off"));
+  EXPECT_EQ(a.status, 1);
+  for (const char* said : {"all tets are inverted; compared with the surface as if they were turned",
+                           "same components, handles and cavities", "\nwithin the tolerance"})
+    EXPECT_NE(a.out.find(said), std::string::npos) << a.out << "lacks: " << said;
+}
+
 TEST(Check, AToleranceNeedsASurface) {
   const TemporaryFolder f;
   put(f / "tet.mesh", medit("1 2 3 4"));
