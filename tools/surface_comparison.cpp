@@ -1,6 +1,7 @@
 #include "tools/surface_comparison.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -19,6 +20,7 @@
 #include "common/tolerances.h"
 #include "mesher/domain/regions.h"
 #include "mesher/input/mesher_input.h"
+#include "tools/surface_caps.h"
 
 namespace tetwright {
 
@@ -110,6 +112,14 @@ std::optional<MaterialFidelity> compare_solid(const TetMesh& mesh, const MesherI
   return compare_solids({expected}, mesh).front();
 }
 
+/// The distance of the mesh from open surfaces, and of its caps.
+void compare_open(const CapFinder::Parts& parts, const ProjectionTree& surfaces, double accuracy,
+                  SurfaceComparison& c) {
+  c.from_mesh = surface_deviation(parts.kept, surfaces, accuracy);
+  if (parts.caps.empty()) return;
+  c.caps = {surface_deviation(parts.caps, surfaces, accuracy), parts.cap_area, parts.cap_area / parts.area};
+}
+
 /// The edges that turn by more than `counterpart_degrees`, whether or not they are creases.
 CreaseCurves counterparts(std::span<const Vec3> points, std::span<const Triangle> triangles) {
   SurfaceCreases sharp;
@@ -121,7 +131,8 @@ CreaseCurves counterparts(std::span<const Vec3> points, std::span<const Triangle
 }
 
 /// The creases of both sides, those of the mesh only where the surfaces have any.
-void compare_creases_of(TetMesh& mesh, const MesherInput& surfaces, SurfaceComparison& c) {
+void compare_creases_of(TetMesh& mesh, const MesherInput& surfaces, const OpenEdges& open,
+                        const CapFinder& caps, SurfaceComparison& c) {
   CreaseCurves expected;
   std::vector<CreaseCurves> of_surfaces;
   std::vector<Vec3> surface_points;
@@ -138,7 +149,7 @@ void compare_creases_of(TetMesh& mesh, const MesherInput& surfaces, SurfaceCompa
   if (expected.segments.empty()) return;
   of_surfaces.push_back(expected);
   find_mesh_patches(mesh, {FeatureAngle::Rule::degrees, crease_degrees}, "the mesh");
-  const CreaseCurves of_mesh = mesh_creases(mesh);
+  CreaseCurves of_mesh = mesh_creases(mesh);
   std::vector<CreaseCurves> counterparts_of_mesh{of_mesh, mesh_junctions(mesh)};
   std::map<MaterialPair, std::vector<Triangle>> by_pair;
   std::vector<char> used(mesh.points.size(), 0);
@@ -152,6 +163,12 @@ void compare_creases_of(TetMesh& mesh, const MesherInput& surfaces, SurfaceCompa
   for (std::size_t p = 0; p < used.size(); ++p)
     if (used[p]) mesh_points.push_back(mesh.points[p]);
   c.creases = compare_creases(expected, counterparts_of_mesh, mesh_points, c.diagonal);
+  if (!open.rims.empty()) {
+    std::erase_if(of_mesh.segments, [&](const std::array<Index, 2>& s) {
+      return caps.is_beyond_rim((of_mesh.points[s[0]] + of_mesh.points[s[1]]) / 2);
+    });
+    std::erase_if(of_mesh.corners, [&](const Vec3& p) { return caps.is_beyond_rim(p); });
+  }
   c.mesh_creases = compare_creases(of_mesh, of_surfaces, surface_points, c.diagonal);
 }
 
@@ -180,6 +197,17 @@ std::string crease_line(const CreaseFidelity& c, const std::string& of, const st
             " corners lost, at most " + length_text(c.max_corner_distance, c.diagonal) +
             " from points of the " + from + ", at " + place_text(c.corner_place);
   return line;
+}
+
+std::string open_line(const SurfaceComparison& c) {
+  const std::string edges = "the surface is open: " + std::to_string(c.open_edges) +
+                            (c.open_edges == 1 ? " edge" : " edges") + " with one triangle; ";
+  if (!c.caps) return edges + "no part of the mesh is a cap there";
+  char share[40];
+  std::snprintf(share, sizeof share, " (%.3g %%)", 100 * c.caps->share);
+  return edges + "caps of the mesh are left out, area " + short_number(c.caps->area) + share + ", at most " +
+         length_text(c.caps->from_mesh.upper, c.diagonal) + " from the surface, at " +
+         place_text(c.caps->from_mesh.place);
 }
 
 }  // namespace
@@ -222,10 +250,16 @@ SurfaceComparison compare_with_surfaces(const TetMesh& mesh, const std::vector<T
   TetMesh part = compared_part(mesh, surfaces.size() > 1, c);
   const ProjectionTree of_mesh = tree_of(part), of_surfaces = tree_of(surfaces);
   const double accuracy = tolerance::deviation_share * c.diagonal;
-  c.from_mesh = surface_deviation(of_mesh, of_surfaces, accuracy);
+  const OpenEdges open = find_open_edges(input);
+  c.open_edges = open.count;
+  const CapFinder cap_finder(of_surfaces, open.rims, c.diagonal);
+  if (open.rims.empty())
+    c.from_mesh = surface_deviation(of_mesh, of_surfaces, accuracy);
+  else
+    compare_open(cap_finder.split(part), of_surfaces, accuracy, c);
   c.from_surfaces = surface_deviation(of_surfaces, of_mesh, accuracy);
   if (input.bodies.size() == 1) c.solid = compare_solid(part, input.bodies.front());
-  compare_creases_of(part, input, c);
+  compare_creases_of(part, input, open, cap_finder, c);
   return c;
 }
 
@@ -236,6 +270,7 @@ std::vector<std::string> comparison_lines(const SurfaceComparison& c) {
                     " tets of the material 'outside'");
   if (c.inverted)
     lines.emplace_back("all tets are inverted; compared with the surface as if they were turned");
+  if (c.open_edges > 0) lines.push_back(open_line(c));
   lines.push_back(deviation_line("distance of the mesh from the surface", c.from_mesh, c.diagonal));
   lines.push_back(deviation_line("distance of the surface from the mesh", c.from_surfaces, c.diagonal));
   if (c.solid) {

@@ -25,6 +25,14 @@ struct SurfaceComparison {
   std::size_t outside_tets = 0;  ///< of the material that --keep-outside makes: not compared
   bool inverted = false;         ///< all other tets, which count as turned
   SurfaceDeviation from_mesh, from_surfaces;
+  std::size_t open_edges = 0;  ///< edges of the surfaces with one triangle
+  /// Parts of the mesh that close the surfaces there: their nearest points of the surfaces are on such edges.
+  /// They are left out of `from_mesh`.
+  struct Caps {
+    SurfaceDeviation from_mesh;  ///< of the caps alone
+    double area = 0, share = 0;  ///< and of all of the mesh's area that is compared
+  };
+  std::optional<Caps> caps;
   /// Of one closed surface: volume, components, handles and cavities beside those of the mesh's boundary.
   std::optional<MaterialFidelity> solid;
   /// Where the surfaces have any: their creases beside the mesh's edges that turn at least half as far as a

@@ -255,6 +255,42 @@ TEST(Check, AnInvertedMeshIsNotAnotherSolid) {
     EXPECT_NE(a.out.find(said), std::string::npos) << a.out << "lacks: " << said;
 }
 
+TEST(Check, CapsAreLeftOutAndReported) {
+  // A box without its top, of which the mesh closes it; and without three sides, which no cap stands for
+  // where the mesh is longer than the rest.
+  const TemporaryFolder f;
+  const std::string box = box_off(2, 1, 1), first = "3 4 5 6\n3 5 7 6\n";
+  std::string open = box;
+  open.replace(open.find("8 12 0"), 6, "8 10 0");
+  open.erase(open.find(first), first.size());
+  put(f / "box.off", box);
+  put(f / "open.off", open);
+  ASSERT_EQ(run("mesh " + (f / "box.off") + " -o " + (f / "box.vtu") + " --resolution 16").status, 0);
+  const std::string check = "check " + (f / "box.vtu") + " --tolerance 0.1% --surface " + (f / "open.off");
+  const Answer a = run(check);
+  EXPECT_EQ(a.status, 0) << a.out;
+  EXPECT_NE(
+      a.out.find("the surface is open: 4 edges with one triangle; caps of the mesh are left out, area "),
+      std::string::npos)
+      << a.out;
+  const auto caps = nlohmann::json::parse(run(check + " --json").out)["surface"]["caps"];
+  EXPECT_NEAR(caps["area"], 2, 0.02);
+  EXPECT_NEAR(caps["share"], 0.2, 0.002);
+  EXPECT_NEAR(caps["upper"], 0.5, 0.01);
+  // What is not beyond a rim counts: the bottom is elsewhere.
+  put(f / "lower.off", [&] {
+    std::string text = open;
+    for (const std::string from : {"0.000000\n"})
+      for (std::size_t at = 0; (at = text.find(" " + from, at)) != std::string::npos;) {
+        text.replace(at, from.size() + 1, " -0.100000\n");
+        at += 11;
+      }
+    return text;
+  }());
+  EXPECT_EQ(run("check " + (f / "box.vtu") + " --tolerance 0.05 --surface " + (f / "lower.off")).status, 1);
+  EXPECT_EQ(run("check " + (f / "box.vtu") + " --tolerance 0.11 --surface " + (f / "lower.off")).status, 0);
+}
+
 TEST(Check, AToleranceNeedsASurface) {
   const TemporaryFolder f;
   put(f / "tet.mesh", medit("1 2 3 4"));
