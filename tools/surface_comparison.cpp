@@ -141,10 +141,12 @@ void compare_creases_of(TetMesh& mesh, const MesherInput& surfaces, const OpenEd
     of_surfaces.push_back(counterparts(s.points, s.triangles));
     surface_points.insert(surface_points.end(), s.points.begin(), s.points.end());
     c.intersecting |= s.intersects_itself;
-    // Where parts meet there are creases that no edge shows, and others run within the solid.
-    if (s.intersects_itself) continue;
     const SurfacePatches patches = find_patches(s.points, s.triangles, {}, {}, body.file);
-    if (patches.any()) expected.add(find_creases(s.points, s.triangles, patches.patches), s.points);
+    // Where parts meet there are creases that no edge shows, and others run within the solid.
+    if (s.intersects_itself)
+      c.creases_left_out |= patches.any();
+    else if (patches.any())
+      expected.add(find_creases(s.points, s.triangles, patches.patches), s.points);
   }
   if (expected.segments.empty()) return;
   of_surfaces.push_back(expected);
@@ -185,18 +187,18 @@ std::string deviation_line(const char* what, const SurfaceDeviation& d, double d
          place_text(d.place) + "; rms " + length_text(d.rms, diagonal);
 }
 
-/// "creases of the surface: at most 0.1 (2 % of the diagonal) from those of the mesh, at (1, 2, 3); 1 of 8
-/// corners lost, up to 0.1 (2 % of the diagonal) from points of the mesh, at (0, 0, 1)".
-std::string crease_line(const CreaseFidelity& c, const std::string& of, const std::string& from) {
-  std::string line = "creases of the " + of + ": ";
-  line += std::isfinite(c.max_distance) ? "at most " + length_text(c.max_distance, c.diagonal) +
-                                              " from those of the " + from + ", at " + place_text(c.place)
-                                        : "the " + from + " has none";
-  if (c.corners > 0)
-    line += "; " + std::to_string(c.lost_corners) + " of " + std::to_string(c.corners) +
-            " corners lost, at most " + length_text(c.max_corner_distance, c.diagonal) +
-            " from points of the " + from + ", at " + place_text(c.corner_place);
-  return line;
+std::string creases_text(const CreaseFidelity& c, const std::string& of, const std::string& from) {
+  const std::string start = "creases of the " + of + ": ";
+  if (!std::isfinite(c.max_distance)) return start + "the " + from + " has none";
+  return start + "at most " + length_text(c.max_distance, c.diagonal) + " from those of the " + from +
+         ", at " + place_text(c.place) + ", 99 % of them " + length_text(c.p99_distance, c.diagonal);
+}
+
+std::string corners_text(const CreaseFidelity& c) {
+  if (c.corners == 0) return "";
+  return "; " + std::to_string(c.lost_corners) + " of its " + std::to_string(c.corners) +
+         " corners lost, at most " + length_text(c.max_corner_distance, c.diagonal) +
+         " from points of the mesh, at " + place_text(c.corner_place);
 }
 
 std::string open_line(const SurfaceComparison& c) {
@@ -279,17 +281,18 @@ std::vector<std::string> comparison_lines(const SurfaceComparison& c) {
                   c.solid->expected.volume);
     lines.push_back(volumes +
                     (c.solid->same() ? "same components, handles and cavities" : c.solid->difference) +
-                    (c.solid->place ? ", at " + place_text(*c.solid->place) : ""));
+                    (c.solid->place ? ", at " + place_text(*c.solid->place) : "") +
+                    (c.intersecting && !c.solid->same()
+                         ? "; the surface intersects itself, and its parts count as if they were apart"
+                         : ""));
   } else {
     lines.emplace_back("volume and topology: not compared; that takes one closed surface");
   }
-  if (c.intersecting)
-    lines.emplace_back(
-        "creases: not compared where a surface intersects itself; its volume and topology are those of all "
-        "its parts, as if they were apart");
-  if (c.creases) lines.push_back(crease_line(*c.creases, "surface", "mesh"));
+  if (c.creases_left_out)
+    lines.emplace_back("creases of the surface: not compared; the surface intersects itself");
+  if (c.creases) lines.push_back(creases_text(*c.creases, "surface", "mesh") + corners_text(*c.creases));
   if (c.mesh_creases && c.mesh_creases->length > 0)
-    lines.push_back(crease_line(*c.mesh_creases, "mesh", "surface"));
+    lines.push_back(creases_text(*c.mesh_creases, "mesh", "surface"));
   return lines;
 }
 

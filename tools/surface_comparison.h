@@ -38,7 +38,8 @@ struct SurfaceComparison {
   /// Where the surfaces have any: their creases beside the mesh's edges that turn at least half as far as a
   /// crease does, and the mesh's creases beside such edges of the surfaces.
   std::optional<CreaseFidelity> creases, mesh_creases;
-  bool intersecting = false;  ///< some surface intersects itself: its creases are not compared
+  bool intersecting = false;      ///< some surface intersects itself
+  bool creases_left_out = false;  ///< and such a one has creases, which are not compared
 
   /// What is proven: no point of one is farther from the other than this, no place of a crease of the
   /// surfaces from such an edge of the mesh, no corner of them from a point of it. Creases of the mesh are

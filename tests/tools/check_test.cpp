@@ -164,7 +164,7 @@ TEST(Check, ACreaseIsNotLostForADegree) {
        {"not within the tolerance of 0.005: the mesh is up to 0.009", "; the surface is up to 0.01",
         "; creases of the surface are up to 0.01 from those of the mesh, at (1, 0, ",
         "; corners of the surface are up to 0.01 from points of the mesh, at (1, 0, 0)\n",
-        "2 of 20 corners lost, at most 0.01 "})
+        "; 2 of its 20 corners lost, at most 0.01 "})
     EXPECT_NE(far.out.find(said), std::string::npos) << far.out << "lacks: " << said;
 }
 
@@ -172,7 +172,7 @@ TEST(Check, AMeshWithoutTheCreasesIsNotWithinAnyTolerance) {
   const TemporaryFolder f;
   put(f / "cube.off", box_off(1, 1, 1));
   ASSERT_EQ(run("sample sphere -o " + (f / "ball.off")).status, 0);
-  ASSERT_EQ(run("mesh " + (f / "ball.off") + " -o " + (f / "ball.vtu") + " --resolution 32").status, 0);
+  ASSERT_EQ(run("mesh " + (f / "ball.off") + " -o " + (f / "ball.vtu") + " --resolution 20").status, 0);
   const std::string check = "check " + (f / "ball.vtu") + " --surface " + (f / "cube.off");
   const Answer answer = run(check + " --tolerance 1.7");
   EXPECT_EQ(answer.status, 1);
@@ -256,8 +256,7 @@ TEST(Check, AnInvertedMeshIsNotAnotherSolid) {
 }
 
 TEST(Check, CapsAreLeftOutAndReported) {
-  // A box without its top, of which the mesh closes it; and without three sides, which no cap stands for
-  // where the mesh is longer than the rest.
+  // A box without its top, which the mesh closes.
   const TemporaryFolder f;
   const std::string box = box_off(2, 1, 1), first = "3 4 5 6\n3 5 7 6\n";
   std::string open = box;
@@ -289,6 +288,14 @@ TEST(Check, CapsAreLeftOutAndReported) {
   }());
   EXPECT_EQ(run("check " + (f / "box.vtu") + " --tolerance 0.05 --surface " + (f / "lower.off")).status, 1);
   EXPECT_EQ(run("check " + (f / "box.vtu") + " --tolerance 0.11 --surface " + (f / "lower.off")).status, 0);
+}
+
+TEST(Check, AToleranceSmallerThanDistancesAreKnownIsRefused) {
+  const TemporaryFolder f;
+  put(f / "tet.off", tetrahedron_off);
+  put(f / "tet.mesh", medit("1 2 3 4"));
+  expect_refused("check " + (f / "tet.mesh") + " --tolerance 1e-5 --surface " + (f / "tet.off"), 2,
+                 {"--tolerance 1e-05 is below what", "give 0.000173205 or more"});
 }
 
 TEST(Check, AToleranceNeedsASurface) {
