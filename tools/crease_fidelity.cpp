@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "common/geometry/projection_tree.h"
@@ -17,28 +19,19 @@ constexpr double places_to_diagonal = 2000;
 
 bool CreaseFidelity::same() const { return max_distance <= max_crease_share * diagonal && lost_corners == 0; }
 
-CreaseFidelity compare_creases(const CreaseCurves& expected, const TetMesh& mesh) {
+CreaseFidelity compare_creases(const CreaseCurves& expected, const std::vector<CreaseCurves>& found,
+                               std::span<const Vec3> points, double diagonal) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   CreaseFidelity result;
-  Box3 box;
-  std::vector<ProjectionTree::Item> points;
-  for (const InterfaceTriangle& t : mesh.interfaces)
-    for (const Index p : t.ids) {
-      box.add(mesh.points[p]);
-      points.push_back({{p, p, p}, {}});
-    }
-  if (points.empty()) return result;
-  result.diagonal = (box.high - box.low).norm();
-  // A crease may run along a curve where three regions meet.
+  result.diagonal = diagonal;
+  std::vector<ProjectionTree::Item> items;
   std::vector<Vec3> ends;
-  std::vector<ProjectionTree::Item> segments;
-  for (const CreaseCurves& found : {mesh_creases(mesh), mesh_junctions(mesh)}) {
+  for (const CreaseCurves& curves : found) {
     const auto first = static_cast<Index>(ends.size());
-    ends.insert(ends.end(), found.points.begin(), found.points.end());
-    for (const auto& [a, b] : found.segments) segments.push_back({{first + a, first + b, first + b}, {}});
+    ends.insert(ends.end(), curves.points.begin(), curves.points.end());
+    for (const auto& [a, b] : curves.segments) items.push_back({{first + a, first + b, first + b}, {}});
   }
-  const ProjectionTree creases(std::move(ends), std::move(segments));
-  // Nothing is farther from all creases than this where there are none.
-  const double farthest = result.diagonal;
+  const ProjectionTree creases(std::move(ends), std::move(items));
   std::vector<double> distances;
   for (const auto& [a, b] : expected.segments) {
     const Vec3 &p = expected.points[a], &q = expected.points[b];
@@ -48,8 +41,8 @@ CreaseFidelity compare_creases(const CreaseCurves& expected, const TetMesh& mesh
         std::max(1, static_cast<int>(std::ceil(length / result.diagonal * places_to_diagonal)));
     for (int k = 0; k <= steps; ++k) {
       const Vec3 at = p + (q - p) * (static_cast<double>(k) / steps);
-      const auto on = creases.nearest(at, {}, farthest);
-      distances.push_back(on ? (*on - at).norm() : farthest);
+      const auto on = creases.nearest(at, {}, infinity);
+      distances.push_back(on ? (*on - at).norm() : infinity);
       if (distances.back() > result.max_distance) {
         result.max_distance = distances.back();
         result.place = at;
@@ -63,14 +56,39 @@ CreaseFidelity compare_creases(const CreaseCurves& expected, const TetMesh& mesh
     result.p99_distance = *at;
   }
   result.corners = expected.corners.size();
-  const ProjectionTree boundary(mesh.points, std::move(points));
+  items.clear();
+  for (Index p = 0; p < points.size(); ++p) items.push_back({{p, p, p}, {}});
+  const ProjectionTree near_corners({points.begin(), points.end()}, std::move(items));
   for (const Vec3& corner : expected.corners) {
-    const auto on = boundary.nearest(corner, {}, farthest);
-    const double distance = on ? (*on - corner).norm() : farthest;
-    result.max_corner_distance = std::max(result.max_corner_distance, distance);
+    const auto on = near_corners.nearest(corner, {}, infinity);
+    const double distance = on ? (*on - corner).norm() : infinity;
+    if (distance > result.max_corner_distance) {
+      result.max_corner_distance = distance;
+      result.corner_place = corner;
+    }
     if (distance <= max_corner_share * result.diagonal) continue;
     if (result.lost_corners++ == 0) result.lost_corner = corner;
   }
+  return result;
+}
+
+CreaseFidelity compare_creases(const CreaseCurves& expected, const TetMesh& mesh) {
+  std::vector<char> used(mesh.points.size(), 0);
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    for (const Index p : t.ids) used[p] = 1;
+  Box3 box;
+  std::vector<Vec3> points;
+  for (std::size_t p = 0; p < used.size(); ++p)
+    if (used[p]) {
+      box.add(mesh.points[p]);
+      points.push_back(mesh.points[p]);
+    }
+  if (points.empty()) return {};
+  // A crease may run along a curve where three regions meet.
+  CreaseFidelity result = compare_creases(expected, {mesh_creases(mesh), mesh_junctions(mesh)}, points,
+                                          (box.high - box.low).norm());
+  for (double* distance : {&result.max_distance, &result.p99_distance})
+    if (!std::isfinite(*distance)) *distance = result.diagonal;
   return result;
 }
 

@@ -193,13 +193,23 @@ nlohmann::json deviation_json(const SurfaceDeviation& d) {
 
 nlohmann::json surface_json(const SurfaceComparison& c) {
   nlohmann::json j = {{"diagonal", c.diagonal},
+                      {"outside_tets", c.outside_tets},
+                      {"inverted", c.inverted},
+                      {"open_edges", c.open_edges},
                       {"from_mesh", deviation_json(c.from_mesh)},
                       {"from_surface", deviation_json(c.from_surfaces)}};
+  if (c.caps) {
+    j["caps"] = deviation_json(c.caps->from_mesh);
+    j["caps"]["area"] = c.caps->area;
+    j["caps"]["share"] = c.caps->share;
+  }
   if (c.solid)
     j["solid"] = {{"expected", solid_json(c.solid->expected)},
                   {"result", solid_json(c.solid->result)},
                   {"same", c.solid->same()}};
+  // A distance from nothing is null.
   if (c.creases) j["creases"] = creases_json(*c.creases);
+  if (c.mesh_creases) j["mesh_creases"] = creases_json(*c.mesh_creases);
   return j;
 }
 

@@ -6,10 +6,10 @@
 
 #include "common/error.h"
 #include "common/features/edge_uses.h"
+#include "common/features/inner_edges.h"
 #include "common/mesh/disjoint_sets.h"
 #include "common/mesh/interfaces.h"
 #include "common/parallel/parallel_sort.h"
-#include "common/portable_math.h"
 
 namespace tetwright {
 
@@ -28,69 +28,6 @@ constexpr std::size_t min_staircase_patches = 256;
 constexpr std::size_t max_staircase_triangles = 4;
 constexpr double same_length = 1e-3, right_angle = 90 * degree, same_angle = 1 * degree;
 constexpr std::size_t max_patches = 0xffff;
-
-/// An edge between two triangles of a group.
-struct InnerEdge {
-  std::array<Index, 2> ends, triangles;
-  double length;
-  double turn;  ///< radians, 0 to pi; 0 where a triangle has no area
-};
-
-/// Triangles without area get the normal of the one across their longest edge that has some: else patches
-/// would hang together across them.
-void take_normals_beside(std::span<const Vec3> points, const std::vector<EdgeUse>& uses,
-                         std::vector<Vec3>& normals) {
-  const auto is_flat = [&](Index t) { return normals[t].isZero(0); };
-  for (bool again = true; again;) {
-    struct Choice {
-      double length = -1;
-      Vec3 normal = Vec3::Zero();
-    };
-    std::map<Index, Choice> choices;
-    for (std::size_t i = 0; i + 1 < uses.size(); ++i) {
-      if (!uses[i].same_edge(uses[i + 1])) continue;
-      for (const auto& [flat, other] : {std::pair(uses[i].triangle, uses[i + 1].triangle),
-                                        std::pair(uses[i + 1].triangle, uses[i].triangle)}) {
-        if (!is_flat(flat) || is_flat(other)) continue;
-        const std::array<Index, 2> ends = ends_of(uses[i].key);
-        Choice& choice = choices[flat];
-        if (const double length = (points[ends[1]] - points[ends[0]]).norm(); length > choice.length)
-          choice = {length, normals[other]};
-      }
-    }
-    again = !choices.empty();
-    for (const auto& [flat, choice] : choices) normals[flat] = choice.normal;
-  }
-}
-
-std::vector<InnerEdge> inner_edges(std::span<const Vec3> points, std::span<const Triangle> triangles,
-                                   const std::vector<EdgeUse>& uses) {
-  std::vector<Vec3> normals(triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const Vec3& a = points[triangles[t][0]];
-    const Vec3 n = (points[triangles[t][1]] - a).cross(points[triangles[t][2]] - a);
-    const double length = n.norm();
-    normals[t] = length > 0 ? Vec3(n / length) : Vec3(Vec3::Zero());
-  }
-  take_normals_beside(points, uses, normals);
-  std::vector<InnerEdge> edges;
-  edges.reserve(uses.size() / 2);
-  for (std::size_t i = 0; i < uses.size();) {
-    std::size_t j = i + 1;
-    while (j < uses.size() && uses[j].same_edge(uses[i])) ++j;
-    const std::size_t count = j - i;
-    if (count == 2 && uses[i].ascending != uses[i + 1].ascending) {
-      const std::array<Index, 2> ends = ends_of(uses[i].key);
-      const Vec3 &m = normals[uses[i].triangle], &n = normals[uses[i + 1].triangle];
-      const double turn =
-          m.isZero(0) || n.isZero(0) ? 0 : 2 * portable_atan2_upper((m - n).norm(), (m + n).norm());
-      edges.push_back(
-          {ends, {uses[i].triangle, uses[i + 1].triangle}, (points[ends[1]] - points[ends[0]]).norm(), turn});
-    }
-    i = j;
-  }
-  return edges;
-}
 
 std::vector<double> triangle_areas(std::span<const Vec3> points, std::span<const Triangle> triangles) {
   std::vector<double> areas;

@@ -11,6 +11,7 @@
 #include "tools/commands/commands.h"
 #include "tools/commands/output_paths.h"
 #include "tools/commands/scan_input.h"
+#include "tools/commands/simplification.h"
 #include "tools/report.h"
 #include "tools/stats_json.h"
 
@@ -62,7 +63,7 @@ void compare_with_surfaces(TetMesh& mesh, CommandRun& run, CheckReport& check) {
   std::vector<std::string> names;
   read_surfaces(run, surfaces, names);
   check.surface = compare_with_surfaces(mesh, surfaces, names);
-  check.tolerance = run.line.tolerance.in_input_units(check.surface->diagonal);
+  if (run.line.tolerance.value > 0) check.tolerance = tolerance_of(run.line, check.surface->diagonal);
 }
 
 void print_check(const CheckReport& check, const CommandRun& run) {
@@ -73,9 +74,7 @@ void print_check(const CheckReport& check, const CommandRun& run) {
     for (const std::string& l : check.topology) std::printf("%s\n", l.c_str());
     if (check.surface)
       for (const std::string& l : comparison_lines(*check.surface)) std::printf("%s\n", l.c_str());
-    if (check.tolerance > 0)
-      std::printf("%s the tolerance of %.6g\n", check.within_tolerance() ? "within" : "not within",
-                  check.tolerance);
+    if (check.tolerance > 0) std::printf("%s\n", tolerance_line(*check.surface, check.tolerance).c_str());
   }
   if (check.topology_differences)
     for (const std::string& d : *check.topology_differences) std::printf("topology differs: %s\n", d.c_str());
