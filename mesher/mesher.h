@@ -160,9 +160,10 @@ MesherEstimate estimate_mesh(const MesherInput& input, const MesherOptions& opti
 DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, Progress* progress);
 
 /// mesh_surfaces() with cells that bring the surfaces within half of `tolerance` (input units, above 0) of
-/// the mesh: begins with cells of twice that size or, if they are smaller, those of `options`, measures, and
-/// halves them up to max_refinement times where that is not enough. What is reached in the end is for the
-/// caller to find out. Throws as mesh_surfaces() does; UsageError where cells would be too small.
+/// the mesh: begins with cells of twice that size or, if they are smaller, those of `options`, measures at
+/// vertices and centroids, and halves them up to max_refinement times where that is not enough; all become
+/// smaller where that leaves more than most of the tolerance. What is reached in the end is for the caller to
+/// find out. Throws as mesh_surfaces() does; UsageError where cells would be too small.
 DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double tolerance, Progress* progress);
 
 /// Meshes a segmented volume: a dense tet mesh with the same invariants and a material for each label. Where

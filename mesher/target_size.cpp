@@ -12,6 +12,8 @@
 #include "common/error.h"
 #include "common/geometry/even_points.h"
 #include "common/geometry/projection_tree.h"
+#include "common/memory.h"
+#include "common/message_text.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/labels/label_faces.h"
@@ -99,6 +101,9 @@ constexpr double dense_tolerance_share = 0.5;
 /// Cells at first, in tolerances: where surfaces are smooth their meshes are within half of one.
 constexpr double first_cell = 2;
 constexpr int min_tolerance_resolution = 64;
+/// Memory over what is estimated of cells so small that they show the input's facets: 1.8 for a bunny at 780
+/// cells along its longest side.
+constexpr double faceted_memory = 2.5;
 /// Cells within which the surface and the mesh stand for each other.
 constexpr double reach_cells = 2;
 constexpr int max_fine_rounds = 4, max_worse_rounds = 2;
@@ -214,6 +219,11 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
     throw UsageError(text);
   }
   options.resolution = std::max({min_tolerance_resolution, options.resolution, static_cast<int>(cells)});
+  const MesherEstimate estimate = estimate_mesh(input, options);
+  require_memory(faceted_memory * static_cast<double>(estimate.bytes),
+                 "a tolerance of " + short_number(tolerance) + ", which takes about " +
+                     short_number(static_cast<double>(estimate.tets)) + " tets,",
+                 "give a larger one");
   // What cells cannot show is shown thicker by as much as a tolerance is wide, or closed.
   if (!options.max_refinement) options.max_refinement = max_wall_refinement;
   const std::vector<FinePlace> fine_places = options.fine_places;  // of wanted sizes

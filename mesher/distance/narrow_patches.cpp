@@ -117,6 +117,7 @@ NarrowPatches find_narrow_patches(const RepairedSurface& surface, const SurfaceP
 NarrowPatches cells_around(const std::vector<FinePlace>& asked, const GridFrame& frame, int max_depth,
                            double max_tets) {
   std::vector<FinePlace> places;
+  places.reserve(asked.size());
   for (const FinePlace& p : asked) places.push_back({frame.to_grid(p.place), p.halvings});
   return halve_cells(places, max_depth, max_tets);
 }

@@ -188,7 +188,8 @@ SurfaceSamples::SurfaceSamples(const EditableMesh& mesh, std::size_t records, co
   const std::size_t blocks = (places.size() + sample_grain - 1) / sample_grain;
   parallel_for(0, blocks, 1, [&](std::size_t begin_block, std::size_t end_block) {
     for (std::size_t block = begin_block; block < end_block; ++block) {
-      std::optional<std::size_t> last;  // the owner of the last place: the next one is not far away
+      constexpr std::size_t nobody = std::numeric_limits<std::size_t>::max();
+      std::size_t last = nobody;  // the owner of the last place: the next one is not far away
       for (std::size_t i = block * sample_grain; i < std::min(places.size(), (block + 1) * sample_grain);
            ++i) {
         const Vec3& at = places[i].at;
@@ -202,15 +203,15 @@ SurfaceSamples::SurfaceSamples(const EditableMesh& mesh, std::size_t records, co
           return kind.high != outside_id || normal(mesh_faces, item).dot(outwards) > 0;
         };
         double limit = surface.reach();
-        if (last && accepts(mesh_faces.items()[*last]))
-          limit = std::min(limit, (mesh_faces.closest_on(*last, at) - at).norm());
+        if (last != nobody && accepts(mesh_faces.items()[last]))
+          limit = std::min(limit, (mesh_faces.closest_on(last, at) - at).norm());
         else
-          last.reset();
+          last = nobody;
         if (const auto hit = mesh_faces.nearest_of(at, limit, accepts))
           last = hit->item;
-        else if (!last)
+        else if (last == nobody)
           continue;
-        owners[i] = {mesh_faces.items()[*last].kind[0], (mesh_faces.closest_on(*last, at) - at).norm()};
+        owners[i] = {mesh_faces.items()[last].kind[0], (mesh_faces.closest_on(last, at) - at).norm()};
       }
     }
   });
