@@ -178,8 +178,10 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     fit(engine, sweeps_before_closing, quality_at(engine, plan.angle));
     WholeMesh whole(engine);
     improve_area(tools_of(engine), whole, plan, 1);
+    if (!counted) refine_poor_spots(tools_of(engine), whole, plan, options.min_solid_angle);
     // Shapes were had at the cost of places.
     fit(engine, sweeps_after_closing, quality_at(engine, plan.angle));
+    // Fitting may cost a tet that is just above the bound.
     if (!counted) refine_poor_spots(tools_of(engine), whole, plan, options.min_solid_angle);
   }
   if (report && options.tolerance > 0) report->deviation = engine.deviation();
@@ -194,7 +196,9 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
 
 DeviationReport deviation(const TetMesh& mesh, const TriangleMesh& surface) {
   const EditableMesh editable(TetMesh(mesh), "mesh");
-  return InputSurface(editable, &surface).deviation(editable);
+  InputSurface input(editable, &surface);
+  input.find_hidden(editable);
+  return input.deviation(editable);
 }
 
 namespace {

@@ -117,7 +117,9 @@ InputSurface::InputSurface(const EditableMesh& mesh, const TriangleMesh* given) 
     items.push_back({ids, {kind.low, kind.high, kind.patch}});
   }
   if (items.size() > given_items) triangles_ = ProjectionTree(std::move(points), std::move(items));
+}
 
+void InputSurface::find_hidden(const EditableMesh& mesh) {
   const ProjectionTree own = faces_of(mesh);
   hidden_.resize(triangles_.items().size());
   parallel_for(0, hidden_.size(), sample_grain, [&](std::size_t begin, std::size_t end) {
@@ -137,16 +139,18 @@ DeviationReport InputSurface::deviation(const EditableMesh& mesh) const {
   const double scale = mesh.space().scale();
   std::vector<ProjectionTree::Item> shown;
   Box3 box;
-  for (std::size_t i = 0; i < hidden_.size(); ++i) {
+  const bool given = std::any_of(triangles_.items().begin(), triangles_.items().end(), is_given);
+  for (std::size_t i = 0; i < triangles_.items().size(); ++i) {
     const ProjectionTree::Item& item = triangles_.items()[i];
     const double size =
         area(triangles_.corner(item, 0), triangles_.corner(item, 1), triangles_.corner(item, 2)) /
         (scale * scale);
-    if (hidden_[i])
+    if (!hidden_.empty() && hidden_[i])
       report.hidden_area += size;
     else
       shown.push_back(item);
-    if (!is_given(item)) report.apart_area += size;
+    // Without a surface all stands for itself, and nothing is apart.
+    if (given && !is_given(item)) report.apart_area += size;
     for (int k = 0; k < 3; ++k) box.add(triangles_.corner(item, k));
   }
   const double accuracy = tolerance::deviation_share * (box.high - box.low).norm();

@@ -35,13 +35,15 @@ class InputSurface {
   static Kind kind_of(const ProjectionTree::Item& item);
   /// What stands for the other, mesh and input, is within this distance.
   double reach() const { return reach_; }
+  /// Finds what no part of the mesh as it came is near, for deviation(). Parallel.
+  void find_hidden(const EditableMesh& mesh);
   /// How far the mesh's surface is from this one now, proven; input units. Of the same mesh. Parallel.
   DeviationReport deviation(const EditableMesh& mesh) const;
 
  private:
   static constexpr ProjectionTree::Kind given_kind{0, 0, 0};
   ProjectionTree triangles_;
-  std::vector<std::uint8_t> hidden_;  ///< by item of these, 1 where no part of it is near the mesh as it came
+  std::vector<std::uint8_t> hidden_;  ///< by item of these: what find_hidden() found
   double reach_ = 0;
 };
 

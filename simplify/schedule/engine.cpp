@@ -62,8 +62,9 @@ void Engine::compact() {
   if (first) rules.embedded = mesh_.all_positive() && grid_.embedded();
 }
 
-void Engine::keep_input_surface(const TriangleMesh* surface) {
-  input_surface_ = std::make_unique<const InputSurface>(mesh_, surface);
+void Engine::keep_input_surface(const TriangleMesh* surface, bool measured) {
+  input_surface_ = std::make_unique<InputSurface>(mesh_, surface);
+  if (measured) input_surface_->find_hidden(mesh_);
 }
 
 void Engine::set_sizes(const SizeField* wish, double min_edge, double max_edge) {

@@ -47,8 +47,8 @@ class Engine {
   /// calls it first, and rate_all() after setting its objective.
   void compact();
   /// Keeps what the mesh as it came stands for: the `surface` (input units) that it was made from, or its own
-  /// one. Before the first operation.
-  void keep_input_surface(const TriangleMesh* surface);
+  /// one. Before the first operation. `measured`: deviation() will be asked for.
+  void keep_input_surface(const TriangleMesh* surface, bool measured);
   /// From now on triangles own samples of that, some ten for each triangle with edges of this length.
   void own_samples(double edge);
   void set_spacing(double spacing) { spacing_ = spacing; }
@@ -111,7 +111,7 @@ class Engine {
   EditableMesh& mesh_ = constrained_.mesh;
   SurfaceGrid& grid_ = constrained_.grid;
   SurfaceProjection projection_;
-  std::unique_ptr<const InputSurface> input_surface_;
+  std::unique_ptr<InputSurface> input_surface_;
   std::unique_ptr<SurfaceSamples> samples_;
   double spacing_ = std::numeric_limits<double>::infinity();
   std::optional<EdgeSizes> sizes_;
