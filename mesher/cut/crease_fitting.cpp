@@ -6,12 +6,12 @@
 
 #include "common/geometry/predicates.h"
 #include "common/geometry/quality.h"
-#include "common/geometry/self_intersection.h"
 #include "common/mesh/interfaces.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/cut/crease_labels.h"
 #include "mesher/cut/joint_moves.h"
+#include "mesher/cut/undo_intersections.h"
 
 namespace tetwright {
 
@@ -190,37 +190,6 @@ class Fitter {
   double cell_;
 };
 
-/// Puts points back to where they were `before` until no faces intersect: tets keep shapes of their own, but
-/// the outside has none that would be turned over. All points back is what there was before.
-void undo_intersections(TetMesh& mesh, const std::vector<Vec3>& before) {
-  std::vector<Triangle> faces;
-  faces.reserve(mesh.interfaces.size());
-  for (const InterfaceTriangle& t : mesh.interfaces) faces.push_back(t.ids);
-  std::vector<std::uint8_t> is_back(mesh.points.size(), 0);
-  const auto put_back = [&](Index p) {
-    const bool moves = !is_back[p] && mesh.points[p] != before[p];
-    is_back[p] = 1;
-    mesh.points[p] = before[p];
-    return moves;
-  };
-  for (bool again = true; again;) {
-    again = false;
-    for (const auto& [f, g] : self_intersections(mesh.points, faces))
-      for (const Index t : {f, g})
-        for (const Index p : faces[t]) again |= put_back(p);
-    if (!again) return;
-    for (bool turned = true; turned;) {
-      turned = false;
-      for (const Tet& t : mesh.tets) {
-        if (std::none_of(t.begin(), t.end(), [&](Index p) { return is_back[p] != 0; })) continue;
-        if (orient3d(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) > 0)
-          continue;
-        for (const Index p : t) turned |= put_back(p);
-      }
-    }
-  }
-}
-
 /// The patch of a face: the one that its points have in common; of several, or of none, the one that lies
 /// most like it.
 FeatureSurface::Patch patch_of(const TetMesh& mesh, const InterfaceTriangle& t, const CreaseLabels& labels,
@@ -268,7 +237,10 @@ void fit_creases(TetMesh& mesh, const FeatureSurface& surface, const MaterialFie
   std::vector<std::uint8_t> boundary(mesh.points.size(), 0);
   for (const Index p : labels.points()) boundary[p] = 1;
   mesh.interfaces = find_interfaces(mesh, &boundary);
-  undo_intersections(mesh, before);
+  std::vector<Triangle> faces;
+  faces.reserve(mesh.interfaces.size());
+  for (const InterfaceTriangle& t : mesh.interfaces) faces.push_back(t.ids);
+  undo_intersections(mesh.points, mesh.tets, faces, before);
   parallel_for(0, mesh.interfaces.size(), point_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       mesh.interfaces[i].patch = patch_of(mesh, mesh.interfaces[i], labels, surface, cell);

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <memory>
 
+#include "common/mesh/mesh_faces.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/cut/joint_moves.h"
+#include "mesher/cut/undo_intersections.h"
 
 namespace tetwright {
 
@@ -64,15 +66,25 @@ ThickenedWalls what_is_left(const std::vector<PointMove>& moves, const MaterialF
   return left;
 }
 
+std::vector<Triangle> interface_faces(const CutMesh& mesh) {
+  std::vector<Triangle> result;
+  for (const MeshFace& f : mesh_faces(mesh.tets, mesh.points.size(), &mesh.on_interface))
+    if (f.count == 1 || mesh.regions[f.first] != mesh.regions[f.second]) result.push_back(f.ids);
+  return result;
+}
+
 }  // namespace
 
 ThickenedWalls restore_walls(CutMesh& mesh, const MaterialField& field, const MaterialField& as_is) {
   std::vector<PointMove> moves = find_moves(mesh.points, mesh.on_interface, field, as_is);
+  if (moves.empty()) return {};
+  const std::vector<Vec3> before = mesh.points;
   for (int pass = 0; pass < passes && !moves.empty(); ++pass) {
     move_jointly(mesh.points, mesh.tets, moves, tangent_of_poor_tet);
     keep_remaining(mesh.points, moves);
   }
-  return what_is_left(moves, field);
+  undo_intersections(mesh.points, mesh.tets, interface_faces(mesh), before);
+  return find_thickened_walls(mesh.points, mesh.on_interface, field, as_is);
 }
 
 ThickenedWalls find_thickened_walls(const std::vector<Vec3>& points,

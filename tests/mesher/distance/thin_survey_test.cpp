@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/error.h"
+#include "common/geometry/self_intersection.h"
 #include "mesher/mesher.h"
 #include "tests/mesher/fields.h"
 
@@ -95,6 +96,21 @@ TEST(ThinWalls, GapsAreKeptOrClosedWhole) {
         EXPECT_NEAR(dense.report.closed_gaps[0].width, gap, 1e-6);
         EXPECT_NEAR(dense.report.closed_gaps[0].area, 25, 12);
       }
+}
+
+// Walls move back on both sides of a gap, where there are no tets that would be turned over.
+TEST(ThinWalls, WallsThatMoveBackDoNotMeet) {
+  const TriangleMesh below = make_box(Vec3(0, 0, 0), Vec3(12, 12, 0.3));
+  const TriangleMesh above = make_box(Vec3(0, 0, 1.9), Vec3(12, 12, 2.2));
+  TriangleMesh tilted = below;
+  for (Vec3& p : tilted.points) p = Eigen::AngleAxisd(0.25, Vec3(0, 1, 0)) * p - Vec3(0, 0, 0.6);
+  for (const TriangleMesh& other : {above, tilted}) {
+    const DenseMesh dense = mesh_of(turned(joined(below, other), 5), 1, 0);
+    counts_of(dense);
+    std::vector<Triangle> faces;
+    for (const InterfaceTriangle& t : dense.mesh.interfaces) faces.push_back(t.ids);
+    EXPECT_TRUE(self_intersections(dense.mesh.points, faces).empty());
+  }
 }
 
 TEST(ThinWalls, WhatIsNotWantedGoesOnPurpose) {
