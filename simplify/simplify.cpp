@@ -14,9 +14,9 @@
 #include "simplify/schedule/engine.h"
 #include "simplify/schedule/improve_area.h"
 #include "simplify/schedule/paper_schedule.h"
-#include "simplify/schedule/poor_spots.h"
 #include "simplify/schedule/schedule_constants.h"
 #include "simplify/schedule/size_rounds.h"
+#include "simplify/schedule/spot_refinement.h"
 #include "simplify/schedule/tuned_schedule.h"
 
 namespace tetwright {
@@ -183,6 +183,15 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     fit(engine, sweeps_after_closing, quality_at(engine, plan.angle));
     // Fitting may cost a tet that is just above the bound.
     if (!counted) refine_poor_spots(tools_of(engine), whole, plan, options.min_solid_angle);
+    if (options.tolerance > 0) {
+      // Where the tolerance has held the count back it may do so here.
+      ImprovementPlan holding = plan;
+      const auto live = static_cast<double>(engine.mesh().live_tets());
+      if (live > static_cast<double>(plan.max_tets))
+        holding.max_tets = static_cast<std::size_t>(live * (1 + free_closing_slack));
+      refine_far_spots(engine, whole, holding, options.min_solid_angle,
+                       options.tolerance * engine.mesh().space().scale() / (1 + relative_deviation_accuracy));
+    }
   }
   if (report && options.tolerance > 0) report->deviation = engine.deviation();
   if (report) {

@@ -139,9 +139,11 @@ void print_report(const CommandLine& line, const RunReport& run) {
                   d.hidden_area);
   }
   if (run.edge_lengths && run.edge_lengths->wished > 0)
-    std::printf("edge lengths: %.1f %% within %.3g times the wanted ones, median %.2f times; %.4g to %.4g\n",
-                100 * run.edge_lengths->within_share(), edge_length_factor, run.edge_lengths->median,
-                run.edge_lengths->shortest, run.edge_lengths->longest);
+    std::printf(
+        "edge lengths: %.1f %% within %.3g times the wanted ones (%s), median %.2f times; %.4g to %.4g\n",
+        100 * run.edge_lengths->within_share(), edge_length_factor,
+        in_quotes(run.sizes.source->field()).c_str(), run.edge_lengths->median, run.edge_lengths->shortest,
+        run.edge_lengths->longest);
   else if (run.edge_lengths)
     std::printf("edge lengths: %.4g to %.4g\n", run.edge_lengths->shortest, run.edge_lengths->longest);
   if (run.mesher)

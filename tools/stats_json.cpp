@@ -174,13 +174,14 @@ nlohmann::json creases_json(const CreaseFidelity& c) {
           {"same", c.same()}};
 }
 
-nlohmann::json edge_lengths_json(const EdgeLengthReport& e) {
+nlohmann::json edge_lengths_json(const EdgeLengthReport& e, const RequestedSizes& sizes) {
   nlohmann::json j{{"edges", e.edges},
                    {"shortest", e.shortest},
                    {"longest", e.longest},
                    {"above_max", e.above_max.count},
                    {"below_min", e.below_min.count}};
   if (e.wished > 0) {
+    j["field"] = sizes.source->field();
     j["within_percent"] = 100 * e.within_share();
     j["median_ratio"] = e.median;
   }
@@ -311,7 +312,7 @@ std::string stats_json(const CommandLine& line, const RunReport& run) {
                       {"from_surface", deviation_json(run.deviation->from_surface)},
                       {"apart_area", run.deviation->apart_area},
                       {"hidden_area", run.deviation->hidden_area}};
-  if (run.edge_lengths) j["edge_lengths"] = edge_lengths_json(*run.edge_lengths);
+  if (run.edge_lengths) j["edge_lengths"] = edge_lengths_json(*run.edge_lengths, run.sizes);
   if (run.crease_fidelity) j["creases"] = creases_json(*run.crease_fidelity);
   j["iterations"] = nlohmann::json::array();
   if (run.simplify)

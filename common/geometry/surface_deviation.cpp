@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "common/geometry/even_points.h"
@@ -17,7 +18,6 @@ namespace tetwright {
 
 namespace {
 
-constexpr double relative_accuracy = 0.01;
 constexpr std::size_t max_pieces = std::size_t{1} << 22;
 constexpr int max_levels = 150;  ///< of cuts in two: beyond, the bits of coordinates are used up
 /// Every so many levels pieces are cut in the middle of their longest edge, so that they shrink.
@@ -25,6 +25,7 @@ constexpr int halving_period = 3;
 constexpr int bisections = 40;  ///< to find where another item becomes the nearest
 /// Nearer to an end than this share of an edge, the cut is made in the middle.
 constexpr double min_cut = 0.01;
+constexpr std::size_t max_cuts = 4096;  ///< of one triangle, by triangles_beyond()
 constexpr std::size_t grain = 256;
 constexpr std::size_t rms_points = 100000;
 
@@ -149,6 +150,23 @@ double rms_of(const ProjectionTree& from, const ProjectionTree& to) {
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, points.size())));
 }
 
+/// A point of the triangle that is farther than `limit`, if there is one.
+std::optional<Measured> beyond(const ProjectionTree& to, const Piece& triangle, double limit,
+                               double accuracy) {
+  for (const Measured& corner : triangle.corners)
+    if (corner.distance > limit) return corner;
+  std::vector<Piece> open{triangle};
+  for (std::size_t cuts = 0; cuts < max_cuts && !open.empty(); ++cuts) {
+    const Piece piece = open.back();
+    open.pop_back();
+    const std::array<Piece, 2> parts = cut(to, piece, cuts % halving_period == halving_period - 1);
+    if (const Measured& between = parts[0].corners[1]; between.distance > limit) return between;
+    for (const Piece& part : parts)
+      if (part.upper > limit + accuracy) open.push_back(part);
+  }
+  return {};
+}
+
 }  // namespace
 
 SurfaceDeviation surface_deviation(const ProjectionTree& from, const ProjectionTree& to, double accuracy) {
@@ -177,7 +195,7 @@ SurfaceDeviation surface_deviation(const ProjectionTree& from, const ProjectionT
   result.place = points.front();
   for (const Measured& m : corners) take(m);
   const auto enough = [&] {
-    return std::max(result.lower * (1 + relative_accuracy), result.lower + accuracy);
+    return std::max(result.lower * (1 + relative_deviation_accuracy), result.lower + accuracy);
   };
 
   double settled = result.lower;  // what no point of the triangles that were let go is farther than
@@ -217,6 +235,25 @@ SurfaceDeviation surface_deviation(const ProjectionTree& from, const ProjectionT
   result.upper = std::max(settled, result.lower);
   result.rms = rms_of(from, to);
   return result;
+}
+
+std::vector<FarTriangle> triangles_beyond(const ProjectionTree& from, const ProjectionTree& to, double limit,
+                                          double accuracy) {
+  return parallel_collect<FarTriangle>(
+      0, from.items().size(), grain, [&](std::size_t begin, std::size_t end, std::vector<FarTriangle>& out) {
+        std::uint32_t guess = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+          Piece triangle;
+          for (int k = 0; k < 3; ++k) {
+            triangle.corners[k] = measure(to, from.corner(from.items()[i], k), guess);
+            guess = triangle.corners[k].item;
+          }
+          triangle.upper = upper_bound(to, triangle.corners);
+          if (!(triangle.upper > limit + accuracy)) continue;
+          if (const auto point = beyond(to, triangle, limit, accuracy))
+            out.push_back({static_cast<std::uint32_t>(i), point->item, point->at});
+        }
+      });
 }
 
 }  // namespace tetwright

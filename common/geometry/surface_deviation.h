@@ -1,12 +1,17 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <vector>
 
 #include "common/types.h"
 
 namespace tetwright {
 
 class ProjectionTree;
+
+/// How near to each other the bounds of a SurfaceDeviation are, as a share of it.
+inline constexpr double relative_deviation_accuracy = 0.01;
 
 /// How far a surface is from another: the largest distance of all its points, those between the corners too,
 /// is proven to be from `lower` to `upper`. Units of the input.
@@ -27,9 +32,9 @@ struct DeviationReport {
   double upper() const { return std::max(from_mesh.upper, from_surface.upper); }
 };
 
-/// The deviation of `from` from `to`. The bounds are within 1 % of each other, or `accuracy` if that is more
-/// (above 0; input units); wider only where that would take more than four million triangles, which is not
-/// to be expected.
+/// The deviation of `from` from `to`. The bounds are within relative_deviation_accuracy of each other, or
+/// `accuracy` if that is more (above 0; input units); wider only where that would take more than four million
+/// triangles, which is not to be expected.
 ///
 /// Branch and bound over triangles (Tang, Lee & Kim 2009, "Interactive Hausdorff distance computation for
 /// general polygonal models"): the distance from one triangle is convex, so that it is largest in a corner;
@@ -37,5 +42,18 @@ struct DeviationReport {
 /// two, where the nearest triangle of the other surface changes. Infinite where `to` is empty and `from` is
 /// not. Parallel; the result does not depend on the threads.
 SurfaceDeviation surface_deviation(const ProjectionTree& from, const ProjectionTree& to, double accuracy);
+
+/// A triangle with a point that is far from another surface.
+struct FarTriangle {
+  std::uint32_t item;     ///< of items() of the surface it belongs to
+  std::uint32_t nearest;  ///< the other surface's item that is nearest to that point
+  Vec3 place;             ///< the point
+};
+
+/// The triangles of `from`, ascending, of which a point is farther from `to` than `limit`. Where that is so
+/// by less than `accuracy` (above 0), or not settled after a few thousand cuts, a triangle may be left out.
+/// `to` must not be empty. Parallel; the result does not depend on the threads.
+std::vector<FarTriangle> triangles_beyond(const ProjectionTree& from, const ProjectionTree& to, double limit,
+                                          double accuracy);
 
 }  // namespace tetwright

@@ -61,8 +61,9 @@ class PointLengths {
 
 class TetMeshSizes : public SizeSource {
  public:
-  TetMeshSizes(TetMesh mesh, std::vector<double> lengths)
-      : mesh_(std::move(mesh)),
+  TetMeshSizes(TetMesh mesh, std::vector<double> lengths, std::string field)
+      : SizeSource(std::move(field)),
+        mesh_(std::move(mesh)),
         of_points_(std::move(lengths), used_points(mesh_.tets, mesh_.points.size())),
         reach_(tolerance::within_mesh * of_points_.diagonal(mesh_.points)),
         tree_(mesh_, TetTree::Order::place) {}
@@ -93,8 +94,9 @@ std::vector<ProjectionTree::Item> items_of(const std::vector<Triangle>& triangle
 
 class SurfaceSizes : public SizeSource {
  public:
-  SurfaceSizes(TriangleMesh surface, std::vector<double> lengths)
-      : of_points_(std::move(lengths), used_points(surface.triangles, surface.points.size())),
+  SurfaceSizes(TriangleMesh surface, std::vector<double> lengths, std::string field)
+      : SizeSource(std::move(field)),
+        of_points_(std::move(lengths), used_points(surface.triangles, surface.points.size())),
         tree_(std::move(surface.points), items_of(surface.triangles)) {}
 
   std::optional<WantedLength> at(const Vec3& place) const override {
@@ -119,12 +121,14 @@ class SurfaceSizes : public SizeSource {
 
 }  // namespace
 
-std::unique_ptr<const SizeSource> tet_mesh_sizes(TetMesh mesh, std::vector<double> lengths) {
-  return std::make_unique<TetMeshSizes>(std::move(mesh), std::move(lengths));
+std::unique_ptr<const SizeSource> tet_mesh_sizes(TetMesh mesh, std::vector<double> lengths,
+                                                 std::string field) {
+  return std::make_unique<TetMeshSizes>(std::move(mesh), std::move(lengths), std::move(field));
 }
 
-std::unique_ptr<const SizeSource> surface_sizes(TriangleMesh surface, std::vector<double> lengths) {
-  return std::make_unique<SurfaceSizes>(std::move(surface), std::move(lengths));
+std::unique_ptr<const SizeSource> surface_sizes(TriangleMesh surface, std::vector<double> lengths,
+                                                std::string field) {
+  return std::make_unique<SurfaceSizes>(std::move(surface), std::move(lengths), std::move(field));
 }
 
 }  // namespace tetwright

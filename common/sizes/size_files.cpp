@@ -46,9 +46,9 @@ MeshField take_field(Fields fields, const std::string& file) {
   fail_without_field(file, fields, scalars.size() > 1);
 }
 
-/// The values of the field, which are checked where an element uses the point.
+/// The field, whose values are checked where an element uses the point.
 template <class Elements>
-std::vector<double> checked_lengths(Fields fields, const Elements& elements, const std::string& file) {
+MeshField checked_lengths(Fields fields, const Elements& elements, const std::string& file) {
   MeshField field = take_field(std::move(fields), file);
   for (const auto& element : elements)
     for (const Index p : element)
@@ -56,7 +56,7 @@ std::vector<double> checked_lengths(Fields fields, const Elements& elements, con
         throw InputError(file + ": point " + std::to_string(p) + " (counted from 0) has the value " +
                          short_number(value) + " in point field " + in_quotes(field.name) +
                          "; an edge length must be a number above 0: give it one");
-  return std::move(field.values);
+  return field;
 }
 
 }  // namespace
@@ -76,14 +76,13 @@ void check_mesh_sizes_path(const std::string& file, const std::string& others) {
 std::unique_ptr<const SizeSource> read_mesh_sizes(const std::string& file) {
   check_mesh_sizes_path(file);
   if (std::optional<SurfaceWithFields> read = read_surface_with_fields(file)) {
-    std::vector<double> lengths =
-        checked_lengths(std::move(read->point_fields), read->surface.triangles, file);
-    return surface_sizes(std::move(read->surface), std::move(lengths));
+    MeshField lengths = checked_lengths(std::move(read->point_fields), read->surface.triangles, file);
+    return surface_sizes(std::move(read->surface), std::move(lengths.values), std::move(lengths.name));
   }
   TetMesh mesh = read_tet_mesh(file).mesh;
-  std::vector<double> lengths = checked_lengths(std::exchange(mesh.point_fields, {}), mesh.tets, file);
+  MeshField lengths = checked_lengths(std::exchange(mesh.point_fields, {}), mesh.tets, file);
   mesh.cell_fields.clear();
-  return tet_mesh_sizes(std::move(mesh), std::move(lengths));
+  return tet_mesh_sizes(std::move(mesh), std::move(lengths.values), std::move(lengths.name));
 }
 
 }  // namespace tetwright

@@ -2,6 +2,8 @@
 
 #include <functional>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "common/types.h"
 
@@ -17,10 +19,13 @@ struct WantedLength {
 /// Immutable; all functions may be called concurrently.
 class SizeSource {
  public:
-  SizeSource() = default;
+  /// `field`: what the lengths are called where they come from; empty if they have no name.
+  explicit SizeSource(std::string field = {}) : field_(std::move(field)) {}
   SizeSource(const SizeSource&) = delete;
   SizeSource& operator=(const SizeSource&) = delete;
   virtual ~SizeSource() = default;
+
+  const std::string& field() const { return field_; }
 
   /// The edge length wanted at a place. Sources that fill space (tet meshes, grids) answer within it, with
   /// distance 0, and give nothing elsewhere. Sources on a surface answer everywhere, with the length at its
@@ -31,6 +36,9 @@ class SizeSource {
   /// Calls f(place, length) for every place at which the file gives a number that at() depends on, in the
   /// file's order.
   virtual void for_each_value(const std::function<void(const Vec3& place, double length)>& f) const = 0;
+
+ private:
+  const std::string field_;
 };
 
 }  // namespace tetwright

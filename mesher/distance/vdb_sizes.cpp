@@ -48,8 +48,11 @@ std::optional<Between> between(double index) {
 
 class VdbSizes : public SizeSource {
  public:
-  VdbSizes(DistanceGrid grid, const GridPlacement& placement)
-      : grid_(std::move(grid)), placement_(placement), to_index_(placement.directions.inverse()) {}
+  VdbSizes(DistanceGrid grid, const GridPlacement& placement, const std::string& name)
+      : SizeSource(name),
+        grid_(std::move(grid)),
+        placement_(placement),
+        to_index_(placement.directions.inverse()) {}
 
   std::optional<WantedLength> at(const Vec3& place) const override {
     const Vec3 index = to_index_ * (place - placement_.origin);
@@ -86,20 +89,20 @@ class VdbSizes : public SizeSource {
   }
 
   /// Throws InputError for a value that is no edge length, and if there is none.
-  void check(const std::string& file, const std::string& name) const {
+  void check(const std::string& file) const {
     bool any = false;
     grid_.for_each_active([&](const IndexPlace& first, const IndexPlace&, float value) {
       any = true;
       if (!(std::isfinite(value) && value > 0))
         throw InputError(file, 0,
-                         "the grid '" + name + "' has the value " + short_number(value) + " at " +
+                         "the grid '" + field() + "' has the value " + short_number(value) + " at " +
                              place_text(world(first)) +
                              "; an edge length must be a number above 0: give it one, or set voxels inactive "
                              "where none is wanted");
     });
     if (!any)
       throw InputError(
-          file, 0, "the grid '" + name + "' has no active voxel; set those active where a size is wanted");
+          file, 0, "the grid '" + field() + "' has no active voxel; set those active where a size is wanted");
   }
 
  private:
@@ -172,8 +175,8 @@ std::unique_ptr<const SizeSource> read_vdb_sizes(const std::string& file) {
   const Eigen::Matrix3d inverse = placement.directions.inverse();
   if (!placement.origin.allFinite() || !placement.directions.allFinite() || !inverse.allFinite())
     throw InputError(file, 0, "the grid '" + name + "' has a transform without sense");
-  auto sizes = std::make_unique<VdbSizes>(std::move(grid), placement);
-  sizes->check(file, name);
+  auto sizes = std::make_unique<VdbSizes>(std::move(grid), placement, name);
+  sizes->check(file);
   return sizes;
 }
 

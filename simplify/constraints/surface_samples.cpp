@@ -59,13 +59,13 @@ std::vector<Place> spread_places(const ProjectionTree& surface, double area_each
   return places;
 }
 
-/// The mesh's boundary and interface triangles.
+/// The mesh's boundary and interface triangles; kind[0] is the number among mesh.interface_faces().
 ProjectionTree faces_of(const EditableMesh& mesh) {
   std::vector<Vec3> points(mesh.point_slots(), Vec3::Zero());
   std::vector<ProjectionTree::Item> items;
   for (const InterfaceFace& f : mesh.interface_faces()) {
     for (const Index p : f.ids) points[p] = mesh.position(p);
-    items.push_back({f.ids, {}});
+    items.push_back({f.ids, {static_cast<std::uint32_t>(items.size()), 0, 0}});
   }
   return {std::move(points), std::move(items)};
 }
@@ -134,33 +134,51 @@ void InputSurface::find_hidden(const EditableMesh& mesh) {
   });
 }
 
+ProjectionTree InputSurface::shown() const {
+  std::vector<ProjectionTree::Item> items;
+  for (std::size_t i = 0; i < triangles_.items().size(); ++i)
+    if (hidden_.empty() || !hidden_[i]) items.push_back(triangles_.items()[i]);
+  return {triangles_.points(), std::move(items)};
+}
+
+double InputSurface::accuracy() const {
+  Box3 box;
+  for (const ProjectionTree::Item& item : triangles_.items())
+    for (int k = 0; k < 3; ++k) box.add(triangles_.corner(item, k));
+  return tolerance::deviation_share * (box.high - box.low).norm();
+}
+
 DeviationReport InputSurface::deviation(const EditableMesh& mesh) const {
   DeviationReport report;
   const double scale = mesh.space().scale();
-  std::vector<ProjectionTree::Item> shown;
-  Box3 box;
   const bool given = std::any_of(triangles_.items().begin(), triangles_.items().end(), is_given);
   for (std::size_t i = 0; i < triangles_.items().size(); ++i) {
     const ProjectionTree::Item& item = triangles_.items()[i];
     const double size =
         area(triangles_.corner(item, 0), triangles_.corner(item, 1), triangles_.corner(item, 2)) /
         (scale * scale);
-    if (!hidden_.empty() && hidden_[i])
-      report.hidden_area += size;
-    else
-      shown.push_back(item);
+    if (!hidden_.empty() && hidden_[i]) report.hidden_area += size;
     // Without a surface all stands for itself, and nothing is apart.
     if (given && !is_given(item)) report.apart_area += size;
-    for (int k = 0; k < 3; ++k) box.add(triangles_.corner(item, k));
   }
-  const double accuracy = tolerance::deviation_share * (box.high - box.low).norm();
   const auto in_input_units = [&](const SurfaceDeviation& d) {
     return SurfaceDeviation{d.lower / scale, d.upper / scale, mesh.space().to_input(d.place), d.rms / scale};
   };
-  const ProjectionTree input(triangles_.points(), std::move(shown)), own = faces_of(mesh);
-  report.from_mesh = in_input_units(surface_deviation(own, input, accuracy));
-  report.from_surface = in_input_units(surface_deviation(input, own, accuracy));
+  const ProjectionTree input = shown(), own = faces_of(mesh);
+  report.from_mesh = in_input_units(surface_deviation(own, input, accuracy()));
+  report.from_surface = in_input_units(surface_deviation(input, own, accuracy()));
   return report;
+}
+
+std::vector<InputSurface::FarFace> InputSurface::far_faces(const EditableMesh& mesh, double limit) const {
+  const ProjectionTree input = shown(), own = faces_of(mesh);
+  std::vector<FarFace> faces;
+  if (input.empty() || own.empty()) return faces;
+  for (const FarTriangle& t : triangles_beyond(own, input, limit, accuracy()))
+    faces.push_back({own.items()[t.item].kind[0], {}});
+  for (const FarTriangle& t : triangles_beyond(input, own, limit, accuracy()))
+    faces.push_back({own.items()[t.nearest].kind[0], t.place});
+  return faces;
 }
 
 SurfaceSamples::SurfaceSamples(const EditableMesh& mesh, std::size_t records, const InputSurface& surface,
@@ -265,7 +283,8 @@ bool SurfaceSamples::hand_samples(SurfaceGrid::Edit& edit, double max_distance) 
         }
       }
       const double d = std::sqrt(best2);
-      if (d > max_distance && d > static_cast<double>(sample.distance)) return false;
+      // As it is remembered: what stays where it was is no farther than before.
+      if (d > max_distance && static_cast<float>(d) > sample.distance) return false;
       edit.handed.push_back({s, best, static_cast<float>(d)});
     }
   }

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "common/geometry/projection_tree.h"
@@ -39,8 +40,21 @@ class InputSurface {
   void find_hidden(const EditableMesh& mesh);
   /// How far the mesh's surface is from this one now, proven; input units. Of the same mesh. Parallel.
   DeviationReport deviation(const EditableMesh& mesh) const;
+  /// A boundary or interface face, by number of mesh.interface_faces(), that is far from this surface, or
+  /// nearest to a place of it that is far from all faces.
+  struct FarFace {
+    std::uint32_t face;
+    std::optional<Vec3> place;
+  };
+  /// Those of the same mesh where that is farther than `limit`; working coordinates. Parallel.
+  std::vector<FarFace> far_faces(const EditableMesh& mesh, double limit) const;
 
  private:
+  /// What a mesh is measured against: all but what find_hidden() found.
+  ProjectionTree shown() const;
+  /// To which it is measured, working coordinates.
+  double accuracy() const;
+
   static constexpr ProjectionTree::Kind given_kind{0, 0, 0};
   ProjectionTree triangles_;
   std::vector<std::uint8_t> hidden_;  ///< by item of these: what find_hidden() found
@@ -73,10 +87,11 @@ class SurfaceSamples {
   /// From now on the places on an added triangle that are tested are at most this far from each other.
   void set_spacing(double spacing) { spacing_ = spacing; }
 
-  /// Calls f(position) for each sample of a triangle.
+  /// Calls f(position, its distance from the triangle) for each sample of a triangle.
   template <class F>
   void for_each(std::uint32_t record, const F& f) const {
-    for (std::uint32_t s = first_[record]; s != none; s = samples_[s].next) f(samples_[s].position);
+    for (std::uint32_t s = first_[record]; s != none; s = samples_[s].next)
+      f(samples_[s].position, samples_[s].distance);
   }
 
   /// Room for so many records; while no task runs.
@@ -85,6 +100,9 @@ class SurfaceSamples {
   void commit(const SurfaceGrid::Edit& edit);
   /// Triangles have other records: the one that had number i has new_record[i], or none; `records` of them.
   void renumber(const std::vector<std::uint32_t>& new_record, std::size_t records);
+
+  /// Another point of the input's surface, for the triangle that is nearest to it; while no task runs.
+  void add(const Vec3& position, std::uint32_t record, double distance);
 
   // For tests; while no task runs.
   std::size_t size() const { return samples_.size(); }
@@ -98,7 +116,6 @@ class SurfaceSamples {
     float distance;      ///< from its triangle
     std::uint32_t next;  ///< of the same triangle
   };
-  void add(const Vec3& position, std::uint32_t record, double distance);
   bool hand_samples(SurfaceGrid::Edit& edit, double max_distance) const;
   bool stays_near_surface(SurfaceGrid::Edit& edit, double max_distance) const;
 

@@ -58,6 +58,8 @@ struct BlockRules {
   /// How far a sample of the input's surface may be from the triangle that owns it, and a new triangle from
   /// the input's surface, unless they were as far before (needs SurfaceGrid::samples()).
   double max_deviation = std::numeric_limits<double>::infinity();
+  /// fit_to_samples() weights samples by the square of their distances.
+  bool fit_farthest = false;
   /// What max_deviation must never exceed.
   double tolerance = std::numeric_limits<double>::infinity();
   /// The mesh has patches (needs `projection`): points move on them and along the creases between them, and

@@ -53,7 +53,10 @@ Outcome fit_to_crease(Workspace& ws, const BlockRules& rules, float floor) {
 Outcome fit_to_samples(Workspace& ws, const BlockRules& rules, float floor) {
   Star& star = ws.star;
   const SurfaceSamples* samples = ws.grid.samples();
-  if (!samples || star.frozen || star.dimension() != 2) return Outcome::no_candidate;
+  if (!samples || star.frozen) return Outcome::no_candidate;
+  // Where interfaces branch, their samples say where; creases are kept otherwise (fit_to_crease()).
+  if (star.dimension() != 2 && !(rules.fit_farthest && rules.max_crease_distance == 0))
+    return Outcome::no_candidate;
   star.compute_gradients();
   if (rules.max_crease_distance > 0 && is_flat(star)) return Outcome::no_candidate;
   SurfaceGrid::Edit& edit = ws.proposal.edit;
@@ -76,10 +79,13 @@ Outcome fit_to_samples(Workspace& ws, const BlockRules& rules, float floor) {
     const Vec3 height = normal.cross(base);  // towards or away from the centre
     const double full = height.dot(c - p);
     double squares = 0, sum = 0;
-    samples->for_each(edit.removed_records[i], [&](const Vec3& at) {
+    samples->for_each(edit.removed_records[i], [&](const Vec3& at, float distance) {
       const double share = std::clamp(height.dot(at - p) / full, 0.0, 1.0);
-      squares += share * share;
-      sum += share * normal.dot(at - c);
+      // Of the fourth powers of distances the least sum, by weights that follow them.
+      const double weight =
+          rules.fit_farthest ? static_cast<double>(distance) * static_cast<double>(distance) : 1;
+      squares += weight * share * share;
+      sum += weight * share * normal.dot(at - c);
     });
     a += squares * normal * normal.transpose();
     b += sum * normal;

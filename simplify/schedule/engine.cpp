@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/geometry/point_triangle.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
@@ -206,6 +207,30 @@ std::vector<Index> Engine::marked_points(const Mark& mark) const {
                                  });
 }
 
+std::vector<ListedTet> Engine::find_far_tets(double limit) {
+  const std::vector<InterfaceFace> faces = mesh_.interface_faces();
+  std::vector<Triangle> far;
+  SurfaceGrid::Edit edit;
+  for (const InputSurface::FarFace& f : input_surface_->far_faces(mesh_, limit)) {
+    const Triangle& ids = faces[f.face].ids;
+    far.push_back(face_key(ids));
+    if (!f.place) continue;
+    const Vec3 &a = mesh_.position(ids[0]), &b = mesh_.position(ids[1]), &c = mesh_.position(ids[2]);
+    edit.clear();
+    edit.removed.push_back({ids, {a, b, c}});
+    grid_.find_records(edit);
+    samples_->add(*f.place, edit.removed_records.front(), std::sqrt(squared_distance(*f.place, a, b, c)));
+  }
+  std::sort(far.begin(), far.end());
+  return tets_where([&](Index t) {
+    for (int f = 0; f < 4; ++f)
+      if (mesh_.link(t, f).is_interface() &&
+          std::binary_search(far.begin(), far.end(), face_key(face_of(mesh_.points(t), f))))
+        return true;
+    return false;
+  });
+}
+
 std::vector<Index> Engine::poor_points(float limit) const {
   return marked_points([&](Index t, int) { return mesh_.quality(t) <= limit; });
 }
@@ -287,6 +312,13 @@ void Engine::fit_creases() {
         return Outcome::done;
     return moved;
   });
+}
+
+void Engine::fit_far(const std::vector<ListedTet>& tets, float floor) {
+  BlockRules farthest = rules;
+  farthest.fit_farthest = true;
+  runner_.each_star(points_around(tets), Operation::fit,
+                    [&](Workspace& ws) { return fit_to_samples(ws, farthest, floor); });
 }
 
 void Engine::fit_interfaces(float floor) {

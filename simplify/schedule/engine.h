@@ -62,6 +62,9 @@ class Engine {
   void allow_shorter_edges() { sizes_->allow_shorter(); }
   /// How far the mesh's surface is from that, proven.
   DeviationReport deviation() const;
+  /// The tets of boundary and interface faces that are farther from that than `limit` (working coordinates),
+  /// or nearest to a part of that which is, in the order of the curve. Places of that part become samples.
+  std::vector<ListedTet> find_far_tets(double limit);
   bool owns_samples() const { return samples_ != nullptr; }
   /// compact() where so many slots are dead that it pays.
   void compact_if_sparse();
@@ -90,6 +93,8 @@ class Engine {
 
   /// fit_to_samples() for all interface points.
   void fit_interfaces(float floor);
+  /// fit_to_samples() for those of the listed tets and around them, farthest samples first.
+  void fit_far(const std::vector<ListedTet>& tets, float floor);
   /// fit_to_crease() for all boundary points that are off their crease or corner; what cannot go there is
   /// collapsed along its crease.
   void fit_creases();

@@ -110,10 +110,11 @@ void find_deviation(RunReport& report) {
   if (d.upper() <= report.tolerance) return;
   const bool mesh = d.from_mesh.upper >= d.from_surface.upper;
   const SurfaceDeviation& worst = mesh ? d.from_mesh : d.from_surface;
-  const char* limit = report.mesher
+  // Of a volume the dense mesh's own surface is what is meant.
+  const char* limit = report.mesher && !report.volume
                           ? "the dense mesh is that far there; give a larger --resolution, or a larger "
                             "tolerance"
-                          : "the mesh's own surface; give a larger tolerance";
+                          : "the shapes of tets there; give a larger tolerance";
   report.shortfall.push_back({"tolerance", report.tolerance, worst.upper, limit,
                               "short of --tolerance: " + number(report.tolerance) + " was asked, " +
                                   number(worst.upper) + " reached from the " +

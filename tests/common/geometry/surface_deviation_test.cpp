@@ -116,6 +116,37 @@ TEST(SurfaceDeviation, IsThatOfASearchOfManyPoints) {
   }
 }
 
+TEST(TrianglesBeyond, AreThoseWithAPointThatFar) {
+  const auto wave = [](double u, double v) { return 0.1 * std::sin(9 * u) * std::cos(7 * v); };
+  const ProjectionTree from = graph(6, wave).tree(), to = graph(14, wave).tree();
+  constexpr double limit = 0.02, accuracy = 1e-7;
+  const auto distance = [&](const Vec3& p) {
+    return (to.nearest_of(p, 1, [](const ProjectionTree::Item&) { return true; })->point - p).norm();
+  };
+  const std::vector<FarTriangle> far = triangles_beyond(from, to, limit, accuracy);
+  std::size_t listed = 0, between_corners = 0;
+  for (std::uint32_t i = 0; i < from.items().size(); ++i) {
+    const ProjectionTree::Item& item = from.items()[i];
+    const Vec3 &a = from.corner(item, 0), &b = from.corner(item, 1), &c = from.corner(item, 2);
+    constexpr int steps = 40;
+    double farthest = 0;
+    for (int u = 0; u <= steps; ++u)
+      for (int v = 0; u + v <= steps; ++v)
+        farthest = std::max(farthest, distance(a + (b - a) * u / steps + (c - a) * v / steps));
+    if (listed < far.size() && far[listed].item == i) {
+      // No point is farther from those that were tried.
+      EXPECT_GT(farthest + ((b - a).norm() + (c - a).norm()) / steps, limit);
+      between_corners += std::max({distance(a), distance(b), distance(c)}) <= limit;
+      ++listed;
+    } else {
+      EXPECT_LE(farthest, limit + accuracy);
+    }
+  }
+  EXPECT_EQ(listed, far.size());  // each once, ascending
+  EXPECT_GT(between_corners, 5);  // not to be seen at the corners
+  EXPECT_LT(listed, 60);          // of 72
+}
+
 TEST(SurfaceDeviation, DoesNotDependOnTheThreads) {
   const Surface wave = graph(60, [](double u, double v) { return 0.1 * std::sin(9 * u) * std::cos(7 * v); });
   const Surface coarse = graph(9, [](double u, double v) { return 0.1 * std::sin(9 * u) * std::cos(7 * v); });

@@ -44,7 +44,7 @@ std::size_t count_owned(const Workbench& w) {
   std::size_t count = 0;
   double largest = 0;
   for (const MeshTriangle& t : w.grid.triangles())
-    w.samples->for_each(record_of(w, t), [&](const Vec3& p) {
+    w.samples->for_each(record_of(w, t), [&](const Vec3& p, float) {
       ++count;
       largest = std::max(largest, std::sqrt(squared_distance(p, t.points[0], t.points[1], t.points[2])));
     });
@@ -99,7 +99,7 @@ TEST(SurfaceSamples, AreOwnedByTheNearestTriangle) {
     return Vec3((t.points[1] - t.points[0]).cross(t.points[2] - t.points[0]));
   };
   for (const MeshTriangle& t : triangles)
-    w.samples->for_each(record_of(w, t), [&](const Vec3& p) {
+    w.samples->for_each(record_of(w, t), [&](const Vec3& p, float) {
       const double own = squared_distance(p, t.points[0], t.points[1], t.points[2]);
       // Those around an edge of the cube face another way.
       for (const MeshTriangle& o : triangles)
@@ -119,7 +119,7 @@ TEST(SurfaceSamples, AreNotOwnedThroughAWall) {
   w.own_samples(0.5 * w.mesh.space().scale(), &given);
   for (const MeshTriangle& t : w.grid.triangles()) {
     const double z = w.mesh.space().to_input((t.points[0] + t.points[1] + t.points[2]) / 3).z();
-    w.samples->for_each(record_of(w, t), [&](const Vec3& p) {
+    w.samples->for_each(record_of(w, t), [&](const Vec3& p, float) {
       const double at = w.mesh.space().to_input(p).z();
       if (z < 1e-9) {
         EXPECT_LT(at, -0.06);
@@ -193,7 +193,9 @@ TEST(SurfaceSamples, StayWithTheirTrianglesThroughCompaction) {
       const Vec3 centre = t.points[0] + t.points[1] + t.points[2];
       Places& places =
           out[{std::round(1e9 * centre.x()), std::round(1e9 * centre.y()), std::round(1e9 * centre.z())}];
-      w.samples->for_each(record_of(w, t), [&](const Vec3& p) { places.insert({p.x(), p.y(), p.z()}); });
+      w.samples->for_each(record_of(w, t), [&](const Vec3& p, float) {
+        places.insert({p.x(), p.y(), p.z()});
+      });
     }
     return out;
   };

@@ -25,7 +25,7 @@ double sum_of_squares(const Workbench& w) {
   for (std::size_t i = 0; i < edit.removed.size(); ++i) {
     const auto& p = edit.removed[i].points;
     w.samples->for_each(edit.removed_records[i],
-                        [&](const Vec3& at) { sum += squared_distance(at, p[0], p[1], p[2]); });
+                        [&](const Vec3& at, float) { sum += squared_distance(at, p[0], p[1], p[2]); });
   }
   return sum;
 }
