@@ -53,10 +53,7 @@ Outcome fit_to_crease(Workspace& ws, const BlockRules& rules, float floor) {
 Outcome fit_to_samples(Workspace& ws, const BlockRules& rules, float floor) {
   Star& star = ws.star;
   const SurfaceSamples* samples = ws.grid.samples();
-  if (!samples || star.frozen) return Outcome::no_candidate;
-  // Where interfaces branch, their samples say where; creases are kept otherwise (fit_to_crease()).
-  if (star.dimension() != 2 && !(rules.fit_farthest && rules.max_crease_distance == 0))
-    return Outcome::no_candidate;
+  if (!samples || star.frozen || star.dimension() != 2) return Outcome::no_candidate;
   star.compute_gradients();
   if (rules.max_crease_distance > 0 && is_flat(star)) return Outcome::no_candidate;
   SurfaceGrid::Edit& edit = ws.proposal.edit;

@@ -26,7 +26,7 @@ int longest_edge(const EditableMesh& mesh, const ListedTet& item, bool surface) 
   int longest = 0;
   double most = 0;
   for (int e = 0; e < 6; ++e) {
-    const auto [p, q] = tet_edges[e];
+    const int p = tet_edges[e][0], q = tet_edges[e][1];
     const auto on_face = [&](int f) { return f != p && f != q && mesh.link(item.tet, f).is_interface(); };
     if (surface && !on_face(0) && !on_face(1) && !on_face(2) && !on_face(3)) continue;
     const double length = (mesh.position(item.points[p]) - mesh.position(item.points[q])).squaredNorm();
@@ -86,7 +86,8 @@ void refine_poor_spots(const ImprovementTools& tools, ImprovementArea& area, Imp
 void refine_far_spots(Engine& engine, ImprovementArea& area, const ImprovementPlan& plan, double angle,
                       double limit) {
   const ImprovementTools tools{engine.mesh(), engine.runner(), engine.rules, engine.recorder()};
-  const auto floor = static_cast<float>(shape_quality_bound(engine.rules.objective.shape, plan.angle));
+  // Not that of the plan, which leaves a point less room than the tolerance may need.
+  const auto floor = static_cast<float>(shape_quality_bound(engine.rules.objective.shape, angle));
   for (int i = 0; i < max_rounds; ++i) {
     const std::vector<ListedTet> far = engine.find_far_tets(limit);
     if (far.empty() ||
