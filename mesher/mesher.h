@@ -162,7 +162,8 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
 /// mesh_surfaces() with cells that bring the surfaces within half of `tolerance` (input units, above 0) of
 /// the mesh: begins with cells of twice that size or, if they are smaller, those of `options`, measures at
 /// vertices and centroids, and halves them up to max_refinement times where that is not enough; all become
-/// smaller where that leaves more than most of the tolerance. What is reached in the end is for the caller to
+/// smaller where that leaves more than most of the tolerance. Where cells of `options` are the smaller ones,
+/// most of the tolerance is enough at once. What is reached in the end is for the caller to
 /// find out. Throws as mesh_surfaces() does; UsageError where cells would be too small.
 DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double tolerance, Progress* progress);
 

@@ -218,6 +218,8 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
         max_resolution, longest / (first_cell * max_resolution));
     throw UsageError(text);
   }
+  // Cells that a count takes are more than the tolerance alone would: what samples can keep is enough then.
+  const bool counted = options.resolution > std::max<double>(min_tolerance_resolution, cells);
   options.resolution = std::max({min_tolerance_resolution, options.resolution, static_cast<int>(cells)});
   const MesherEstimate estimate = estimate_mesh(input, options);
   require_memory(faceted_memory * static_cast<double>(estimate.bytes),
@@ -244,7 +246,7 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
       add_misfit(surface, mesh, allowed, reach, misfit);
       add_misfit(mesh, surface, allowed, reach, misfit);
     }
-    if (misfit.places.empty()) return dense;
+    if (misfit.places.empty() || (counted && misfit.worst <= enough_share * tolerance)) return dense;
     ++worse;
     if (!best || misfit.worst < of_best.worst) {
       best = std::move(dense);

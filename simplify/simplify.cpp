@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "common/error.h"
@@ -143,6 +144,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     run_tuned_schedule(engine, options, target);
   }
   const double loop_end = seconds_since(start);
+  std::optional<DeviationReport> deviation;
   if (options.schedule == Schedule::tuned) {
     engine.recorder().begin_stage("improve");
     engine.begin_improvement();
@@ -183,7 +185,8 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     fit(engine, sweeps_after_closing, quality_at(engine, plan.angle));
     // Fitting may cost a tet that is just above the bound.
     if (!counted) refine_poor_spots(tools_of(engine), whole, plan, options.min_solid_angle);
-    if (options.tolerance > 0) {
+    if (options.tolerance > 0) deviation = engine.deviation();
+    if (deviation && deviation->upper() > options.tolerance) {
       // Where the tolerance has held the count back it may do so here.
       ImprovementPlan holding = plan;
       const auto live = static_cast<double>(engine.mesh().live_tets());
@@ -191,10 +194,11 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
         holding.max_tets = static_cast<std::size_t>(live * (1 + free_closing_slack));
       refine_far_spots(engine, whole, holding, options.min_solid_angle,
                        options.tolerance * engine.mesh().space().scale() / (1 + relative_deviation_accuracy));
+      deviation = engine.deviation();
     }
   }
-  if (report && options.tolerance > 0) report->deviation = engine.deviation();
   if (report) {
+    report->deviation = deviation;
     report->touching_points = engine.mesh().touching_points();
     report->seconds_build = build;
     report->seconds_simplify = loop_end - build;
