@@ -33,4 +33,10 @@ std::string valid_utf8(std::string_view text) {
   return out;
 }
 
+std::string printable_name(const std::string& name) {
+  std::string out;
+  for (const char c : valid_utf8(name)) out += static_cast<unsigned char>(c) < ' ' ? '_' : c;
+  return out;
+}
+
 }  // namespace tetwright

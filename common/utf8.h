@@ -20,4 +20,7 @@ Utf8Part first_utf8_part(std::string_view text);
 /// it, too.
 std::string valid_utf8(std::string_view text);
 
+/// valid_utf8() with underscores for control characters: a name as it may stand on a line.
+std::string printable_name(const std::string& name);
+
 }  // namespace tetwright

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "common/error.h"
+#include "common/formats/formats.h"
 #include "common/samples.h"
 #include "tools/label_ranges.h"
 #include "tools/nearest_word.h"
@@ -40,6 +41,28 @@ void add_seed(CLI::App& app, CommandLine& c) {
 
 void add_output(CLI::App& app, CommandLine& c, const char* formats) {
   app.add_option("-o,--output", c.output, formats)->required()->type_name("FILE");
+}
+
+/// Options of commands that write a tet mesh.
+void add_mesh_output(CLI::App& app, CommandLine& c) {
+  add_output(app, c, ("The mesh to write: " + known_extensions(FileKind::tet_mesh, FileUse::write)).c_str());
+  std::string formats;
+  for (const TetFormatInfo& format : written_tet_formats())
+    formats += (formats.empty() ? "" : " ") + format.name;
+  app.add_option("--output-format", c.output_format,
+                 "Format of the mesh instead of its extension's first: " + formats)
+      ->type_name("NAME");
+  add_whole_number(app, "--order", c.order, 1, 2,
+                   "2: ten-node tets, with nodes in the middle of the edges; not in .mesh .meshb .node")
+      ->default_str(std::to_string(c.order));
+  app.add_option("--boundary", c.boundary,
+                 "Write the boundary and the interfaces between materials as a surface, too: " +
+                     known_extensions(FileKind::surface, FileUse::write))
+      ->type_name("FILE");
+  app.add_flag(
+      "--no-boundary", c.no_boundary,
+      "Leave the triangles of the boundary and of interfaces out of the mesh, for programs that take "
+      "every element for a tet");
 }
 
 /// Options of segmented volumes.
@@ -250,11 +273,10 @@ constexpr const char* scans =
     "earlier ones; or one segmented volume (.nrrd .nhdr .mhd .mha .nii .nii.gz .inr .inr.gz, .vdb of whole "
     "numbers)";
 constexpr const char* meshes = "Tet mesh: .vtu .msh .mesh .vtk .node .ele";
-constexpr const char* mesh_out = "The mesh to write: .vtu .msh .mesh";
 
 void add_prepare(CLI::App& app, CommandLine& c) {
   app.add_option("INPUT", c.inputs, scans);
-  add_output(app, c, mesh_out);
+  add_mesh_output(app, c);
   add_simplifying(app, c);
   add_meshing(app, c, "what the target needs");
   add_labels(app, c);
@@ -264,7 +286,7 @@ void add_prepare(CLI::App& app, CommandLine& c) {
 
 void add_mesh(CLI::App& app, CommandLine& c) {
   app.add_option("INPUT", c.inputs, scans);
-  add_output(app, c, mesh_out);
+  add_mesh_output(app, c);
   add_meshing(app, c, "128, or with --tolerance what that needs; for segmented volumes one cell to a voxel");
   add_tolerance(app, c);
   add_labels(app, c);
@@ -279,7 +301,7 @@ void add_fix_boundary(CLI::App& app, CommandLine& c) {
 
 void add_simplify(CLI::App& app, CommandLine& c) {
   app.add_option("MESH", c.inputs, meshes)->required()->expected(1);
-  add_output(app, c, mesh_out);
+  add_mesh_output(app, c);
   add_simplifying(app, c);
   add_fix_boundary(app, c);
   add_feature_angle(app, c.feature_angle);
@@ -291,7 +313,7 @@ void add_simplify(CLI::App& app, CommandLine& c) {
 
 void add_improve(CLI::App& app, CommandLine& c) {
   app.add_option("MESH", c.inputs, meshes)->required()->expected(1);
-  add_output(app, c, mesh_out);
+  add_mesh_output(app, c);
   add_number(
       app, "--only-below", c.only_below, solid_angle,
       "Work only on tets with a smaller solid angle (steradians) and their neighbours; 0: on all. Tets "
@@ -327,7 +349,11 @@ void add_check(CLI::App& app, CommandLine& c) {
 
 void add_sample(CLI::App& app, CommandLine& c) {
   app.add_option("NAME", c.inputs, "One of: " + joined(sample_names()))->required()->expected(1);
-  add_output(app, c, "Surfaces: .ply .obj .stl .off; tet meshes: .vtu .msh .mesh; segmented volumes: .nrrd");
+  add_output(app, c,
+             ("Surfaces: " + known_extensions(FileKind::surface, FileUse::write) +
+              "; tet meshes: " + known_extensions(FileKind::tet_mesh, FileUse::write) +
+              "; segmented volumes: " + known_extensions(FileKind::volume, FileUse::write))
+                 .c_str());
   add_common(app, c);
 }
 
@@ -439,6 +465,9 @@ void complete(const CLI::App& chosen, CommandLine& out) {
     throw UsageError("--schedule paper bounds no distances; leave out --tolerance, or --schedule");
   if (out.command == Command::check && out.tolerance.value > 0 && out.surfaces.empty())
     throw UsageError("--tolerance needs the surfaces that the mesh is compared with; give --surface FILE");
+  if (out.order > 1 && !written_tet_format(out.output, out.output_format).second_order)
+    throw UsageError("--order 2: " + out.output +
+                     " would be in a format without ten-node tets; write .vtu .msh .vtk .inp .bdf or .feb");
   if (out.resolution && out.voxel_size > 0) throw UsageError("give --resolution or --voxel-size, not both");
 }
 

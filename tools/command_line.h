@@ -35,6 +35,10 @@ struct CommandLine {
   Command command = Command::prepare;
   std::vector<std::string> inputs;  ///< of `sample`: the name
   std::string output;
+  std::string output_format;          ///< of `output`; empty: by its extension
+  int order = 1;                      ///< of the elements: 2 has ten nodes
+  std::string boundary;               ///< file of the boundary and interfaces as a surface; empty: none
+  bool no_boundary = false;           ///< leave triangles out of `output`
   std::string before;                 ///< `check`: the mesh whose topology must be the same
   std::vector<std::string> surfaces;  ///< `check`: what the mesh is compared with
   bool json = false;                  ///< `check`

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <string>
 
 namespace tetwright {
 
@@ -18,5 +19,13 @@ Number load(const char* from, bool swap) {
 }
 
 inline constexpr bool little_endian_machine = std::endian::native == std::endian::little;
+
+/// Appends the number's bytes, little-endian.
+template <class Number>
+void append_bytes(std::string& out, Number number) {
+  auto bytes = std::bit_cast<std::array<char, sizeof(Number)>>(number);
+  if (!little_endian_machine) std::reverse(bytes.begin(), bytes.end());
+  out.append(bytes.data(), bytes.size());
+}
 
 }  // namespace tetwright

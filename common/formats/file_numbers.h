@@ -18,6 +18,7 @@ class FileNumbers {
     dense_ = dense_ && number == std::ssize(numbers_) + 1;
     numbers_.emplace_back(number, static_cast<Index>(numbers_.size()));
   }
+  std::size_t size() const { return numbers_.size(); }
   /// To be called after the last add() and before find(). Returns a number that was added twice, if there is
   /// one.
   std::optional<std::int64_t> sort() {

@@ -9,6 +9,7 @@
 #include "common/formats/msh_data.h"
 #include "common/formats/surface_builder.h"
 #include "common/formats/text_scanner.h"
+#include "common/formats/unique_names.h"
 #include "common/mesh/interfaces.h"
 #include "common/mesh/mesh_faces.h"
 
@@ -45,6 +46,11 @@ class TriangleTaker {
   }
 
  private:
+  /// A name as the format holds it.
+  std::string form(const std::string& name) const {
+    return listed_.name_form ? listed_.name_form(name) : msh_name(name);
+  }
+
   struct Group {
     std::size_t triangles = 0;
     std::set<MaterialPair> pairs;
@@ -111,7 +117,7 @@ class TriangleTaker {
   /// Finds the groups that are what writers make of a pair of materials.
   void find_derived() {
     std::set<std::string> names;
-    for (const auto& [number, name] : listed_.names) names.insert(msh_name(name));
+    for (const auto& [number, name] : listed_.names) names.insert(form(name));
     // Without names and comments a number alone may be a user's: it tells only if all of them do.
     std::set<std::int64_t> by_number;
     std::int64_t next = 0;
@@ -136,18 +142,23 @@ class TriangleTaker {
   std::int64_t named_like(const MaterialPair& pair, const FacesOfPair& faces,
                           const std::set<std::string>& names) const {
     std::int64_t found = 0, largest = 0;
-    const std::string base = msh_name(pair_name(pair, read_.mesh.material_names));
+    const std::map<MaterialTag, std::string>& materials = read_.mesh.material_names;
+    // In a format that has not kept the tags, names may stand in the order of those that there were.
+    std::vector<std::string> bases = {form(pair_name(pair, materials))};
+    if (pair.second) bases.push_back(form(pair_name({*pair.second, pair.first}, materials)));
     for (const std::int64_t number : faces.groups) {
       if (!is_of(number, pair)) continue;
       if (const auto comment = listed_.comments.find(number); comment != listed_.comments.end())
         if (comment->second == pair_name(pair)) found = number;
       const auto name = listed_.names.find(number);
       if (name == listed_.names.end()) continue;
-      const std::int64_t n = name_suffix(base, msh_name(name->second));
-      if (n <= largest) continue;
-      if (n > 1 && !names.contains(n == 2 ? base : base + "_" + std::to_string(n - 1))) continue;
-      found = number;
-      largest = n;
+      for (const std::string& base : bases) {
+        const std::int64_t n = name_suffix(base, form(name->second));
+        if (n <= largest) continue;
+        if (n > 1 && !names.contains(n == 2 ? base : base + "_" + std::to_string(n - 1))) continue;
+        found = number;
+        largest = n;
+      }
     }
     return found;
   }

@@ -25,7 +25,9 @@ struct FileTriangles {
 
   std::vector<Triangle> triangles;   ///< indices of points; no_index where the file names none of its points
   std::vector<std::int64_t> groups;  ///< one for each triangle; 0: none
-  std::map<std::int64_t, std::string> names;     ///< of groups that have one
+  std::map<std::int64_t, std::string> names;  ///< of groups that have one
+  /// What the format's writer makes of a name; null: msh_name().
+  std::string (*name_form)(const std::string& name) = nullptr;
   std::map<std::int64_t, std::string> comments;  ///< what write_medit() says of a group in a comment
 };
 

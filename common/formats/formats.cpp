@@ -5,11 +5,15 @@
 #include <filesystem>
 
 #include "common/error.h"
+#include "common/formats/abaqus.h"
 #include "common/formats/atomic_file.h"
+#include "common/formats/febio.h"
 #include "common/formats/inr.h"
 #include "common/formats/medit.h"
+#include "common/formats/medit_binary.h"
 #include "common/formats/metaimage.h"
 #include "common/formats/msh.h"
+#include "common/formats/nastran.h"
 #include "common/formats/nifti.h"
 #include "common/formats/nrrd.h"
 #include "common/formats/obj.h"
@@ -29,10 +33,15 @@ namespace {
 struct SurfaceFormat {
   const char* extension;
   TriangleMesh (*read)(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped);
-  std::string (*write)(const TriangleMesh& mesh);
+  void (*write)(const TriangleMesh& mesh, const ByteSink& sink);  ///< null: the format is only read
   /// Null: the format has no fields of points. Nothing: the file is a tet mesh.
   std::optional<SurfaceWithFields> (*read_with_fields)(std::string_view bytes, const std::string& name);
 };
+
+template <std::string (*write)(const TriangleMesh&)>
+void write_whole_surface(const TriangleMesh& mesh, const ByteSink& sink) {
+  sink(write(mesh));
+}
 
 template <SurfaceWithFields (*read)(std::string_view, const std::string&)>
 std::optional<SurfaceWithFields> always_surface(std::string_view bytes, const std::string& name) {
@@ -40,11 +49,11 @@ std::optional<SurfaceWithFields> always_surface(std::string_view bytes, const st
 }
 
 constexpr std::array<SurfaceFormat, 5> surface_formats{
-    {{".ply", read_ply, write_ply, always_surface<read_ply_with_fields>},
-     {".obj", read_obj, write_obj, nullptr},
-     {".stl", read_stl, write_stl, nullptr},
-     {".off", read_off, write_off, nullptr},
-     {".vtp", read_vtp, nullptr, always_surface<read_vtp_with_fields>}}};
+    {{".ply", read_ply, write_whole_surface<write_ply>, always_surface<read_ply_with_fields>},
+     {".obj", read_obj, write_whole_surface<write_obj>, nullptr},
+     {".stl", read_stl, write_whole_surface<write_stl>, nullptr},
+     {".off", read_off, write_whole_surface<write_off>, nullptr},
+     {".vtp", read_vtp, write_vtp, always_surface<read_vtp_with_fields>}}};
 /// Those of tet meshes that may hold a surface instead.
 constexpr std::array<SurfaceFormat, 2> shared_formats{
     {{".msh", read_msh_surface, nullptr, read_msh_surface_with_fields},
@@ -73,24 +82,94 @@ ReadTetMesh read_ele_with_node(const std::string& path, const ReadTetMeshOptions
   return read_tetgen(read_whole_file(node), node, read_whole_file(path), path, options);
 }
 
-template <std::string (*write)(const TetMesh&)>
-void write_as_one(const TetMesh& mesh, const ByteSink& sink) {
+/// A file that a tet mesh is written as.
+struct WrittenFile {
+  const char* extension;
+  void (*write)(const MeshToWrite& mesh, const ByteSink& sink);
+};
+
+template <std::string (*write)(const MeshToWrite&)>
+void write_as_one(const MeshToWrite& mesh, const ByteSink& sink) {
   sink(write(mesh));
 }
 
 struct TetFormat {
   const char* extension;
-  ReadTetMesh (*read)(const std::string& path, const ReadTetMeshOptions& options);
-  void (*write)(const TetMesh& mesh, const ByteSink& sink);  ///< null: the format is only read
-  bool point_fields = true;
+  const char* name;
+  ReadTetMesh (*read)(const std::string& path, const ReadTetMeshOptions& options);  ///< null: only written
+  std::vector<WrittenFile> write;                                                   ///< empty: only read
+  bool point_fields = true;                                                         ///< when it is read
+  bool names = true, surfaces = true, fields = true, second_order = false;          ///< as in TetFormatInfo
 };
-constexpr std::array<TetFormat, 6> tet_formats{
-    {{".vtu", read_one_file<read_vtu>, write_vtu},
-     {".msh", read_one_file<read_msh>, write_as_one<write_msh>},
-     {".mesh", read_one_file<read_medit>, write_as_one<write_medit>, false},
-     {".vtk", read_one_file<read_vtk>, nullptr},
-     {".node", read_node_with_ele, nullptr},
-     {".ele", read_ele_with_node, nullptr}}};
+
+const std::vector<TetFormat>& tet_formats() {
+  static const std::vector<WrittenFile> tetgen{
+      {".node", write_tetgen_node}, {".ele", write_tetgen_ele}, {".face", write_tetgen_face}};
+  static const std::vector<TetFormat> formats{
+      {.extension = ".vtu",
+       .name = "vtu",
+       .read = read_one_file<read_vtu>,
+       .write = {{".vtu", write_vtu}},
+       .surfaces = false,
+       .second_order = true},
+      {.extension = ".msh",
+       .name = "msh22",
+       .read = read_one_file<read_msh>,
+       .write = {{".msh", write_as_one<write_msh>}},
+       .second_order = true},
+      {.extension = ".msh",
+       .name = "msh41",
+       .read = read_one_file<read_msh>,
+       .write = {{".msh", write_msh41}},
+       .second_order = true},
+      {.extension = ".msh",
+       .name = "msh41-binary",
+       .read = read_one_file<read_msh>,
+       .write = {{".msh", write_msh41_binary}},
+       .second_order = true},
+      {.extension = ".mesh",
+       .name = "medit",
+       .read = read_one_file<read_medit>,
+       .write = {{".mesh", write_as_one<write_medit>}},
+       .point_fields = false,
+       .names = false,
+       .fields = false},
+      {.extension = ".meshb",
+       .name = "medit-binary",
+       .read = read_one_file<read_medit_binary>,
+       .write = {{".meshb", write_medit_binary}},
+       .point_fields = false,
+       .names = false,
+       .fields = false},
+      {.extension = ".vtk",
+       .name = "vtk",
+       .read = read_one_file<read_vtk>,
+       .write = {{".vtk", write_vtk}},
+       .second_order = true},
+      {.extension = ".inp",
+       .name = "abaqus",
+       .read = read_one_file<read_abaqus>,
+       .write = {{".inp", write_abaqus}},
+       .point_fields = false,
+       .fields = false,
+       .second_order = true},
+      {.extension = ".bdf",
+       .name = "nastran",
+       .read = read_one_file<read_nastran>,
+       .write = {{".bdf", write_nastran}},
+       .point_fields = false,
+       .fields = false,
+       .second_order = true},
+      {.extension = ".feb",
+       .name = "febio",
+       .read = nullptr,
+       .write = {{".feb", write_febio}},
+       .fields = false,
+       .second_order = true},
+      {.extension = ".node", .name = "tetgen", .read = read_node_with_ele, .write = tetgen, .fields = false},
+      {.extension = ".ele", .name = "tetgen", .read = read_ele_with_node, .write = tetgen, .fields = false}};
+  return formats;
+}
 
 template <LabelVolume (*read)(std::string_view, const std::string&)>
 LabelVolume read_one_volume_file(const std::string& path) {
@@ -133,6 +212,9 @@ template <class Format>
 bool is_for(const Format& format, FileUse use) {
   return use == FileUse::read || format.write != nullptr;
 }
+bool is_for(const TetFormat& format, FileUse use) {
+  return use == FileUse::read ? format.read != nullptr : !format.write.empty();
+}
 
 /// The format of a file's extension; null if there is none.
 template <class Formats>
@@ -161,6 +243,22 @@ const typename Formats::value_type& need_format(const Formats& formats, const st
                    " for a " + kind_name(kind) + "; known are " + known_extensions(kind, use));
 }
 
+TetFormatInfo info_of(const TetFormat& format) {
+  return {format.name, format.extension, format.names, format.surfaces, format.fields, format.second_order};
+}
+
+/// The format of this name, or of the path's extension if there is none.
+const TetFormat& need_written_format(const std::string& path, const std::string& name) {
+  if (name.empty()) return need_format(tet_formats(), path, FileKind::tet_mesh, FileUse::write);
+  std::string known;
+  for (const TetFormat& format : tet_formats()) {
+    if (!is_for(format, FileUse::write)) continue;
+    if (name == format.name) return format;
+    if (!known.ends_with(format.name)) known.append(known.empty() ? "" : " ").append(format.name);
+  }
+  throw UsageError("there is no format " + in_quotes(name) + " for a tet mesh; known are " + known);
+}
+
 /// Among `files`, or alone if that is null.
 void write_into(OutputFiles* files, const std::string& path,
                 const std::function<void(const ByteSink&)>& content) {
@@ -174,23 +272,25 @@ void write_into(OutputFiles* files, const std::string& path,
 
 FileKind file_kind(const std::string& path, FileUse use) {
   if (find_format(surface_formats, path, use)) return FileKind::surface;
-  if (find_format(tet_formats, path, use)) return FileKind::tet_mesh;
+  if (find_format(tet_formats(), path, use)) return FileKind::tet_mesh;
   if (find_format(volume_formats, path, use)) return FileKind::volume;
   return FileKind::unknown;
 }
 
 std::string known_extensions(FileKind kind, FileUse use) {
   std::string out;
+  std::string_view last;
   const auto add = [&](const auto& formats) {
     for (const auto& format : formats) {
-      if (!is_for(format, use)) continue;
+      if (!is_for(format, use) || format.extension == last) continue;
+      last = format.extension;
       if (!out.empty()) out += ' ';
-      out += format.extension;
+      out += last;
     }
   };
   if (kind == FileKind::surface || kind == FileKind::unknown) add(surface_formats);
   if (kind == FileKind::surface && use == FileUse::read) add(shared_formats);
-  if (kind == FileKind::tet_mesh || kind == FileKind::unknown) add(tet_formats);
+  if (kind == FileKind::tet_mesh || kind == FileKind::unknown) add(tet_formats());
   if (kind == FileKind::volume || kind == FileKind::unknown) add(volume_formats);
   return out;
 }
@@ -199,22 +299,39 @@ bool may_hold_surface(const std::string& path) {
   return file_kind(path) == FileKind::surface || find_format(shared_formats, path, FileUse::read);
 }
 
-// Those that hold surfaces hold the triangles of tet meshes, too.
-bool holds_face_groups(const std::string& path) {
-  return find_format(shared_formats, path, FileUse::read) != nullptr;
+std::vector<TetFormatInfo> written_tet_formats() {
+  std::vector<TetFormatInfo> out;
+  for (const TetFormat& format : tet_formats())
+    if (is_for(format, FileUse::write) && (out.empty() || out.back().name != format.name))
+      out.push_back(info_of(format));
+  return out;
+}
+
+TetFormatInfo written_tet_format(const std::string& path, const std::string& name) {
+  return info_of(need_written_format(path, name));
+}
+
+std::vector<std::string> files_of_tet_mesh(const std::string& path, const std::string& name) {
+  std::vector<std::string> files;
+  const TetFormat& format = need_written_format(path, name);
+  for (const WrittenFile& file : format.write)
+    files.push_back(format.write.size() == 1 ? path : with_extension(path, file.extension));
+  return files;
 }
 
 bool may_hold_point_fields(const std::string& path) {
-  if (const TetFormat* tets = find_format(tet_formats, path, FileUse::read)) return tets->point_fields;
+  if (const TetFormat* tets = find_format(tet_formats(), path, FileUse::read)) return tets->point_fields;
   const SurfaceFormat* surface = find_format(surface_formats, path, FileUse::read);
   return surface && surface->read_with_fields;
 }
 
 std::string point_field_extensions() {
   std::string out;
-  const auto add = [&](const char* extension) { out.append(out.empty() ? "" : " ").append(extension); };
-  for (const TetFormat& format : tet_formats)
-    if (format.point_fields) add(format.extension);
+  const auto add = [&](const char* extension) {
+    if (!out.ends_with(extension)) out.append(out.empty() ? "" : " ").append(extension);
+  };
+  for (const TetFormat& format : tet_formats())
+    if (format.point_fields && is_for(format, FileUse::read)) add(format.extension);
   for (const SurfaceFormat& format : surface_formats)
     if (format.read_with_fields) add(format.extension);
   return out;
@@ -233,7 +350,7 @@ TriangleMesh read_surface(const std::string& path, std::vector<Dropped>* dropped
 }
 
 ReadTetMesh read_tet_mesh(const std::string& path, const ReadTetMeshOptions& options) {
-  return need_format(tet_formats, path, FileKind::tet_mesh, FileUse::read).read(path, options);
+  return need_format(tet_formats(), path, FileKind::tet_mesh, FileUse::read).read(path, options);
 }
 
 std::optional<SurfaceWithFields> read_surface_with_fields(const std::string& path) {
@@ -253,12 +370,18 @@ LabelVolume read_label_volume(const std::string& path) {
 
 void write_surface(const TriangleMesh& mesh, const std::string& path, OutputFiles* files) {
   const SurfaceFormat& format = need_format(surface_formats, path, FileKind::surface, FileUse::write);
-  write_into(files, path, [&](const ByteSink& sink) { sink(format.write(mesh)); });
+  write_into(files, path, [&](const ByteSink& sink) { format.write(mesh, sink); });
 }
 
-void write_tet_mesh(const TetMesh& mesh, const std::string& path, OutputFiles* files) {
-  const TetFormat& format = need_format(tet_formats, path, FileKind::tet_mesh, FileUse::write);
-  write_into(files, path, [&](const ByteSink& sink) { format.write(mesh, sink); });
+void write_tet_mesh(const MeshToWrite& mesh, const std::string& path, OutputFiles* files,
+                    const std::string& name) {
+  const TetFormat& format = need_written_format(path, name);
+  const std::vector<std::string> paths = files_of_tet_mesh(path, name);
+  std::optional<OutputFiles> own;  // several files appear together
+  if (!files) files = &own.emplace();
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    files->write(paths[i], [&](const ByteSink& sink) { format.write[i].write(mesh, sink); });
+  if (own) own->commit();
 }
 
 void write_label_volume(const LabelVolume& volume, const std::string& path, OutputFiles* files) {
@@ -266,14 +389,14 @@ void write_label_volume(const LabelVolume& volume, const std::string& path, Outp
   write_into(files, path, [&](const ByteSink& sink) { sink(format.write(volume)); });
 }
 
-void check_output_path(const std::string& path, FileKind kind) {
+void check_output_path(const std::string& path, FileKind kind, const std::string& format) {
   if (kind == FileKind::surface)
     (void)need_format(surface_formats, path, kind, FileUse::write);
   else if (kind == FileKind::volume)
     (void)need_format(volume_formats, path, kind, FileUse::write);
   else
-    (void)need_format(tet_formats, path, kind, FileUse::write);
-  check_output_file(path);
+    for (const std::string& file : files_of_tet_mesh(path, format)) check_output_file(file);
+  if (kind != FileKind::tet_mesh) check_output_file(path);
 }
 
 }  // namespace tetwright

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/formats/dropped.h"
+#include "common/formats/mesh_to_write.h"
 #include "common/formats/read_tet_mesh_result.h"
 #include "common/formats/surface_with_fields.h"
 #include "common/label_volume.h"
@@ -16,8 +17,8 @@ class OutputFiles;
 
 /// Kinds of files, which their extension tells, in upper or lower case.
 enum class FileKind {
-  surface,   ///< .ply .obj .stl .off; to be read .vtp too
-  tet_mesh,  ///< .vtu .msh .mesh; to be read .vtk .node .ele too
+  surface,   ///< .ply .obj .stl .off .vtp
+  tet_mesh,  ///< see tet_format_table()
   volume,    ///< .nrrd; to be read .nhdr .mhd .mha .nii .nii.gz .inr .inr.gz too
   unknown
 };
@@ -34,8 +35,22 @@ std::string known_extensions(FileKind kind, FileUse use = FileUse::read);
 /// or a tet mesh.
 bool may_hold_surface(const std::string& path);
 
-/// Whether tet meshes with this extension are written with their boundary and interface triangles, by groups.
-bool holds_face_groups(const std::string& path);
+/// What a format of tet meshes has a place for when it is written.
+struct TetFormatInfo {
+  std::string name;       ///< as write_tet_mesh() takes it: "msh41-binary"
+  std::string extension;  ///< ".msh"
+  bool names;             ///< of materials and surfaces
+  bool surfaces;          ///< boundary and interface triangles, by groups
+  bool fields;            ///< of points and tets
+  bool second_order;      ///< tets of ten nodes
+};
+
+/// The formats of tet meshes that can be written. An extension's first one is taken where none is named.
+std::vector<TetFormatInfo> written_tet_formats();
+
+/// The one that a tet mesh of this path is written in: `name`'s, or where that is empty its extension's.
+/// Throws UsageError if there is none.
+TetFormatInfo written_tet_format(const std::string& path, const std::string& name = {});
 
 /// Whether files with this extension may give numbers to points, which then are the fields of
 /// read_surface_with_fields() or of read_tet_mesh().
@@ -63,13 +78,19 @@ std::optional<SurfaceWithFields> read_surface_with_fields(const std::string& pat
 
 /// Writes a file whole or not at all; coordinates come back bit by bit. With `files` it appears when these
 /// are committed (see atomic_file.h), and writing can be cancelled. Throws UsageError if the extension is not
-/// one of the kind, OutputError if the file can't be written, Interrupted if cancelled.
+/// one of the kind, OutputError if the file can't be written, Interrupted if cancelled. A tet mesh is written
+/// in written_tet_format(), and as several files if that has several: their names differ in the extension.
 void write_surface(const TriangleMesh& mesh, const std::string& path, OutputFiles* files = nullptr);
-void write_tet_mesh(const TetMesh& mesh, const std::string& path, OutputFiles* files = nullptr);
+void write_tet_mesh(const MeshToWrite& mesh, const std::string& path, OutputFiles* files = nullptr,
+                    const std::string& format = {});
 void write_label_volume(const LabelVolume& volume, const std::string& path, OutputFiles* files = nullptr);
+
+/// All files that write_tet_mesh() writes for a path.
+std::vector<std::string> files_of_tet_mesh(const std::string& path, const std::string& format = {});
 
 /// To be called before any work: throws UsageError if the extension is not one of `kind`, OutputError if the
 /// folder is missing or not writable or what is there is not a regular file.
-void check_output_path(const std::string& path, FileKind kind = FileKind::tet_mesh);
+void check_output_path(const std::string& path, FileKind kind = FileKind::tet_mesh,
+                       const std::string& format = {});
 
 }  // namespace tetwright

@@ -14,10 +14,10 @@ namespace tetwright {
 /// Whether a face property or cell field of this name tells parts of a surface apart: no format says which
 /// does, these are the names that programs write.
 inline bool is_face_label(std::string_view name) {
-  constexpr std::array<std::string_view, 18> names{
-      "label",   "labels",     "patch",          "patch_id",   "f:patch_id",  "PatchID",
-      "group",   "group_id",   "GroupIds",       "region",     "region_id",   "RegionId",
-      "segment", "segment_id", "material_index", "MaterialID", "ModelFaceID", "medit:ref"};
+  constexpr std::array<std::string_view, 19> names{
+      "label",          "labels",     "patch",       "patch_id",  "f:patch_id", "PatchID", "group",
+      "group_id",       "GroupIds",   "region",      "region_id", "RegionId",   "segment", "segment_id",
+      "material_index", "MaterialID", "ModelFaceID", "medit:ref", "surface"};
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 

@@ -315,7 +315,8 @@ TriangleMesh read_medit_surface(std::string_view bytes, const std::string& name,
   return Reader(bytes, name).read_surface(dropped);
 }
 
-std::string write_medit(const TetMesh& mesh) {
+std::string write_medit(const MeshToWrite& written) {
+  const TetMesh& mesh = written.mesh;
   // Version 2: coordinates in double precision.
   std::string out = "MeshVersionFormatted 2\n\nDimension 3\n\nVertices\n";
   append_number(out, mesh.points.size());

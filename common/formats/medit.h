@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/formats/mesh_to_write.h"
 #include "common/formats/read_tet_mesh_result.h"
 #include "common/triangle_mesh.h"
 
@@ -29,6 +30,6 @@ TriangleMesh read_medit_surface(std::string_view bytes, const std::string& name,
 /// names of materials. The interface triangles of the mesh, if it has any, are written as section Triangles:
 /// their reference is the number of their group (see BoundaryGroups), and a comment gives its name, or the
 /// tags of a pair of materials, or the number that the user's group had.
-std::string write_medit(const TetMesh& mesh);
+std::string write_medit(const MeshToWrite& written);
 
 }  // namespace tetwright

@@ -5,12 +5,14 @@
 #include <string_view>
 #include <vector>
 
+#include "common/formats/mesh_to_write.h"
 #include "common/formats/read_tet_mesh_result.h"
 #include "common/formats/surface_with_fields.h"
 
 namespace tetwright {
 
-/// Reads the tets (type 4) of a Gmsh MSH file of version 2 or 4.1, ASCII. The material is the first physical
+/// Reads the tets (type 4, or 11 of ten nodes, by their corners) of a Gmsh MSH file of version 2, 4.0 or 4.1,
+/// ASCII or binary. The material is the first physical
 /// group of a tet, with its name from $PhysicalNames. In version 4.1, if no volume has a physical group, it
 /// is the number of the volume ("gmsh:geometrical", which the options can also ask for). $NodeData and
 /// $ElementData become fields, with nan for items that a section does not list. Volume elements other than
@@ -40,6 +42,14 @@ std::optional<SurfaceWithFields> read_msh_surface_with_fields(std::string_view b
 /// has that for a name. Fields follow as $NodeData and $ElementData, see append_msh_data(). Names are written
 /// as msh_name() gives them, and get a suffix where two of them would become equal: of pairs of
 /// materials before the user's groups, and then one that is larger than theirs.
-std::string write_msh(const TetMesh& mesh);
+std::string write_msh(const MeshToWrite& written);
+
+/// The same of version 4.1, ASCII or binary (little-endian, sizes of 8 bytes). Each group of interfaces is a
+/// surface of Gmsh's model and each material a volume, bounded by its surfaces; both have a physical group of
+/// the same number, so that Gmsh keeps them when it saves the file again. A material whose tag is not above
+/// 0, for which Gmsh knows no group, has the smallest number that is left, and a comment with its tag. Nodes
+/// are listed by entity, those of surfaces first, and numbered in the order of the mesh, as tets are.
+void write_msh41(const MeshToWrite& written, const ByteSink& sink);
+void write_msh41_binary(const MeshToWrite& written, const ByteSink& sink);
 
 }  // namespace tetwright

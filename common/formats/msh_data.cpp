@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "common/error.h"
+#include "common/formats/byte_order.h"
 #include "common/formats/mesh_fields.h"
 #include "common/number_text.h"
 #include "common/utf8.h"
@@ -23,8 +24,9 @@ void append_value(std::string& out, double value) {
 
 }  // namespace
 
-MeshField read_msh_data(TextScanner& in, const std::string& what, const FileNumbers& numbers,
-                        std::size_t items, bool missing_allowed, std::size_t& room) {
+MeshField read_msh_data(TextScanner& in, const MshNumbers& like, const std::string& what,
+                        const FileNumbers& numbers, std::size_t items, bool missing_allowed,
+                        std::size_t& room) {
   MeshField field;
   const std::size_t strings = in.count("number of string tags", 2);
   in.skip_line();
@@ -55,17 +57,21 @@ MeshField read_msh_data(TextScanner& in, const std::string& what, const FileNumb
     in.fail("field " + in_quotes(field.name) + " has " + std::to_string(components) +
             " components; 1, 3 and 9 are known");
   const auto per_item = static_cast<std::size_t>(components);
-  const std::size_t rows = in.count("number of rows", 2 + 2 * per_item);
+  const std::int64_t promised = in.integer("number of rows");
   for (std::size_t i = 3; i < integers; ++i) (void)in.integer("integer tag");
+  MshNumbers numbers_in = like.of(in);
+  numbers_in.begin_binary();
+  const std::size_t rows =
+      numbers_in.checked_count(promised, "number of rows", 2 + 2 * per_item, 4 + 8 * per_item);
   field.components = static_cast<int>(components);
   for (std::size_t r = 0; r < rows; ++r) {
-    const std::int64_t number = in.integer("number of a " + what);
+    const std::int64_t number = numbers_in.integer("number of a " + what);
     const Index item = numbers.find(number);
     if (item == no_index) {
       if (!missing_allowed)
         in.fail("field " + in_quotes(field.name) + " names " + what + " " + std::to_string(number) +
                 ", which is not in the file; export it again");
-      for (std::size_t k = 0; k < per_item; ++k) (void)in.number("value");
+      for (std::size_t k = 0; k < per_item; ++k) (void)numbers_in.number("value");
       continue;
     }
     if (field.values.empty()) {
@@ -75,13 +81,13 @@ MeshField read_msh_data(TextScanner& in, const std::string& what, const FileNumb
       room -= per_item * items;
       field.values.assign(per_item * items, std::numeric_limits<double>::quiet_NaN());
     }
-    for (std::size_t k = 0; k < per_item; ++k) field.values[item * per_item + k] = in.number("value");
+    for (std::size_t k = 0; k < per_item; ++k) field.values[item * per_item + k] = numbers_in.number("value");
   }
   return field;
 }
 
 void append_msh_data(std::string& out, const std::string& section, const std::vector<MeshField>& fields,
-                     std::size_t items) {
+                     std::size_t items, bool binary) {
   const std::vector<std::string> names = field_names_to_write(fields, {});
   // Appends a section of `used` components of each item, beginning with `first`, padded to `written`
   // components.
@@ -89,16 +95,25 @@ void append_msh_data(std::string& out, const std::string& section, const std::ve
                                int written) {
     out += "$" + section + "\n1\n\"" + msh_name(name) + "\"\n1\n0\n3\n0\n" + std::to_string(written) + "\n" +
            std::to_string(items) + "\n";
+    const auto value = [&](std::size_t i, int k) {
+      return k < used ? field.values[i * static_cast<std::size_t>(field.components) +
+                                     static_cast<std::size_t>(first + k)]
+                      : 0.0;
+    };
     for (std::size_t i = 0; i < items; ++i) {
+      if (binary) {
+        append_bytes(out, static_cast<std::int32_t>(i + 1));
+        for (int k = 0; k < written; ++k) append_bytes(out, value(i, k));
+        continue;
+      }
       append_number(out, i + 1);
       for (int k = 0; k < written; ++k) {
         out += ' ';
-        append_value(out, k < used ? field.values[i * static_cast<std::size_t>(field.components) +
-                                                  static_cast<std::size_t>(first + k)]
-                                   : 0.0);
+        append_value(out, value(i, k));
       }
       out += '\n';
     }
+    if (binary) out += '\n';
     out += "$End" + section + "\n";
   };
   for (std::size_t f = 0; f < fields.size(); ++f) {
@@ -108,15 +123,6 @@ void append_msh_data(std::string& out, const std::string& section, const std::ve
     else
       for (int k = 0; k < n; ++k) append_view(fields[f], names[f] + "_" + std::to_string(k), k, 1, 1);
   }
-}
-
-std::int64_t name_suffix(const std::string& base, const std::string& name) {
-  if (name == base) return 1;
-  if (!name.starts_with(base + "_")) return 0;
-  std::int64_t n = 0;
-  const std::string_view digits = std::string_view(name).substr(base.size() + 1);
-  const bool known = parse_number(digits, n) && n >= 2 && n <= std::numeric_limits<std::int32_t>::max();
-  return known && std::to_string(n) == digits ? n : 0;
 }
 
 std::string msh_name(const std::string& name) {

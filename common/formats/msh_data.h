@@ -5,30 +5,29 @@
 #include <vector>
 
 #include "common/formats/file_numbers.h"
+#include "common/formats/msh_numbers.h"
 #include "common/formats/text_scanner.h"
 #include "common/tet_mesh.h"
 
 namespace tetwright {
 
 /// Reads the rest of a section whose keyword "$NodeData" or "$ElementData" was just read, in either version
-/// of the format. `what` is "node" or "element"; the field gets a value for each of the `items` items of
-/// `numbers`, nan for those that the section does not list. A row of another item is an error, or is skipped
-/// if `missing_allowed` (elements that are not tets); if no row is left, the field has no values. `room` is
-/// the number of values that further fields of the file may have, and is lowered: it bounds the memory that
-/// many short sections for many items would take. Throws InputError with the line.
-MeshField read_msh_data(TextScanner& in, const std::string& what, const FileNumbers& numbers,
-                        std::size_t items, bool missing_allowed, std::size_t& room);
+/// of the format; rows are binary if `like` is. `what` is "node" or "element"; the field gets a value for
+/// each of the `items` items of `numbers`, nan for those that the section does not list. A row of another
+/// item is an error, or is skipped if `missing_allowed` (elements that are not tets); if no row is left, the
+/// field has no values. `room` is the number of values that further fields of the file may have, and is
+/// lowered: it bounds the memory that many short sections for many items would take. Throws InputError with
+/// the line.
+MeshField read_msh_data(TextScanner& in, const MshNumbers& like, const std::string& what,
+                        const FileNumbers& numbers, std::size_t items, bool missing_allowed,
+                        std::size_t& room);
 
 /// Appends the fields as sections "$NodeData" or "$ElementData" (`section` is the keyword without the
 /// dollar); items are numbered from 1. The format has fields of 1, 3 and 9 components: others are padded with
 /// zeros, and one of more than nine is written as one field for each component, "name_0" and so on. It has no
-/// integers.
+/// integers. Rows are binary in binary files, little-endian.
 void append_msh_data(std::string& out, const std::string& section, const std::vector<MeshField>& fields,
-                     std::size_t items);
-
-/// Which suffix makes `name` of `base`: 1 if they are equal, n for "base_n" with n from 2 to 2^31 - 1, else
-/// 0.
-std::int64_t name_suffix(const std::string& base, const std::string& name);
+                     std::size_t items, bool binary = false);
 
 /// A name as it may stand in quotes: a quote, backslash or control character becomes an underscore, and what
 /// is no UTF-8 a replacement character, which other readers need.

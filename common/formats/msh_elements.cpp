@@ -86,6 +86,16 @@ const char* volume_kind(std::int64_t type) {
 
 }  // namespace
 
+std::size_t msh_nodes_of(std::int64_t type) {
+  static const std::map<std::int64_t, std::size_t> nodes{
+      {1, 2},   {2, 3},   {3, 4},   {4, 4},   {5, 8},   {6, 6},   {7, 5},   {8, 3},   {9, 6},
+      {10, 9},  {11, 10}, {12, 27}, {13, 18}, {14, 14}, {15, 1},  {16, 8},  {17, 20}, {18, 15},
+      {19, 13}, {20, 9},  {21, 10}, {22, 12}, {23, 15}, {24, 15}, {25, 21}, {26, 4},  {27, 5},
+      {28, 6},  {29, 20}, {30, 35}, {31, 56}, {90, 40}, {91, 75}, {92, 64}, {93, 125}};
+  const auto known = nodes.find(type);
+  return known == nodes.end() ? 0 : known->second;
+}
+
 bool OtherMshElements::is_volume(std::int64_t type) { return volume_kind(type) != nullptr; }
 
 void OtherMshElements::add_name(std::int64_t dimension, std::int64_t group, const std::string& name) {

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "common/formats/file_triangles.h"
 #include "common/formats/read_tet_mesh_result.h"
@@ -17,6 +18,18 @@ namespace tetwright {
 inline constexpr std::int64_t msh_triangle_type = 2;
 inline constexpr std::int64_t msh_quad_type = 3;
 inline constexpr std::int64_t msh_tet_type = 4;
+inline constexpr std::int64_t msh_quadratic_triangle_type = 9;
+inline constexpr std::int64_t msh_quadratic_tet_type = 11;
+
+/// Where Gmsh lists the midside nodes of a tet: places in the order of tet_midside_edges.
+inline constexpr std::array<std::size_t, 6> msh_midside_order{0, 1, 2, 3, 5, 4};
+
+/// Begins a line of $Comments in our own files of version 4.1, followed by the number of a physical group of
+/// tets and the tag of the material, which is no number that Gmsh would keep: it is not above 0.
+inline constexpr const char* msh_material_comment = "tetwright material: ";
+
+/// The number of nodes of an element of this type; 0: unknown.
+std::size_t msh_nodes_of(std::int64_t type);
 
 /// The elements of an MSH file that are not linear tets, counted by kind and group, and the names of the
 /// groups of every dimension.
@@ -37,6 +50,9 @@ class OtherMshElements {
   void add_triangle(const Triangle& ids, std::int64_t group) { triangles_.add(ids, group); }
   /// A quad of a surface, as two triangles.
   void add_quad(const std::array<Index, 4>& ids, std::int64_t group) { triangles_.add_quad(ids, group); }
+
+  /// The triangles so far.
+  std::vector<Triangle>& triangles() { return triangles_.triangles; }
 
   /// Throws InputError if there were volume elements.
   void refuse_volumes(const std::string& file) const;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/error.h"
+#include "common/formats/group_text.h"
 #include "common/formats/surface_builder.h"
 #include "common/formats/text_scanner.h"
 #include "common/number_text.h"
@@ -177,11 +178,13 @@ std::string write_obj(const TriangleMesh& mesh) {
     append_point(out, p);
     out += '\n';
   }
-  for (const Triangle& t : mesh.triangles) {
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (!mesh.groups.empty() && (i == 0 || mesh.triangle_groups[i] != mesh.triangle_groups[i - 1]))
+      out += "g " + one_word(group_text(mesh.groups[mesh.triangle_groups[i]])) + '\n';
     out += 'f';
-    for (Index i : t) {
+    for (const Index v : mesh.triangles[i]) {
       out += ' ';
-      append_number(out, std::uint64_t{i} + 1);
+      append_number(out, std::uint64_t{v} + 1);
     }
     out += '\n';
   }

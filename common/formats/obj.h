@@ -17,7 +17,8 @@ namespace tetwright {
 TriangleMesh read_obj(std::string_view bytes, const std::string& name,
                       std::vector<Dropped>* dropped = nullptr);
 
-/// The content of a file; coordinates are read back bit by bit.
+/// The content of a file; coordinates are read back bit by bit. Groups are statements `g` with their names,
+/// or numbers, in which white space becomes underscores.
 std::string write_obj(const TriangleMesh& mesh);
 
 }  // namespace tetwright

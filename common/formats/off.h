@@ -18,7 +18,7 @@ namespace tetwright {
 TriangleMesh read_off(std::string_view bytes, const std::string& name,
                       std::vector<Dropped>* dropped = nullptr);
 
-/// The content of a file; coordinates are read back bit by bit.
+/// The content of a file; coordinates are read back bit by bit. The format has no groups.
 std::string write_off(const TriangleMesh& mesh);
 
 }  // namespace tetwright

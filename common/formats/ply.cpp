@@ -6,6 +6,7 @@
 
 #include "common/error.h"
 #include "common/formats/byte_order.h"
+#include "common/formats/group_text.h"
 #include "common/formats/label_groups.h"
 #include "common/formats/mesh_fields.h"
 #include "common/formats/surface_builder.h"
@@ -383,21 +384,23 @@ SurfaceWithFields read_ply_with_fields(std::string_view bytes, const std::string
 }
 
 std::string write_ply(const TriangleMesh& mesh) {
-  std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex ";
+  const bool grouped = !mesh.groups.empty();
+  std::string out = "ply\nformat binary_little_endian 1.0\n";
+  for (std::size_t g = 0; g < mesh.groups.size(); ++g)
+    out += "comment surface " + std::to_string(g + 1) + ": " + group_text(mesh.groups[g]) + '\n';
+  out += "element vertex ";
   append_number(out, mesh.points.size());
   out += "\nproperty double x\nproperty double y\nproperty double z\nelement face ";
   append_number(out, mesh.triangles.size());
-  out += "\nproperty list uchar uint vertex_indices\nend_header\n";
-  const auto append = [&](auto value) {
-    auto bytes = std::bit_cast<std::array<char, sizeof(value)>>(value);
-    if (!little_endian_machine) std::reverse(bytes.begin(), bytes.end());
-    out.append(bytes.data(), bytes.size());
-  };
+  out += "\nproperty list uchar uint vertex_indices\n";
+  if (grouped) out += "property int surface\n";
+  out += "end_header\n";
   for (const Vec3& p : mesh.points)
-    for (int k = 0; k < 3; ++k) append(p[k]);
-  for (const Triangle& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) append_bytes(out, p[k]);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     out += '\3';
-    for (Index i : t) append(i);
+    for (const Index v : mesh.triangles[i]) append_bytes(out, v);
+    if (grouped) append_bytes(out, static_cast<std::int32_t>(mesh.triangle_groups[i] + 1));
   }
   return out;
 }

@@ -23,7 +23,8 @@ TriangleMesh read_ply(std::string_view bytes, const std::string& name,
 /// or infinite.
 SurfaceWithFields read_ply_with_fields(std::string_view bytes, const std::string& name);
 
-/// The content of a file, binary little endian with 64-bit coordinates, which are read back bit by bit.
+/// The content of a file, binary little endian with 64-bit coordinates, which are read back bit by bit. The
+/// face property "surface" numbers the groups from 1, and comments give their names.
 std::string write_ply(const TriangleMesh& mesh);
 
 }  // namespace tetwright

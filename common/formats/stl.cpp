@@ -8,6 +8,7 @@
 
 #include "common/error.h"
 #include "common/formats/byte_order.h"
+#include "common/formats/group_text.h"
 #include "common/formats/surface_builder.h"
 #include "common/formats/text_scanner.h"
 #include "common/number_text.h"
@@ -196,24 +197,39 @@ TriangleMesh read_stl(std::string_view bytes, const std::string& name, std::vect
   return read_binary(bytes, name, triangles, dropped);
 }
 
-std::string write_stl(const TriangleMesh& mesh) {
-  std::string out = "solid tetwright\n";
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3 &a = mesh.points[t[0]], &b = mesh.points[t[1]], &c = mesh.points[t[2]];
-    Vec3 normal = (b - a).cross(c - a);
-    const double length = normal.norm();
-    normal = length > 0 && std::isfinite(length) ? Vec3(normal / length) : Vec3(0, 0, 0);
-    out += "facet normal ";
-    append_point(out, normal);
-    out += "\n outer loop\n";
-    for (const Vec3* p : {&a, &b, &c}) {
-      out += "  vertex ";
-      append_point(out, *p);
-      out += '\n';
-    }
-    out += " endloop\nendfacet\n";
+namespace {
+
+void append_facet(std::string& out, const Vec3& a, const Vec3& b, const Vec3& c) {
+  Vec3 normal = (b - a).cross(c - a);
+  const double length = normal.norm();
+  normal = length > 0 && std::isfinite(length) ? Vec3(normal / length) : Vec3(0, 0, 0);
+  out += "facet normal ";
+  append_point(out, normal);
+  out += "\n outer loop\n";
+  for (const Vec3* p : {&a, &b, &c}) {
+    out += "  vertex ";
+    append_point(out, *p);
+    out += '\n';
   }
-  return out + "endsolid tetwright\n";
+  out += " endloop\nendfacet\n";
+}
+
+}  // namespace
+
+std::string write_stl(const TriangleMesh& mesh) {
+  std::string out;
+  const std::size_t solids = std::max<std::size_t>(mesh.groups.size(), 1);
+  for (std::size_t g = 0; g < solids; ++g) {
+    const std::string name = mesh.groups.empty() ? "tetwright" : one_word(group_text(mesh.groups[g]));
+    out += "solid " + name + '\n';
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+      if (!mesh.groups.empty() && mesh.triangle_groups[i] != g) continue;
+      const Triangle& t = mesh.triangles[i];
+      append_facet(out, mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
+    }
+    out += "endsolid " + name + '\n';
+  }
+  return out;
 }
 
 }  // namespace tetwright

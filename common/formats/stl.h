@@ -19,7 +19,8 @@ TriangleMesh read_stl(std::string_view bytes, const std::string& name,
                       std::vector<Dropped>* dropped = nullptr);
 
 /// The content of a file: ASCII, since binary STL has only 32 bits for a coordinate. Coordinates are read
-/// back bit by bit, except that -0 becomes 0.
+/// back bit by bit, except that -0 becomes 0. Each group is a solid of its name, or number, in which white
+/// space becomes underscores; the triangles are sorted by them.
 std::string write_stl(const TriangleMesh& mesh);
 
 }  // namespace tetwright

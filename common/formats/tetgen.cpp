@@ -1,9 +1,11 @@
 #include "common/formats/tetgen.h"
 
+#include <array>
 #include <cmath>
 
 #include "common/error.h"
 #include "common/formats/mesh_fields.h"
+#include "common/formats/midside_nodes_read.h"
 #include "common/formats/text_scanner.h"
 
 namespace tetwright {
@@ -108,34 +110,41 @@ std::int64_t read_nodes(Lines& in, TetMesh& mesh) {
   return first;
 }
 
-void read_tets(Lines& in, std::int64_t first, TetMesh& mesh) {
+void read_tets(Lines& in, std::int64_t first, ReadTetMesh& read) {
+  TetMesh& mesh = read.mesh;
   const auto promised = in.next<std::int64_t>("number of tets");
   const auto corners = in.next<std::int64_t>("number of points of a tet");
-  if (corners == 10)
-    in.fail(std::to_string(promised) +
-            " quadratic tets of 10 points; linear tets are needed, run TetGen "
-            "without -o2");
-  if (corners != 4) in.fail("tets of " + std::to_string(corners) + " points; there are 4 in a linear tet");
+  if (corners != 4 && corners != 10)
+    in.fail("tets of " + std::to_string(corners) + " points; there are 4, or 10 in a quadratic one");
   const std::int64_t attributes = in.optional_count("number of attributes", max_attributes);
   in.end_line();
-  const std::size_t n = in.checked(promised, 5 + static_cast<std::size_t>(attributes), "tets");
+  const std::size_t n = in.checked(promised, static_cast<std::size_t>(1 + corners + attributes), "tets");
   if (n == 0) in.fail("there are no tets in it; a tet mesh is needed, not a surface");
   mesh.tets.resize(n);
   mesh.cell_fields = attribute_fields(attributes, n, "attribute");
+  MidsideNodesRead midside;
   for (std::size_t t = 0; t < n; ++t) {
     in.begin_line("tet");
     const auto number = in.next<std::int64_t>("number of a tet");
-    for (Index& vertex : mesh.tets[t]) {
+    const auto read_index = [&](Index& vertex) {
       const auto point = in.next<std::int64_t>("number of a point");
       if (point < first || point - first >= std::ssize(mesh.points))
         in.fail("tet " + std::to_string(number) + " names point " + std::to_string(point) +
                 ", but those of the .node file are " + std::to_string(first) + " to " +
                 std::to_string(first + std::ssize(mesh.points) - 1) + "; do the files belong together?");
       vertex = static_cast<Index>(point - first);
+    };
+    for (Index& vertex : mesh.tets[t]) read_index(vertex);
+    if (corners == 10) {
+      std::array<Index, 6> ids{};
+      for (Index& node : ids) read_index(node);
+      midside.add_tet(ids);
     }
     for (MeshField& field : mesh.cell_fields) field.values[t] = in.next<double>("attribute");
     in.end_line();
   }
+  std::vector<Triangle> no_triangles;
+  midside.remove_from(read, no_triangles);
   // Attributes are numbers of regions, which the file writes as any other number.
   for (MeshField& field : mesh.cell_fields) field.integer = all_whole(field);
 }
@@ -148,7 +157,7 @@ ReadTetMesh read_tetgen(std::string_view node, const std::string& node_name, std
   Lines nodes(node, node_name);
   const std::int64_t first = read_nodes(nodes, read.mesh);
   Lines tets(ele, ele_name);
-  read_tets(tets, first, read.mesh);
+  read_tets(tets, first, read);
   take_material(read, options, ele_name);
   return read;
 }

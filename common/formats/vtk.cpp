@@ -1,12 +1,16 @@
 #include "common/formats/vtk.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "common/error.h"
+#include "common/formats/file_triangles.h"
 #include "common/formats/mesh_fields.h"
+#include "common/formats/midside_nodes_read.h"
 #include "common/formats/text_scanner.h"
 #include "common/formats/vtk_cells.h"
 #include "common/formats/vtk_numbers.h"
@@ -48,9 +52,12 @@ class VtkReader {
     if (!has_points_) in_.fail("there are no POINTS in it; the file is cut short");
     choose_tets();
     if (result_.mesh.tets.empty())
-      in_.fail("there are no linear tets (type 10) among its " + std::to_string(types_.size()) +
+      in_.fail("there are no tets (type 10 or 24) among its " + std::to_string(types_.size()) +
                " cells; a tet mesh is needed");
+    midside_.remove_from(result_, triangles_.triangles);
     take_material(result_, options_, in_.name());
+    take_triangles(triangles_, "surface", in_.name(), result_);
+    other_cells_.append_flat_to(result_.dropped);
     append_dropped_names(result_.dropped, "arrays of the whole dataset", dataset_arrays_);
     append_dropped_names(result_.dropped, "arrays of text", text_arrays_);
     append_dropped_names(result_.dropped, "arrays of colours", colours_);
@@ -219,32 +226,51 @@ class VtkReader {
     if (types_.size() != cell_count())
       in_.fail("CELL_TYPES has " + std::to_string(types_.size()) + " types for " +
                std::to_string(cell_count()) + " cells; the file is damaged");
-    const std::size_t points = result_.mesh.points.size();
-    OtherVtkCells other_cells;
     for (std::size_t c = 0; c < types_.size(); ++c) {
-      const auto cell = [c] { return "cell " + std::to_string(c) + " (counted from 0)"; };
-      if (types_[c] != vtk_tet_type) {
-        other_cells.add(types_[c], c);
+      if (!is_vtk_tet(types_[c])) {
+        if (is_vtk_triangle(types_[c])) triangle_to_cell_.push_back(c);
+        other_cells_.add(types_[c], c);
         continue;
       }
-      const auto begin = static_cast<std::size_t>(offsets_[c]);
-      if (cell_size(c) != 4)
-        fail_at(cells_begin_, begin,
-                cell() + " is a tet of " + std::to_string(cell_size(c)) + " points; the file is damaged");
-      Tet tet;
-      for (std::size_t k = 0; k < 4; ++k) {
-        const std::int64_t index = connectivity_[begin + k];
-        if (index < 0 || static_cast<std::uint64_t>(index) >= points)
-          fail_at(cells_begin_, begin + k,
-                  cell() + " names point " + std::to_string(index) + " of " + std::to_string(points) +
-                      "; export the file again");
-        tet[k] = static_cast<Index>(index);
-      }
-      result_.mesh.tets.push_back(tet);
+      const std::vector<Index> nodes = nodes_of(c);
+      result_.mesh.tets.push_back({nodes[0], nodes[1], nodes[2], nodes[3]});
       tet_to_cell_.push_back(c);
+      if (nodes.size() > 4) midside_.add_tet(std::span(nodes).subspan(4));
     }
-    if (other_cells.has_volumes()) fail_at(types_begin_, other_cells.first_volume(), other_cells.refusal());
-    other_cells.append_flat_to(result_.dropped);
+    if (other_cells_.has_volumes())
+      fail_at(types_begin_, other_cells_.first_volume(), other_cells_.refusal());
+    if (triangle_to_cell_.empty()) connectivity_ = {};
+  }
+
+  /// Of a tet or triangle.
+  std::vector<Index> nodes_of(std::size_t c) const {
+    const std::size_t points = result_.mesh.points.size();
+    const auto cell = [c] { return "cell " + std::to_string(c) + " (counted from 0)"; };
+    const auto begin = static_cast<std::size_t>(offsets_[c]);
+    if (cell_size(c) != vtk_nodes_of(types_[c]))
+      fail_at(cells_begin_, begin,
+              cell() + " is a " + (is_vtk_tet(types_[c]) ? "tet" : "triangle") + " of " +
+                  std::to_string(cell_size(c)) + " points; the file is damaged");
+    std::vector<Index> nodes;
+    for (std::size_t k = begin; k < begin + cell_size(c); ++k) {
+      if (connectivity_[k] < 0 || static_cast<std::uint64_t>(connectivity_[k]) >= points)
+        fail_at(cells_begin_, k,
+                cell() + " names point " + std::to_string(connectivity_[k]) + " of " +
+                    std::to_string(points) + "; export the file again");
+      nodes.push_back(static_cast<Index>(connectivity_[k]));
+    }
+    return nodes;
+  }
+
+  /// The triangles of our own files, by the field that numbers their surfaces; those of tets are 0.
+  void take_surfaces(const std::vector<double>& numbers) {
+    for (const std::size_t c : triangle_to_cell_) {
+      const std::vector<Index> nodes = nodes_of(c);
+      triangles_.add({nodes[0], nodes[1], nodes[2]}, static_cast<std::int64_t>(numbers[c]));
+      if (nodes.size() > 3) midside_.add_triangle(std::span(nodes).subspan(3));
+      other_cells_.remove(types_[c]);
+    }
+    triangle_to_cell_.clear();
     connectivity_ = {};
   }
 
@@ -263,6 +289,11 @@ class VtkReader {
     MeshField field{name, static_cast<int>(components), false, {}};
     field.values =
         read_vtk_numbers<double>(in_, binary_, type, components * items_, "values of " + in_quotes(name));
+    if (data_ == Data::cells && name == vtk_surface_field && !triangle_to_cell_.empty() && components == 1 &&
+        is_integer_type(type) && all_whole(field)) {
+      take_surfaces(field.values);
+      return;
+    }
     if (data_ == Data::cells && tet_to_cell_.size() < items_) {
       for (std::size_t t = 0; t < tet_to_cell_.size(); ++t)
         for (std::size_t k = 0; k < components; ++k)
@@ -357,15 +388,30 @@ class VtkReader {
       }
       if (data_ == Data::none) {
         if (tuples > 0 && components > SIZE_MAX / tuples) in_.fail_cut_short("value");
-        (void)read_vtk_numbers<double>(in_, binary_, type, components * tuples,
-                                       "values of " + in_quotes(name));
-        dataset_arrays_.push_back(name);
+        const std::vector<double> values =
+            read_vtk_numbers<double>(in_, binary_, type, components * tuples, "values of " + in_quotes(name));
+        if (name == vtk_material_names || name == vtk_surface_names)
+          read_names(values, name);
+        else
+          dataset_arrays_.push_back(name);
         continue;
       }
       if (tuples != items_)
         in_.fail("array " + in_quotes(name) + " has " + std::to_string(tuples) + " values, but there are " +
                  std::to_string(items_) + (data_ == Data::points ? " points" : " cells"));
       add_field(name, checked_components(static_cast<std::int64_t>(components)), type);
+    }
+  }
+
+  /// Those that write_vtk() writes.
+  void read_names(const std::vector<double>& bytes, const std::string& array) {
+    std::string text;
+    for (const double byte : bytes) text += byte >= 0 && byte < 256 ? static_cast<char>(byte) : '?';
+    for (auto& [number, name] : parse_vtk_names(text, array, in_.name())) {
+      if (array == vtk_surface_names)
+        triangles_.names[number] = name;
+      else
+        result_.mesh.material_names[checked_material(number, in_.name(), in_.line())] = name;
     }
   }
 
@@ -384,7 +430,10 @@ class VtkReader {
   bool has_points_ = false, has_cells_ = false, has_types_ = false, chosen_ = false;
   std::vector<std::int64_t> offsets_, connectivity_, types_;
   TextScanner cells_begin_, types_begin_;
-  std::vector<std::size_t> tet_to_cell_;
+  std::vector<std::size_t> tet_to_cell_, triangle_to_cell_;
+  FileTriangles triangles_;
+  OtherVtkCells other_cells_;
+  MidsideNodesRead midside_;
   std::vector<std::string> dataset_arrays_, text_arrays_, colours_;  ///< names of what is not taken
   Data data_ = Data::none;
   std::size_t items_ = 0;  ///< points or cells that data is for

@@ -1,5 +1,8 @@
 #include "common/formats/vtk_cells.h"
 
+#include "common/error.h"
+#include "common/formats/text_scanner.h"
+
 namespace tetwright {
 
 namespace {
@@ -64,6 +67,23 @@ CellKind cell_kind(std::int64_t type) {
 }
 
 }  // namespace
+
+std::vector<std::pair<std::int64_t, std::string>> parse_vtk_names(const std::string& text,
+                                                                  const std::string& array,
+                                                                  const std::string& file) {
+  std::vector<std::pair<std::int64_t, std::string>> names;
+  TextScanner lines(text, file);
+  while (lines.left() > 0) {
+    const std::string_view line = lines.rest_of_line();
+    const std::size_t tab = line.find('\t');
+    std::int64_t number = 0;
+    if (tab == std::string_view::npos || !parse_number(line.substr(0, tab), number))
+      throw InputError(file + ": in " + in_quotes(array) +
+                       " a number, a tab and a name were expected, found " + in_quotes(line));
+    names.emplace_back(number, line.substr(tab + 1));
+  }
+  return names;
+}
 
 void OtherVtkCells::add(std::int64_t type, std::size_t cell) {
   if (++counts_[type] > 1 || has_volumes_ || !cell_kind(type).volume) return;

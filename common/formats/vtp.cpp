@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <span>
 
+#include "common/formats/group_text.h"
 #include "common/formats/label_groups.h"
 #include "common/formats/mesh_fields.h"
 #include "common/formats/surface_builder.h"
+#include "common/formats/vtk_cells.h"
+#include "common/formats/vtu_arrays.h"
 #include "common/formats/vtu_data.h"
 
 namespace tetwright {
@@ -36,6 +39,19 @@ void note_arrays(pugi::xml_node parent, const std::string& what, const std::stri
         node.type() == pugi::node_element && (taken.empty() || name != taken))
       names.push_back(name);
   append_dropped_names(dropped, what, names);
+}
+
+/// Those that write_vtp() writes.
+void read_names(const VtuData& data, pugi::xml_node piece, std::vector<FaceGroup>& groups,
+                std::size_t max_size) {
+  const pugi::xml_node node =
+      piece.parent().child("FieldData").find_child_by_attribute("DataArray", "Name", vtk_surface_names);
+  if (!node) return;
+  std::string text;
+  for (const std::int64_t c : data.integers(node, max_size)) text += static_cast<char>(c);
+  for (const auto& [number, name] : parse_vtk_names(text, vtk_surface_names, data.name()))
+    for (FaceGroup& group : groups)
+      if (group.number == number) group.name = name;
 }
 
 /// `point_fields` is filled unless it is null.
@@ -83,7 +99,9 @@ TriangleMesh read(std::string_view bytes, const std::string& name, std::vector<D
     }
   }
   if (point_fields) *point_fields = data.fields(piece.child("PointData"), points.size());
-  TriangleMesh mesh = surface.finish(dropped, groups.groups());
+  std::vector<FaceGroup> named = groups.groups();
+  if (label_name == vtk_surface_field) read_names(data, piece, named, bytes.size());
+  TriangleMesh mesh = surface.finish(dropped, named);
   if (dropped) {
     note_arrays(piece.child("PointData"), "fields of points", "", *dropped);
     note_arrays(piece.child("CellData"), "fields of cells", label_name, *dropped);
@@ -101,6 +119,36 @@ SurfaceWithFields read_vtp_with_fields(std::string_view bytes, const std::string
   SurfaceWithFields result;
   result.surface = read(bytes, name, nullptr, &result.point_fields);
   return result;
+}
+
+void write_vtp(const TriangleMesh& mesh, const ByteSink& sink) {
+  const std::size_t triangles = mesh.triangles.size();
+  sink(vtu_head("PolyData"));
+  if (!mesh.groups.empty()) {
+    std::vector<std::pair<std::int64_t, std::string>> names;
+    for (std::size_t g = 0; g < mesh.groups.size(); ++g)
+      names.emplace_back(static_cast<std::int64_t>(g) + 1, group_text(mesh.groups[g]));
+    sink("<FieldData>\n");
+    write_vtu_names(sink, vtk_surface_names, names);
+    sink("</FieldData>\n");
+  }
+  sink("<Piece NumberOfPoints=\"" + std::to_string(mesh.points.size()) + "\" NumberOfPolys=\"" +
+       std::to_string(triangles) + "\">\n<Points>\n");
+  write_vtu_numbers(sink, "Float64", "Points", "NumberOfComponents=\"3\" ", 3 * mesh.points.size(),
+                    [&](std::size_t i) { return mesh.points[i / 3][static_cast<Eigen::Index>(i % 3)]; });
+  sink("</Points>\n<Polys>\n");
+  write_vtu_numbers(sink, "Int64", "connectivity", "", 3 * triangles,
+                    [&](std::size_t i) { return std::int64_t{mesh.triangles[i / 3][i % 3]}; });
+  write_vtu_numbers(sink, "Int64", "offsets", "", triangles,
+                    [](std::size_t i) { return static_cast<std::int64_t>(3 * (i + 1)); });
+  sink("</Polys>\n");
+  if (!mesh.groups.empty()) {
+    sink("<CellData>\n");
+    write_vtu_numbers(sink, "Int32", vtk_surface_field, "", triangles,
+                      [&](std::size_t i) { return static_cast<std::int32_t>(mesh.triangle_groups[i] + 1); });
+    sink("</CellData>\n");
+  }
+  sink("</Piece>\n</PolyData>\n</VTKFile>\n");
 }
 
 }  // namespace tetwright

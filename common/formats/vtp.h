@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/formats/atomic_file.h"
 #include "common/formats/dropped.h"
 #include "common/formats/surface_with_fields.h"
 
@@ -21,5 +22,10 @@ TriangleMesh read_vtp(std::string_view bytes, const std::string& name,
 
 /// The same with the arrays of numbers of PointData.
 SurfaceWithFields read_vtp_with_fields(std::string_view bytes, const std::string& name);
+
+/// The content of a file, compressed by zlib: points as Float64, and the cell array "surface", which numbers
+/// the groups from 1, with their names as the FieldData array "surface_names" of UTF-8 lines
+/// "NUMBER<tab>NAME".
+void write_vtp(const TriangleMesh& mesh, const ByteSink& sink);
 
 }  // namespace tetwright

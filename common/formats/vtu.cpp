@@ -1,25 +1,23 @@
 #include "common/formats/vtu.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "common/error.h"
-#include "common/formats/byte_order.h"
 #include "common/formats/mesh_fields.h"
+#include "common/formats/midside_nodes_read.h"
 #include "common/formats/text_scanner.h"
 #include "common/formats/vtk_cells.h"
+#include "common/formats/vtu_arrays.h"
 #include "common/formats/vtu_data.h"
-#include "common/number_text.h"
-#include "common/utf8.h"
+#include "common/formats/xml_text.h"
 
 namespace tetwright {
 
 namespace {
-
-constexpr const char* names_field = "material_names";
 
 class VtuReader {
  public:
@@ -36,6 +34,8 @@ class VtuReader {
     result_.mesh.cell_fields =
         data_.fields(piece.child("CellData"), cells_, tet_to_cell_.empty() ? nullptr : &tet_to_cell_);
     read_names(grid);
+    std::vector<Triangle> no_triangles;
+    midside_.remove_from(result_, no_triangles);
     take_material(result_, options_, name_);
     note_dropped_arrays(grid, piece);
     return std::move(result_);
@@ -54,7 +54,8 @@ class VtuReader {
     data_.expect_size(offsets_node, offsets.size(), cells_);
     const std::vector<std::uint32_t> connectivity =
         data_.counts(connectivity_node, offsets.empty() ? 0 : offsets.back());
-    const auto tets = static_cast<std::size_t>(std::count(types.begin(), types.end(), vtk_tet_type));
+    const auto tets = static_cast<std::size_t>(
+        std::count_if(types.begin(), types.end(), [](auto t) { return is_vtk_tet(t); }));
     result_.mesh.tets.reserve(tets);
     if (tets < cells_) tet_to_cell_.reserve(tets);
     std::size_t begin = 0;
@@ -64,19 +65,19 @@ class VtuReader {
       if (end < begin || end > connectivity.size())
         data_.fail(offsets_node, "cell " + std::to_string(c) + " ends at " + std::to_string(end) + " of " +
                                      std::to_string(connectivity.size()) + "; the file is damaged");
-      if (types[c] == vtk_tet_type) {
-        if (end - begin != 4)
+      if (is_vtk_tet(types[c])) {
+        const std::size_t nodes = vtk_nodes_of(types[c]);
+        if (end - begin != nodes)
           data_.fail(offsets_node, "cell " + std::to_string(c) + " is a tet of " +
                                        std::to_string(end - begin) + " points; the file is damaged");
-        Tet tet;
-        for (std::size_t k = 0; k < 4; ++k) {
-          tet[k] = connectivity[begin + k];
-          if (tet[k] >= points_)
+        for (std::size_t k = begin; k < end; ++k)
+          if (connectivity[k] >= points_)
             data_.fail(connectivity_node, "cell " + std::to_string(c) + " names point " +
-                                              std::to_string(tet[k]) + " of " + std::to_string(points_) +
-                                              "; export the file again");
-        }
-        result_.mesh.tets.push_back(tet);
+                                              std::to_string(connectivity[k]) + " of " +
+                                              std::to_string(points_) + "; export the file again");
+        result_.mesh.tets.push_back(
+            {connectivity[begin], connectivity[begin + 1], connectivity[begin + 2], connectivity[begin + 3]});
+        if (nodes > 4) midside_.add_tet(std::span(connectivity).subspan(begin + 4, nodes - 4));
         if (tets < cells_) tet_to_cell_.push_back(c);
       } else {
         other_cells.add(types[c], c);
@@ -86,26 +87,19 @@ class VtuReader {
     if (other_cells.has_volumes()) data_.fail(types_node, other_cells.refusal());
     other_cells.append_flat_to(result_.dropped);
     if (tets == 0)
-      data_.fail(cells, "there are no linear tets (type 10) among its " + std::to_string(cells_) +
+      data_.fail(cells, "there are no tets (type 10 or 24) among its " + std::to_string(cells_) +
                             " cells; a tet mesh is needed");
   }
 
   void read_names(pugi::xml_node grid) {
     const pugi::xml_node node =
-        grid.child("FieldData").find_child_by_attribute("DataArray", "Name", names_field);
+        grid.child("FieldData").find_child_by_attribute("DataArray", "Name", vtk_material_names);
     if (!node) return;
     std::string text;
     // Compressed data may be longer than the file, but names hardly are.
     for (std::int64_t c : data_.integers(node, file_size_)) text += static_cast<char>(c);
-    TextScanner lines(text, name_);
-    while (lines.left() > 0) {
-      const std::string_view line = lines.rest_of_line();
-      const std::size_t tab = line.find('\t');
-      std::int64_t tag = 0;
-      if (tab == std::string_view::npos || !parse_number(line.substr(0, tab), tag))
-        data_.fail(node, "expected a tag, a tab and a name, found " + in_quotes(line));
-      result_.mesh.material_names[checked_material(tag, name_, 0)] = std::string(line.substr(tab + 1));
-    }
+    for (auto& [tag, name] : parse_vtk_names(text, vtk_material_names, name_))
+      result_.mesh.material_names[checked_material(tag, name_, 0)] = name;
   }
 
   /// Arrays of the whole dataset, and arrays of text.
@@ -118,7 +112,7 @@ class VtuReader {
     // Some programs put FieldData beside the grid or into the piece.
     for (const pugi::xml_node parent : {data_.root(), grid, piece})
       for (const pugi::xml_node node : parent.child("FieldData").children())
-        if (is_array(node) && !(parent == grid && name_of(node) == names_field))
+        if (is_array(node) && !(parent == grid && name_of(node) == vtk_material_names))
           of_dataset.push_back(name_of(node));
     for (const char* part : {"PointData", "CellData"})
       for (const pugi::xml_node node : piece.child(part).children())
@@ -133,51 +127,15 @@ class VtuReader {
   std::size_t file_size_;
   std::size_t points_ = 0, cells_ = 0;
   std::vector<std::size_t> tet_to_cell_;  ///< where some cells are no tets
+  MidsideNodesRead midside_;
   ReadTetMesh result_;
 };
 
-/// Writes a data array of `size` numbers, the i-th of which is `number(i)`.
-template <class NumberAt>
-void write_array(const ByteSink& sink, const char* type, const std::string& name, const std::string& more,
-                 std::size_t size, NumberAt&& number) {
-  using Number = decltype(number(std::size_t{}));
-  sink(std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\" " + more +
-       "format=\"binary\">\n");
-  write_vtu_array(
-      size * sizeof(Number),
-      [&](std::size_t begin, std::span<char> bytes) {
-        for (std::size_t at = 0; at < bytes.size(); at += sizeof(Number)) {
-          auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(number((begin + at) / sizeof(Number)));
-          if (!little_endian_machine) std::reverse(raw.begin(), raw.end());
-          std::copy(raw.begin(), raw.end(), bytes.data() + at);
-        }
-      },
-      sink);
-  sink("\n</DataArray>\n");
-}
-
-/// A name without control characters in the form that an XML attribute needs.
-std::string escaped(const std::string& name) {
-  std::string out;
-  for (char c : name) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 void write_field(const ByteSink& sink, const MeshField& field, const std::string& name) {
   const auto write = [&]<class Number>(Number, const char* type) {
-    write_array(sink, type, escaped(name), "NumberOfComponents=\"" + std::to_string(field.components) + "\" ",
-                field.values.size(), [&](std::size_t i) { return static_cast<Number>(field.values[i]); });
+    write_vtu_numbers(sink, type, xml_text(name),
+                      "NumberOfComponents=\"" + std::to_string(field.components) + "\" ", field.values.size(),
+                      [&](std::size_t i) { return static_cast<Number>(field.values[i]); });
   };
   const auto narrow = [](double value) { return value >= INT32_MIN && value <= INT32_MAX; };
   if (!field.integer || !all_whole(field))
@@ -194,52 +152,50 @@ ReadTetMesh read_vtu(std::string_view bytes, const std::string& name, const Read
   return VtuReader(bytes, name, options).read();
 }
 
-std::string write_vtu(const TetMesh& mesh) {
+std::string write_vtu(const MeshToWrite& written) {
   std::string out;
-  write_vtu(mesh, [&](std::string_view bytes) { out += bytes; });
+  write_vtu(written, [&](std::string_view bytes) { out += bytes; });
   return out;
 }
 
-void write_vtu(const TetMesh& mesh, const ByteSink& sink) {
-  sink(
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
-      "byte_order=\"LittleEndian\" "
-      "header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n");
+void write_vtu(const MeshToWrite& written, const ByteSink& sink) {
+  const TetMesh& mesh = written.mesh;
+  const MidsideNodes* midside = written.midside;
+  sink(vtu_head("UnstructuredGrid"));
   if (!mesh.material_names.empty()) {
-    // As numbers, since other readers do not know VTK's arrays of strings.
-    std::string text;
-    for (const auto& [tag, name] : mesh.material_names) {
-      append_number(text, tag);
-      text += '\t';
-      for (char c : valid_utf8(name)) text += static_cast<unsigned char>(c) < ' ' ? '_' : c;
-      text += '\n';
-    }
+    std::vector<std::pair<std::int64_t, std::string>> names(mesh.material_names.begin(),
+                                                            mesh.material_names.end());
     sink("<FieldData>\n");
-    write_array(sink, "UInt8", names_field, "NumberOfTuples=\"" + std::to_string(text.size()) + "\" ",
-                text.size(), [&](std::size_t i) { return text[i]; });
+    write_vtu_names(sink, vtk_material_names, names);
     sink("</FieldData>\n");
   }
-  sink("<Piece NumberOfPoints=\"" + std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" +
+  sink("<Piece NumberOfPoints=\"" + std::to_string(written.nodes()) + "\" NumberOfCells=\"" +
        std::to_string(mesh.tets.size()) + "\">\n<Points>\n");
-  write_array(sink, "Float64", "Points", "NumberOfComponents=\"3\" ", 3 * mesh.points.size(),
-              [&](std::size_t i) { return mesh.points[i / 3][static_cast<Eigen::Index>(i % 3)]; });
+  write_vtu_numbers(sink, "Float64", "Points", "NumberOfComponents=\"3\" ", 3 * written.nodes(),
+                    [&](std::size_t i) { return written.node(i / 3)[static_cast<Eigen::Index>(i % 3)]; });
   sink("</Points>\n<Cells>\n");
-  write_array(sink, "Int64", "connectivity", "", 4 * mesh.tets.size(),
-              [&](std::size_t i) { return std::int64_t{mesh.tets[i / 4][i % 4]}; });
-  write_array(sink, "Int64", "offsets", "", mesh.tets.size(),
-              [](std::size_t i) { return static_cast<std::int64_t>(4 * (i + 1)); });
-  write_array(sink, "UInt8", "types", "", mesh.tets.size(),
-              [](std::size_t) { return static_cast<std::uint8_t>(vtk_tet_type); });
+  const std::size_t of_tet = midside ? 10 : 4;
+  write_vtu_numbers(sink, "Int64", "connectivity", "", of_tet * mesh.tets.size(), [&](std::size_t i) {
+    const std::size_t t = i / of_tet, k = i % of_tet;
+    return k < 4 ? std::int64_t{mesh.tets[t][k]}
+                 : static_cast<std::int64_t>(mesh.points.size() + midside->of_tets[t][k - 4]);
+  });
+  write_vtu_numbers(sink, "Int64", "offsets", "", mesh.tets.size(),
+                    [&](std::size_t i) { return static_cast<std::int64_t>(of_tet * (i + 1)); });
+  write_vtu_numbers(sink, "UInt8", "types", "", mesh.tets.size(), [&](std::size_t) {
+    return static_cast<std::uint8_t>(midside ? vtk_quadratic_tet_type : vtk_tet_type);
+  });
   sink("</Cells>\n");
   if (!mesh.point_fields.empty()) {
     sink("<PointData>\n");
-    const std::vector<std::string> names = field_names_to_write(mesh.point_fields, {});
-    for (std::size_t f = 0; f < names.size(); ++f) write_field(sink, mesh.point_fields[f], names[f]);
+    const std::vector<MeshField> fields = written.node_fields();
+    const std::vector<std::string> names = field_names_to_write(fields, {});
+    for (std::size_t f = 0; f < names.size(); ++f) write_field(sink, fields[f], names[f]);
     sink("</PointData>\n");
   }
   sink("<CellData Scalars=\"material\">\n");
-  write_array(sink, "Int32", "material", "", mesh.tets.size(),
-              [&](std::size_t i) { return std::int32_t{mesh.materials[i]}; });
+  write_vtu_numbers(sink, "Int32", "material", "", mesh.tets.size(),
+                    [&](std::size_t i) { return std::int32_t{mesh.materials[i]}; });
   const std::vector<std::string> names = field_names_to_write(mesh.cell_fields, {"material"});
   for (std::size_t f = 0; f < names.size(); ++f) write_field(sink, mesh.cell_fields[f], names[f]);
   sink("</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");

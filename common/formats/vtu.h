@@ -3,17 +3,18 @@
 #include <string>
 #include <string_view>
 
-#include "common/formats/atomic_file.h"
+#include "common/formats/mesh_to_write.h"
 #include "common/formats/read_tet_mesh_result.h"
 
 namespace tetwright {
 
-/// Reads the linear tets (type 10) of a VTK XML unstructured grid: data inline or appended, ASCII, base64 or
-/// raw, compressed by zlib or not, in either byte order. Arrays of numbers in PointData and CellData become
-/// fields; integers beyond 2^53 lose digits. ReadTetMesh describes which of them is the material. Names of
-/// materials are read from the array that write_vtu() writes. Other volume cells are refused; vertices,
-/// lines, faces, arrays of text and arrays of the whole dataset are counted in ReadTetMesh::dropped. `name`
-/// is used in messages. Throws InputError with the byte offset for anything that is malformed.
+/// Reads the tets (type 10, or 24 of ten nodes, by their corners) of a VTK XML unstructured grid: data inline
+/// or appended, ASCII, base64 or raw, compressed by zlib or not, in either byte order. Arrays of numbers in
+/// PointData and CellData become fields; integers beyond 2^53 lose digits. ReadTetMesh describes which of
+/// them is the material. Names of materials are read from the array that write_vtu() writes. Other volume
+/// cells are refused; vertices, lines, faces, arrays of text and arrays of the whole dataset are counted in
+/// ReadTetMesh::dropped. `name` is used in messages. Throws InputError with the byte offset for anything that
+/// is malformed.
 ///
 /// Our own, on pugixml: libvtk9.1 takes 105 MB, without what it depends on.
 ReadTetMesh read_vtu(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options = {});
@@ -23,8 +24,8 @@ ReadTetMesh read_vtu(std::string_view bytes, const std::string& name, const Read
 /// control character becomes an underscore. Fields have the names of field_names_to_write() and are Float64,
 /// or Int32 or Int64 if they are integers. The cells are tets only: many readers take every cell for an
 /// element of the solver, and would take interface triangles for such.
-std::string write_vtu(const TetMesh& mesh);
+std::string write_vtu(const MeshToWrite& written);
 /// The same in pieces: needs memory for some MB and for the compressed numbers of one array at a time.
-void write_vtu(const TetMesh& mesh, const ByteSink& sink);
+void write_vtu(const MeshToWrite& written, const ByteSink& sink);
 
 }  // namespace tetwright

@@ -24,6 +24,7 @@ class VtuData {
   /// compressed by something other than zlib.
   VtuData(std::string_view bytes, std::string name);
 
+  const std::string& name() const { return name_; }
   /// The XML element VTKFile.
   pugi::xml_node root() const { return root_; }
 

@@ -22,14 +22,43 @@ bool same_file(const std::string& a, const std::string& b) {
 /// All files that the call reads.
 std::vector<std::string> files_read(const CommandLine& line) {
   std::vector<std::string> files = input_files(line);
-  files.insert(files.end(), {line.label_names, line.before});
+  files.insert(files.end(), {line.label_names, line.before, line.size_field});
+  files.insert(files.end(), line.surfaces.begin(), line.surfaces.end());
   return files;
 }
 
-void check_output_is_no_input(const CommandLine& line) {
-  for (const std::string& input : files_read(line))
-    if (same_file(input, line.output))
-      throw UsageError("-o " + line.output + " is also an input; give the mesh a name of its own");
+/// A file that the call writes, and the option that asks for it.
+struct Written {
+  std::string option, file;
+};
+
+std::vector<Written> files_written(const CommandLine& line) {
+  std::vector<Written> files;
+  if (line.command == Command::sample)
+    files.push_back({"-o", line.output});
+  else if (line.command != Command::check)
+    for (const std::string& file : files_of_tet_mesh(line.output, line.output_format))
+      files.push_back({"-o", file});
+  for (const Written& more :
+       {Written{"--boundary", line.boundary}, {"--write-sdf", line.write_sdf}, {"--stats", line.stats}})
+    if (!more.file.empty()) files.push_back(more);
+  return files;
+}
+
+void check_files_are_different(const CommandLine& line) {
+  // These may replace what they read.
+  const bool in_place = line.command == Command::simplify || line.command == Command::improve;
+  const std::vector<Written> written = files_written(line);
+  for (std::size_t i = 0; i < written.size(); ++i) {
+    const auto& [option, file] = written[i];
+    for (const std::string& input : files_read(line))
+      if (same_file(input, file) && !(in_place && option == "-o"))
+        throw UsageError(option + " " + file + " is also an input; give it a name of its own");
+    for (std::size_t j = 0; j < i; ++j)
+      if (same_file(written[j].file, file))
+        throw UsageError(option + " " + file + " is also the file of " + written[j].option +
+                         "; give each its own");
+  }
 }
 
 void check_sdf_path(const CommandLine& line) {
@@ -37,9 +66,6 @@ void check_sdf_path(const CommandLine& line) {
   if (!is_vdb(line.write_sdf))
     throw UsageError("--write-sdf " + line.write_sdf +
                      ": signed distances are written for OpenVDB; give a name that ends in .vdb");
-  for (const std::string& input : files_read(line))
-    if (same_file(input, line.write_sdf))
-      throw UsageError("--write-sdf " + line.write_sdf + " is also an input; give it another name");
   check_output_file(line.write_sdf);
 }
 
@@ -49,20 +75,16 @@ void check_stats_path(const CommandLine& line) {
   if (line.stats.empty()) return;
   if (std::filesystem::path(line.stats).extension() != ".json")
     throw UsageError("--stats " + line.stats + ": the statistics are JSON; give a name that ends in .json");
-  std::vector<std::string> others = files_read(line);
-  others.insert(others.end(), {line.write_sdf, line.output});
-  for (const std::string& other : others)
-    if (same_file(other, line.stats))
-      throw UsageError("--stats " + line.stats +
-                       " is also the name of another file of this call; give it its own");
+  check_files_are_different(line);
   check_output_file(line.stats);
 }
 
 void check_output_paths(const CommandLine& line) {
-  check_output_path(line.output);
-  check_stats_path(line);
+  check_output_path(line.output, FileKind::tet_mesh, line.output_format);
+  if (!line.boundary.empty()) check_output_path(line.boundary, FileKind::surface);
   check_sdf_path(line);
-  if (line.command != Command::simplify && line.command != Command::improve) check_output_is_no_input(line);
+  check_files_are_different(line);
+  check_stats_path(line);
 }
 
 }  // namespace tetwright

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
+#include <utility>
 
 #include "common/formats/atomic_file.h"
 #include "common/formats/formats.h"
+#include "common/formats/mesh_parts.h"
+#include "common/mesh/midside_nodes.h"
 #include "common/message_text.h"
 #include "tools/held_tets.h"
 #include "tools/limiting_rules.h"
@@ -321,10 +325,6 @@ void find_changed_creases(const CommandLine& line, const TetMesh& mesh, RunRepor
 /// Patches of the user of which the mesh has nothing: a shortfall, or with --accept-changes a finding.
 void find_lost_patches(const CommandLine& line, const TetMesh& mesh, RunReport& report) {
   compare_patches(mesh, report.patches);
-  if (!report.patches.empty() && !holds_face_groups(line.output))
-    report.findings.push_back(
-        {line.output,
-         {"named patches", report.patches.size(), {}, "not written; .msh and .mesh have a place for them"}});
   std::string text;
   std::size_t lost = 0;
   for (const PatchFidelity& p : report.patches)
@@ -356,12 +356,44 @@ void find_notes(const CommandLine& line, const std::vector<std::string>& notes, 
                                   (notes.size() == 1 ? " note: " : " notes, the first: ") + notes.front()});
 }
 
+/// What the format of the output has no place for, and no other file that is written.
+void find_unwritten(const CommandLine& line, const TetMesh& mesh, RunReport& report) {
+  const TetFormatInfo format = written_tet_format(line.output, line.output_format);
+  const std::string no_place = "not written; " + format.extension + " has no place for them";
+  const auto note = [&](const std::string& what, std::size_t count, const std::string& why) {
+    if (count > 0) report.findings.push_back({line.output, {what, count, {}, why}});
+  };
+  if (line.boundary.empty() && line.no_boundary)
+    note("named patches", report.patches.size(), "not written, as --no-boundary asks");
+  else if (line.boundary.empty() && !format.surfaces)
+    note("named patches", report.patches.size(), no_place + ", but --boundary FILE has, and .msh");
+  if (!format.names) note("names of materials", mesh.material_names.size(), no_place);
+  if (!format.fields) note("fields", mesh.point_fields.size() + mesh.cell_fields.size(), no_place);
+}
+
+/// The mesh without the triangles of its interfaces.
+TetMesh without_triangles(TetMesh mesh) {
+  mesh.interfaces.clear();
+  mesh.patch_groups.clear();
+  return mesh;
+}
+
+void write_mesh(const TetMesh& mesh, const CommandLine& line, OutputFiles& files) {
+  std::optional<MidsideNodes> midside;
+  if (line.order > 1) midside = straight_midside_nodes(mesh);
+  write_tet_mesh({mesh, midside ? &*midside : nullptr}, line.output, &files, line.output_format);
+}
+
 void write_files(const TetMesh& mesh, const MaterialField* field, CommandRun& run) {
   const Stopwatch watch;
   run.progress.begin_stage("write");
   OutputFiles files(&run.progress);
   if (field) write_fields(*field, run.line.write_sdf, &files);
-  write_tet_mesh(mesh, run.line.output, &files);
+  if (run.line.no_boundary)
+    write_mesh(without_triangles(mesh), run.line, files);
+  else
+    write_mesh(mesh, run.line, files);
+  if (!run.line.boundary.empty()) write_surface(interface_surface(mesh), run.line.boundary, &files);
   run.report.seconds_write = watch.seconds();
   run.report.seconds_total = run.since_start.seconds();
   if (!run.line.stats.empty()) files.write(run.line.stats, stats_json(run.line, run.report) + "\n");
@@ -391,6 +423,7 @@ ExitStatus finish(const TetMesh& mesh, const MaterialField* field, CommandRun& r
   find_thin_walls(run.line, report);
   find_changed_creases(run.line, mesh, report);
   find_lost_patches(run.line, mesh, report);
+  find_unwritten(run.line, mesh, report);
   const std::vector<std::string> notes = notes_of(report);
   find_notes(run.line, notes, report);
   write_files(mesh, field, run);

@@ -3,6 +3,7 @@
 #include "tests/common/formats/expect_error.h"
 #include "tests/common/formats/file_test.h"
 #include "tests/common/formats/tricky_meshes.h"
+#include "tests/common/small_meshes.h"
 
 namespace tetwright::formats_test {
 namespace {
@@ -17,13 +18,14 @@ TEST_F(Formats, KindsByExtension) {
   EXPECT_EQ(file_kind("x.VTU"), FileKind::tet_mesh);
   EXPECT_EQ(file_kind("x.msh"), FileKind::tet_mesh);
   EXPECT_EQ(file_kind("x.mesh"), FileKind::tet_mesh);
-  for (const char* name : {"x.vtk", "x.NODE", "x.ele"}) {
+  for (const char* name : {"x.vtk", "x.NODE", "x.ele", "x.msh"}) {
     EXPECT_EQ(file_kind(name), FileKind::tet_mesh);
-    EXPECT_EQ(file_kind(name, FileUse::write), FileKind::unknown);
+    EXPECT_EQ(file_kind(name, FileUse::write), FileKind::tet_mesh);
   }
-  EXPECT_EQ(file_kind("x.msh", FileUse::write), FileKind::tet_mesh);
-  EXPECT_EQ(known_extensions(FileKind::tet_mesh), ".vtu .msh .mesh .vtk .node .ele");
-  EXPECT_EQ(known_extensions(FileKind::tet_mesh, FileUse::write), ".vtu .msh .mesh");
+  EXPECT_EQ(file_kind("x.feb"), FileKind::unknown);
+  EXPECT_EQ(known_extensions(FileKind::tet_mesh), ".vtu .msh .mesh .meshb .vtk .inp .bdf .node .ele");
+  EXPECT_EQ(known_extensions(FileKind::tet_mesh, FileUse::write),
+            ".vtu .msh .mesh .meshb .vtk .inp .bdf .feb .node .ele");
   for (const char* name : {"", "ply", "a/.ply/b", "x.vtl", "x.", "x.ply "})
     EXPECT_EQ(file_kind(name), FileKind::unknown);
 }
@@ -78,15 +80,46 @@ TEST_F(Formats, RoundTripThroughFiles) {
   EXPECT_EQ(files(), 6u);
 }
 
+TEST_F(Formats, EveryFormatOfTetMeshesIsWritten) {
+  for (const TetFormatInfo& format : written_tet_formats()) {
+    const std::string file = path("m" + format.extension);
+    write_tet_mesh(tricky_tets(), file, nullptr, format.name);
+    EXPECT_EQ(written_tet_format(file, format.name).name, format.name);
+    if (file_kind(file) == FileKind::unknown) continue;  // only written
+    EXPECT_EQ(read_tet_mesh(file).mesh.tets.size(), tricky_tets().tets.size()) << format.name;
+  }
+  EXPECT_EQ(files_of_tet_mesh("a/b.ELE"), (std::vector<std::string>{"a/b.NODE", "a/b.ELE", "a/b.FACE"}));
+  EXPECT_EQ(files_of_tet_mesh("a/b.x", "vtu"), (std::vector<std::string>{"a/b.x"}));
+  EXPECT_TRUE(written_tet_format("a.bdf").second_order);
+  EXPECT_FALSE(written_tet_format("a.node").second_order);
+  const std::string message = error_of<UsageError>([] { (void)written_tet_format("a.msh", "msh5"); });
+  EXPECT_NE(message.find("no format \"msh5\""), std::string::npos) << message;
+  EXPECT_NE(message.find("vtu msh22 msh41 msh41-binary"), std::string::npos) << message;
+}
+
+TEST_F(Formats, GroupsOfSurfaces) {
+  TriangleMesh surface{one_tet().points, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}, {}, {}};
+  surface.groups = {{3, "in let"}, {4, "wall"}};
+  surface.triangle_groups = {0, 0, 1, 1};
+  const auto names = [&](const char* name) {
+    write_surface(surface, path(name));
+    const TriangleMesh back = read_surface(path(name));
+    EXPECT_EQ(back.triangle_groups, surface.triangle_groups) << name;
+    return back.groups;
+  };
+  EXPECT_EQ(names("a.obj"), (std::vector<FaceGroup>{{0, "in_let"}, {0, "wall"}}));
+  EXPECT_EQ(names("a.stl"), (std::vector<FaceGroup>{{0, "in_let"}, {0, "wall"}}));
+  EXPECT_EQ(names("a.ply"), (std::vector<FaceGroup>{{1, ""}, {2, ""}}));
+  EXPECT_EQ(names("a.vtp"), (std::vector<FaceGroup>{{1, "in let"}, {2, "wall"}}));
+  write_surface(surface, path("a.off"));
+  EXPECT_TRUE(read_surface(path("a.off")).groups.empty());
+}
+
 TEST_F(Formats, UnknownExtensions) {
   const std::string in = error_of<UsageError>([&] { (void)read_surface(path("x.xyz")); });
   EXPECT_NE(in.find("\".xyz\" for a surface; known are .ply .obj .stl .off"), std::string::npos) << in;
   const std::string out = error_of<UsageError>([&] { check_output_path(path("x")); });
   EXPECT_NE(out.find("no extension for a tet mesh; known are .vtu .msh .mesh"), std::string::npos) << out;
-  const std::string only_read = error_of<UsageError>([&] { check_output_path(path("x.vtk")); });
-  EXPECT_NE(only_read.find("\".vtk\" can be read, not written, for a tet mesh; known are .vtu .msh .mesh"),
-            std::string::npos)
-      << only_read;
   // Formats of surfaces can't hold a tet mesh.
   (void)error_of<UsageError>([&] { check_output_path(path("x.ply")); });
   (void)error_of<UsageError>([&] { check_output_path(path("x.vtu"), FileKind::surface); });

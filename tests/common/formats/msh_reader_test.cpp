@@ -76,8 +76,8 @@ TEST(MshReader, DataAndUnknownSections) {
 
 TEST(MshReader, BadInput) {
   const std::string whole = head + entities + nodes + elements;
-  expect_input_error(read_msh, replaced(whole, "4.1 0 8", "4.1 1 8"), "line 2", "binary");
-  expect_input_error(read_msh, replaced(whole, "4.1 0 8", "4.0 0 8"), "\"4.0\"", "4.1 ASCII");
+  expect_input_error(read_msh, replaced(whole, "4.1 0 8", "4.1 1 8"), "four bytes", "damaged");
+  expect_input_error(read_msh, replaced(whole, "4.1 0 8", "3.0 0 8"), "\"3.0\"", "4.0 or 4.1");
   expect_input_error(read_msh, head + "$PartitionedEntities\n1\n$EndPartitionedEntities\n", "line 4",
                      "partitioned");
   expect_input_error(read_msh, replaced(whole, "1 1 1 2\n", "4000000000 1 1 2\n"), "line 5", "4000000000");

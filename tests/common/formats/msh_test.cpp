@@ -329,8 +329,10 @@ TEST(Msh, BadInput) {
   const std::string tet = "1 4 2 1 1 1 2 3 4\n";
   expect_input_error(read_msh, "", "empty");
   expect_input_error(read_msh, "hello", "\"hello\"");
-  expect_input_error(read_msh, "$MeshFormat\n4 0 8\n$EndMeshFormat\n", "\"4\"", "msh22");
-  expect_input_error(read_msh, "$MeshFormat\n2.2 1 8\n", "binary", "ASCII");
+  expect_input_error(read_msh, "$MeshFormat\n3 0 8\n$EndMeshFormat\n", "\"3\"", "msh41");
+  expect_input_error(read_msh, "$MeshFormat\n2.2 1 4\n", "line 2", "numbers of 4 bytes");
+  expect_input_error(read_msh, "$MeshFormat\n2.2 2 8\n", "line 2", "type of the file is 2");
+  expect_input_error(read_msh, "$MeshFormat\n2.2 1 8\n\2\2\2\2\n", "four bytes");
   expect_input_error(read_msh, head + nodes, "$Elements", "cut short");
   expect_input_error(read_msh, head + nodes + elements("1 2 2 1 1 1 2 3\n"), "no tets");
   expect_input_error(read_msh, head + "$Nodes\n4000000000\n1 0 0 0\n", "line 5", "4000000000");
@@ -345,8 +347,10 @@ TEST(Msh, BadInput) {
   // Files with other volume elements are refused.
   expect_input_error(read_msh, head + nodes + elements("7 5 2 1 1 1 2 3 4 1 2 3 4\n" + tet, "2"), "line 13",
                      "1 hexahedra, the first of them element 7 (type 5)");
-  expect_input_error(read_msh, head + nodes + elements("1 11 2 1 1 1 2 3 4 1 2 3 4 1 2\n"), "line 13",
-                     "1 quadratic tets");
+  expect_input_error(read_msh, head + nodes + elements("1 12 2 1 1 1 2 3 4 1 2 3 4 1 2\n"), "line 13",
+                     "1 quadratic hexahedra");
+  expect_input_error(read_msh, head + nodes + elements("1 11 2 1 1 1 2 3 4 1 2 3 4 1 9\n"), "line 13",
+                     "node 9");
   const std::string whole = head + nodes + "$Elements\n1\n" + tet + "$EndElements";
   for (std::size_t n = 0; n < whole.size(); ++n)
     (void)error_of<InputError>([&] { (void)read_msh(whole.substr(0, n), "f"); });

@@ -137,7 +137,7 @@ TEST(Vtk, OtherVolumeCellsAreRefusedByKindAndNumber) {
       "0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 4 20\n4 0 1 2 3\n4 0 1 2 3\n4 0 1 2 3\n4 0 1 2 3\nCELL_TYPES 4\n";
   expect_input_error(read_vtk, head + "10\n12\n12\n14\n",
                      "line 14: 2 hexahedra and 1 pyramids, the first of them cell 1", "convert them to tets");
-  expect_input_error(read_vtk, head + "10\n24\n10\n10\n", "line 14: 1 quadratic tets", "-order 1");
+  expect_input_error(read_vtk, head + "10\n25\n10\n10\n", "line 14: 1 quadratic hexahedra", "Tetrahedralize");
   expect_input_error(read_vtk, head + "10\n999\n10\n10\n", "1 cells of the unknown type 999");
 }
 
@@ -178,8 +178,8 @@ TEST(Vtk, BadInput) {
   expect_input_error(read_vtk, replaced(good, "4 0 1 2 3", "4 0 1 2 -3"), "line 8", "point -3");
   expect_input_error(read_vtk, replaced(good, "5 10", "5 12"), "line 10",
                      "1 hexahedra, the first of them cell 1 (counted from 0, type 12)");
-  expect_input_error(read_vtk, replaced(good, "5 10", "5 24"), "line 10", "quadratic tet");
-  expect_input_error(read_vtk, replaced(good, "5 10", "5 5"), "no linear tets");
+  expect_input_error(read_vtk, replaced(good, "5 10", "5 24"), "line 8", "is a tet of 4 points");
+  expect_input_error(read_vtk, replaced(good, "5 10", "5 5"), "no tets");
   expect_input_error(read_vtk, replaced(good, "CELL_TYPES 2\n5 ", "CELL_TYPES 1\n"), "1 types for 2 cells");
   const auto data = [&](const std::string& more) { return good + more; };
   expect_input_error(read_vtk, data("CELL_DATA 3\n"), "line 11", "data of 3 cells, but there are 2");

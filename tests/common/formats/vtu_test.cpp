@@ -200,7 +200,8 @@ TEST(Vtu, OtherVolumeCellsAreRefusedByKindAndNumber) {
     expect_input_error(read_vtu, with_first(12), "1 hexahedra, the first of them cell 0",
                        "convert them to tets");
     expect_input_error(read_vtu, with_first(13), "byte", "1 wedges");
-    expect_input_error(read_vtu, with_first(24), "1 quadratic tets", "-order 1");
+    expect_input_error(read_vtu, with_first(24), "cell 0 is a tet of", "damaged");
+    expect_input_error(read_vtu, with_first(26), "1 quadratic wedges", "Tetrahedralize");
     expect_input_error(read_vtu, with_first(200), "1 cells of the unknown type 200");
   }
 }
@@ -311,7 +312,7 @@ TEST(Vtu, BadInput) {
   expect_input_error(read_vtu, file(ascii, some_points(false), some_cells(false, 3, 2), {}), "connectivity");
   expect_input_error(read_vtu, file(ascii, some_points(false, {1, 2, 3}), some_cells(false), {}),
                      "12 values");
-  expect_input_error(read_vtu, replaced(good, "5 10", "5 5"), "no linear tets");
+  expect_input_error(read_vtu, replaced(good, "5 10", "5 5"), "no tets");
   expect_input_error(read_vtu, ascii_file({array<std::int64_t>("Int64", "material", {0, 1LL << 40}, false)}),
                      "32 bits");
   expect_input_error(read_vtu,

@@ -1,0 +1,148 @@
+#include "common/formats/mesh_parts.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "common/error.h"
+#include "common/formats/unique_names.h"
+#include "common/mesh/boundary_groups.h"
+#include "common/mesh/face_buckets.h"
+#include "common/mesh/interfaces.h"
+
+namespace tetwright {
+
+namespace {
+
+std::string name_of_tag(MaterialTag tag, const std::map<MaterialTag, std::string>& names) {
+  const auto known = names.find(tag);
+  return known != names.end() && !known->second.empty() ? known->second : "material_" + std::to_string(tag);
+}
+
+}  // namespace
+
+MeshParts mesh_parts(const TetMesh& mesh, const NameRules& rules) {
+  MeshParts parts;
+  std::map<MaterialTag, std::vector<Index>> tets;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) tets[mesh.materials[t]].push_back(static_cast<Index>(t));
+  UniqueNames of_materials(rules.form, rules.ignore_case);
+  std::map<MaterialTag, std::string> written;
+  for (auto& [tag, of_tag] : tets) {
+    const std::string name = of_materials.add(name_of_tag(tag, mesh.material_names));
+    written[tag] = name;
+    parts.materials.push_back({tag, name, std::move(of_tag)});
+  }
+
+  const BoundaryGroups groups(mesh);
+  UniqueNames of_surfaces(rules.form, rules.ignore_case);
+  std::map<std::int64_t, std::size_t> surface_of;
+  for (const BoundaryGroups::Group& g : groups.all()) {
+    surface_of[g.number] = parts.surfaces.size();
+    parts.surfaces.push_back({g.number, {}, {}});
+  }
+  // The user's names come first.
+  for (const bool of_user : {true, false})
+    for (const BoundaryGroups::Group& g : groups.all()) {
+      if (g.pair.has_value() == of_user) continue;
+      std::string& name = parts.surfaces[surface_of.at(g.number)].name;
+      if (g.pair)
+        name = of_surfaces.add_pair(pair_name(*g.pair, written));
+      else
+        name = of_surfaces.add(g.face_group.name.empty() ? "surface_" + std::to_string(g.face_group.number)
+                                                         : g.face_group.name);
+    }
+  for (std::size_t i = 0; i < mesh.interfaces.size(); ++i)
+    parts.surfaces[surface_of.at(groups.number_of(mesh.interfaces[i]))].faces.push_back(i);
+  return parts;
+}
+
+std::string plain_name(const std::string& name, std::size_t longest) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  std::string out;
+  for (const char c : name) out += is_letter(c) || (c >= '0' && c <= '9') ? c : '_';
+  if (out.empty() || !is_letter(out[0])) out = "n" + out;
+  return out.substr(0, longest);
+}
+
+std::map<MaterialTag, std::int64_t> positive_numbers(const std::vector<MaterialTag>& materials,
+                                                     std::int64_t max) {
+  const std::set<MaterialTag> tags(materials.begin(), materials.end());
+  const auto fits = [&](MaterialTag tag) { return tag >= 1 && tag <= max; };
+  std::map<MaterialTag, std::int64_t> numbers;
+  std::int64_t next = 1;
+  for (const MaterialTag tag : tags) {
+    if (fits(tag)) {
+      numbers[tag] = tag;
+      continue;
+    }
+    while (next <= std::numeric_limits<MaterialTag>::max() && tags.contains(static_cast<MaterialTag>(next)))
+      ++next;
+    numbers[tag] = next++;
+  }
+  return numbers;
+}
+
+std::vector<TetFace> faces_of_tets(const TetMesh& mesh) {
+  std::vector<std::pair<Triangle, std::size_t>> wanted;
+  wanted.reserve(mesh.interfaces.size());
+  std::vector<std::uint8_t> flagged(mesh.points.size(), 0);
+  for (std::size_t i = 0; i < mesh.interfaces.size(); ++i) {
+    Triangle ids = mesh.interfaces[i].ids;
+    for (const Index v : ids) flagged[v] = 1;
+    std::sort(ids.begin(), ids.end());
+    wanted.emplace_back(ids, i);
+  }
+  std::sort(wanted.begin(), wanted.end());
+  std::vector<TetFace> out(mesh.interfaces.size(), {no_index, 0});
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const Tet& tet = mesh.tets[t];
+    for (int f = 0; f < 4; ++f) {
+      const auto& corners = tet_faces[static_cast<std::size_t>(f)];
+      if (!flagged[tet[corners[0]]] || !flagged[tet[corners[1]]] || !flagged[tet[corners[2]]]) continue;
+      const Triangle ids = sorted_face(tet, f).vertices;
+      const auto at = std::lower_bound(wanted.begin(), wanted.end(), std::pair(ids, std::size_t{0}));
+      if (at != wanted.end() && at->first == ids && mesh.interfaces[at->second].material == mesh.materials[t])
+        out[at->second] = {static_cast<Index>(t), static_cast<std::uint8_t>(f)};
+    }
+  }
+  for (const TetFace& face : out) TETWRIGHT_CHECK(face.tet != no_index);
+  return out;
+}
+
+TriangleMesh interface_surface(const TetMesh& mesh) {
+  TriangleMesh surface;
+  std::vector<Index> new_index(mesh.points.size(), no_index);
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    for (const Index v : t.ids) new_index[v] = 0;
+  for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+    if (new_index[p] == no_index) continue;
+    new_index[p] = static_cast<Index>(surface.points.size());
+    surface.points.push_back(mesh.points[p]);
+  }
+  for (const MeshParts::Surface& s : mesh_parts(mesh, {printable_name}).surfaces) {
+    for (const std::size_t f : s.faces) {
+      const Triangle& ids = mesh.interfaces[f].ids;
+      surface.triangles.push_back({new_index[ids[0]], new_index[ids[1]], new_index[ids[2]]});
+      surface.triangle_groups.push_back(static_cast<std::uint32_t>(surface.groups.size()));
+    }
+    surface.groups.push_back({s.number, s.name});
+  }
+  return surface;
+}
+
+std::vector<Index> nodes_of_faces(const TetMesh& mesh, const std::vector<std::size_t>& faces,
+                                  const std::vector<std::array<Index, 3>>* midside) {
+  std::vector<Index> nodes;
+  for (const std::size_t f : faces) {
+    for (const Index v : mesh.interfaces[f].ids) nodes.push_back(v);
+    if (midside)
+      for (const Index m : (*midside)[f]) nodes.push_back(static_cast<Index>(mesh.points.size()) + m);
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+}  // namespace tetwright

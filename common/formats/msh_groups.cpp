@@ -1,0 +1,52 @@
+#include "common/formats/msh_groups.h"
+
+#include "common/formats/msh_data.h"
+#include "common/formats/unique_names.h"
+#include "common/mesh/interfaces.h"
+
+namespace tetwright {
+
+namespace {
+
+std::map<MaterialTag, std::string> material_names_to_write(const std::map<MaterialTag, std::string>& names) {
+  std::map<MaterialTag, std::string> written;
+  std::map<std::string, std::string> written_of;
+  UniqueNames unique(msh_name);
+  for (const bool unchanged : {true, false})  // these keep their names
+    for (const auto& [tag, name] : names) {
+      if ((msh_name(name) == name) != unchanged) continue;
+      const auto [known, added] = written_of.try_emplace(name);
+      if (added) known->second = unique.add(name);
+      written[tag] = known->second;
+    }
+  return written;
+}
+
+/// Groups of the user come first, those before the others whose names stay as they are.
+std::map<std::int64_t, std::string> group_names_to_write(const BoundaryGroups& groups,
+                                                         const std::map<MaterialTag, std::string>& names) {
+  std::map<std::int64_t, std::string> written;
+  UniqueNames unique(msh_name);
+  for (const bool unchanged : {true, false})
+    for (const BoundaryGroups::Group& g : groups.all()) {
+      const std::string& name = g.face_group.name;
+      if (!name.empty() && (msh_name(name) == name) == unchanged) written[g.number] = unique.add(name);
+    }
+  // A number that cannot be kept.
+  for (const BoundaryGroups::Group& g : groups.all())
+    if (const FaceGroup& of_user = g.face_group;
+        of_user.name.empty() && of_user.number != 0 && of_user.number != g.number)
+      written[g.number] = unique.add(std::to_string(of_user.number));
+  for (const BoundaryGroups::Group& g : groups.all())
+    if (g.pair) written[g.number] = unique.add_pair(pair_name(*g.pair, names));
+  return written;
+}
+
+}  // namespace
+
+MshGroups::MshGroups(const TetMesh& mesh)
+    : faces(mesh),
+      material_names(material_names_to_write(mesh.material_names)),
+      face_names(group_names_to_write(faces, material_names)) {}
+
+}  // namespace tetwright
