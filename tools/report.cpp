@@ -146,6 +146,11 @@ void print_report(const CommandLine& line, const RunReport& run) {
         run.edge_lengths->longest);
   else if (run.edge_lengths)
     std::printf("edge lengths: %.4g to %.4g\n", run.edge_lengths->shortest, run.edge_lengths->longest);
+  if (run.second_order)
+    std::printf(
+        "second order: of %zu edges on surfaces %zu follow them, %zu part of the way, %zu are straight\n",
+        run.second_order->edges, run.second_order->on_surface, run.second_order->part_way,
+        run.second_order->straight);
   if (run.mesher)
     std::printf("resolution %d (cells of %.4g), ", run.mesher->resolution, run.mesher->cell_size);
   std::printf("%.2f s: read %.2f", run.seconds_total, run.seconds_read);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/features/surface_patches.h"
+#include "common/mesh/curved_elements.h"
 #include "common/mesh/mesh_check.h"
 #include "common/mesh/mesh_statistics.h"
 #include "common/sizes/size_field.h"
@@ -76,8 +77,9 @@ struct RunReport {
   std::vector<FeatureReport> features;  ///< of each surface, or of the tet mesh
   CreaseCurves creases;                 ///< of all of them
   std::optional<CreaseFidelity> crease_fidelity;
-  std::vector<PatchFidelity> patches;  ///< that the input names or numbers
-  std::size_t held_by_input = 0;       ///< tets of the result below the bound, see tets_held_by_input()
+  std::optional<CurvingReport> second_order;  ///< with --order 2
+  std::vector<PatchFidelity> patches;         ///< that the input names or numbers
+  std::size_t held_by_input = 0;  ///< tets of the result below the bound, see tets_held_by_input()
   std::vector<MaterialFidelity> fidelity;
   std::map<MaterialTag, std::string> material_names;
   std::optional<SimplifyReport> simplify;

@@ -312,6 +312,11 @@ std::string stats_json(const CommandLine& line, const RunReport& run) {
                       {"from_surface", deviation_json(run.deviation->from_surface)},
                       {"apart_area", run.deviation->apart_area},
                       {"hidden_area", run.deviation->hidden_area}};
+  if (run.second_order)
+    j["second_order"] = {{"surface_edges", run.second_order->edges},
+                         {"on_surface", run.second_order->on_surface},
+                         {"part_way", run.second_order->part_way},
+                         {"straight", run.second_order->straight}};
   if (run.edge_lengths) j["edge_lengths"] = edge_lengths_json(*run.edge_lengths, run.sizes);
   if (run.crease_fidelity) j["creases"] = creases_json(*run.crease_fidelity);
   j["iterations"] = nlohmann::json::array();

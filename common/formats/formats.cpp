@@ -25,6 +25,7 @@
 #include "common/formats/vtk.h"
 #include "common/formats/vtp.h"
 #include "common/formats/vtu.h"
+#include "common/formats/xdmf.h"
 
 namespace tetwright {
 
@@ -64,12 +65,16 @@ ReadTetMesh read_one_file(const std::string& path, const ReadTetMeshOptions& opt
   return read(read_whole_file(path), path, options);
 }
 
-/// `path` with another extension, in upper case if its own is.
+/// `path` with something else in place of its extension, in upper case if that is.
 std::string with_extension(const std::string& path, std::string extension) {
   const std::string own = std::filesystem::path(path).extension().string();
   if (own.size() > 1 && std::isupper(static_cast<unsigned char>(own[1])))
     for (char& c : extension) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return std::filesystem::path(path).replace_extension(extension).string();
+  return std::filesystem::path(path).replace_extension().string() + extension;
+}
+
+ReadTetMesh read_xdmf_files(const std::string& path, const ReadTetMeshOptions& options) {
+  return read_xdmf(read_whole_file(path), path, read_whole_file, options);
 }
 
 ReadTetMesh read_node_with_ele(const std::string& path, const ReadTetMeshOptions& options) {
@@ -85,11 +90,17 @@ ReadTetMesh read_ele_with_node(const std::string& path, const ReadTetMeshOptions
 /// A file that a tet mesh is written as.
 struct WrittenFile {
   const char* extension;
-  void (*write)(const MeshToWrite& mesh, const ByteSink& sink);
+  /// `first` is the name, without folders, of the first file that the mesh is written as.
+  void (*write)(const MeshToWrite& mesh, const std::string& first, const ByteSink& sink);
 };
 
+template <void (*write)(const MeshToWrite&, const ByteSink&)>
+void write_alone(const MeshToWrite& mesh, const std::string& /*first*/, const ByteSink& sink) {
+  write(mesh, sink);
+}
+
 template <std::string (*write)(const MeshToWrite&)>
-void write_as_one(const MeshToWrite& mesh, const ByteSink& sink) {
+void write_as_one(const MeshToWrite& mesh, const std::string& /*first*/, const ByteSink& sink) {
   sink(write(mesh));
 }
 
@@ -103,13 +114,17 @@ struct TetFormat {
 };
 
 const std::vector<TetFormat>& tet_formats() {
-  static const std::vector<WrittenFile> tetgen{
-      {".node", write_tetgen_node}, {".ele", write_tetgen_ele}, {".face", write_tetgen_face}};
+  static const std::vector<WrittenFile> tetgen{{".node", write_alone<write_tetgen_node>},
+                                               {".ele", write_alone<write_tetgen_ele>},
+                                               {".face", write_alone<write_tetgen_face>}};
+  static const std::vector<WrittenFile> xdmf{{".h5", write_alone<write_xdmf_numbers>},
+                                             {".xdmf", write_xdmf_mesh},
+                                             {"_facets.xdmf", write_xdmf_facets}};
   static const std::vector<TetFormat> formats{
       {.extension = ".vtu",
        .name = "vtu",
        .read = read_one_file<read_vtu>,
-       .write = {{".vtu", write_vtu}},
+       .write = {{".vtu", write_alone<write_vtu>}},
        .surfaces = false,
        .second_order = true},
       {.extension = ".msh",
@@ -120,12 +135,12 @@ const std::vector<TetFormat>& tet_formats() {
       {.extension = ".msh",
        .name = "msh41",
        .read = read_one_file<read_msh>,
-       .write = {{".msh", write_msh41}},
+       .write = {{".msh", write_alone<write_msh41>}},
        .second_order = true},
       {.extension = ".msh",
        .name = "msh41-binary",
        .read = read_one_file<read_msh>,
-       .write = {{".msh", write_msh41_binary}},
+       .write = {{".msh", write_alone<write_msh41_binary>}},
        .second_order = true},
       {.extension = ".mesh",
        .name = "medit",
@@ -137,35 +152,36 @@ const std::vector<TetFormat>& tet_formats() {
       {.extension = ".meshb",
        .name = "medit-binary",
        .read = read_one_file<read_medit_binary>,
-       .write = {{".meshb", write_medit_binary}},
+       .write = {{".meshb", write_alone<write_medit_binary>}},
        .point_fields = false,
        .names = false,
        .fields = false},
       {.extension = ".vtk",
        .name = "vtk",
        .read = read_one_file<read_vtk>,
-       .write = {{".vtk", write_vtk}},
+       .write = {{".vtk", write_alone<write_vtk>}},
        .second_order = true},
       {.extension = ".inp",
        .name = "abaqus",
        .read = read_one_file<read_abaqus>,
-       .write = {{".inp", write_abaqus}},
+       .write = {{".inp", write_alone<write_abaqus>}},
        .point_fields = false,
        .fields = false,
        .second_order = true},
       {.extension = ".bdf",
        .name = "nastran",
        .read = read_one_file<read_nastran>,
-       .write = {{".bdf", write_nastran}},
+       .write = {{".bdf", write_alone<write_nastran>}},
        .point_fields = false,
        .fields = false,
        .second_order = true},
       {.extension = ".feb",
        .name = "febio",
        .read = nullptr,
-       .write = {{".feb", write_febio}},
+       .write = {{".feb", write_alone<write_febio>}},
        .fields = false,
        .second_order = true},
+      {.extension = ".xdmf", .name = "xdmf", .read = read_xdmf_files, .write = xdmf, .second_order = true},
       {.extension = ".node", .name = "tetgen", .read = read_node_with_ele, .write = tetgen, .fields = false},
       {.extension = ".ele", .name = "tetgen", .read = read_ele_with_node, .write = tetgen, .fields = false}};
   return formats;
@@ -377,10 +393,11 @@ void write_tet_mesh(const MeshToWrite& mesh, const std::string& path, OutputFile
                     const std::string& name) {
   const TetFormat& format = need_written_format(path, name);
   const std::vector<std::string> paths = files_of_tet_mesh(path, name);
+  const std::string first = std::filesystem::path(paths.front()).filename().string();
   std::optional<OutputFiles> own;  // several files appear together
   if (!files) files = &own.emplace();
   for (std::size_t i = 0; i < paths.size(); ++i)
-    files->write(paths[i], [&](const ByteSink& sink) { format.write[i].write(mesh, sink); });
+    files->write(paths[i], [&](const ByteSink& sink) { format.write[i].write(mesh, first, sink); });
   if (own) own->commit();
 }
 

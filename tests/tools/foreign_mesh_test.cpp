@@ -115,8 +115,8 @@ TEST(ForeignMesh, MeshesOfOtherProgramsAreMadeCoherent) {
   EXPECT_EQ(counts["tets listed the other way round"], mesh.tets.size() / 2);
   EXPECT_EQ(counts.size(), 2u);
   EXPECT_EQ(run("check " + (f / "out.vtu")).status, 0);
-  expect_refused("simplify " + (f / "m.ele") + " -o " + (f / "out.ele") + " --target-tets 10", 2,
-                 {"\".ele\" can be read, not written", ".vtu .msh .mesh"});
+  expect_refused("simplify " + (f / "m.ele") + " -o " + (f / "out.ply") + " --target-tets 10", 2,
+                 {"\".ply\" for a tet mesh", ".vtu .msh .mesh"});
   // If all tets have a repeated vertex, nothing is left.
   put(f / "flat.node", "4 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n");
   put(f / "flat.ele", "2 4\n0 0 1 2 2\n1 3 1 3 2\n");

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/formats/dropped.h"
+#include "common/mesh/midside_nodes.h"
 #include "common/parallel/parallel.h"
 #include "tools/command_line.h"
 #include "tools/progress_bar.h"
@@ -33,6 +35,7 @@ struct CommandRun {
   ThreadLimit threads;
   ProgressBar progress;
   RunReport report;
+  std::optional<MidsideNodes> midside;  ///< of the result, with --order 2
 };
 
 /// The files that a command reads: the positional inputs, then those of --material. Empty for `sample`.

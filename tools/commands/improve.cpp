@@ -6,6 +6,7 @@
 #include "tools/commands/commands.h"
 #include "tools/commands/output_paths.h"
 #include "tools/commands/result.h"
+#include "tools/commands/second_order.h"
 #include "tools/commands/tet_input.h"
 #include "tools/limiting_rules.h"
 
@@ -50,8 +51,10 @@ ExitStatus run_improve(const CommandLine& line) {
   CommandRun run(line);
   check_output_paths(line);
   TetInput input = read_tets(run);
+  const std::optional<SurfaceToFollow> surface = followed_interfaces(input.mesh, run);
   TetMesh mesh = improve_shapes(std::move(input.mesh), run);
   report_tets_below(mesh, run);
+  if (surface) make_second_order(mesh, *surface, run);
   if (input.with_fields) transfer_fields(*input.with_fields, mesh);
   input.with_fields.reset();
   return finish(mesh, nullptr, run);

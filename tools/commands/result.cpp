@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <optional>
 #include <utility>
 
 #include "common/formats/atomic_file.h"
 #include "common/formats/formats.h"
 #include "common/formats/mesh_parts.h"
-#include "common/mesh/midside_nodes.h"
 #include "common/message_text.h"
 #include "tools/held_tets.h"
 #include "tools/limiting_rules.h"
@@ -378,10 +376,9 @@ TetMesh without_triangles(TetMesh mesh) {
   return mesh;
 }
 
-void write_mesh(const TetMesh& mesh, const CommandLine& line, OutputFiles& files) {
-  std::optional<MidsideNodes> midside;
-  if (line.order > 1) midside = straight_midside_nodes(mesh);
-  write_tet_mesh({mesh, midside ? &*midside : nullptr}, line.output, &files, line.output_format);
+void write_mesh(const TetMesh& mesh, const CommandRun& run, OutputFiles& files) {
+  write_tet_mesh({mesh, run.midside ? &*run.midside : nullptr}, run.line.output, &files,
+                 run.line.output_format);
 }
 
 void write_files(const TetMesh& mesh, const MaterialField* field, CommandRun& run) {
@@ -390,9 +387,9 @@ void write_files(const TetMesh& mesh, const MaterialField* field, CommandRun& ru
   OutputFiles files(&run.progress);
   if (field) write_fields(*field, run.line.write_sdf, &files);
   if (run.line.no_boundary)
-    write_mesh(without_triangles(mesh), run.line, files);
+    write_mesh(without_triangles(mesh), run, files);
   else
-    write_mesh(mesh, run.line, files);
+    write_mesh(mesh, run, files);
   if (!run.line.boundary.empty()) write_surface(interface_surface(mesh), run.line.boundary, &files);
   run.report.seconds_write = watch.seconds();
   run.report.seconds_total = run.since_start.seconds();

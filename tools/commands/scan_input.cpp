@@ -255,7 +255,7 @@ DenseMesh make_dense_mesh(ScanInput input, CommandRun& run) {
   const Stopwatch watch;
   DenseMesh dense = std::visit([&](const auto& scan) { return mesh_input(scan, run); }, input);
   if (run.line.command == Command::mesh) {
-    dense.reference.reset();
+    if (run.line.order < 2) dense.reference.reset();
     if (run.line.write_sdf.empty()) dense.field.reset();
   }
   // The outside has the sizes of the nearest place where the field has none.

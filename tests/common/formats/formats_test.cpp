@@ -23,9 +23,9 @@ TEST_F(Formats, KindsByExtension) {
     EXPECT_EQ(file_kind(name, FileUse::write), FileKind::tet_mesh);
   }
   EXPECT_EQ(file_kind("x.feb"), FileKind::unknown);
-  EXPECT_EQ(known_extensions(FileKind::tet_mesh), ".vtu .msh .mesh .meshb .vtk .inp .bdf .node .ele");
+  EXPECT_EQ(known_extensions(FileKind::tet_mesh), ".vtu .msh .mesh .meshb .vtk .inp .bdf .xdmf .node .ele");
   EXPECT_EQ(known_extensions(FileKind::tet_mesh, FileUse::write),
-            ".vtu .msh .mesh .meshb .vtk .inp .bdf .feb .node .ele");
+            ".vtu .msh .mesh .meshb .vtk .inp .bdf .feb .xdmf .node .ele");
   for (const char* name : {"", "ply", "a/.ply/b", "x.vtl", "x.", "x.ply "})
     EXPECT_EQ(file_kind(name), FileKind::unknown);
 }

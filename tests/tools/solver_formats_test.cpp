@@ -1,0 +1,87 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "common/formats/formats.h"
+#include "tests/tools/program.h"
+
+namespace tetwright::solver_formats_test {
+namespace {
+
+class SolverFormats : public ::testing::Test {
+ protected:
+  static void expect_status(const std::string& arguments, int status) {
+    const Answer a = run(arguments);
+    EXPECT_EQ(a.status, status) << arguments << "\n" << a.err;
+  }
+
+  SolverFormats() { expect_status("sample two_materials -o " + (f / "in.vtu"), 0); }
+  Answer simplified(const std::string& out, const std::string& more = "") {
+    return run("simplify " + (f / "in.vtu") + " --target-tets 200 -o " + (f / out) + " " + more);
+  }
+
+  TemporaryFolder f;
+};
+
+TEST_F(SolverFormats, EveryFormatIsWrittenAndReadAgain) {
+  (void)simplified("reference.vtu");
+  const TetMesh reference = read_tet_mesh(f / "reference.vtu").mesh;
+  for (const TetFormatInfo& format : written_tet_formats()) {
+    SCOPED_TRACE(format.name);
+    const std::string out = format.name + format.extension;
+    const Answer a = simplified(out, "--output-format " + format.name);
+    EXPECT_TRUE(a.status == 0 || a.status == 1) << a.err;
+    if (file_kind(f / out) == FileKind::unknown) continue;
+    const TetMesh back = read_tet_mesh(f / out).mesh;
+    EXPECT_EQ(back.points.size(), reference.points.size());
+    EXPECT_EQ(back.tets.size(), reference.tets.size());
+    EXPECT_EQ(a.err.find("names of materials") == std::string::npos, format.names) << a.err;
+    if (format.names && format.name != "tetgen") EXPECT_EQ(back.material_names, reference.material_names);
+  }
+}
+
+TEST_F(SolverFormats, SecondOrderFollowsTheSurface) {
+  expect_status("sample sphere -o " + (f / "ball.ply"), 0);
+  const std::string made = "prepare " + (f / "ball.ply") + " --target-tets 1500 --order 2 -o " +
+                           (f / "ball.vtu") + " --stats " + (f / "s.json");
+  expect_status(made, 0);
+  const auto stats = nlohmann::json::parse(contents(f / "s.json"));
+  const auto& second = stats.at("second_order");
+  EXPECT_GT(second.at("on_surface").get<int>(), 9 * second.at("surface_edges").get<int>() / 10);
+  EXPECT_EQ(second.at("surface_edges").get<int>(), second.at("on_surface").get<int>() +
+                                                       second.at("part_way").get<int>() +
+                                                       second.at("straight").get<int>());
+  expect_refused("simplify " + (f / "in.vtu") + " --target-tets 100 --order 2 -o " + (f / "m.mesh"), 2,
+                 {"--order 2", "ten-node"});
+  expect_refused("simplify " + (f / "in.vtu") + " --target-tets 100 --order 3 -o " + (f / "m.vtu"), 2,
+                 {"--order"});
+}
+
+TEST_F(SolverFormats, TheBoundaryAsASurfaceAndAMeshWithoutIt) {
+  (void)simplified("with.msh", "--boundary " + (f / "b.vtp"));
+  (void)simplified("without.msh", "--no-boundary");
+  const TriangleMesh boundary = read_surface(f / "b.vtp");
+  const TetMesh with = read_tet_mesh(f / "with.msh").mesh;
+  EXPECT_EQ(read_tet_mesh(f / "without.msh").mesh.tets, with.tets);
+  EXPECT_NE(contents(f / "with.msh").find("\"left|right\""), std::string::npos);
+  EXPECT_EQ(contents(f / "without.msh").find("\"left|right\""), std::string::npos);
+  std::vector<std::string> names;
+  for (const FaceGroup& g : boundary.groups) names.push_back(g.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"left|outside", "left|right", "right|outside"}));
+}
+
+TEST_F(SolverFormats, NoFileReplacesAnother) {
+  const std::string call = "simplify " + (f / "in.vtu") + " --target-tets 100 -o ";
+  expect_refused(call + (f / "m.vtu") + " --boundary " + (f / "m.vtu"), 2, {"for a surface"});
+  expect_refused(call + (f / "m.vtu") + " --boundary " + (f / "m.xyz"), 2, {".xyz", ".vtp"});
+  expect_refused(call + (f / "m.vtu") + " --output-format inp", 2, {"\"inp\"", "abaqus"});
+  expect_refused(call + (f / "no") + "/m.node", 5, {"no"});
+  // The files beside an output count, too.
+  expect_status("sample two_materials -o " + (f / "x.ele"), 0);
+  expect_refused("prepare " + (f / "x.ele") + " --target-tets 9 -o " + (f / "x.node"), 2, {"x.ele"});
+  // An input may be replaced by -o of simplify, and fields that a format cannot hold are said.
+  EXPECT_NE(run("simplify " + (f / "x.node") + " --target-tets 100 -o " + (f / "x.node")).status, 2);
+}
+
+}  // namespace
+}  // namespace tetwright::solver_formats_test
