@@ -50,7 +50,7 @@ enum class Kind { tet, quadratic_tet, volume, flat };
 Kind kind_of(const std::string& type) {
   // Of the names that follow, C3D is a continuum element, AC3D and DC3D are acoustic and thermal ones.
   const std::size_t at = type.find("C3D");
-  if (at == std::string::npos || at > 1)
+  if (at > 1)  // or nowhere
     return type.starts_with("SC") || type.starts_with("CSS") ? Kind::volume : Kind::flat;
   std::string nodes;
   for (std::size_t i = at + 3; i < type.size() && type[i] >= '0' && type[i] <= '9'; ++i) nodes += type[i];
