@@ -51,13 +51,14 @@ void check_files_are_different(const CommandLine& line) {
   const std::vector<Written> written = files_written(line);
   for (std::size_t i = 0; i < written.size(); ++i) {
     const auto& [option, file] = written[i];
+    std::string message = option;
+    message.append(" ").append(file);
     for (const std::string& input : files_read(line))
       if (same_file(input, file) && !(in_place && option == "-o"))
-        throw UsageError(option + " " + file + " is also an input; give it a name of its own");
+        throw UsageError(message + " is also an input; give it a name of its own");
     for (std::size_t j = 0; j < i; ++j)
       if (same_file(written[j].file, file))
-        throw UsageError(option + " " + file + " is also the file of " + written[j].option +
-                         "; give each its own");
+        throw UsageError(message + " is also the file of " + written[j].option + "; give each its own");
   }
 }
 
