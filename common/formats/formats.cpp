@@ -197,19 +197,26 @@ LabelVolume read_volume_files(const std::string& path) {
   return read(read_whole_file(path), path, read_whole_file);
 }
 
+LabelVolume read_image_with_header(const std::string& path) {
+  const std::string header = with_extension(path, ".hdr");
+  return read_nifti(read_whole_file(header), header, read_whole_file);
+}
+
 struct VolumeFormat {
   const char* extension;
   LabelVolume (*read)(const std::string& path);
   std::string (*write)(const LabelVolume& volume);  ///< null: the format is only read
 };
-constexpr std::array<VolumeFormat, 8> volume_formats{{{".nrrd", read_volume_files<read_nrrd>, write_nrrd},
-                                                      {".nhdr", read_volume_files<read_nrrd>, nullptr},
-                                                      {".mhd", read_volume_files<read_metaimage>, nullptr},
-                                                      {".mha", read_volume_files<read_metaimage>, nullptr},
-                                                      {".nii", read_one_volume_file<read_nifti>, nullptr},
-                                                      {".nii.gz", read_one_volume_file<read_nifti>, nullptr},
-                                                      {".inr", read_one_volume_file<read_inr>, nullptr},
-                                                      {".inr.gz", read_one_volume_file<read_inr>, nullptr}}};
+constexpr std::array<VolumeFormat, 10> volume_formats{{{".nrrd", read_volume_files<read_nrrd>, write_nrrd},
+                                                       {".nhdr", read_volume_files<read_nrrd>, nullptr},
+                                                       {".mhd", read_volume_files<read_metaimage>, nullptr},
+                                                       {".mha", read_volume_files<read_metaimage>, nullptr},
+                                                       {".nii", read_volume_files<read_nifti>, nullptr},
+                                                       {".nii.gz", read_volume_files<read_nifti>, nullptr},
+                                                       {".hdr", read_volume_files<read_nifti>, nullptr},
+                                                       {".img", read_image_with_header, nullptr},
+                                                       {".inr", read_one_volume_file<read_inr>, nullptr},
+                                                       {".inr.gz", read_one_volume_file<read_inr>, nullptr}}};
 
 std::string in_lower_case(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

@@ -1,4 +1,3 @@
-// Numbers in read functions are byte offsets in the header (nifti1.h, 2004).
 #include "common/formats/nifti.h"
 
 #include <cmath>
@@ -13,39 +12,58 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t nifti_header_size = 348;
-/// Header and four bytes that say whether extensions follow.
-constexpr std::size_t first_voxel = 352;
+/// Where a version of the format has its numbers, and of what type they are.
+struct Layout {
+  int header_size;
+  std::size_t magic;
+  std::size_t dim, dim_bytes;      ///< integers of 2 or 8 bytes
+  std::size_t type;                ///< int16
+  std::size_t pixdim, real_bytes;  ///< floats, of 4 or 8 bytes as all that follow
+  std::size_t offset;              ///< a float, or an integer of 8 bytes
+  std::size_t slope, intercept;
+  std::size_t qform, sform, code_bytes;  ///< integers of 2 or 4 bytes
+  std::size_t quaternion, qoffset, srow;
+};
+constexpr Layout version_1{348, 344, 40, 2, 70, 76, 4, 108, 112, 116, 252, 254, 2, 256, 268, 280};
+constexpr Layout version_2{540, 4, 16, 8, 12, 104, 8, 168, 176, 184, 344, 348, 4, 352, 376, 400};
 
 class NiftiHeader {
  public:
   NiftiHeader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {
     if (bytes_.empty()) fail("the file is empty");
-    if (bytes_.size() < nifti_header_size)
-      fail("only " + std::to_string(bytes_.size()) + " bytes, but the header has 348; the file is cut short");
+    if (bytes_.size() < sizeof(std::int32_t))
+      fail("only " + std::to_string(bytes_.size()) + " bytes; it is cut short");
     const auto size = load<std::int32_t>(bytes_.data(), false),
                other = load<std::int32_t>(bytes_.data(), true);
-    if (size == 540 || other == 540) fail("NIfTI-2 is not supported; save the volume as NIfTI-1");
-    if (size != 348 && other != 348)
-      fail("the header's size is " + std::to_string(size) + ", not 348; is this a NIfTI file?");
-    swap_ = size != 348;
-    const std::string_view magic = bytes_.substr(344, 4);
-    if (magic == std::string_view("ni1\0", 4))
-      fail("the voxels are in another file (.hdr and .img); save the volume as one file .nii");
-    if (magic != std::string_view("n+1\0", 4))
-      fail("expected \"n+1\" at byte 344, found " + in_quotes(magic) +
+    const bool second = size == version_2.header_size || other == version_2.header_size;
+    if (second) layout_ = &version_2;
+    if (size != layout_->header_size && other != layout_->header_size)
+      fail("the header's size is " + std::to_string(size) + ", not 348 or 540; is this a NIfTI file?");
+    swap_ = size != layout_->header_size;
+    if (bytes_.size() < header_size())
+      fail("only " + std::to_string(bytes_.size()) + " bytes, but the header has " +
+           std::to_string(header_size()) + "; the file is cut short");
+    const std::string_view magic = bytes_.substr(layout_->magic, 4);
+    const std::string_view number = second ? "2" : "1";
+    detached_ = magic == "ni" + std::string(number) + std::string(1, '\0');
+    if (!detached_ && magic != "n+" + std::string(number) + std::string(1, '\0'))
+      fail("expected \"n+" + std::string(number) + "\" at byte " + std::to_string(layout_->magic) +
+           ", found " + in_quotes(magic) +
            "; ANALYZE files say nothing of left and right, save the volume as NIfTI");
   }
 
+  std::size_t header_size() const { return static_cast<std::size_t>(layout_->header_size); }
+  /// The voxels are in a file of their own, .img.
+  bool detached() const { return detached_; }
   bool swap() const { return swap_; }
 
   std::array<int, 3> size() const {
-    const int axes = number<std::int16_t>(40);  // dim
+    const std::int64_t axes = dim(0);
     if (axes < 3 || axes > 7)
       fail("dim[0] is " + std::to_string(axes) + "; a volume of labels has 3 dimensions");
     std::array<std::int64_t, 3> sizes;
     for (int k = 1; k <= axes; ++k) {
-      const std::int64_t n = number<std::int16_t>(40 + 2 * static_cast<std::size_t>(k));
+      const std::int64_t n = dim(static_cast<std::size_t>(k));
       if (k <= 3)
         sizes[static_cast<std::size_t>(k - 1)] = n;
       else if (n != 1)
@@ -61,7 +79,7 @@ class NiftiHeader {
     format.type = type();
     format.swap = swap_;
     // A slope of 0, or none that is a number, means no scaling.
-    const double slope = number<float>(112), intercept = number<float>(116);
+    const double slope = real(layout_->slope), intercept = real(layout_->intercept);
     if (slope != 0 && std::isfinite(slope)) {
       if (!std::isfinite(intercept)) fail("scl_inter is not finite; repair the header");
       format.slope = slope;
@@ -70,37 +88,42 @@ class NiftiHeader {
     return format;
   }
 
+  /// Of the first voxel in its file.
   std::size_t offset() const {
-    const double offset = number<float>(108);
-    if (offset == 0) return first_voxel;
-    if (!(offset >= first_voxel && offset < 0x1p31 && offset == std::floor(offset)))
-      fail("vox_offset is " + text(offset) + ", not 352 or more; repair the header");
+    const double offset = layout_ == &version_2 ? static_cast<double>(number<std::int64_t>(layout_->offset))
+                                                : real(layout_->offset);
+    // Behind the header are four bytes that say whether extensions follow.
+    const std::size_t least = detached_ ? 0 : header_size() + 4;
+    if (offset == 0) return least;
+    if (!(offset >= static_cast<double>(least) && offset < 0x1p31 && offset == std::floor(offset)))
+      fail("vox_offset is " + text(offset) + ", not " + std::to_string(least) +
+           " or more; repair the header");
     return static_cast<std::size_t>(offset);
   }
 
   void read_geometry(LabelVolume& volume) const {
     // NIfTI's own definition: x to the right, y to the front, z up.
     volume.space = "right-anterior-superior";
-    if (number<std::int16_t>(254) > 0) {  // sform_code
+    if (code(layout_->sform) > 0) {
       for (std::size_t row = 0; row < 3; ++row) {
         const auto r = static_cast<int>(row);
         for (std::size_t column = 0; column < 3; ++column)
-          volume.directions(r, static_cast<int>(column)) = number<float>(280 + 16 * row + 4 * column);
-        volume.origin[r] = number<float>(280 + 16 * row + 12);
+          volume.directions(r, static_cast<int>(column)) = real(layout_->srow, 4 * row + column);
+        volume.origin[r] = real(layout_->srow, 4 * row + 3);
       }
       return;
     }
     Vec3 spacing;
     for (int k = 0; k < 3; ++k) {
-      spacing[k] = number<float>(80 + 4 * static_cast<std::size_t>(k));
+      spacing[k] = real(layout_->pixdim, static_cast<std::size_t>(k) + 1);
       if (!(spacing[k] > 0))
         fail("pixdim[" + std::to_string(k + 1) + "] is " + text(spacing[k]) +
              "; a spacing must be positive, repair the header");
     }
-    if (number<std::int16_t>(252) > 0) {  // qform_code
+    if (code(layout_->qform) > 0) {
       volume.directions = rotation();
-      if (number<float>(76) < 0) volume.directions.col(2) *= -1;  // pixdim[0]
-      for (int k = 0; k < 3; ++k) volume.origin[k] = number<float>(268 + 4 * static_cast<std::size_t>(k));
+      if (real(layout_->pixdim) < 0) volume.directions.col(2) *= -1;
+      for (int k = 0; k < 3; ++k) volume.origin[k] = real(layout_->qoffset, static_cast<std::size_t>(k));
     } else {
       volume.space.clear();  // nothing is said of where x points to
     }
@@ -112,9 +135,21 @@ class NiftiHeader {
   Number number(std::size_t offset) const {
     return load<Number>(bytes_.data() + offset, swap_);
   }
+  /// The i-th real number from `offset` on.
+  double real(std::size_t offset, std::size_t i = 0) const {
+    return layout_->real_bytes == 8 ? number<double>(offset + 8 * i)
+                                    : static_cast<double>(number<float>(offset + 4 * i));
+  }
+  std::int64_t dim(std::size_t i) const {
+    return layout_->dim_bytes == 8 ? number<std::int64_t>(layout_->dim + 8 * i)
+                                   : std::int64_t{number<std::int16_t>(layout_->dim + 2 * i)};
+  }
+  int code(std::size_t offset) const {
+    return layout_->code_bytes == 4 ? number<std::int32_t>(offset) : int{number<std::int16_t>(offset)};
+  }
 
   VoxelType type() const {
-    const int type = number<std::int16_t>(70);
+    const int type = number<std::int16_t>(layout_->type);
     switch (type) {
       case 2:
         return VoxelType::uint8;
@@ -163,7 +198,7 @@ class NiftiHeader {
 
   /// Of the quaternion (a, b, c, d), of which the header has the last three; a >= 0 makes it a unit one.
   Eigen::Matrix3d rotation() const {
-    double b = number<float>(256), c = number<float>(260), d = number<float>(264);
+    double b = real(layout_->quaternion), c = real(layout_->quaternion, 1), d = real(layout_->quaternion, 2);
     const double rest = 1 - (b * b + c * c + d * d);
     if (!std::isfinite(rest)) fail("the quaternion of the qform is not finite; repair the header");
     double a = 0;
@@ -193,26 +228,51 @@ class NiftiHeader {
 
   std::string_view bytes_;
   const std::string& name_;
-  bool swap_ = false;
+  const Layout* layout_ = &version_1;
+  bool swap_ = false, detached_ = false;
 };
+
+/// The voxels of a header "a.hdr" are in "a.img", in capitals where that is.
+std::string image_of(const std::string& name) {
+  if (name.ends_with(".HDR")) return name.substr(0, name.size() - 4) + ".IMG";
+  return (name.ends_with(".hdr") ? name.substr(0, name.size() - 4) : name) + ".img";
+}
+
+ByteSource source_of(std::string_view bytes, const std::string& name) {
+  return {bytes, bytes.starts_with("\x1f\x8b") ? ByteSource::Packing::deflate : ByteSource::Packing::none,
+          name};
+}
 
 }  // namespace
 
-LabelVolume read_nifti(std::string_view bytes, const std::string& name) {
-  ByteSource source(
-      bytes, bytes.starts_with("\x1f\x8b") ? ByteSource::Packing::deflate : ByteSource::Packing::none, name);
-  const std::string header_bytes(source.take(nifti_header_size));
+LabelVolume read_nifti(std::string_view bytes, const std::string& name, const FileReader& read_file) {
+  ByteSource source = source_of(bytes, name);
+  // The size of the header stands at its beginning.
+  std::string header_bytes(source.take(static_cast<std::size_t>(version_1.header_size)));
+  if (header_bytes.size() >= 4 && (load<std::int32_t>(header_bytes.data(), false) == version_2.header_size ||
+                                   load<std::int32_t>(header_bytes.data(), true) == version_2.header_size))
+    header_bytes += source.take(static_cast<std::size_t>(version_2.header_size - version_1.header_size));
   const NiftiHeader header(header_bytes, name);
   LabelVolume volume;
   volume.size = header.size();
   header.read_geometry(volume);
   check_geometry(volume, name);
   const VoxelFormat format = header.format();
-  const std::size_t between = header.offset() - nifti_header_size;
-  if (source.skip(between) < between)
-    throw InputError(name + ": the voxels begin at byte " + std::to_string(header.offset()) + " of " +
-                     std::to_string(source.taken()) + "; the file is cut short");
-  volume.labels = read_voxels(source, format, volume.size);
+  const auto read_from = [&](ByteSource& voxels, const std::string& file, std::size_t taken) {
+    const std::size_t between = header.offset() - taken;
+    if (voxels.skip(between) < between)
+      throw InputError(file + ": the voxels begin at byte " + std::to_string(header.offset()) + " of " +
+                       std::to_string(voxels.taken()) + "; the file is cut short");
+    volume.labels = read_voxels(voxels, format, volume.size);
+  };
+  if (!header.detached()) {
+    read_from(source, name, header.header_size());
+    return volume;
+  }
+  const std::string image = image_of(name);
+  const std::string image_bytes = read_file(image);
+  ByteSource voxels = source_of(image_bytes, image);
+  read_from(voxels, image, 0);
   return volume;
 }
 

@@ -38,7 +38,7 @@ TEST_F(Formats, VolumesAndTheirCompoundExtensions) {
     EXPECT_EQ(file_kind(name), FileKind::unknown) << name;
   EXPECT_EQ(file_kind("a.nrrd", FileUse::write), FileKind::volume);
   EXPECT_EQ(file_kind("a.nii.gz", FileUse::write), FileKind::unknown);
-  EXPECT_EQ(known_extensions(FileKind::volume), ".nrrd .nhdr .mhd .mha .nii .nii.gz .inr .inr.gz");
+  EXPECT_EQ(known_extensions(FileKind::volume), ".nrrd .nhdr .mhd .mha .nii .nii.gz .hdr .img .inr .inr.gz");
   EXPECT_EQ(known_extensions(FileKind::volume, FileUse::write), ".nrrd");
   EXPECT_EQ(file_stem("a/b.c/liver.NII.gz"), "liver");
   EXPECT_EQ(file_stem("liver.v2.inr.gz"), "liver.v2");

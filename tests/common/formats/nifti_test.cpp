@@ -36,10 +36,17 @@ class Header {
 Header plain() { return Header(2, 8); }
 const std::string body = counted_voxels<std::uint8_t>();
 
-LabelVolume read(const Header& header) { return read_nifti(header.bytes() + body, "f"); }
+/// Of one file.
+LabelVolume read_alone(std::string_view bytes, const std::string& name) {
+  return read_nifti(bytes, name, [](const std::string& path) -> std::string {
+    throw InputError(path + ": there is no such file");
+  });
+}
+
+LabelVolume read(const Header& header) { return read_alone(header.bytes() + body, "f"); }
 
 void expect_refused(const std::string& bytes, const std::string& first, const std::string& second = "") {
-  expect_input_error(read_nifti, bytes, first, second);
+  expect_input_error(read_alone, bytes, first, second);
 }
 void expect_refused(const Header& header, const std::string& first, const std::string& second = "") {
   expect_refused(header.bytes() + body, first, second);
@@ -50,11 +57,55 @@ void expect_type(int type) {
   for (const bool big : {false, true}) {
     const std::string bytes = Header(type, 8 * sizeof(Number), big).bytes() + counted_voxels<Number>(big);
     for (const std::string& file : {bytes, deflated(bytes)}) {
-      const LabelVolume v = read_nifti(file, "f");
+      const LabelVolume v = read_alone(file, "f");
       EXPECT_EQ(v.size, (std::array<int, 3>{2, 3, 4})) << type;
       EXPECT_EQ(v.labels, counted_labels()) << type;
     }
   }
+}
+
+TEST(Nifti, VersionTwo) {
+  for (const bool big : {false, true}) {
+    std::string bytes(544, '\0');
+    const auto set = [&]<class Number>(std::size_t offset, Number value) {
+      bytes.replace(offset, sizeof(Number), bytes_of<Number>({value}, big));
+    };
+    set(0, std::int32_t{540});
+    bytes.replace(4, 8, std::string("n+2\0\r\n\032\n", 8));
+    set(12, std::int16_t{4});
+    const std::int64_t dim[8] = {3, 2, 3, 4, 1, 1, 1, 1};
+    for (std::size_t k = 0; k < 8; ++k) set(16 + 8 * k, dim[k]);
+    for (std::size_t k = 0; k < 8; ++k) set(104 + 8 * k, double{0.1} * static_cast<double>(k));
+    set(168, std::int64_t{544});
+    set(344, std::int32_t{1});
+    for (std::size_t k = 0; k < 3; ++k) set(376 + 8 * k, 1.0 / 3 + static_cast<double>(k));
+    for (const std::string& file :
+         {bytes + counted_voxels<std::int16_t>(big), deflated(bytes + counted_voxels<std::int16_t>(big))}) {
+      const LabelVolume v = read_alone(file, "f");
+      EXPECT_EQ(v.size, (std::array<int, 3>{2, 3, 4}));
+      EXPECT_EQ(v.labels, counted_labels());
+      EXPECT_EQ(v.origin, Vec3(1.0 / 3, 1.0 / 3 + 1, 1.0 / 3 + 2));  // in doubles
+      EXPECT_EQ(v.directions(2, 2), 0.1 * 3);
+    }
+    set(168, std::int64_t{540});
+    expect_refused(bytes + body, "vox_offset is 540, not 544 or more");
+    for (std::size_t n = 1; n < 540; n += 7) expect_refused(bytes.substr(0, n), "");
+  }
+}
+
+TEST(Nifti, VoxelsInAFileBesideTheHeader) {
+  std::string header = Header(2, 8).set<float>(108, 0).bytes();
+  header.replace(344, 4, std::string("ni1\0", 4));
+  const auto with = [&](const std::string& voxels) {
+    return read_nifti(header, "a/b.hdr", [&](const std::string& path) {
+      EXPECT_EQ(path, "a/b.img");
+      return voxels;
+    });
+  };
+  EXPECT_EQ(with(body).labels, counted_labels());
+  EXPECT_EQ(with(deflated(body)).labels, counted_labels());
+  EXPECT_NE(error_of<InputError>([&] { (void)with(body.substr(1)); }).find("a/b.img"), std::string::npos);
+  EXPECT_EQ(error_of<InputError>([&] { (void)read_alone(header, "f"); }), "f.img: there is no such file");
 }
 
 TEST(Nifti, EveryTypeInBothByteOrders) {
@@ -133,7 +184,7 @@ TEST(Nifti, MoreAxesAndOffsets) {
   EXPECT_EQ(read(plain().set<std::int16_t>(40, 7)).labels, counted_labels());
   EXPECT_EQ(read(plain().set<float>(108, 0)).labels, counted_labels());
   EXPECT_EQ(
-      read_nifti(plain().set<float>(108, 368).bytes() + std::string(16, 'x') + body + "more", "f").labels,
+      read_alone(plain().set<float>(108, 368).bytes() + std::string(16, 'x') + body + "more", "f").labels,
       counted_labels());
   expect_refused(plain().set<std::int16_t>(40, 4).set<std::int16_t>(48, 2),
                  "dim[4] is 2; a volume of one moment");
@@ -151,9 +202,7 @@ TEST(Nifti, MoreAxesAndOffsets) {
 TEST(Nifti, BadInput) {
   expect_refused("", "empty");
   expect_refused(plain().bytes().substr(0, 347), "only 347 bytes");
-  expect_refused(plain().set<std::int32_t>(0, 540), "NIfTI-2 is not supported");
   expect_refused(plain().set<std::int32_t>(0, 17), "size is 17");
-  expect_refused(replaced(plain().bytes(), "n+1", "ni1") + body, "another file");
   expect_refused(replaced(plain().bytes(), "n+1", std::string(3, '\0')) + body, "ANALYZE");
   expect_refused(Header(128, 24), "type 128 (RGB colours)");
   expect_refused(Header(2304, 32), "type 2304 (RGBA colours)");
@@ -170,7 +219,7 @@ TEST(Nifti, BadInput) {
   expect_refused(packed, "only 23 are there");
   expect_refused(packed.substr(0, 5), "empty");
   for (std::size_t n = 0; n < packed.size(); ++n)
-    (void)error_of<InputError>([&] { (void)read_nifti(packed.substr(0, n), "f"); });
+    (void)error_of<InputError>([&] { (void)read_alone(packed.substr(0, n), "f"); });
 }
 
 }  // namespace
