@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct LabelVolume {
   /// or empty. Nothing is converted between them.
   std::string space;
   std::vector<MaterialTag> labels;  ///< the first axis fastest
+  /// What the file calls its labels, also some that no voxel has; names may repeat.
+  std::map<MaterialTag, std::string> names = {};
 
   /// The position of a voxel index, which need not be whole, input units.
   Vec3 to_input(const Vec3& index) const;

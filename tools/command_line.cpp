@@ -270,7 +270,8 @@ std::string joined(const std::vector<std::string>& names) {
 constexpr const char* scans =
     "Surfaces (.ply .obj .stl .off .vtp .msh .mesh) and level sets (.vdb), each a material, of which later "
     "ones carve "
-    "earlier ones; or one segmented volume (.nrrd .nhdr .mhd .mha .nii .nii.gz .hdr .img .inr .inr.gz, .vdb of whole "
+    "earlier ones; or one segmented volume (.nrrd .nhdr .mhd .mha .nii .nii.gz .hdr .img .inr .inr.gz, .vdb "
+    "of whole "
     "numbers)";
 constexpr const char* meshes = "Tet mesh: .vtu .msh .mesh .meshb .vtk .inp .bdf .xdmf .node .ele";
 

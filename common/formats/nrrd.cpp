@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -118,8 +119,49 @@ bool is_list(std::string_view value) {
   return text == "list" || text.starts_with("list ");
 }
 
+/// What 3D Slicer says of the segments of a .seg.nrrd: "Segment3_Name:=liver", "Segment3_LabelValue:=4".
+class Segments {
+ public:
+  void add(std::string_view key, std::string_view value) {
+    constexpr std::string_view begin = "Segment";
+    const std::size_t underscore = key.find('_');
+    std::int64_t number = 0;
+    if (!key.starts_with(begin) || underscore == std::string_view::npos ||
+        !parse_number(key.substr(begin.size(), underscore - begin.size()), number))
+      return;
+    const std::string_view what = key.substr(underscore + 1);
+    Segment& segment = segments_[number];
+    if (what == "Name")
+      segment.name = std::string(trimmed(value));
+    else if (what == "LabelValue")
+      segment.has_label = parse_number(trimmed(value), segment.label);
+    else if (what == "Layer" && parse_number(trimmed(value), segment.layer))
+      layers_ = std::max(layers_, segment.layer + 1);
+  }
+  /// Segments that overlap are in several of them.
+  std::int64_t layers() const { return layers_; }
+  std::map<MaterialTag, std::string> names() const {
+    std::map<MaterialTag, std::string> names;
+    for (const auto& [number, segment] : segments_)
+      if (segment.has_label && !segment.name.empty() &&
+          segment.label >= std::numeric_limits<MaterialTag>::min() &&
+          segment.label <= std::numeric_limits<MaterialTag>::max())
+        names.emplace(static_cast<MaterialTag>(segment.label), segment.name);
+    return names;
+  }
+
+ private:
+  struct Segment {
+    std::string name;
+    std::int64_t label = 0, layer = 0;
+    bool has_label = false;
+  };
+  std::map<std::int64_t, Segment> segments_;
+  std::int64_t layers_ = 1;
+};
+
 /// Up to and with the empty line; a detached header may end without one.
-HeaderFields read_nrrd_header(TextScanner& in) {
+HeaderFields read_nrrd_header(TextScanner& in, Segments& segments) {
   if (in.left() == 0) in.fail("the file is empty");
   HeaderFields header(in.name());
   const std::string_view magic = in.rest_of_line();
@@ -137,7 +179,10 @@ HeaderFields read_nrrd_header(TextScanner& in) {
       throw InputError(in.name(), line,
                        "expected \"field: value\", found " + in_quotes(text) +
                            "; the header is damaged or lacks the empty line at its end");
-    if (text.substr(colon).starts_with(":=")) continue;  // a key and its value, free for anyone's use
+    if (text.substr(colon).starts_with(":=")) {  // a key and its value, free for anyone's use
+      segments.add(text.substr(0, colon), text.substr(colon + 2));
+      continue;
+    }
     const std::string_view field = text.substr(0, colon);
     if (!known_field(lower_case(trimmed(field))))
       throw InputError(in.name(), line,
@@ -355,7 +400,12 @@ bool is_swapped(const HeaderFields& header, VoxelType type) {
 
 LabelVolume read_nrrd(std::string_view bytes, const std::string& name, const FileReader& read) {
   TextScanner in(bytes, name);
-  const HeaderFields header = read_nrrd_header(in);
+  Segments segments;
+  const HeaderFields header = read_nrrd_header(in, segments);
+  if (segments.layers() > 1)
+    header.fail("sizes", "its segments overlap, in " + std::to_string(segments.layers()) +
+                             " layers; each voxel needs one label: export the segmentation as a label map "
+                             "(3D Slicer: Segmentations, Export/import), or save it without overlap");
   const std::string encoding = header.lower_text("encoding");
   const bool gzip = encoding == "gzip" || encoding == "gz";
   const bool as_text = encoding == "txt" || encoding == "text" || encoding == "ascii";
@@ -363,6 +413,7 @@ LabelVolume read_nrrd(std::string_view bytes, const std::string& name, const Fil
     header.fail("encoding",
                 "encoding " + in_quotes(encoding) + " is not supported; save the volume as raw or gzip");
   LabelVolume volume = NrrdHeader(header).volume();
+  volume.names = segments.names();
   check_geometry(volume, name);
   VoxelFormat format;
   format.type = nrrd_voxel_type(header);

@@ -10,8 +10,9 @@
 namespace tetwright {
 
 /// Reads an NRRD volume: raw, gzip or text, attached to its header or in another file, which `read` reads. Of
-/// more than three axes those of size 1 are dropped. `name` is used in messages. Throws InputError with the
-/// line of the header for anything that is malformed.
+/// more than three axes those of size 1 are dropped. Names of segments as 3D Slicer writes them (.seg.nrrd)
+/// are those of the labels; segments in several layers are refused with advice. `name` is used in messages.
+/// Throws InputError with the line of the header for anything that is malformed.
 ///
 /// Our own: libteem, where the format comes from, has had no release since 2012, reads through a FILE and
 /// allocates what the header promises.

@@ -49,6 +49,16 @@ class Volumes : public testing::Test {
 const std::string coarse = " --voxel-size 2 --uniform --accept-changes";
 const std::string cube = "dimension: 3\nsizes: 2 2 2\n";
 
+TEST_F(Volumes, NamesOfTheFileAreTaken) {
+  const std::string file = write_small(
+      "named.seg.nrrd", "uchar",
+      cube + "Segment0_Name:=outside\nSegment0_LabelValue:=1\nSegment1_Name:=a\nSegment1_LabelValue:=2\n",
+      "\1\1\1\1\2\2\2\2");
+  const Answer a = run(mesh(file) + " --min-voxels 1 --accept-changes --resolution 8");
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_NE(a.out.find("2 labels: 1 'outside_2', 2 'a'"), std::string::npos) << a.out;
+}
+
 TEST_F(Volumes, ReportAndStatistics) {
   const Answer a = run(mesh(path("organs.nrrd")) + coarse);
   ASSERT_EQ(a.status, 0) << a.err;

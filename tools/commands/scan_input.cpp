@@ -9,6 +9,8 @@
 #include "common/error.h"
 #include "common/formats/formats.h"
 #include "common/formats/label_names.h"
+#include "common/formats/unique_names.h"
+#include "common/utf8.h"
 #include "mesher/input/split_solids.h"
 #include "tools/commands/edge_sizes_input.h"
 #include "tools/commands/simplification.h"
@@ -84,10 +86,19 @@ LabelChoice label_choice(const CommandLine& line) {
   return choice;
 }
 
+/// Those of the file itself. No two labels have one name there, nor that of the outside.
+void take_names(const LabelVolume& volume, LabelChoice& choice) {
+  UniqueNames unique(printable_name);
+  (void)unique.add("outside");
+  for (const auto& [tag, name] : volume.names)
+    if (tag != choice.outside_label) choice.names[tag] = unique.add(name);
+}
+
 LabelInput read_labels(std::optional<LabelVolume> vdb_labels, CommandRun& run) {
   const std::string& file = run.line.inputs.front();
-  const LabelChoice choice = label_choice(run.line);  // before the volume, which takes longer to read
+  LabelChoice choice = label_choice(run.line);  // before the volume, which takes longer to read
   LabelVolume volume = vdb_labels ? std::move(*vdb_labels) : read_label_volume(file);
+  if (run.line.label_names.empty()) take_names(volume, choice);
   LabelInput labels = make_label_input(std::move(volume), file, choice, &run.progress);
   run.report.findings = labels.findings;
   run.report.volume.emplace(labels);
