@@ -73,18 +73,16 @@ void check_sdf_path(const CommandLine& line) {
 }  // namespace
 
 void check_stats_path(const CommandLine& line) {
-  if (line.stats.empty()) return;
-  if (std::filesystem::path(line.stats).extension() != ".json")
+  if (!line.stats.empty() && std::filesystem::path(line.stats).extension() != ".json")
     throw UsageError("--stats " + line.stats + ": the statistics are JSON; give a name that ends in .json");
   check_files_are_different(line);
-  check_output_file(line.stats);
+  if (!line.stats.empty()) check_output_file(line.stats);
 }
 
 void check_output_paths(const CommandLine& line) {
   check_output_path(line.output, FileKind::tet_mesh, line.output_format);
   if (!line.boundary.empty()) check_output_path(line.boundary, FileKind::surface);
   check_sdf_path(line);
-  check_files_are_different(line);
   check_stats_path(line);
 }
 

@@ -204,10 +204,10 @@ TEST_F(VdbSizes, EitherKindOfFileByItsExtension) {
     check_size_field_path("a.nrrd");
     ADD_FAILURE();
   } catch (const UsageError& e) {
-    EXPECT_STREQ(
-        e.what(),
-        "a.nrrd: unknown extension \".nrrd\"; edge lengths are read from .vtu .msh .vtk .node .ele .ply "
-        ".vtp .vdb");
+    EXPECT_STREQ(e.what(),
+                 "a.nrrd: unknown extension \".nrrd\"; edge lengths are read from .vtu .msh .vtk .xdmf .node "
+                 ".ele .ply "
+                 ".vtp .vdb");
   }
 }
 
