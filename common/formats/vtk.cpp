@@ -406,7 +406,8 @@ class VtkReader {
   /// Those that write_vtk() writes.
   void read_names(const std::vector<double>& bytes, const std::string& array) {
     std::string text;
-    for (const double byte : bytes) text += byte >= 0 && byte < 256 ? static_cast<char>(byte) : '?';
+    for (const double byte : bytes)
+      text += byte >= 0 && byte < 256 ? static_cast<char>(static_cast<unsigned char>(byte)) : '?';
     for (auto& [number, name] : parse_vtk_names(text, array, in_.name())) {
       if (array == vtk_surface_names)
         triangles_.names[number] = name;

@@ -35,16 +35,16 @@ void expect_type(const std::string& name) {
 }
 
 TEST(Nrrd, NamesOfSegments) {
-  const std::string head = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 1 1\nencoding: raw\n";
+  const std::string two_voxels = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 1 1\nencoding: raw\n";
   const LabelVolume v =
-      read_nrrd(head +
+      read_nrrd(two_voxels +
                     "Segment0_ID:=Segment_1\nSegment0_Name:=liver, left\nSegment0_LabelValue:=4\n"
                     "Segment0_Layer:=0\nSegment1_Name:=tumour\nSegment1_LabelValue:=7\n"
                     "Segment2_Name:=no label\nSegment3_LabelValue:=9\nSegmentation_x:=1\n\n\4\7",
                 "f");
   EXPECT_EQ(v.names, (std::map<MaterialTag, std::string>{{4, "liver, left"}, {7, "tumour"}}));
   EXPECT_EQ(v.labels, (std::vector<MaterialTag>{4, 7}));
-  expect_input_error(read_nrrd, head + "Segment0_Layer:=0\nSegment1_Layer:=2\n\n\4\7", "line 4",
+  expect_input_error(read_nrrd, two_voxels + "Segment0_Layer:=0\nSegment1_Layer:=2\n\n\4\7", "line 4",
                      "overlap, in 3 layers");
 }
 
