@@ -28,8 +28,33 @@ constexpr double max_added_tets = 8e6;
 /// So many are cheap whatever the rest of the mesh takes.
 constexpr double min_cheap_tets = 1e6;
 
+/// In diagonals: a surface that is nowhere farther from a plane encloses nothing, whatever its cells.
+constexpr double flat_surface = 1e-6;
+
+/// Whether all its points are on the plane of its largest triangle.
+bool is_flat(const RepairedSurface& surface) {
+  Vec3 normal = Vec3::Zero(), on_plane = Vec3::Zero();
+  Box3 box;
+  for (const Triangle& t : surface.triangles) {
+    const Vec3 &a = surface.points[t[0]], &b = surface.points[t[1]], &c = surface.points[t[2]];
+    for (const Vec3& p : {a, b, c}) box.add(p);
+    const Vec3 n = (b - a).cross(c - a);
+    if (n.squaredNorm() <= normal.squaredNorm()) continue;
+    normal = n;
+    on_plane = a;
+  }
+  const double slack = flat_surface * normal.norm() * (box.high - box.low).norm();
+  return std::all_of(surface.triangles.begin(), surface.triangles.end(), [&](const Triangle& t) {
+    return std::all_of(t.begin(), t.end(),
+                       [&](Index p) { return std::fabs(normal.dot(surface.points[p] - on_plane)) <= slack; });
+  });
+}
+
 /// Throws InputError about a surface, of which nothing is left, that is not closed.
 void validate_encloses(const MesherInput::Body& body) {
+  if (is_flat(body.surface))
+    throw InputError(body.file, 0,
+                     "the surface lies in a plane and encloses nothing; give the surface of a solid");
   if (body.surface.closed < body.surface.triangles.size())
     throw InputError(
         body.file, 0,

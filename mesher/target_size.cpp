@@ -100,6 +100,8 @@ constexpr double sized_places = 20000;
 constexpr double dense_tolerance_share = 0.5;
 /// Cells at first, in tolerances: where surfaces are smooth their meshes are within half of one.
 constexpr double first_cell = 2;
+/// The same of surfaces with creases: where their faces are flat, larger cells show them as well.
+constexpr double first_cell_of_part = 12;
 constexpr int min_tolerance_resolution = 64;
 /// Memory over what is estimated of cells so small that they show the input's facets: 1.8 for a bunny at 780
 /// cells along its longest side.
@@ -201,6 +203,22 @@ int resolution_for_target(const MesherInput& input, std::size_t target_tets, con
   return low;
 }
 
+namespace {
+
+/// Where a dense mesh is farther from its surface, or that from it, than a tolerance leaves it.
+Misfit misfit_of(const DenseMesh& dense, double allowed, double reach) {
+  const ProjectionTree mesh = tree_of(dense.mesh.points, dense.mesh.interfaces,
+                                      [](const InterfaceTriangle&t) { return t.ids; }),
+                       surface = tree_of(dense.surface->points, dense.surface->triangles,
+                                         [](const Triangle&t) { return t; });
+  Misfit misfit;
+  add_misfit(surface, mesh, allowed, reach, misfit);
+  add_misfit(mesh, surface, allowed, reach, misfit);
+  return misfit;
+}
+
+}  // namespace
+
 DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double tolerance, Progress* progress) {
   const double longest = longest_side(input);
   const double cells = std::ceil(longest / (first_cell * tolerance));
@@ -230,22 +248,21 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
   if (!options.max_refinement) options.max_refinement = max_wall_refinement;
   const std::vector<FinePlace> fine_places = options.fine_places;  // of wanted sizes
   const double allowed = dense_tolerance_share * tolerance;
+  const int coarse = std::max({min_tolerance_resolution, counted ? options.resolution : 0,
+                               static_cast<int>(std::ceil(longest / (first_cell_of_part * tolerance)))});
+  if (coarse < options.resolution && has_creases(input, options.feature_angle)) {
+    MesherOptions large = options;
+    large.resolution = coarse;
+    DenseMesh dense = mesh_surfaces(input, large, progress);
+    if (misfit_of(dense, allowed, reach_cells * longest / coarse).places.empty()) return dense;
+  }
   std::optional<DenseMesh> best;
   Misfit of_best;
   int worse = 0;                                                 // rounds since the best one
   double level_worst = std::numeric_limits<double>::infinity();  // with all larger cells
   for (int round = 0, attempts = 0; attempts < max_attempts; ++attempts) {
     DenseMesh dense = mesh_surfaces(input, options, progress);
-    Misfit misfit;
-    {
-      const ProjectionTree mesh = tree_of(dense.mesh.points, dense.mesh.interfaces,
-                                          [](const InterfaceTriangle&t) { return t.ids; }),
-                           surface = tree_of(dense.surface->points, dense.surface->triangles,
-                                             [](const Triangle&t) { return t; });
-      const double reach = reach_cells * longest / options.resolution;
-      add_misfit(surface, mesh, allowed, reach, misfit);
-      add_misfit(mesh, surface, allowed, reach, misfit);
-    }
+    Misfit misfit = misfit_of(dense, allowed, reach_cells * longest / options.resolution);
     if (misfit.places.empty() || (counted && misfit.worst <= enough_share * tolerance)) return dense;
     ++worse;
     if (!best || misfit.worst < of_best.worst) {

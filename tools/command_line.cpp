@@ -407,6 +407,15 @@ std::string unknown_option(const CLI::App& app) {
   return "";
 }
 
+/// Refuses `--option=` without a value, for which the parser would take the next argument.
+void check_values(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument.starts_with("--") && argument.find('=') == argument.size() - 1)
+      throw UsageError(argument + " has no value; give one, or leave the option out");
+  }
+}
+
 /// Refuses more than one MESH or NAME. The parser's own message counts them and does not name them.
 void check_one_positional(const CLI::App& app) {
   for (const CLI::App* chosen : app.get_subcommands())
@@ -502,6 +511,7 @@ const char* name_of(ShapeObjective objective) {
 
 bool parse_command_line(int argc, char** argv, CommandLine& out) {
   check_command(argc, argv);
+  check_values(argc, argv);
   CLI::App app("Turns surface scans and segmented volumes into tetrahedral meshes for simulation.",
                "tetwright");
   app.set_version_flag("--version", TETWRIGHT_VERSION);

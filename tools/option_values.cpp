@@ -2,14 +2,13 @@
 
 #include <array>
 #include <charconv>
-#include <cstdlib>
 
 namespace tetwright {
 
 double parse_number(const std::string& option, const std::string& text, const Range& range) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != 0 || !range.contains(value))
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !range.contains(value))
     throw CLI::ValidationError(option, "'" + text + "' is not " + range.text);
   return value;
 }

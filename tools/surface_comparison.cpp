@@ -201,15 +201,20 @@ std::string corners_text(const CreaseFidelity& c) {
          " from points of the mesh, at " + place_text(c.corner_place);
 }
 
+/// "75 %".
+std::string share_text(double share) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3g %%", 100 * share);
+  return text;
+}
+
 std::string open_line(const SurfaceComparison& c) {
   const std::string edges = "the surface is open: " + std::to_string(c.open_edges) +
                             (c.open_edges == 1 ? " edge" : " edges") + " with one triangle; ";
   if (!c.caps) return edges + "no part of the mesh is a cap there";
-  char share[40];
-  std::snprintf(share, sizeof share, " (%.3g %%)", 100 * c.caps->share);
-  return edges + "caps of the mesh are left out, area " + short_number(c.caps->area) + share + ", at most " +
-         length_text(c.caps->from_mesh.upper, c.diagonal) + " from the surface, at " +
-         place_text(c.caps->from_mesh.place);
+  return edges + "caps of the mesh are left out, area " + short_number(c.caps->area) + " (" +
+         share_text(c.caps->share) + "), at most " + length_text(c.caps->from_mesh.upper, c.diagonal) +
+         " from the surface, at " + place_text(c.caps->from_mesh.place);
 }
 
 }  // namespace
@@ -300,8 +305,11 @@ std::string tolerance_line(const SurfaceComparison& c, double tolerance) {
   std::string far;
   for (const SurfaceComparison::Bound& b : c.bounds())
     if (!(b.upper <= tolerance)) far += (far.empty() ? ": " : "; ") + b.what;
-  return (far.empty() ? "within the tolerance of " : "not within the tolerance of ") +
-         short_number(tolerance) + far;
+  std::string line = (far.empty() ? "within the tolerance of " : "not within the tolerance of ") +
+                     short_number(tolerance) + far;
+  // Caps stand for nothing of the surface, however far from it they are.
+  if (c.caps) line += "; caps, " + share_text(c.caps->share) + " of the mesh's area, are left out";
+  return line;
 }
 
 }  // namespace tetwright

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/memory.h"
+#include "common/message_text.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/mesh_estimate.h"
 
@@ -61,8 +62,9 @@ FinerCells find_sized_cells(const MaterialField& field, const MaxCell& max_cell,
           }
         });
     total += 8 * static_cast<double>(split.size());
-    require_memory(program_bytes + bytes_per_leaf * total, "cells as small as the wanted edge lengths",
-                   "ask for longer edges");
+    require_memory(program_bytes + bytes_per_leaf * total,
+                   "cells of " + short_number(side / 2 * frame.cell_size) + ", for edges as short as asked,",
+                   "give a larger --max-edge, or larger sizes");
     cells.clear();
     for (const MortonKey key : split)
       for (MortonKey k = 0; k < 8; ++k) cells.push_back(key << 3 | k);

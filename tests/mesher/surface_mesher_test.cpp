@@ -165,15 +165,19 @@ TEST(Mesher, RefusesWhatCannotBeMeshed) {
   options.voxel_size = 10;
   EXPECT_THROW(mesh_of(make_sphere(1), options), NothingToMeshError);
   // An open surface that encloses nothing is no matter of the size of cells.
-  TriangleMesh triangle;
-  triangle.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  triangle.triangles = {{0, 1, 2}};
-  try {
-    mesh_of(triangle);
-    FAIL();
-  } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("the surface is not closed and encloses nothing"),
-              std::string::npos);
+  TriangleMesh open;
+  open.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  open.triangles = {{0, 1, 2}, {1, 3, 2}};
+  for (const auto& [height, said] :
+       std::map<double, std::string>{{0, "the surface lies in a plane and encloses nothing"},
+                                     {0.1, "the surface is not closed and encloses nothing"}}) {
+    open.points[3][2] = height;
+    try {
+      mesh_of(open);
+      FAIL() << said;
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find(said), std::string::npos) << e.what();
+    }
   }
   // A sheet without thickness: nothing is inside.
   TriangleMesh sheet;

@@ -107,6 +107,14 @@ TEST(Check, DistancesFromASurfaceAreProven) {
       << words.out;
   EXPECT_NE(words.out.find("distance of the surface from the mesh: at most 0.25"), std::string::npos)
       << words.out;
+  EXPECT_TRUE(words.out.ends_with("\nvalid, but not within the tolerance\n")) << words.out;
+  // What falls short is all that --quiet leaves.
+  const Answer quiet = run(check + (f / "longer.off") + " --tolerance 0.2 --quiet");
+  EXPECT_EQ(quiet.status, 1);
+  EXPECT_EQ(quiet.out, "");
+  EXPECT_TRUE(quiet.err.starts_with("tetwright: not within the tolerance of 0.2: the mesh is up to 0.25"))
+      << quiet.err;
+  EXPECT_EQ(run(check + (f / "box.off") + " --tolerance 0.2 --quiet").err, "");
 }
 
 /// The points of a prism with ten sides, whose edges turn by 36 degrees; those of the first one by less, if
@@ -271,6 +279,9 @@ TEST(Check, CapsAreLeftOutAndReported) {
   EXPECT_NE(
       a.out.find("the surface is open: 4 edges with one triangle; caps of the mesh are left out, area "),
       std::string::npos)
+      << a.out;
+  EXPECT_NE(a.out.find("\nwithin the tolerance of 0.00244949; caps, 20 % of the mesh's area, are left out\n"),
+            std::string::npos)
       << a.out;
   const auto caps = nlohmann::json::parse(run(check + " --json").out)["surface"]["caps"];
   EXPECT_NEAR(caps["area"], 2, 0.02);

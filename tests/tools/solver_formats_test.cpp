@@ -36,7 +36,9 @@ TEST_F(SolverFormats, EveryFormatIsWrittenAndReadAgain) {
     EXPECT_EQ(back.points.size(), reference.points.size());
     EXPECT_EQ(back.tets.size(), reference.tets.size());
     EXPECT_EQ(a.err.find("names of materials") == std::string::npos, format.names) << a.err;
-    if (format.names && format.name != "tetgen") EXPECT_EQ(back.material_names, reference.material_names);
+    if (format.names && format.name != "tetgen") {
+      EXPECT_EQ(back.material_names, reference.material_names);
+    }
   }
 }
 

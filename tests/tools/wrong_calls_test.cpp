@@ -29,6 +29,11 @@ TEST(WrongCalls, AreStatusTwo) {
                  {"--target-tets"});
   expect_refused("prepare " + in + " -o " + out + " --target-tets ''", 2, {"--target-tets"});
   expect_refused("prepare " + in + " -o " + out + " --target-tets 100 --seed -1", 2, {"-1"});
+  expect_refused("prepare " + in + " -o " + out + " --tolerance= --target-tets 100", 2,
+                 {"--tolerance= has no value"});
+  for (const char* number : {" 5", "5 ", "5 %", "0x5", "+5", "1e-400", "1e400", "inf"})
+    expect_refused("prepare " + in + " -o " + out + " --tolerance '" + number + "'", 2,
+                   {"--tolerance: '" + std::string(number) + "' is not a "});
   expect_refused("sample dodo -o " + out, 2, {"dodo", "sphere"});
   expect_refused("sample sphere -o " + out, 2, {"t.vtu", ".ply"});
   expect_refused("sample organs -o " + out, 2, {"t.vtu", "volume of labels", ".nrrd"});

@@ -66,6 +66,12 @@ void compare_with_surfaces(TetMesh& mesh, CommandRun& run, CheckReport& check) {
   if (run.line.tolerance.value > 0) check.tolerance = tolerance_of(run.line, check.surface->diagonal);
 }
 
+const char* verdict(const CheckReport& check) {
+  if (!check.valid()) return "not valid";
+  if (!check.topology_kept()) return "valid, but of another topology";
+  return check.within_tolerance() ? "valid" : "valid, but not within the tolerance";
+}
+
 void print_check(const CheckReport& check, const CommandRun& run) {
   for (const MeshFinding& f : check.findings)
     std::printf("%s: %s\n", is_warning(f.fault) ? "warning" : "error", mesh_finding_line(f).c_str());
@@ -78,9 +84,16 @@ void print_check(const CheckReport& check, const CommandRun& run) {
   }
   if (check.topology_differences)
     for (const std::string& d : *check.topology_differences) std::printf("topology differs: %s\n", d.c_str());
-  std::printf("%s\n", !check.valid()          ? "not valid"
-                      : check.topology_kept() ? "valid"
-                                              : "valid, but of another topology");
+  std::printf("%s\n", verdict(check));
+}
+
+/// The errors and what falls short, to stderr: all that --quiet leaves.
+void print_shortfalls(const CheckReport& check) {
+  for (const MeshFinding& f : check.findings)
+    if (!is_warning(f.fault)) print_line(mesh_finding_line(f));
+  if (check.topology_differences)
+    for (const std::string& d : *check.topology_differences) print_line("topology differs: " + d);
+  if (!check.within_tolerance()) print_line(tolerance_line(*check.surface, check.tolerance));
 }
 
 }  // namespace
@@ -110,7 +123,9 @@ ExitStatus run_check(const CommandLine& line) {
   if (!line.quiet) print_notes(notes_of(run.report));
   if (line.json)
     std::printf("%s\n", check_json(line, run.report, check).c_str());
-  else if (!line.quiet)
+  else if (line.quiet)
+    print_shortfalls(check);
+  else
     print_check(check, run);
   return check.valid() && check.topology_kept() && check.within_tolerance() ? ExitStatus::done
                                                                             : ExitStatus::short_of_request;
