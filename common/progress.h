@@ -10,8 +10,8 @@ namespace tetwright {
 /// How long-running functions report and get cancelled. The base class only cancels; a program derives one
 /// that draws.
 ///
-/// `begin_stage` and `update` are called from the thread that called the long-running function; `cancel` may
-/// be called from any thread and from a signal handler.
+/// `begin_stage`, `update` and `finish` are called from the thread that called the long-running function;
+/// `cancel` may be called from any thread and from a signal handler.
 class Progress {
  public:
   Progress() = default;
@@ -23,6 +23,8 @@ class Progress {
   virtual void begin_stage(std::string_view /*name*/) {}
   /// The share of the current stage that is done, 0 to 1.
   virtual void update(double /*fraction*/) {}
+  /// All stages are done, and what follows may print.
+  virtual void finish() {}
 
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
   bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }

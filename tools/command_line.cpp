@@ -40,7 +40,7 @@ void add_seed(CLI::App& app, CommandLine& c) {
 }
 
 void add_output(CLI::App& app, CommandLine& c, const char* formats) {
-  app.add_option("-o,--output", c.output, formats)->required()->type_name("FILE");
+  app.add_option("-o,--output", c.output, formats)->required(!c.in_memory)->type_name("FILE");
 }
 
 /// Options of commands that write a tet mesh.
@@ -475,7 +475,7 @@ void complete(const CLI::App& chosen, CommandLine& out) {
     throw UsageError("--schedule paper bounds no distances; leave out --tolerance, or --schedule");
   if (out.command == Command::check && out.tolerance.value > 0 && out.surfaces.empty())
     throw UsageError("--tolerance needs the surfaces that the mesh is compared with; give --surface FILE");
-  if (out.order > 1 && !written_tet_format(out.output, out.output_format).second_order)
+  if (out.order > 1 && !out.output.empty() && !written_tet_format(out.output, out.output_format).second_order)
     throw UsageError("--order 2: " + out.output +
                      " would be in a format without ten-node tets; write .vtu .msh .vtk .inp .bdf or .feb");
   if (out.resolution && out.voxel_size > 0) throw UsageError("give --resolution or --voxel-size, not both");

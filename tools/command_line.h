@@ -33,6 +33,8 @@ enum class Command { prepare, mesh, simplify, improve, check, sample };
 /// The parsed command line, with the defaults that --help shows.
 struct CommandLine {
   Command command = Command::prepare;
+  /// The result stays in the memory of a host program, and -o may be left out; set before parsing.
+  bool in_memory = false;
   std::vector<std::string> inputs;  ///< of `sample`: the name
   std::string output;
   std::string output_format;          ///< of `output`; empty: by its extension

@@ -15,10 +15,11 @@ class ProgressBar : public Progress {
   ~ProgressBar() override { clear(); }
   void begin_stage(std::string_view name) override;
   void update(double fraction) override;
-  void clear();
+  void finish() override { clear(); }
 
  private:
   void draw(double fraction);
+  void clear();
   bool visible_;
   bool drawn_ = false;
   std::string stage_;

@@ -28,7 +28,7 @@ struct ReadTetMesh {
   /// 3. "material", "medit:ref", "gmsh:physical", "MaterialID", "attribute", in this order;
   /// 4. the only integer cell field.
   /// Empty: the file has none of them, and every tet has material 1.
-  std::string material_field;
+  std::string material_field = {};
   /// What the file holds beside this, by kind. Volume cells that are not linear tets are never among it: a
   /// file that has some is refused.
   std::vector<Dropped> dropped = {};

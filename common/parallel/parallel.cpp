@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <utility>
 #include <vector>
 
 #include "common/parallel/tbb_loop.h"
@@ -10,8 +11,21 @@ namespace tetwright {
 
 namespace {
 
-/// The number of threads that parallel work may use; 0 while there is no ThreadLimit.
-std::atomic<unsigned> thread_limit{0};
+/// The number of threads that parallel work of this thread may use; 0 while there is no ThreadLimit. Loops
+/// hand it on to the threads that run their bodies.
+thread_local unsigned thread_limit = 0;
+
+/// Sets thread_limit while it exists.
+class LimitHere {
+ public:
+  explicit LimitHere(unsigned limit) : before_(std::exchange(thread_limit, limit)) {}
+  ~LimitHere() { thread_limit = before_; }
+  LimitHere(const LimitHere&) = delete;
+  LimitHere& operator=(const LimitHere&) = delete;
+
+ private:
+  unsigned before_;
+};
 
 /// The thread sanitizer cannot see how TBB synchronises its threads, since the library is not instrumented.
 /// These two atomics state what TBB guarantees: everything before a loop happens before each body, and each
@@ -32,8 +46,13 @@ struct LoopEnd {
 
 /// body(i) for each i in [0, count), on at most thread_count() threads.
 void run_loop(std::size_t count, const std::function<void(std::size_t)>& body) {
+  struct Loop {
+    const std::function<void(std::size_t)>& body;
+    unsigned limit;
+  };
+  const Loop loop{body, thread_count()};
   // Each slot of an arena that has nothing to do still wakes a thread for every loop.
-  const auto threads = static_cast<unsigned>(std::min<std::size_t>(count, thread_count()));
+  const auto threads = static_cast<unsigned>(std::min<std::size_t>(count, loop.limit));
   loop_started.fetch_add(1, std::memory_order_release);
   const LoopEnd loop_end;
   tbb_loop(
@@ -41,17 +60,19 @@ void run_loop(std::size_t count, const std::function<void(std::size_t)>& body) {
       [](const void* context, std::size_t i) {
         (void)loop_started.load(std::memory_order_acquire);
         const BodyEnd body_end;
-        (*static_cast<const std::function<void(std::size_t)>*>(context))(i);
+        const Loop& of = *static_cast<const Loop*>(context);
+        const LimitHere limit(of.limit);
+        of.body(i);
       },
-      &body);
+      &loop);
 }
 
 }  // namespace
 
 struct ThreadLimit::Impl {
-  explicit Impl(unsigned threads) : tbb(threads) {}
-  TbbLimit tbb;
-  unsigned before = 0;
+  explicit Impl(unsigned threads) : tbb(threads), here(threads) {}
+  TbbThreads tbb;
+  LimitHere here;
 };
 
 unsigned hardware_threads() { return tbb_concurrency(); }
@@ -61,14 +82,17 @@ unsigned max_threads() { return std::max(16u, 4 * hardware_threads()); }
 ThreadLimit::ThreadLimit(unsigned threads) {
   const unsigned limit = threads ? std::min(threads, max_threads()) : hardware_threads();
   impl_ = std::make_unique<Impl>(limit);
-  impl_->before = thread_limit.exchange(limit);
 }
 
-ThreadLimit::~ThreadLimit() { thread_limit.store(impl_->before); }
+ThreadLimit::~ThreadLimit() = default;
 
-unsigned thread_count() {
-  const unsigned limit = thread_limit.load();
-  return limit ? limit : hardware_threads();
+unsigned thread_count() { return thread_limit ? thread_limit : hardware_threads(); }
+
+void with_threads(unsigned threads, const std::function<void()>& work) {
+  const ThreadLimit limit(threads);
+  tbb_within(
+      thread_count(), [](const void* context) { (*static_cast<const std::function<void()>*>(context))(); },
+      &work);
 }
 
 void parallel_for(std::size_t begin, std::size_t end, std::size_t grain,

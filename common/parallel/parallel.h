@@ -13,9 +13,9 @@ unsigned hardware_threads();
 /// time if that is more. Threads beyond that wait for each other and make the work slower.
 unsigned max_threads();
 
-/// While an object exists, parallel work uses at most `threads` threads, and no more than max_threads(); 0
-/// means hardware_threads(). One object at a time, which is constructed and destroyed by the thread that
-/// starts the parallel work.
+/// While an object exists, parallel work that the thread which made it starts uses at most `threads` threads,
+/// and no more than max_threads(); 0 means hardware_threads(). That of other threads is not affected, nor are
+/// loops of other libraries (see with_threads()). Destroyed by the thread that made it, the last one first.
 class ThreadLimit {
  public:
   explicit ThreadLimit(unsigned threads);
@@ -28,8 +28,12 @@ class ThreadLimit {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The largest number of threads that a loop uses now.
+/// The largest number of threads that a loop of this thread uses now.
 unsigned thread_count();
+
+/// Calls `work` with a ThreadLimit of `threads`, which holds for loops of OpenVDB, too. Several threads may
+/// do so at a time, each with its own number. An exception of `work` is rethrown.
+void with_threads(unsigned threads, const std::function<void()>& work);
 
 /// Calls `body(begin, end)` for disjoint parts of [begin, end) of `grain` items each (the last may have
 /// fewer), concurrently, on no more threads than there are parts. What the bodies wrote is visible to the

@@ -6,6 +6,7 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace tetwright {
 
@@ -22,21 +23,34 @@ struct KeptThreads {
   };
 };
 
+/// To be called before the first loop.
+void keep_threads() { static const KeptThreads kept_threads; }
+
 }  // namespace
 
-struct TbbLimit::Impl {
-  explicit Impl(unsigned threads) : control(tbb::global_control::max_allowed_parallelism, threads) {}
-  tbb::global_control control;
+// Of several such settings TBB takes the smallest, so that one for fewer threads would hold for all threads
+// of the process.
+struct TbbThreads::Impl {
+  explicit Impl(unsigned threads) {
+    if (threads > tbb_concurrency()) control.emplace(tbb::global_control::max_allowed_parallelism, threads);
+  }
+  std::optional<tbb::global_control> control;
 };
 
-TbbLimit::TbbLimit(unsigned threads) : impl_(std::make_unique<Impl>(threads)) {}
-TbbLimit::~TbbLimit() = default;
+TbbThreads::TbbThreads(unsigned threads) : impl_(std::make_unique<Impl>(threads)) {}
+TbbThreads::~TbbThreads() = default;
 
 unsigned tbb_concurrency() { return static_cast<unsigned>(std::max(1, tbb::info::default_concurrency())); }
 
+void tbb_within(unsigned threads, void (*work)(const void* context), const void* context) {
+  keep_threads();
+  tbb::task_arena arena(static_cast<int>(threads));
+  arena.execute([&] { work(context); });
+}
+
 void tbb_loop(std::size_t count, unsigned threads, void (*body)(const void* context, std::size_t i),
               const void* context) {
-  static const KeptThreads kept_threads;
+  keep_threads();
   tbb::task_arena arena(static_cast<int>(threads));
   arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { body(context, i); }); });
 }

@@ -13,18 +13,21 @@ namespace tetwright {
 /// The number of threads that TBB uses by default, at least 1.
 unsigned tbb_concurrency();
 
-/// While an object exists, TBB uses at most `threads` threads, in OpenVDB too.
-class TbbLimit {
+/// While an object exists, TBB has as many threads as `threads`, if that is more than it has by default.
+class TbbThreads {
  public:
-  explicit TbbLimit(unsigned threads);
-  ~TbbLimit();
-  TbbLimit(const TbbLimit&) = delete;
-  TbbLimit& operator=(const TbbLimit&) = delete;
+  explicit TbbThreads(unsigned threads);
+  ~TbbThreads();
+  TbbThreads(const TbbThreads&) = delete;
+  TbbThreads& operator=(const TbbThreads&) = delete;
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Calls work(context), whose loops use at most `threads` threads, those of other libraries too. Rethrows.
+void tbb_within(unsigned threads, void (*work)(const void* context), const void* context);
 
 /// Calls body(context, i) for each i in [0, count), concurrently on up to `threads` threads. Rethrows the
 /// first exception. `body` is a plain pointer, since the source, which is not instrumented, would otherwise

@@ -22,7 +22,7 @@ namespace {
 /// Reads a mesh to be checked or compared with; `field_found` becomes true if it has --material-field.
 TetMesh read_checked(const std::string& file, CommandRun& run, bool& field_found) {
   // Of two meshes one may have the field under the name `material`, if it was made from the other.
-  ReadTetMesh read = read_tet_mesh(file, {run.line.material_field, run.line.before.empty()});
+  ReadTetMesh read = take_tet_mesh(run, file, {run.line.material_field, run.line.before.empty()});
   field_found |= read.material_field == run.line.material_field;
   if (file == run.line.inputs.front()) run.report.material_field = read.material_field;
   report_dropped(read.dropped, file, run.report, !run.line.json);
@@ -52,7 +52,7 @@ void read_surfaces(CommandRun& run, std::vector<TriangleMesh>& surfaces, std::ve
       continue;
     }
     std::vector<Dropped> dropped;
-    surfaces.push_back(read_surface(file, &dropped));
+    surfaces.push_back(take_surface(run, file, &dropped));
     names.push_back(file);
     report_dropped(dropped, file, run.report, !run.line.json);
   }
@@ -98,9 +98,8 @@ void print_shortfalls(const CheckReport& check) {
 
 }  // namespace
 
-ExitStatus run_check(const CommandLine& line) {
-  CommandRun run(line);
-  check_stats_path(line);
+CheckReport make_check(CommandRun& run) {
+  const CommandLine& line = run.line;
   bool field_found = false;
   TetMesh mesh = read_checked(line.inputs.front(), run, field_found);
   run.report.input_points = mesh.points.size();
@@ -119,7 +118,15 @@ ExitStatus run_check(const CommandLine& line) {
   if (!line.material_field.empty() && !field_found)
     (void)read_tet_mesh(line.inputs.front(), {line.material_field});
   run.report.seconds_total = run.since_start.seconds();
+  return check;
+}
+
+ExitStatus run_check(const CommandLine& line, Progress& progress) {
+  CommandRun run(line, progress);
+  check_stats_path(line);
+  const CheckReport check = make_check(run);
   if (!line.stats.empty()) write_file_atomically(line.stats, stats_json(line, run.report) + "\n");
+  progress.finish();
   if (!line.quiet) print_notes(notes_of(run.report));
   if (line.json)
     std::printf("%s\n", check_json(line, run.report, check).c_str());

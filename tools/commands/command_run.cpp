@@ -1,12 +1,48 @@
 #include "tools/commands/command_run.h"
 
-#include <unistd.h>
+#include <utility>
 
 namespace tetwright {
 
-CommandRun::CommandRun(const CommandLine& call)
-    : line(call), threads(call.threads), progress(!call.quiet && !call.no_progress && isatty(STDERR_FILENO)) {
+namespace {
+
+/// Takes the object of that name, or `read`s the file.
+template <class Object, class Read>
+auto take(std::map<std::string, Object> InputObjects::*kind, InputObjects* objects, const std::string& name,
+          const Read& read) -> decltype(read()) {
+  if (objects) {
+    auto& all = objects->*kind;
+    if (const auto object = all.find(name); object != all.end()) return {std::move(object->second)};
+  }
+  return read();
+}
+
+}  // namespace
+
+CommandRun::CommandRun(const CommandLine& call, Progress& shown, InputObjects* in_memory)
+    : line(call), progress(shown), objects(in_memory) {
   report.inputs = input_files(call);
+}
+
+FileKind input_kind(const CommandRun& run, const std::string& name) {
+  if (run.objects) {
+    if (run.objects->surfaces.contains(name)) return FileKind::surface;
+    if (run.objects->meshes.contains(name)) return FileKind::tet_mesh;
+    if (run.objects->volumes.contains(name)) return FileKind::volume;
+  }
+  return file_kind(name);
+}
+
+TriangleMesh take_surface(CommandRun& run, const std::string& name, std::vector<Dropped>* dropped) {
+  return take(&InputObjects::surfaces, run.objects, name, [&] { return read_surface(name, dropped); });
+}
+
+ReadTetMesh take_tet_mesh(CommandRun& run, const std::string& name, const ReadTetMeshOptions& options) {
+  return take(&InputObjects::meshes, run.objects, name, [&] { return read_tet_mesh(name, options); });
+}
+
+LabelVolume take_label_volume(CommandRun& run, const std::string& name) {
+  return take(&InputObjects::volumes, run.objects, name, [&] { return read_label_volume(name); });
 }
 
 std::vector<std::string> input_files(const CommandLine& line) {

@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "common/formats/dropped.h"
+#include "common/formats/formats.h"
 #include "common/mesh/midside_nodes.h"
-#include "common/parallel/parallel.h"
+#include "common/progress.h"
 #include "tools/command_line.h"
-#include "tools/progress_bar.h"
+#include "tools/commands/input_objects.h"
 #include "tools/run_report.h"
 
 namespace tetwright {
@@ -27,19 +28,27 @@ class Stopwatch {
 
 /// What all steps of a command share. The meshes themselves are handed from step to step.
 struct CommandRun {
-  /// Limits the threads to what `line` allows; `line` must outlive this object.
-  explicit CommandRun(const CommandLine& line);
+  /// What it is given must outlive it. Inputs are moved out of `objects` as they are read.
+  CommandRun(const CommandLine& line, Progress& progress, InputObjects* objects = nullptr);
 
   const CommandLine& line;
   Stopwatch since_start;
-  ThreadLimit threads;
-  ProgressBar progress;
+  Progress& progress;
+  InputObjects* objects;
   RunReport report;
   std::optional<MidsideNodes> midside;  ///< of the result, with --order 2
 };
 
 /// The files that a command reads: the positional inputs, then those of --material. Empty for `sample`.
 std::vector<std::string> input_files(const CommandLine& line);
+
+/// Of a file by its extension, of an object by what it is.
+FileKind input_kind(const CommandRun& run, const std::string& name);
+
+/// The readers of formats.h, which take what is among `run.objects` from there.
+TriangleMesh take_surface(CommandRun& run, const std::string& name, std::vector<Dropped>* dropped);
+ReadTetMesh take_tet_mesh(CommandRun& run, const std::string& name, const ReadTetMeshOptions& options);
+LabelVolume take_label_volume(CommandRun& run, const std::string& name);
 
 /// Adds to the findings what a reader dropped from `file`. Items that are restored from the mesh are added
 /// only if `with_restored`.

@@ -1,18 +1,37 @@
 #pragma once
 
+#include <memory>
+
+#include "mesher/mesher.h"
 #include "tools/command_line.h"
+#include "tools/commands/command_run.h"
 #include "tools/exit_status.h"
 
 namespace tetwright {
 
-/// Carries out the command of `line` and prints its result. Throws Error for everything that ends it early.
+/// Carries out the command of `line`, writes and prints its result. Throws Error for everything that ends it
+/// early.
 ExitStatus run_command(const CommandLine& line);
 
-ExitStatus run_prepare(const CommandLine& line);
-ExitStatus run_mesh(const CommandLine& line);
-ExitStatus run_simplify(const CommandLine& line);
-ExitStatus run_improve(const CommandLine& line);
-ExitStatus run_check(const CommandLine& line);
-ExitStatus run_sample(const CommandLine& line);
+/// What a command that makes a mesh made, before anything is written.
+struct CommandResult {
+  TetMesh mesh;
+  std::shared_ptr<const MaterialField> field;  ///< for --write-sdf; may be null without it
+};
+
+/// Carries out prepare, mesh, simplify or improve; `run.report` says all of the result. Neither writes nor
+/// prints. Throws as run_command() does.
+CommandResult make_result(CommandRun& run);
+
+CommandResult run_prepare(CommandRun& run);
+CommandResult run_mesh(CommandRun& run);
+CommandResult run_simplify(CommandRun& run);
+CommandResult run_improve(CommandRun& run);
+
+/// `check`, without writing or printing.
+CheckReport make_check(CommandRun& run);
+
+ExitStatus run_check(const CommandLine& line, Progress& progress);
+ExitStatus run_sample(const CommandLine& line, Progress& progress);
 
 }  // namespace tetwright

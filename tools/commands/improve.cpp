@@ -4,8 +4,6 @@
 
 #include "common/mesh/field_transfer.h"
 #include "tools/commands/commands.h"
-#include "tools/commands/output_paths.h"
-#include "tools/commands/result.h"
 #include "tools/commands/second_order.h"
 #include "tools/commands/tet_input.h"
 #include "tools/limiting_rules.h"
@@ -47,9 +45,7 @@ void report_tets_below(const TetMesh& mesh, CommandRun& run) {
 
 }  // namespace
 
-ExitStatus run_improve(const CommandLine& line) {
-  CommandRun run(line);
-  check_output_paths(line);
+CommandResult run_improve(CommandRun& run) {
   TetInput input = read_tets(run);
   const std::optional<SurfaceToFollow> surface = followed_interfaces(input.mesh, run);
   TetMesh mesh = improve_shapes(std::move(input.mesh), run);
@@ -57,7 +53,7 @@ ExitStatus run_improve(const CommandLine& line) {
   if (surface) make_second_order(mesh, *surface, run);
   if (input.with_fields) transfer_fields(*input.with_fields, mesh);
   input.with_fields.reset();
-  return finish(mesh, nullptr, run);
+  return {std::move(mesh), nullptr};
 }
 
 }  // namespace tetwright

@@ -381,26 +381,9 @@ void write_mesh(const TetMesh& mesh, const CommandRun& run, OutputFiles& files) 
                  run.line.output_format);
 }
 
-void write_files(const TetMesh& mesh, const MaterialField* field, CommandRun& run) {
-  const Stopwatch watch;
-  run.progress.begin_stage("write");
-  OutputFiles files(&run.progress);
-  if (field) write_fields(*field, run.line.write_sdf, &files);
-  if (run.line.no_boundary)
-    write_mesh(without_triangles(mesh), run, files);
-  else
-    write_mesh(mesh, run, files);
-  if (!run.line.boundary.empty()) write_surface(interface_surface(mesh), run.line.boundary, &files);
-  run.report.seconds_write = watch.seconds();
-  run.report.seconds_total = run.since_start.seconds();
-  if (!run.line.stats.empty()) files.write(run.line.stats, stats_json(run.line, run.report) + "\n");
-  files.commit();
-  run.progress.clear();
-}
-
 }  // namespace
 
-ExitStatus finish(const TetMesh& mesh, const MaterialField* field, CommandRun& run) {
+void assess(const TetMesh& mesh, CommandRun& run) {
   RunReport& report = run.report;
   report.material_names = mesh.material_names;
   if (report.simplify) {
@@ -420,14 +403,34 @@ ExitStatus finish(const TetMesh& mesh, const MaterialField* field, CommandRun& r
   find_thin_walls(run.line, report);
   find_changed_creases(run.line, mesh, report);
   find_lost_patches(run.line, mesh, report);
-  find_unwritten(run.line, mesh, report);
-  const std::vector<std::string> notes = notes_of(report);
-  find_notes(run.line, notes, report);
-  write_files(mesh, field, run);
-  if (!run.line.quiet) print_notes(notes);
-  if (!run.line.quiet) print_report(run.line, report);
-  for (const Shortfall& s : report.shortfall) print_line(s.message);
-  return report.shortfall.empty() ? ExitStatus::done : ExitStatus::short_of_request;
+  if (!run.line.output.empty()) find_unwritten(run.line, mesh, report);
+  find_notes(run.line, notes_of(report), report);
+  report.seconds_total = run.since_start.seconds();
+}
+
+void write_result(CommandResult& result, CommandRun& run) {
+  const CommandLine& line = run.line;
+  const Stopwatch watch;
+  run.progress.begin_stage("write");
+  OutputFiles files(&run.progress);
+  if (!line.write_sdf.empty()) write_fields(*result.field, line.write_sdf, &files);
+  result.field.reset();  // memory that writing the mesh needs
+  if (line.no_boundary)
+    write_mesh(without_triangles(result.mesh), run, files);
+  else
+    write_mesh(result.mesh, run, files);
+  if (!line.boundary.empty()) write_surface(interface_surface(result.mesh), line.boundary, &files);
+  run.report.seconds_write = watch.seconds();
+  run.report.seconds_total = run.since_start.seconds();
+  if (!line.stats.empty()) files.write(line.stats, stats_json(line, run.report) + "\n");
+  files.commit();
+  run.progress.finish();
+}
+
+void print_result(const CommandRun& run) {
+  if (!run.line.quiet) print_notes(notes_of(run.report));
+  if (!run.line.quiet) print_report(run.line, run.report);
+  for (const Shortfall& s : run.report.shortfall) print_line(s.message);
 }
 
 }  // namespace tetwright

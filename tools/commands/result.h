@@ -1,15 +1,18 @@
 #pragma once
 
-#include "mesher/mesher.h"
 #include "tools/commands/command_run.h"
-#include "tools/exit_status.h"
+#include "tools/commands/commands.h"
 
 namespace tetwright {
 
-/// The last step of every command that makes a mesh: compares the result with what was asked for and with
-/// what was there before, writes all output files, and prints the report. `field` is written to --write-sdf
-/// unless it is null. Returns short_of_request if a request was not met. Throws OutputError and Interrupted;
-/// then no file is written.
-ExitStatus finish(const TetMesh& mesh, const MaterialField* field, CommandRun& run);
+/// Compares the mesh that a command made with what was asked for and with what was there before: fills
+/// `run.report`.
+void assess(const TetMesh& mesh, CommandRun& run);
+
+/// Writes all files that `run.line` asks for, or none. Throws OutputError and Interrupted.
+void write_result(CommandResult& result, CommandRun& run);
+
+/// Prints the report to stdout, notes and what falls short to stderr.
+void print_result(const CommandRun& run);
 
 }  // namespace tetwright

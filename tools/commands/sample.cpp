@@ -27,8 +27,8 @@ void write(const LabelVolume& volume, const std::string& path, OutputFiles& file
 
 }  // namespace
 
-ExitStatus run_sample(const CommandLine& line) {
-  CommandRun run(line);
+ExitStatus run_sample(const CommandLine& line, Progress& progress) {
+  CommandRun run(line, progress);
   const Sample sample = make_sample(line.inputs.front());
   check_output_path(line.output, std::visit([](const auto& made) { return kind_of(made); }, sample));
   check_stats_path(line);

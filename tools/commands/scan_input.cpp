@@ -20,10 +20,12 @@ namespace tetwright {
 namespace {
 
 /// Refuses files that cannot be an input of `prepare` and `mesh` by their extension.
-void check_input_kinds(const CommandLine& line) {
+void check_input_kinds(const CommandRun& run) {
+  const CommandLine& line = run.line;
   for (const std::string& file : input_files(line)) {
-    const FileKind kind = file_kind(file);
-    if (is_vdb(file) || may_hold_surface(file) || kind == FileKind::volume) continue;
+    const FileKind kind = input_kind(run, file);
+    if (kind == FileKind::surface || kind == FileKind::volume || is_vdb(file) || may_hold_surface(file))
+      continue;
     std::string read = name_of(line.command);
     read.append(" reads surfaces (").append(known_extensions(FileKind::surface));
     read.append("), level sets (.vdb) and segmented volumes (").append(known_extensions(FileKind::volume));
@@ -41,10 +43,11 @@ void check_input_kinds(const CommandLine& line) {
 
 /// Whether the input is a segmented volume, which must then be the only one, since it names all materials.
 /// What a .vdb file holds is known only once it has been read: its labels are put into `vdb_labels`.
-bool is_volume(const CommandLine& line, std::optional<LabelVolume>& vdb_labels) {
+bool is_volume(const CommandRun& run, std::optional<LabelVolume>& vdb_labels) {
+  const CommandLine& line = run.line;
   const std::vector<std::string> inputs = input_files(line);
-  bool volume =
-      std::any_of(inputs.begin(), inputs.end(), [](auto& f) { return file_kind(f) == FileKind::volume; });
+  bool volume = std::any_of(inputs.begin(), inputs.end(),
+                            [&](auto& f) { return input_kind(run, f) == FileKind::volume; });
   for (const std::string& file : line.inputs) {
     if (!is_vdb(file)) continue;
     vdb_labels = read_label_grid(file);
@@ -97,7 +100,7 @@ void take_names(const LabelVolume& volume, LabelChoice& choice) {
 LabelInput read_labels(std::optional<LabelVolume> vdb_labels, CommandRun& run) {
   const std::string& file = run.line.inputs.front();
   LabelChoice choice = label_choice(run.line);  // before the volume, which takes longer to read
-  LabelVolume volume = vdb_labels ? std::move(*vdb_labels) : read_label_volume(file);
+  LabelVolume volume = vdb_labels ? std::move(*vdb_labels) : take_label_volume(run, file);
   if (run.line.label_names.empty()) take_names(volume, choice);
   LabelInput labels = make_label_input(std::move(volume), file, choice, &run.progress);
   run.report.findings = labels.findings;
@@ -118,7 +121,9 @@ TriangleMesh read_one_level_set(const NamedValue& material) {
 
 /// One material for each surface and level set, or with --split-solids for each solid of a surface, with tags
 /// from 1 in the order of the call.
-std::vector<MaterialSurface> read_material_surfaces(const CommandLine& line, RunReport& report) {
+std::vector<MaterialSurface> read_material_surfaces(CommandRun& run) {
+  const CommandLine& line = run.line;
+  RunReport& report = run.report;
   std::vector<MaterialSurface> surfaces;
   const auto add = [&](const std::string& name, const std::string& file, TriangleMesh surface) {
     surfaces.push_back({name, static_cast<MaterialTag>(surfaces.size() + 1), std::move(surface), file});
@@ -130,7 +135,7 @@ std::vector<MaterialSurface> read_material_surfaces(const CommandLine& line, Run
   };
   const auto read = [&](const std::string& file) {
     std::vector<Dropped> dropped;
-    TriangleMesh surface = read_surface(file, &dropped);
+    TriangleMesh surface = take_surface(run, file, &dropped);
     report_dropped(dropped, file, report);
     return count(std::move(surface));
   };
@@ -158,7 +163,7 @@ std::vector<MaterialSurface> read_material_surfaces(const CommandLine& line, Run
 }
 
 MesherInput read_surfaces(CommandRun& run) {
-  std::vector<MaterialSurface> surfaces = read_material_surfaces(run.line, run.report);
+  std::vector<MaterialSurface> surfaces = read_material_surfaces(run);
   std::vector<MaterialLayer> layers;
   for (const NamedValue& l : run.line.layers)
     layers.push_back(
@@ -254,10 +259,10 @@ bool is_vdb(const std::string& path) {
 ScanInput read_scan(CommandRun& run) {
   const Stopwatch watch;
   run.progress.begin_stage("read");
-  check_input_kinds(run.line);
+  check_input_kinds(run);
   std::optional<LabelVolume> vdb_labels;
-  ScanInput input = is_volume(run.line, vdb_labels) ? ScanInput(read_labels(std::move(vdb_labels), run))
-                                                    : ScanInput(read_surfaces(run));
+  ScanInput input = is_volume(run, vdb_labels) ? ScanInput(read_labels(std::move(vdb_labels), run))
+                                               : ScanInput(read_surfaces(run));
   run.report.seconds_read = watch.seconds();
   return input;
 }

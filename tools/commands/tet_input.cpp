@@ -13,12 +13,12 @@ namespace tetwright {
 
 namespace {
 
-void check_input_kind(const CommandLine& line) {
-  const std::string& file = line.inputs.front();
-  const FileKind kind = file_kind(file);
+void check_input_kind(const CommandRun& run) {
+  const std::string& file = run.line.inputs.front();
+  const FileKind kind = input_kind(run, file);
   if (kind == FileKind::surface || kind == FileKind::volume || is_vdb(file))
     throw UsageError(file + " is a " + (kind == FileKind::surface ? "surface" : "volume") +
-                     ", which 'tetwright prepare' and 'tetwright mesh' take; " + name_of(line.command) +
+                     ", which 'tetwright prepare' and 'tetwright mesh' take; " + name_of(run.line.command) +
                      " reads tet meshes (" + known_extensions(FileKind::tet_mesh) + ")");
 }
 
@@ -46,8 +46,8 @@ TetInput read_tets(CommandRun& run) {
   const Stopwatch watch;
   const std::string& file = run.line.inputs.front();
   run.progress.begin_stage("read");
-  check_input_kind(run.line);
-  ReadTetMesh read = read_tet_mesh(file, {run.line.material_field});
+  check_input_kind(run);
+  ReadTetMesh read = take_tet_mesh(run, file, {run.line.material_field});
   run.report.material_field = read.material_field;
   run.report.input_points = read.mesh.points.size();
   report_dropped(read.dropped, file, run.report);

@@ -28,7 +28,9 @@ TEST(Nastran, LinesAreOfFixedFields) {
   const std::string text = text_of(write_nastran, {mesh, &midside});
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = text.find('\n', begin);
-    if (text[begin] != '$') EXPECT_LE(end - begin, 80u) << text.substr(begin, end - begin);
+    if (text[begin] != '$') {
+      EXPECT_LE(end - begin, 80u) << text.substr(begin, end - begin);
+    }
     begin = end + 1;
   }
   // Ten points need a second line.

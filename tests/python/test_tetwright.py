@@ -1,0 +1,265 @@
+"""The Python package beside the program: the same bytes, views without copies, errors, cancelling, threads."""
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+import types
+import warnings
+
+import meshio
+import numpy as np
+import pytest
+import tetwright
+
+PROGRAM = os.environ["TETWRIGHT_PROGRAM"]
+
+
+def run_program(*arguments, status=0):
+    done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
+    assert done.returncode == status, done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def ball(tmp_path_factory):
+    path = tmp_path_factory.mktemp("data") / "ball.ply"
+    run_program("sample", "sphere", "-o", path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def ball_arrays(ball):
+    read = meshio.read(ball)
+    return read.points, read.cells_dict["triangle"]
+
+
+@pytest.fixture(scope="module")
+def prepared(ball):
+    return tetwright.prepare(ball, target_tets=800)
+
+
+def labels_of_two_balls():
+    x, y, z = np.meshgrid(*[np.arange(24)] * 3, indexing="ij")
+    labels = np.zeros((24, 24, 24), np.uint8)
+    labels[(x - 11.5) ** 2 + (y - 11.5) ** 2 + (z - 11.5) ** 2 < 100] = 1
+    labels[(x - 11.5) ** 2 + (y - 11.5) ** 2 + (z - 14.5) ** 2 < 25] = 7
+    return labels
+
+
+def test_gives_the_bytes_of_the_program(tmp_path, ball, ball_arrays, prepared):
+    run_program("prepare", ball, "--target-tets", 800, "-o", tmp_path / "program.vtu")
+    expected = (tmp_path / "program.vtu").read_bytes()
+    prepared.write(tmp_path / "python.vtu")
+    assert (tmp_path / "python.vtu").read_bytes() == expected
+    # Arrays instead of a file, under the file's name, on one thread.
+    tetwright.prepare({"ball": ball_arrays}, target_tets=800, threads=1).write(tmp_path / "arrays.vtu")
+    assert (tmp_path / "arrays.vtu").read_bytes() == expected
+    # Written by the call.
+    tetwright.prepare(str(ball), target_tets=800, output=tmp_path / "output.vtu", stats=tmp_path / "s.json")
+    assert (tmp_path / "output.vtu").read_bytes() == expected
+    assert (tmp_path / "s.json").exists()
+
+
+def test_labels_give_the_bytes_of_the_program(tmp_path):
+    labels = labels_of_two_balls()
+    with open(tmp_path / "v.nrrd", "wb") as file:
+        file.write(b"NRRD0004\ntype: uchar\ndimension: 3\nsizes: 24 24 24\nencoding: raw\nspace dimension: 3\n"
+                   b"space directions: (2,0,0) (0,2,0) (0,0,3)\nspace origin: (1,2,3)\n\n")
+        file.write(labels.tobytes(order="F"))
+    run_program("prepare", tmp_path / "v.nrrd", "--target-tets", 900, "-o", tmp_path / "program.vtu")
+    mesh = tetwright.prepare(labels, spacing=(2, 2, 3), origin=(1, 2, 3), target_tets=900)
+    mesh.write(tmp_path / "python.vtu")
+    assert (tmp_path / "python.vtu").read_bytes() == (tmp_path / "program.vtu").read_bytes()
+    assert mesh.material_names == {1: "label_1", 7: "label_7"}
+    affine = np.diag([2, 2, 3, 1.0])
+    affine[:3, 3] = 1, 2, 3
+    image = types.SimpleNamespace(affine=affine, dataobj=labels.astype(float))
+    for again in (tetwright.prepare(labels, affine=affine, target_tets=900),
+                  tetwright.prepare(image, target_tets=900)):
+        assert np.array_equal(again.points, mesh.points) and np.array_equal(again.tets, mesh.tets)
+    only = tetwright.prepare(labels, target_tets=300, labels=[(5, 9)])
+    assert set(only.materials.tolist()) == {7}
+
+
+def test_arrays_are_views_that_keep_the_mesh_alive(ball):
+    mesh = tetwright.mesh(ball, resolution=16)
+    points, tets = mesh.points, mesh.tets
+    assert points.dtype == np.float64 and points.shape[1] == 3
+    assert tets.dtype == np.uint32 and tets.shape[1] == 4
+    assert mesh.materials.shape == (len(tets),)
+    assert np.shares_memory(points, mesh.points) and np.shares_memory(tets, mesh.tets)
+    faces = mesh.interfaces
+    assert np.shares_memory(faces.triangles, faces.triangles) and faces.on_boundary.all()
+    assert faces.material.tolist() == [1] * len(faces)
+    with pytest.raises(ValueError):
+        points[0, 0] = 1
+    before = points.copy()
+    del mesh, faces
+    assert np.array_equal(points, before)
+    volume = np.linalg.det(points[tets[:, 1:]] - points[tets[:, :1]]).sum() / 6
+    assert volume == pytest.approx(4 / 3 * np.pi, rel=0.1)
+
+
+def test_options_and_stats(ball):
+    mesh = tetwright.prepare(ball, target_tets=500, seed=7, min_solid_angle=0.05, keep_outside=True)
+    assert mesh.stats["command"] == "prepare"
+    assert mesh.stats["result"]["tets"] == len(mesh.tets)
+    assert "outside" in mesh.material_names.values()
+    two = tetwright.mesh(ball, resolution=16, layer={"skin": 0.2}, feature_angle="off")
+    assert set(two.material_names.values()) == {"ball", "skin"}
+    assert not two.interfaces.on_boundary.all()
+
+
+def test_simplify_improve_and_check(ball, prepared):
+    fewer = tetwright.simplify(prepared, target_tets=400)
+    assert len(fewer.tets) == pytest.approx(400, rel=0.02)
+    as_arrays = tetwright.simplify((prepared.points, prepared.tets, prepared.materials), target_tets=400)
+    assert len(as_arrays.tets) == pytest.approx(400, rel=0.02)
+    better = tetwright.improve(fewer, free_count=True)
+    assert tetwright.check(better, before=prepared)
+    near = tetwright.check(prepared, surface=ball, tolerance="5%")
+    assert near and near["tolerance"]["held"]
+    far = tetwright.check(prepared, surface={"ball": ball}, tolerance=1e-3)
+    assert not far and far["surface"]["from_mesh"]["upper"] > 1e-3
+    # Several calls may use the same mesh.
+    assert len(tetwright.simplify(prepared, target_tets=400).tets) == len(fewer.tets)
+
+
+def test_second_order(tmp_path, ball):
+    mesh = tetwright.prepare(ball, target_tets=300, order=2)
+    assert mesh.tets10.shape == (len(mesh.tets), 10)
+    assert mesh.tets10.max() == len(mesh.points) + len(mesh.midside_points) - 1
+    mesh.write(tmp_path / "ten.vtu")
+    assert np.array_equal(meshio.read(tmp_path / "ten.vtu").cells_dict["tetra10"], mesh.tets10)
+
+
+def test_other_libraries_objects(ball_arrays, prepared):
+    points, triangles = ball_arrays
+    polygons = np.hstack([np.full((len(triangles), 1), 3), triangles]).ravel()
+    surfaces = [meshio.Mesh(points, [("triangle", triangles)]),
+                types.SimpleNamespace(vertices=points, faces=triangles),  # trimesh
+                types.SimpleNamespace(points=points, faces=polygons)]     # pyvista
+    for surface in surfaces:
+        assert len(tetwright.mesh(surface, resolution=8, accept_changes=True).tets) > 0
+    mesh = prepared.to_meshio()
+    assert [block.type for block in mesh.cells] == ["tetra", "triangle"]
+    assert len(tetwright.simplify(mesh, target_tets=400).tets) == pytest.approx(400, rel=0.02)
+
+
+def test_errors_carry_the_programs_message(ball, ball_arrays):
+    points, triangles = ball_arrays
+    with pytest.raises(tetwright.UsageError, match="there is no option --target-tet of prepare") as caught:
+        tetwright.prepare(ball, target_tet=5)
+    assert caught.value.status == 2 and isinstance(caught.value, ValueError)
+    with pytest.raises(tetwright.UsageError, match="--target-tets is required"):
+        tetwright.prepare(ball)
+    with pytest.raises(tetwright.UsageError, match="affine says what spacing"):
+        tetwright.prepare(labels_of_two_balls(), target_tets=9, spacing=1, affine=np.eye(4))
+    with pytest.raises(tetwright.UsageError, match="no input is one"):
+        tetwright.prepare(ball, target_tets=9, spacing=1)
+    with pytest.raises(tetwright.InputError, match="nowhere.ply"):
+        tetwright.prepare("nowhere.ply", target_tets=5)
+    with pytest.raises(tetwright.InputError, match="names point 99999999"):
+        tetwright.mesh((points, np.array([[0, 1, 99999999]])))
+    with pytest.raises(tetwright.InputError, match="names point -1"):
+        tetwright.mesh((points, np.array([[0, 1, -1]])))
+    with pytest.raises(tetwright.InputError, match="not finite"):
+        tetwright.mesh((np.full((3, 3), np.nan), np.array([[0, 1, 2]])))
+    with pytest.raises(tetwright.InputError, match="give one of shape"):
+        tetwright.mesh((points[:, :2], triangles))
+    with pytest.raises(tetwright.InputError, match="not a whole number"):
+        tetwright.mesh(np.full((4, 4, 4), 0.5))
+    with pytest.raises(tetwright.InputError, match="is a int"):
+        tetwright.mesh(5)
+    with pytest.raises(tetwright.NothingToMeshError):
+        tetwright.mesh(np.zeros((4, 4, 4), int))
+    with pytest.raises(tetwright.OutputError) as caught:
+        tetwright.mesh(ball, resolution=8, accept_changes=True).write("/nowhere/at/all.vtu")
+    assert isinstance(caught.value, OSError)
+
+
+def test_what_falls_short_is_a_warning(ball):
+    with pytest.warns(tetwright.ShortfallWarning, match="tolerance"):
+        mesh = tetwright.prepare(ball, target_tets=200, tolerance="0.4%", resolution=16)
+    assert mesh.shortfall
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert tetwright.prepare(ball, target_tets=800).shortfall == []
+
+
+def test_progress_comes_in_the_callers_thread(ball):
+    seen = []
+    tetwright.prepare(ball, target_tets=5000, progress=lambda stage, f: seen.append((stage, f, threading.get_ident())))
+    assert len({stage for stage, _, _ in seen}) > 1
+    assert all(0 <= fraction <= 1 and thread == threading.get_ident() for _, fraction, thread in seen)
+    tetwright.prepare(ball, target_tets=800, progress=True)
+
+    def fail(stage, fraction):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        tetwright.prepare(ball, target_tets=50000, progress=fail)
+
+
+def test_ctrl_c_cancels(ball):
+    threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        tetwright.mesh(ball, resolution=600)
+    assert time.monotonic() - start < 60
+
+
+def test_calls_run_side_by_side(ball, prepared):
+    results = {}
+
+    def work(threads):
+        results[threads] = tetwright.prepare(ball, target_tets=800, threads=threads)
+
+    workers = [threading.Thread(target=work, args=(n,)) for n in (1, 2, 3)]
+    ticks = 0
+    for worker in workers:
+        worker.start()
+    while any(worker.is_alive() for worker in workers):
+        ticks += 1  # the interpreter is free
+        time.sleep(0.001)
+    assert ticks > 5
+    for mesh in results.values():
+        assert np.array_equal(mesh.points, prepared.points) and np.array_equal(mesh.tets, prepared.tets)
+
+
+def test_documentation_and_version():
+    for name in tetwright.__all__:
+        assert getattr(tetwright, name).__doc__ or name == "__version__", name
+    assert tetwright.__version__ in run_program("--version")
+    root = pathlib.Path(os.environ["TETWRIGHT_SOURCE"])
+    assert f'version = "{tetwright.__version__}"' in (root / "pyproject.toml").read_text()
+
+
+def test_the_example_runs(tmp_path, ball):
+    example = pathlib.Path(os.environ["TETWRIGHT_SOURCE"]) / "tools/python/examples/scan_and_labels.py"
+    done = subprocess.run([sys.executable, example, ball, tmp_path / "scan.vtu"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "tets" in done.stdout and (tmp_path / "scan.vtu").exists()
+
+
+def test_pip_installs_it(tmp_path):
+    # From a copy of what is needed: setuptools writes beside its sources.
+    root = pathlib.Path(os.environ["TETWRIGHT_SOURCE"])
+    copy = tmp_path / "source"
+    (copy / "tools").mkdir(parents=True)
+    for file in ("pyproject.toml", "README.md"):
+        shutil.copy(root / file, copy)
+    shutil.copytree(root / "tools/python", copy / "tools/python")
+    done = subprocess.run([sys.executable, "-m", "pip", "install", "--no-build-isolation", "--no-deps", "--no-index",
+                           "--disable-pip-version-check", "--target", tmp_path / "site", copy],
+                          capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    program = "import tetwright; print(tetwright.__file__, tetwright.__version__)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True,
+                          env={**os.environ, "PYTHONPATH": str(tmp_path / "site")})
+    assert done.returncode == 0, done.stderr
+    assert str(tmp_path / "site") in done.stdout and tetwright.__version__ in done.stdout

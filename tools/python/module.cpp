@@ -1,0 +1,498 @@
+// tetwright._core: what the Python package calls. Python turns its objects into arrays, this file arrays into
+// meshes and the results' arrays into views.
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "common/error.h"
+#include "common/formats/atomic_file.h"
+#include "common/formats/formats.h"
+#include "common/formats/mesh_parts.h"
+#include "common/parallel/parallel.h"
+#include "tools/commands/commands.h"
+#include "tools/commands/output_paths.h"
+#include "tools/commands/result.h"
+#include "tools/report.h"
+#include "tools/stats_json.h"
+
+namespace tetwright::python {
+
+namespace {
+
+namespace py = pybind11;
+
+/// How often a running call looks for Ctrl-C and reports its progress.
+constexpr std::chrono::milliseconds poll_interval{50};
+
+/// Progress of the thread that works, for the thread that called.
+class SharedProgress : public Progress {
+ public:
+  void begin_stage(std::string_view name) override {
+    const std::lock_guard lock(mutex_);
+    stage_ = name;
+    fraction_ = 0;
+  }
+  void update(double fraction) override {
+    const std::lock_guard lock(mutex_);
+    fraction_ = fraction;
+  }
+  std::pair<std::string, double> latest() const {
+    const std::lock_guard lock(mutex_);
+    return {stage_, fraction_};
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::string stage_;
+  double fraction_ = 0;
+};
+
+/// Calls `work` in a thread of its own, without the interpreter's lock, while this thread looks for signals
+/// and tells `callback(stage, fraction)` what has changed. An exception of either cancels the work and is
+/// raised once that has ended.
+void run_in_background(const std::function<void()>& work, SharedProgress& progress,
+                       const py::object& callback) {
+  std::mutex mutex;
+  std::condition_variable ended;
+  bool done = false;
+  std::exception_ptr failure;
+  std::thread worker([&] {
+    try {
+      work();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    const std::lock_guard lock(mutex);
+    done = true;
+    ended.notify_all();
+  });
+  std::exception_ptr raised;
+  std::pair<std::string, double> told{"", -1};
+  while (true) {
+    bool finished = false;
+    {
+      const py::gil_scoped_release release;
+      std::unique_lock lock(mutex);
+      finished = ended.wait_for(lock, poll_interval, [&] { return done; });
+    }
+    if (finished) break;
+    if (raised) continue;
+    try {
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      auto latest = progress.latest();
+      if (callback.is_none() || latest.first.empty() || latest == told) continue;
+      told = std::move(latest);
+      callback(told.first, told.second);
+    } catch (...) {
+      raised = std::current_exception();
+      progress.cancel();
+    }
+  }
+  worker.join();
+  if (raised) std::rethrow_exception(raised);
+  if (failure) std::rethrow_exception(failure);
+}
+
+// From arrays.
+
+using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Cells = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+using Tags = py::array_t<MaterialTag, py::array::c_style | py::array::forcecast>;
+using Labels = py::array_t<MaterialTag, py::array::f_style | py::array::forcecast>;
+
+std::string shape_text(const py::array& array) {
+  std::string text;
+  for (py::ssize_t k = 0; k < array.ndim(); ++k) text += (k > 0 ? ", " : "") + std::to_string(array.shape(k));
+  return "(" + text + ")";
+}
+
+void require_columns(const py::array& array, py::ssize_t columns, const std::string& name, const char* what) {
+  if (array.ndim() != 2 || array.shape(1) != columns)
+    throw InputError(name, 0,
+                     std::string(what) + " are an array of shape " + shape_text(array) +
+                         "; give one of shape (n, " + std::to_string(columns) + ")");
+}
+
+std::vector<Vec3> to_points(const Points& array, const std::string& name) {
+  require_columns(array, 3, name, "points");
+  const auto rows = array.unchecked<2>();
+  std::vector<Vec3> points(static_cast<std::size_t>(rows.shape(0)));
+  for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
+    const Vec3 p(rows(i, 0), rows(i, 1), rows(i, 2));
+    if (!p.allFinite())
+      throw InputError(name, 0,
+                       "point " + std::to_string(i) + " has a coordinate that is not finite; remove it");
+    points[static_cast<std::size_t>(i)] = p;
+  }
+  return points;
+}
+
+template <std::size_t N>
+std::vector<std::array<Index, N>> to_cells(const Cells& array, std::size_t points, const std::string& name,
+                                           const char* what) {
+  require_columns(array, static_cast<py::ssize_t>(N), name, what);
+  const auto rows = array.unchecked<2>();
+  std::vector<std::array<Index, N>> cells(static_cast<std::size_t>(rows.shape(0)));
+  for (py::ssize_t i = 0; i < rows.shape(0); ++i)
+    for (std::size_t k = 0; k < N; ++k) {
+      const std::int64_t p = rows(i, static_cast<py::ssize_t>(k));
+      if (p < 0 || static_cast<std::uint64_t>(p) >= points)
+        throw InputError(name, 0,
+                         "row " + std::to_string(i) + " of the " + what + " names point " +
+                             std::to_string(p) + ", but there are " + std::to_string(points) +
+                             ", numbered from 0");
+      cells[static_cast<std::size_t>(i)][k] = static_cast<Index>(p);
+    }
+  return cells;
+}
+
+TriangleMesh to_surface(const std::string& name, const Points& points, const Cells& triangles) {
+  TriangleMesh surface;
+  surface.points = to_points(points, name);
+  surface.triangles = to_cells<3>(triangles, surface.points.size(), name, "triangles");
+  if (surface.triangles.empty()) throw InputError(name, 0, "has no triangles; give a surface");
+  return surface;
+}
+
+TetMesh to_mesh(const std::string& name, const Points& points, const Cells& tets,
+                const std::optional<Tags>& materials, const std::map<MaterialTag, std::string>& names) {
+  TetMesh mesh;
+  mesh.points = to_points(points, name);
+  mesh.tets = to_cells<4>(tets, mesh.points.size(), name, "tets");
+  if (mesh.tets.empty()) throw InputError(name, 0, "has no tets; give a tet mesh");
+  mesh.materials.assign(mesh.tets.size(), 1);
+  if (materials) {
+    if (materials->ndim() != 1 || static_cast<std::size_t>(materials->shape(0)) != mesh.tets.size())
+      throw InputError(name, 0,
+                       "materials are an array of shape " + shape_text(*materials) +
+                           "; give one for each of the " + std::to_string(mesh.tets.size()) + " tets");
+    mesh.materials.assign(materials->data(), materials->data() + mesh.tets.size());
+  }
+  mesh.material_names = names;
+  return mesh;
+}
+
+LabelVolume to_volume(const std::string& name, const Labels& labels, const std::array<double, 3>& origin,
+                      const std::array<std::array<double, 3>, 3>& directions) {
+  if (labels.ndim() != 3 || labels.size() == 0)
+    throw InputError(name, 0,
+                     "labels are an array of shape " + shape_text(labels) + "; give one of three axes");
+  LabelVolume volume;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const py::ssize_t count = labels.shape(static_cast<py::ssize_t>(a));
+    if (count > std::numeric_limits<int>::max())
+      throw InputError(name, 0, "has more than 2147483647 voxels along an axis; give a part of it");
+    volume.size[a] = static_cast<int>(count);
+  }
+  volume.origin = Vec3(origin[0], origin[1], origin[2]);
+  for (Eigen::Index row = 0; row < 3; ++row)
+    for (Eigen::Index column = 0; column < 3; ++column)
+      volume.directions(row, column) =
+          directions[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+  if (!volume.origin.allFinite() || !volume.directions.allFinite() || volume.directions.determinant() == 0)
+    throw InputError(
+        name, 0,
+        "its origin and steps between voxels are not finite or lie in a plane; give a spacing above 0, "
+        "or an affine that can be inverted");
+  volume.labels.assign(labels.data(), labels.data() + labels.size());
+  return volume;
+}
+
+/// A mesh that belongs to Python, and what the command that made it said.
+struct Mesh {
+  TetMesh mesh;
+  std::optional<MidsideNodes> midside;
+  std::string stats;  ///< JSON; empty if no command made it
+  std::vector<std::string> notes, shortfall;
+};
+
+/// A read-only view of items of `Row`, `columns` numbers each from `first` on; null `columns`: one axis.
+template <class Number, class Row>
+py::array view(const std::vector<Row>& rows, const void* first, py::ssize_t columns,
+               const py::object& owner) {
+  std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(rows.size())}, strides{sizeof(Row)};
+  if (columns > 0) {
+    shape.push_back(columns);
+    strides.push_back(sizeof(Number));
+  }
+  py::array array(py::dtype::of<Number>(), shape, strides, rows.empty() ? nullptr : first, owner);
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+py::dict fields_of(const std::vector<MeshField>& fields, const py::object& owner) {
+  py::dict all;
+  for (const MeshField& f : fields) {
+    const auto components = static_cast<py::ssize_t>(f.components);
+    const auto count = static_cast<py::ssize_t>(f.values.size()) / components;
+    std::vector<py::ssize_t> shape{count};
+    if (components > 1) shape.push_back(components);
+    py::array_t<double> array(shape, f.values.data(), owner);
+    array.attr("setflags")(py::arg("write") = false);
+    all[py::str(f.name)] = array;
+  }
+  return all;
+}
+
+/// The other side of each interface triangle, and whether there is none but outside.
+py::tuple other_sides(const TetMesh& mesh) {
+  const auto count = static_cast<py::ssize_t>(mesh.interfaces.size());
+  py::array_t<MaterialTag> other(count);
+  py::array_t<bool> boundary(count);
+  for (py::ssize_t i = 0; i < count; ++i) {
+    const std::optional<MaterialTag>& tag = mesh.interfaces[static_cast<std::size_t>(i)].other;
+    other.mutable_at(i) = tag.value_or(0);
+    boundary.mutable_at(i) = !tag;
+  }
+  return py::make_tuple(other, boundary);
+}
+
+void write_mesh_files(const Mesh& mesh, const std::string& path, const std::string& format,
+                      const std::string& boundary, bool no_boundary) {
+  const py::gil_scoped_release release;
+  check_output_path(path, FileKind::tet_mesh, format);
+  if (!boundary.empty()) check_output_path(boundary, FileKind::surface);
+  OutputFiles files;
+  const MidsideNodes* midside = mesh.midside ? &*mesh.midside : nullptr;
+  if (no_boundary) {
+    TetMesh tets = mesh.mesh;
+    tets.interfaces.clear();
+    tets.patch_groups.clear();
+    write_tet_mesh({tets, midside}, path, &files, format);
+  } else {
+    write_tet_mesh({mesh.mesh, midside}, path, &files, format);
+  }
+  if (!boundary.empty()) write_surface(interface_surface(mesh.mesh), boundary, &files);
+  files.commit();
+}
+
+CommandLine parse(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "tetwright");
+  std::vector<char*> argv;
+  for (std::string& a : arguments) argv.push_back(a.data());
+  CommandLine line;
+  line.in_memory = true;
+  if (!parse_command_line(static_cast<int>(argv.size()), argv.data(), line))
+    throw UsageError("help and version are not options here; see help(tetwright)");
+  if (line.output.empty() && !(line.boundary.empty() && line.write_sdf.empty() && line.stats.empty()) &&
+      line.command != Command::check)
+    throw UsageError(
+        "boundary, write_sdf and stats are written beside an output; give output too, or call write()");
+  return line;
+}
+
+std::shared_ptr<Mesh> run(std::vector<std::string> arguments, InputObjects& inputs,
+                          const py::object& callback) {
+  const CommandLine line = parse(std::move(arguments));
+  const auto made = std::make_shared<Mesh>();
+  SharedProgress progress;
+  run_in_background(
+      [&] {
+        with_threads(line.threads, [&] {
+          CommandRun run(line, progress, &inputs);
+          if (!line.output.empty()) check_output_paths(line);
+          CommandResult result = make_result(run);
+          if (!line.output.empty()) write_result(result, run);
+          made->stats = stats_json(line, run.report);
+          made->notes = notes_of(run.report);
+          for (const Shortfall& s : run.report.shortfall) made->shortfall.push_back(s.message);
+          made->mesh = std::move(result.mesh);
+          made->midside = std::move(run.midside);
+        });
+      },
+      progress, callback);
+  return made;
+}
+
+py::tuple check(std::vector<std::string> arguments, InputObjects& inputs, const py::object& callback) {
+  const CommandLine line = parse(std::move(arguments));
+  SharedProgress progress;
+  std::string json;
+  std::vector<std::string> notes;
+  bool passed = false;
+  run_in_background(
+      [&] {
+        with_threads(line.threads, [&] {
+          CommandRun run(line, progress, &inputs);
+          const CheckReport found = make_check(run);
+          json = check_json(line, run.report, found);
+          notes = notes_of(run.report);
+          passed = found.valid() && found.topology_kept() && found.within_tolerance();
+        });
+      },
+      progress, callback);
+  return py::make_tuple(json, notes, passed);
+}
+
+// Exceptions.
+
+/// Python's class for each kind of error; borrowed, the module owns them.
+PyObject* error_class(ExitStatus status);
+
+struct ErrorClasses {
+  PyObject *base = nullptr, *usage = nullptr, *input = nullptr, *nothing = nullptr, *output = nullptr,
+           *internal = nullptr;
+} classes;
+
+PyObject* error_class(ExitStatus status) {
+  switch (status) {
+    case ExitStatus::usage:
+      return classes.usage;
+    case ExitStatus::bad_input:
+      return classes.input;
+    case ExitStatus::nothing_to_mesh:
+      return classes.nothing;
+    case ExitStatus::output_failed:
+      return classes.output;
+    case ExitStatus::internal_error:
+      return classes.internal;
+    default:
+      return classes.base;
+  }
+}
+
+void make_error_classes(py::module_& module) {
+  const auto make = [&](const char* name, const char* doc, PyObject* first, PyObject* second,
+                        ExitStatus status) {
+    const py::tuple bases =
+        second ? py::make_tuple(py::handle(first), py::handle(second)) : py::make_tuple(py::handle(first));
+    py::dict members;
+    members["status"] = static_cast<int>(status);
+    const std::string full = std::string("tetwright.") + name;
+    PyObject* made = PyErr_NewExceptionWithDoc(full.c_str(), doc, bases.ptr(), members.ptr());
+    if (!made) throw py::error_already_set();
+    module.attr(name) = py::reinterpret_steal<py::object>(made);
+    return made;
+  };
+  classes.base =
+      make("Error", "What ends a call early: the program's message; `status` is the program's exit status.",
+           PyExc_Exception, nullptr, ExitStatus::internal_error);
+  classes.usage = make("UsageError", "An option or a combination of them is wrong.", classes.base,
+                       PyExc_ValueError, ExitStatus::usage);
+  classes.input = make("InputError", "An input cannot be read or makes no sense.", classes.base,
+                       PyExc_ValueError, ExitStatus::bad_input);
+  classes.nothing = make("NothingToMeshError", "The input leaves nothing to mesh.", classes.base, nullptr,
+                         ExitStatus::nothing_to_mesh);
+  classes.output = make("OutputError", "A file could not be written, or memory ran out.", classes.base,
+                        PyExc_OSError, ExitStatus::output_failed);
+  classes.internal = make("InternalError", "A bug in Tetwright: please report it.", classes.base, nullptr,
+                          ExitStatus::internal_error);
+}
+
+}  // namespace
+
+}  // namespace tetwright::python
+
+PYBIND11_MODULE(_core, module) {
+  using namespace tetwright;
+  using namespace tetwright::python;
+  module.doc() = "The compiled part of tetwright; import tetwright instead.";
+  module.attr("version") = TETWRIGHT_VERSION;
+  make_error_classes(module);
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const Error& e) {
+      PyErr_SetString(error_class(exit_status(e)), e.what());
+    } catch (const InternalError& e) {
+      PyErr_SetString(classes.internal, e.what());
+    }
+  });
+
+  py::class_<InputObjects>(module, "Inputs")
+      .def(py::init<>())
+      .def("add_surface",
+           [](InputObjects& to, const std::string& name, const Points& points, const Cells& triangles) {
+             to.surfaces[name] = to_surface(name, points, triangles);
+           })
+      .def("add_mesh",
+           [](InputObjects& to, const std::string& name, const Points& points, const Cells& tets,
+              const std::optional<Tags>& materials, const std::map<MaterialTag, std::string>& names) {
+             to.meshes[name] = to_mesh(name, points, tets, materials, names);
+           })
+      .def("add_own_mesh",
+           [](InputObjects& to, const std::string& name, const Mesh& mesh) { to.meshes[name] = mesh.mesh; })
+      .def("add_volume",
+           [](InputObjects& to, const std::string& name, const Labels& labels,
+              const std::array<double, 3>& origin, const std::array<std::array<double, 3>, 3>& directions) {
+             to.volumes[name] = to_volume(name, labels, origin, directions);
+           });
+
+  py::class_<Mesh, std::shared_ptr<Mesh>>(module, "Mesh")
+      .def_property_readonly("points",
+                             [](const py::object& self) {
+                               const auto& points = self.cast<const Mesh&>().mesh.points;
+                               return view<double>(points, points.data(), 3, self);
+                             })
+      .def_property_readonly("tets",
+                             [](const py::object& self) {
+                               const auto& tets = self.cast<const Mesh&>().mesh.tets;
+                               return view<Index>(tets, tets.data(), 4, self);
+                             })
+      .def_property_readonly("materials",
+                             [](const py::object& self) {
+                               const auto& materials = self.cast<const Mesh&>().mesh.materials;
+                               return view<MaterialTag>(materials, materials.data(), 0, self);
+                             })
+      .def_property_readonly("material_names", [](const Mesh& m) { return m.mesh.material_names; })
+      .def_property_readonly("interface_triangles",
+                             [](const py::object& self) {
+                               const auto& faces = self.cast<const Mesh&>().mesh.interfaces;
+                               return view<Index>(faces, faces.empty() ? nullptr : &faces[0].ids, 3, self);
+                             })
+      .def_property_readonly("interface_materials",
+                             [](const py::object& self) {
+                               const auto& faces = self.cast<const Mesh&>().mesh.interfaces;
+                               return view<MaterialTag>(faces, faces.empty() ? nullptr : &faces[0].material,
+                                                        0, self);
+                             })
+      .def_property_readonly("interface_patches",
+                             [](const py::object& self) {
+                               const auto& faces = self.cast<const Mesh&>().mesh.interfaces;
+                               return view<std::uint16_t>(faces, faces.empty() ? nullptr : &faces[0].patch, 0,
+                                                          self);
+                             })
+      .def("interface_others", [](const Mesh& m) { return other_sides(m.mesh); })
+      .def_property_readonly("midside_points",
+                             [](const py::object& self) -> py::object {
+                               const auto& midside = self.cast<const Mesh&>().midside;
+                               if (!midside) return py::none();
+                               return view<double>(midside->points, midside->points.data(), 3, self);
+                             })
+      .def_property_readonly("midside_of_tets",
+                             [](const py::object& self) -> py::object {
+                               const auto& midside = self.cast<const Mesh&>().midside;
+                               if (!midside) return py::none();
+                               return view<Index>(midside->of_tets, midside->of_tets.data(), 6, self);
+                             })
+      .def("point_fields",
+           [](const py::object& self) { return fields_of(self.cast<const Mesh&>().mesh.point_fields, self); })
+      .def("cell_fields",
+           [](const py::object& self) { return fields_of(self.cast<const Mesh&>().mesh.cell_fields, self); })
+      .def_readonly("stats", &Mesh::stats)
+      .def_readonly("notes", &Mesh::notes)
+      .def_readonly("shortfall", &Mesh::shortfall)
+      .def("write", &write_mesh_files);
+
+  module.def("run", &run);
+  module.def("check", &check);
+  module.def("read", [](const std::string& path, const std::string& material_field) {
+    const auto mesh = std::make_shared<Mesh>();
+    const py::gil_scoped_release release;
+    ReadTetMesh read = read_tet_mesh(path, {material_field});
+    mesh->mesh = std::move(read.mesh);
+    for (const Dropped& d : read.dropped)
+      if (!d.restored)
+        mesh->notes.push_back(path + ": " + std::to_string(d.count) + " " + d.what + ": dropped");
+    return mesh;
+  });
+}

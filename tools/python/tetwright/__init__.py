@@ -1,0 +1,27 @@
+"""Tetrahedral meshes for simulation from scans and segmented volumes.
+
+    import tetwright
+    mesh = tetwright.prepare("scan.ply", target_tets=10_000)
+    mesh.points, mesh.tets, mesh.materials      # numpy arrays
+    mesh.write("scan.vtu")
+
+The functions are the commands of the program `tetwright`, their keyword arguments its options: `--target-tets 9000` is
+`target_tets=9000`, a flag is True, a length in percent of the diagonal is the string "0.2%". With the same inputs and
+options both give the same bytes.
+
+Inputs are file names; `(points, triangles)` and `(points, tets)` arrays; label arrays of three axes with `spacing`,
+`origin` or `affine`; meshes of meshio, pyvista or trimesh and images of nibabel, or what looks like them; a `TetMesh`.
+Several surfaces are a list, or a dict from the names of their materials.
+
+What ends a call early is an exception, a subclass of `tetwright.Error` with the program's message. What falls short of
+what was asked is a `ShortfallWarning` and in `TetMesh.shortfall`. Calls release the interpreter's lock, and Ctrl-C
+cancels them. Several may run at a time, each with its own `threads`.
+"""
+from ._commands import check, improve, mesh, prepare, read, simplify
+from ._core import (Error, InputError, InternalError, NothingToMeshError, OutputError, UsageError,
+                    version as __version__)
+from ._mesh import CheckResult, Interfaces, ShortfallWarning, TetMesh
+
+__all__ = ["prepare", "mesh", "simplify", "improve", "check", "read", "TetMesh", "Interfaces", "CheckResult",
+           "ShortfallWarning", "Error", "UsageError", "InputError", "NothingToMeshError", "OutputError",
+           "InternalError", "__version__"]

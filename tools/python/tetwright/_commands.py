@@ -1,0 +1,188 @@
+"""The program's commands as functions."""
+from __future__ import annotations
+
+import os
+import sys
+import warnings
+from typing import Any, Callable, Optional, Union
+
+from . import _core
+from ._inputs import Inputs
+from ._mesh import CheckResult, ShortfallWarning, TetMesh
+
+Progress = Union[bool, Callable[[str, float], None], None]
+
+
+def prepare(scan: Any, *, target_tets: Optional[int] = None, tolerance: Union[float, str, None] = None,
+            spacing: Any = None, origin: Any = None, affine: Any = None, progress: Progress = None,
+            **options: Any) -> TetMesh:
+    """Turns scans or a segmented volume into a simulation mesh, in one go.
+
+    scan -- a surface, a list of them or a dict from names of materials (later ones carve earlier ones), or one array of
+        labels of shape (nx, ny, nz), whole numbers of which 0 is outside
+    target_tets -- the number of tets to reach; without it `tolerance` or `size_field` is needed
+    tolerance -- how far the surfaces of mesh and scan may be from each other, input units or "0.2%" of the diagonal
+    spacing, origin -- of an array of labels: input units from voxel to voxel (one number or three), and the centre of
+        voxel (0, 0, 0); or affine, a (4, 4) matrix from indices to positions
+    progress -- a function of (stage, fraction from 0 to 1), called from this thread; True shows a bar, by tqdm if that
+        is installed
+    options -- those of `tetwright prepare --help`: threads=2, seed=7, min_solid_angle=0.1, material={"bone": surface},
+        layer={"skin": 2.0}, keep_outside=True, order=2, labels=[1, (5, 9)]; output="file.vtu" writes it, too
+
+    Raises a subclass of Error; warns with ShortfallWarning where the result is short of what was asked.
+    """
+    inputs = Inputs(spacing, origin, affine)
+    options.update(target_tets=target_tets, tolerance=tolerance)
+    return _run("prepare", inputs, _scans(scan, inputs, options), options, progress)
+
+
+def mesh(scan: Any, *, tolerance: Union[float, str, None] = None, spacing: Any = None, origin: Any = None,
+         affine: Any = None, progress: Progress = None, **options: Any) -> TetMesh:
+    """Turns scans or a segmented volume into a dense mesh, as `prepare` does before it simplifies; arguments as there,
+    options those of `tetwright mesh --help`: resolution=128, voxel_size=0.5."""
+    inputs = Inputs(spacing, origin, affine)
+    options.update(tolerance=tolerance)
+    return _run("mesh", inputs, _scans(scan, inputs, options), options, progress)
+
+
+def simplify(tets: Any, *, target_tets: Optional[int] = None, tolerance: Union[float, str, None] = None,
+             progress: Progress = None, **options: Any) -> TetMesh:
+    """Turns a tet mesh into one of fewer tets: a TetMesh, a file, (points, tets) or (points, tets, materials) arrays of
+    shapes (n, 3), (m, 4) and (m,), or a mesh of meshio or pyvista. Options of `tetwright simplify --help`."""
+    inputs = Inputs()
+    options.update(target_tets=target_tets, tolerance=tolerance)
+    return _run("simplify", inputs, [inputs.add(tets, "mesh")], options, progress)
+
+
+def improve(tets: Any, *, progress: Progress = None, **options: Any) -> TetMesh:
+    """Improves the shapes of a tet mesh and keeps about its count; the mesh as of `simplify`, options of
+    `tetwright improve --help`: only_below=0.1, free_count=True."""
+    inputs = Inputs()
+    return _run("improve", inputs, [inputs.add(tets, "mesh")], options, progress)
+
+
+def check(tets: Any, *, surface: Any = None, before: Any = None, tolerance: Union[float, str, None] = None,
+          progress: Progress = None, **options: Any) -> CheckResult:
+    """Validity, topology and quality of a tet mesh, and how far it is from surfaces.
+
+    surface -- a surface or several (list, or dict), which the mesh is compared with: the largest distances both ways,
+        proven
+    before -- another mesh, whose topology it must have
+    tolerance -- the result is true only if mesh and surfaces are proven to be within it of each other
+
+    The result is what `tetwright check --json` prints; bool(result) is its verdict.
+    """
+    inputs = Inputs()
+    names = [inputs.add(tets, "mesh")]
+    if before is not None:
+        options["before"] = inputs.add(before, "mesh before")
+    if surface is not None:
+        options["surface"] = _several(surface, inputs)
+    options["tolerance"] = tolerance
+    inputs.finish()
+    with _shown(progress) as callback:
+        return CheckResult(*_core.check(_arguments("check", names, options, inputs), inputs.core, callback))
+
+
+def read(path: Union[str, os.PathLike], *, material_field: str = "") -> TetMesh:
+    """Reads a tet mesh from a file of any format that the program reads."""
+    return TetMesh(_core.read(os.fspath(path), material_field))
+
+
+def _run(command: str, inputs: Inputs, names: list[str], options: dict[str, Any], progress: Progress) -> TetMesh:
+    arguments = _arguments(command, names, options, inputs)
+    inputs.finish()
+    with _shown(progress) as callback:
+        result = TetMesh(_core.run(arguments, inputs.core, callback))
+    for message in result.shortfall:
+        warnings.warn(message, ShortfallWarning, stacklevel=3)
+    return result
+
+
+def _several(value: Any, inputs: Inputs) -> list[str]:
+    """The names of one or several surfaces; two arrays in a tuple are one."""
+    if isinstance(value, dict):
+        return [inputs.add(v, str(k)) for k, v in value.items()]
+    if isinstance(value, list):
+        return [inputs.add(v, f"surface_{i + 1}") for i, v in enumerate(value)]
+    return [inputs.add(value, "surface")]
+
+
+def _scans(value: Any, inputs: Inputs, options: dict[str, Any]) -> list[str]:
+    """The positional inputs; files that a dict names become materials of that name."""
+    if not isinstance(value, dict):
+        return _several(value, inputs)
+    if any(isinstance(v, (str, os.PathLike)) for v in value.values()):
+        options["material"] = {**value, **options.get("material", {})}
+        return []
+    return _several(value, inputs)
+
+
+def _arguments(command: str, names: list[str], options: dict[str, Any], inputs: Inputs) -> list[str]:
+    """What the program's parser reads."""
+    arguments = [command]
+    for key, value in options.items():
+        option = "--" + key.replace("_", "-")
+        if value is None or value is False:
+            continue
+        if value is True:
+            arguments.append(option)
+        elif key == "labels" and not isinstance(value, str):
+            arguments.append(f"{option}={_label_ranges(value)}")
+        elif isinstance(value, dict):
+            for name, item in value.items():
+                text = inputs.add(item, str(name)) if key == "material" else _text(item)
+                arguments.append(f"{option}={name}={text}")
+        elif isinstance(value, (list, tuple)):
+            arguments.extend(f"{option}={_text(item)}" for item in value)
+        else:
+            arguments.append(f"{option}={_text(value)}")
+    return arguments + ["--", *names]
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, (str, os.PathLike)):
+        return os.fspath(value)
+    if hasattr(value, "item"):  # a number of numpy
+        value = value.item()
+    if not isinstance(value, (int, float)):
+        raise _core.UsageError(f"an option is a {type(value).__name__}; give a number, text, True or a file name")
+    return repr(value)
+
+
+def _label_ranges(value: Any) -> str:
+    items = value if isinstance(value, (list, tuple, set, range)) else [value]
+    return ",".join(f"{i[0]}-{i[1]}" if isinstance(i, tuple) else str(i) for i in items)
+
+
+class _shown:
+    """The callback of a call: the caller's, a bar's or none."""
+
+    def __init__(self, progress: Progress):
+        self._bar = None
+        self._stage = ""
+        self.callback = self._show if progress is True else progress if callable(progress) else None
+
+    def __enter__(self) -> Optional[Callable[[str, float], None]]:
+        return self.callback
+
+    def __exit__(self, *_: Any) -> None:
+        if self._bar is not None:
+            self._bar.close()
+        elif self._stage:
+            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+
+    def _show(self, stage: str, fraction: float) -> None:
+        try:
+            from tqdm.auto import tqdm
+        except ImportError:
+            print(f"\r\x1b[K{stage} {fraction:.0%}", end="", file=sys.stderr, flush=True)
+        else:
+            if self._bar is None:
+                self._bar = tqdm(total=1.0, bar_format="{desc} {percentage:3.0f}%|{bar}| {elapsed}")
+            if stage != self._stage:
+                self._bar.reset()
+                self._bar.set_description(stage)
+            self._bar.n = fraction
+            self._bar.refresh()
+        self._stage = stage

@@ -1,0 +1,185 @@
+"""What the commands return."""
+from __future__ import annotations
+
+import json
+import os
+from typing import Any, Mapping, Optional
+
+import numpy as np
+
+from . import _core
+
+
+class ShortfallWarning(UserWarning):
+    """The result is there, but short of what was asked; the program's status would be 1."""
+
+
+class Interfaces:
+    """The faces between two materials, and between a material and the outside. Arrays are read-only."""
+
+    def __init__(self, core: _core.Mesh):
+        self._core = core
+
+    def __len__(self) -> int:
+        return len(self.triangles)
+
+    @property
+    def triangles(self) -> np.ndarray:
+        """(n, 3) uint32, a view: indices into the points; the normal points out of `material`."""
+        return self._core.interface_triangles
+
+    @property
+    def material(self) -> np.ndarray:
+        """(n,) int32, a view: the material that the normal points out of, the smaller tag of two."""
+        return self._core.interface_materials
+
+    @property
+    def patch(self) -> np.ndarray:
+        """(n,) uint16, a view: the part of its interface, between creases and named patches."""
+        return self._core.interface_patches
+
+    @property
+    def other(self) -> np.ndarray:
+        """(n,) int32, a copy: the material on the other side; 0 on the boundary, see `on_boundary`."""
+        return self._core.interface_others()[0]
+
+    @property
+    def on_boundary(self) -> np.ndarray:
+        """(n,) bool, a copy: True where there is nothing on the other side."""
+        return self._core.interface_others()[1]
+
+
+class TetMesh:
+    """A tetrahedral mesh. Its arrays are read-only views without copies, which keep it alive."""
+
+    def __init__(self, core: _core.Mesh):
+        self._core = core
+        self._stats: Optional[dict] = None
+
+    def __repr__(self) -> str:
+        return f"<tetwright.TetMesh of {len(self.tets)} tets, {len(self.points)} points, " \
+               f"{len(set(self.materials.tolist()))} materials>"
+
+    @property
+    def points(self) -> np.ndarray:
+        """(n, 3) float64, units of the input."""
+        return self._core.points
+
+    @property
+    def tets(self) -> np.ndarray:
+        """(m, 4) uint32, indices into the points; a tet (a, b, c, d) has (b-a) x (c-a) . (d-a) > 0."""
+        return self._core.tets
+
+    @property
+    def materials(self) -> np.ndarray:
+        """(m,) int32, the tag of each tet's material."""
+        return self._core.materials
+
+    @property
+    def material_names(self) -> dict[int, str]:
+        """The names of the tags that have one."""
+        return self._core.material_names
+
+    @property
+    def interfaces(self) -> Interfaces:
+        """The faces between materials and of the boundary."""
+        return Interfaces(self._core)
+
+    @property
+    def point_fields(self) -> dict[str, np.ndarray]:
+        """Numbers of the points, by name: (n,) or (n, components) float64."""
+        return self._core.point_fields()
+
+    @property
+    def fields(self) -> dict[str, np.ndarray]:
+        """Numbers of the tets, by name: (m,) or (m, components) float64."""
+        return self._core.cell_fields()
+
+    @property
+    def midside_points(self) -> Optional[np.ndarray]:
+        """(k, 3) float64, the nodes in the middle of edges, with order=2; else None."""
+        return self._core.midside_points
+
+    @property
+    def tets10(self) -> Optional[np.ndarray]:
+        """(m, 10) int64, a copy: ten-node tets in VTK's order, with order=2; else None. Numbers from len(points) on
+        are those of midside_points."""
+        midside = self._core.midside_of_tets
+        if midside is None:
+            return None
+        return np.hstack([self.tets.astype(np.int64), midside.astype(np.int64) + len(self.points)])
+
+    @property
+    def stats(self) -> dict[str, Any]:
+        """What --stats writes (data/stats.schema.json); empty for a mesh that was only read."""
+        if self._stats is None:
+            self._stats = json.loads(self._core.stats) if self._core.stats else {}
+        return self._stats
+
+    @property
+    def notes(self) -> list[str]:
+        """What was found in the input and what was done about it."""
+        return self._core.notes
+
+    @property
+    def shortfall(self) -> list[str]:
+        """What was asked and not reached; empty if all was."""
+        return self._core.shortfall
+
+    def write(self, path: str | os.PathLike, *, output_format: str = "", boundary: str | os.PathLike = "",
+              no_boundary: bool = False) -> None:
+        """Writes the mesh, whole or not at all, as the program does: the extension or `output_format` names the
+        format; `boundary` is a file for the boundary and interfaces as a surface; `no_boundary` leaves triangles out
+        of the mesh. With order=2 tets have ten nodes."""
+        self._core.write(os.fspath(path), output_format, os.fspath(boundary), no_boundary)
+
+    def to_meshio(self):
+        """A meshio.Mesh: tets (ten-node ones with order=2) with the cell data `material`, and triangles with those of
+        the materials on their sides, 0 for outside."""
+        import meshio
+        tets10 = self.tets10
+        points = self.points if tets10 is None else np.vstack([self.points, self.midside_points])
+        cells = [("tetra", self.tets) if tets10 is None else ("tetra10", tets10)]
+        data: dict[str, list[np.ndarray]] = {"material": [self.materials]}
+        if len(self.interfaces) > 0:
+            cells.append(("triangle", np.ascontiguousarray(self.interfaces.triangles)))
+            data["material"].append(np.array(self.interfaces.material))
+            data["other_material"] = [np.zeros(len(self.tets), np.int32), self.interfaces.other]
+        point_data = self.point_fields if tets10 is None else {}
+        return meshio.Mesh(points, cells, point_data=point_data, cell_data=data)
+
+    def to_pyvista(self):
+        """A pyvista.UnstructuredGrid of the tets, with the cell data `material` and all fields."""
+        import pyvista
+        grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: self.tets.astype(np.int64)}, np.array(self.points))
+        grid.cell_data["material"] = self.materials
+        for name, values in self.fields.items():
+            grid.cell_data[name] = values
+        for name, values in self.point_fields.items():
+            grid.point_data[name] = values
+        return grid
+
+
+class CheckResult(Mapping[str, Any]):
+    """What `check --json` prints, as a mapping; true if the mesh passed: valid, of the topology of `before`, and
+    within the tolerance, where these were asked for."""
+
+    def __init__(self, json_text: str, notes: list[str], passed: bool):
+        self._data = json.loads(json_text)
+        self.notes = notes
+        self.passed = passed
+
+    def __bool__(self) -> bool:
+        return self.passed
+
+    def __getitem__(self, key: str) -> Any:
+        return self._data[key]
+
+    def __iter__(self):
+        return iter(self._data)
+
+    def __len__(self) -> int:
+        return len(self._data)
+
+    def __repr__(self) -> str:
+        return f"<tetwright.CheckResult, {'passed' if self.passed else 'not passed'}: {self._data}>"
