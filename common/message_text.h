@@ -22,6 +22,13 @@ inline std::string place_text(const Vec3& place) {
          ")";
 }
 
+/// The text with question marks for control characters.
+inline std::string printable(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ' || c == 127) c = '?';
+  return text;
+}
+
 /// A value from a file or the command line as messages show it: quoted, cut after 40 characters, with '?' for
 /// everything but printable ASCII.
 inline std::string in_quotes(std::string_view value) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <string>
 #include <string_view>
 
 #include "common/error.h"
@@ -25,6 +26,8 @@ class Progress {
   virtual void update(double /*fraction*/) {}
   /// All stages are done, and what follows may print.
   virtual void finish() {}
+  /// The name of the current stage, empty before the first.
+  virtual std::string stage() const { return {}; }
 
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
   bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }

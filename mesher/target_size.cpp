@@ -106,8 +106,8 @@ constexpr int min_tolerance_resolution = 64;
 /// Memory over what is estimated of cells so small that they show the input's facets: 1.8 for a bunny at 780
 /// cells along its longest side.
 constexpr double faceted_memory = 2.5;
-/// Cells within which the surface and the mesh stand for each other.
-constexpr double reach_cells = 2;
+/// Cells, or tolerances if that is more, within which the surface and the mesh stand for each other.
+constexpr double reach_cells = 2, reach_tolerances = 2;
 constexpr int max_fine_rounds = 4, max_worse_rounds = 2;
 /// Where halving cells at places gains nothing more: up to this share of the tolerance samples can be kept;
 /// else all cells become smaller.
@@ -254,7 +254,9 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
     MesherOptions large = options;
     large.resolution = coarse;
     DenseMesh dense = mesh_surfaces(input, large, progress);
-    if (misfit_of(dense, allowed, reach_cells * longest / coarse).places.empty()) return dense;
+    if (misfit_of(dense, allowed, std::max(reach_cells * longest / coarse, reach_tolerances * tolerance))
+            .places.empty())
+      return dense;
   }
   std::optional<DenseMesh> best;
   Misfit of_best;
@@ -262,7 +264,8 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
   double level_worst = std::numeric_limits<double>::infinity();  // with all larger cells
   for (int round = 0, attempts = 0; attempts < max_attempts; ++attempts) {
     DenseMesh dense = mesh_surfaces(input, options, progress);
-    Misfit misfit = misfit_of(dense, allowed, reach_cells * longest / options.resolution);
+    Misfit misfit = misfit_of(
+        dense, allowed, std::max(reach_cells * longest / options.resolution, reach_tolerances * tolerance));
     if (misfit.places.empty() || (counted && misfit.worst <= enough_share * tolerance)) return dense;
     ++worse;
     if (!best || misfit.worst < of_best.worst) {

@@ -24,13 +24,46 @@ constexpr std::uint64_t max_threads_option = 1024;
 /// More voxels than any volume has.
 constexpr std::uint64_t max_min_voxels = 1'000'000'000'000'000'000;
 
+/// An option whose value is the name of one of `values`.
+template <class Value>
+void add_choice(CLI::App& app, const char* option, Value& to, std::initializer_list<Value> values,
+                const char* description) {
+  std::map<std::string, Value> words;
+  std::string known;
+  for (const Value value : values) {
+    words[name_of(value)] = value;
+    known += (known.empty() ? "" : ", ") + std::string(name_of(value));
+  }
+  app.add_option_function<std::string>(
+         option,
+         [option, words, known, &to](const std::string& text) {
+           const auto found = words.find(text);
+           if (found == words.end()) throw CLI::ValidationError(option, "'" + text + "' is none of " + known);
+           to = found->second;
+         },
+         description)
+      ->type_name("NAME")
+      ->default_str(name_of(to));
+}
+
 void add_common(CLI::App& app, CommandLine& c) {
   add_whole_number(app, "--threads", c.threads, 1, max_threads_option,
                    "Max number of threads, 1 to 1024 (default: all of the machine); more than four for each "
                    "processor, or 16, are never used");
-  app.add_option("--stats", c.stats, "Write statistics of the run to this .json file")->type_name("FILE");
+  app.add_option("--stats", c.stats,
+                 "Write statistics of the run to this .json file, also of one that fails; -: to standard "
+                 "output, instead of the report")
+      ->type_name("FILE");
   app.add_flag("--quiet", c.quiet, "Print only errors and what falls short");
-  app.add_flag("--no-progress", c.no_progress, "Show no progress bar");
+  add_choice(
+      app, "--progress", c.progress,
+      {ProgressStyle::automatic, ProgressStyle::bar, ProgressStyle::json, ProgressStyle::none},
+      "How far the work is, on stderr: a bar, or lines of JSON for each stage and percent; auto: a bar "
+      "on a terminal");
+  app.add_flag("--no-progress", c.no_progress, "The same as --progress none");
+  app.add_option("--log-file", c.log_file,
+                 "Append the call, its stages, all messages and the exit status to this file, with times")
+      ->type_name("FILE");
 }
 
 void add_seed(CLI::App& app, CommandLine& c) {
@@ -174,28 +207,6 @@ void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) 
          "--write-sdf", c.write_sdf,
          "Write the meshed signed distances to this .vdb file, thin walls as thick as cells show them")
       ->type_name("FILE");
-}
-
-/// An option whose value is the name of one of `values`.
-template <class Value>
-void add_choice(CLI::App& app, const char* option, Value& to, std::initializer_list<Value> values,
-                const char* description) {
-  std::map<std::string, Value> words;
-  std::string known;
-  for (const Value value : values) {
-    words[name_of(value)] = value;
-    known += (known.empty() ? "" : ", ") + std::string(name_of(value));
-  }
-  app.add_option_function<std::string>(
-         option,
-         [option, words, known, &to](const std::string& text) {
-           const auto found = words.find(text);
-           if (found == words.end()) throw CLI::ValidationError(option, "'" + text + "' is none of " + known);
-           to = found->second;
-         },
-         description)
-      ->type_name("NAME")
-      ->default_str(name_of(to));
 }
 
 /// Options of both simplification and improvement.
@@ -478,6 +489,9 @@ void complete(const CLI::App& chosen, CommandLine& out) {
   if (out.order > 1 && !out.output.empty() && !written_tet_format(out.output, out.output_format).second_order)
     throw UsageError("--order 2: " + out.output +
                      " would be in a format without ten-node tets; write .vtu .msh .vtk .inp .bdf or .feb");
+  if (out.json && out.stats == "-")
+    throw UsageError(
+        "--json and --stats - both print to standard output; give --stats a file, or leave one out");
   if (out.resolution && out.voxel_size > 0) throw UsageError("give --resolution or --voxel-size, not both");
 }
 
@@ -502,6 +516,20 @@ const char* name_of(Command command) {
 }
 
 const char* name_of(Schedule schedule) { return schedule == Schedule::tuned ? "tuned" : "paper"; }
+
+const char* name_of(ProgressStyle style) {
+  switch (style) {
+    case ProgressStyle::automatic:
+      return "auto";
+    case ProgressStyle::bar:
+      return "bar";
+    case ProgressStyle::json:
+      return "json";
+    case ProgressStyle::none:
+      return "none";
+  }
+  return "";
+}
 
 const char* name_of(ShapeObjective objective) {
   return objective == ShapeObjective::both          ? "both"
@@ -528,6 +556,7 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
   for (const CommandEntry& entry : commands)
     if (chosen.get_name() == name_of(entry.command)) out.command = entry.command;
   complete(chosen, out);
+  for (int i = 0; i < argc; ++i) out.call += (i > 0 ? " " : "") + std::string(argv[i]);
   return true;
 }
 

@@ -28,11 +28,15 @@ struct LengthOption {
   double in_input_units(double diagonal) const { return percent ? value / 100 * diagonal : value; }
 };
 
+/// What shows how far a command is.
+enum class ProgressStyle { automatic, bar, json, none };
+
 enum class Command { prepare, mesh, simplify, improve, check, sample };
 
 /// The parsed command line, with the defaults that --help shows.
 struct CommandLine {
   Command command = Command::prepare;
+  std::string call;  ///< as it was given, for the log
   /// The result stays in the memory of a host program, and -o may be left out; set before parsing.
   bool in_memory = false;
   std::vector<std::string> inputs;  ///< of `sample`: the name
@@ -91,7 +95,9 @@ struct CommandLine {
   std::uint64_t seed = 1;
   std::string stats;
   bool quiet = false;
+  ProgressStyle progress = ProgressStyle::automatic;
   bool no_progress = false;
+  std::string log_file;  ///< empty: none
 };
 
 /// Parses the arguments. Returns false if it printed the help or the version instead. Throws UsageError, with
@@ -102,6 +108,7 @@ bool parse_command_line(int argc, char** argv, CommandLine& out);
 /// The names on the command line, such as "prepare", "tuned" and "solid-angle".
 const char* name_of(Command command);
 const char* name_of(Schedule schedule);
+const char* name_of(ProgressStyle style);
 const char* name_of(ShapeObjective objective);
 
 }  // namespace tetwright

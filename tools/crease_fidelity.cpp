@@ -1,6 +1,7 @@
 #include "tools/crease_fidelity.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -14,6 +15,33 @@ namespace {
 
 constexpr double max_crease_share = 0.005, max_corner_share = 0.001;
 constexpr double places_to_diagonal = 2000;
+/// How near to each other the largest distance and its bound are: a share of it, or of the diagonal.
+constexpr double bound_share = 0.01, bound_diagonals = 1e-9;
+
+/// A bound of the distance of any place between p and q from the items, at most `known`, or a little more
+/// than that, where no place is farther than `known`. The distance from one item is convex along the way.
+double bound_between(const Vec3& p, const Vec3& q, const ProjectionTree& items, double known,
+                     double accuracy) {
+  double bound = 0;
+  std::vector<std::array<Vec3, 2>> open{{p, q}};
+  while (!open.empty()) {
+    const auto [a, b] = open.back();
+    open.pop_back();
+    const Vec3 middle = (a + b) / 2;
+    const auto on = items.nearest_of(middle, std::numeric_limits<double>::infinity(),
+                                     [](const ProjectionTree::Item&) { return true; });
+    if (!on) return std::numeric_limits<double>::infinity();
+    const double upper =
+        std::max((items.closest_on(on->item, a) - a).norm(), (items.closest_on(on->item, b) - b).norm());
+    if (upper <= std::max(known, bound) + accuracy || (b - a).norm() <= accuracy) {
+      bound = std::max(bound, upper);
+      continue;
+    }
+    open.push_back({a, middle});
+    open.push_back({middle, b});
+  }
+  return bound;
+}
 
 }  // namespace
 
@@ -49,6 +77,13 @@ CreaseFidelity compare_creases(const CreaseCurves& expected, const std::vector<C
       }
     }
   }
+  const double accuracy = std::max(bound_share * result.max_distance, bound_diagonals * result.diagonal);
+  const double known = result.max_distance;
+  if (std::isfinite(known))
+    for (const auto& [a, b] : expected.segments)
+      result.max_distance =
+          std::max(result.max_distance,
+                   bound_between(expected.points[a], expected.points[b], creases, known, accuracy));
   if (!distances.empty()) {
     const auto at =
         distances.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(distances.size() - 1));

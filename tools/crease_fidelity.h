@@ -11,9 +11,11 @@ namespace tetwright {
 
 /// The creases and corners of an input beside those of the mesh made of it.
 struct CreaseFidelity {
-  double diagonal = 0;               ///< that shares are of, of the mesh's box, input units, as all lengths
-  double length = 0;                 ///< of the input's creases
-  double max_distance = 0;           ///< of a place on them from the mesh's creases
+  double diagonal = 0;  ///< that shares are of, of the mesh's box, input units, as all lengths
+  double length = 0;    ///< of the input's creases
+  /// That no place on them is farther than from the mesh's creases: at most 1 % or 1e-9 of the diagonal more
+  /// than some place is.
+  double max_distance = 0;
   double p99_distance = 0;           ///< that 99 % of them are within
   Vec3 place = Vec3::Zero();         ///< the farthest one
   std::size_t corners = 0;           ///< of the input

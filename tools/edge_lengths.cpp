@@ -25,10 +25,20 @@ std::vector<std::pair<Index, Index>> edges_of(const TetMesh& mesh) {
   return edges;
 }
 
+/// What the field wants, and no more than the source itself: the field is kept on a grid.
+double wanted_at(const Vec3& place, const SizeField& wish, const SizeSource& source) {
+  const SizeLimits& limits = wish.limits();
+  const double of_field = wish.at(place);
+  const std::optional<WantedLength> given = source.at(place);
+  if (!given) return of_field;
+  return std::min(of_field, std::clamp(given->length, limits.min_edge, limits.max_edge) +
+                                limits.grading * given->distance);
+}
+
 }  // namespace
 
-EdgeLengthReport compare_edge_lengths(const TetMesh& mesh, const SizeField* wish, double min_edge,
-                                      double max_edge) {
+EdgeLengthReport compare_edge_lengths(const TetMesh& mesh, const SizeField* wish, const SizeSource* source,
+                                      double min_edge, double max_edge) {
   EdgeLengthReport report;
   std::vector<double> ratios;
   const auto offend = [](EdgeLengthReport::Offender& worst, double length, const Vec3& place, bool worse) {
@@ -46,7 +56,7 @@ EdgeLengthReport compare_edge_lengths(const TetMesh& mesh, const SizeField* wish
     if (length > max_edge) offend(report.above_max, length, middle, length > report.above_max.length);
     if (length < min_edge) offend(report.below_min, length, middle, length < report.below_min.length);
     if (!wish) continue;
-    ratios.push_back(length / wish->at(middle));
+    ratios.push_back(length / wanted_at(middle, *wish, *source));
     report.within += ratios.back() <= edge_length_factor && ratios.back() >= 1 / edge_length_factor;
   }
   report.wished = ratios.size();

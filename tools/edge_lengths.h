@@ -31,7 +31,7 @@ struct EdgeLengthReport {
 };
 
 /// `wish` may be null; `min_edge` 0 and `max_edge` infinite are no bounds.
-EdgeLengthReport compare_edge_lengths(const TetMesh& mesh, const SizeField* wish, double min_edge,
-                                      double max_edge);
+EdgeLengthReport compare_edge_lengths(const TetMesh& mesh, const SizeField* wish, const SizeSource* source,
+                                      double min_edge, double max_edge);
 
 }  // namespace tetwright

@@ -18,6 +18,7 @@
 #include "tools/commands/commands.h"
 #include "tools/exit_status.h"
 #include "tools/interruption.h"
+#include "tools/log_file.h"
 #include "tools/report.h"
 
 namespace {
@@ -57,12 +58,14 @@ int main(int argc, char** argv) {
   });
   const auto fail = [](ExitStatus status, const std::string& message) {
     tetwright::print_line(message);
+    tetwright::log_line("exit status " + std::to_string(static_cast<int>(status)));
     return static_cast<int>(status);
   };
   try {
     tetwright::CommandLine line;
     if (!tetwright::parse_command_line(argc, argv, line)) return 0;
     const ExitStatus status = tetwright::run_command(line);
+    tetwright::log_line("exit status " + std::to_string(static_cast<int>(status)));
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
       return fail(ExitStatus::output_failed, "cannot write to standard output");
     return static_cast<int>(status);

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "common/message_text.h"
+#include "tools/log_file.h"
 #include "tools/stats_json.h"
 
 namespace tetwright {
@@ -20,13 +21,6 @@ std::string text(const char* format, ...) {
   std::vsnprintf(buffer, sizeof buffer, format, arguments);
   va_end(arguments);
   return buffer;
-}
-
-/// The text with question marks for control characters.
-std::string printable(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < ' ' || c == 127) c = '?';
-  return text;
 }
 
 /// "volume 40 x 30 x 20 voxels of 1 x 1 x 2.5, space unknown; 2 labels: 1 'bone', 2 'skin'".
@@ -200,6 +194,13 @@ std::vector<std::string> notes_of(const RunReport& run) {
   return notes;
 }
 
+double RunReport::lost_area() const {
+  if (!deviation || !mesher || mesher->expected.empty() || !mesher->unknown.empty()) return 0;
+  const bool all_shown = std::all_of(mesher->expected.begin(), mesher->expected.end(),
+                                     [](const ExpectedSolid& s) { return s.by_surface; });
+  return all_shown ? deviation->hidden_area : 0;
+}
+
 std::string patch_name(const FaceGroup& group) {
   return group.name.empty() ? std::to_string(group.number) : group.name;
 }
@@ -208,6 +209,9 @@ void print_notes(const std::vector<std::string>& notes) {
   for (const std::string& note : notes) print_line("note: " + note);
 }
 
-void print_line(const std::string& text) { std::fprintf(stderr, "tetwright: %s\n", printable(text).c_str()); }
+void print_line(const std::string& text) {
+  std::fprintf(stderr, "tetwright: %s\n", printable(text).c_str());
+  log_line(text);
+}
 
 }  // namespace tetwright

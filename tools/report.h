@@ -20,8 +20,8 @@ void print_notes(const std::vector<std::string>& notes);
 /// The name of a group, or its number.
 std::string patch_name(const FaceGroup& group);
 
-/// Prints "tetwright: TEXT" as one line to stderr; control characters, which names may contain, become
-/// question marks.
+/// Prints "tetwright: TEXT" as one line to stderr, and appends it to the log; control characters, which names
+/// may contain, become question marks.
 void print_line(const std::string& text);
 
 }  // namespace tetwright

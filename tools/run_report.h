@@ -17,6 +17,7 @@
 #include "simplify/simplify.h"
 #include "tools/crease_fidelity.h"
 #include "tools/edge_lengths.h"
+#include "tools/exit_status.h"
 #include "tools/fidelity.h"
 #include "tools/patch_fidelity.h"
 #include "tools/surface_comparison.h"
@@ -85,10 +86,15 @@ struct RunReport {
   std::optional<SimplifyReport> simplify;
   double tolerance = 0;                      ///< input units; 0: none
   std::optional<DeviationReport> deviation;  ///< of the result, with a tolerance
+  /// Area of the surface that the mesh does not show although no surface hides any: 0 where some are open,
+  /// intersect or meet others, or carve them.
+  double lost_area() const;
   RequestedSizes sizes;
   std::optional<EdgeLengthReport> edge_lengths;  ///< where sizes are asked for
   double seconds_read = 0, seconds_mesh = 0, seconds_write = 0, seconds_total = 0;
   std::vector<Shortfall> shortfall;
+  ExitStatus status = ExitStatus::done;
+  std::string error, stage;  ///< of a run that failed: its message, and the stage in which it did
 };
 
 /// What `check` found in a mesh.

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/parallel/parallel.h"
+#include "tools/report.h"
 
 namespace tetwright {
 
@@ -285,6 +286,9 @@ std::string stats_json(const CommandLine& line, const RunReport& run) {
   nlohmann::json j;
   j["version"] = TETWRIGHT_VERSION;
   j["command"] = name_of(line.command);
+  j["status"] = static_cast<int>(run.status);
+  if (!run.error.empty()) j["error"] = {{"message", run.error}, {"stage", run.stage}};
+  j["notes"] = notes_of(run);
   j["threads"] = thread_count();
   j["seed"] = line.seed;
   if (run.simplify) {
@@ -307,7 +311,7 @@ std::string stats_json(const CommandLine& line, const RunReport& run) {
   if (!run.patches.empty()) j["patches"] = patches_json(run.patches);
   if (run.deviation)
     j["tolerance"] = {{"distance", run.tolerance},
-                      {"held", run.deviation->upper() <= run.tolerance},
+                      {"held", run.deviation->upper() <= run.tolerance && run.lost_area() == 0},
                       {"from_mesh", deviation_json(run.deviation->from_mesh)},
                       {"from_surface", deviation_json(run.deviation->from_surface)},
                       {"apart_area", run.deviation->apart_area},

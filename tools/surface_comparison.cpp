@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <span>
@@ -30,6 +31,9 @@ namespace {
 constexpr double crease_degrees = 35;
 /// What turns that far is as good as a crease on the other side: none is lost for a degree.
 constexpr double counterpart_degrees = crease_degrees / 2;
+
+/// Of the mesh's area: more is no cap over a hole, and the surface no scan of the mesh's body.
+constexpr double max_cap_share = 0.5;
 
 /// The tets that stand for something: without the outside, and turned if all of them are inverted.
 TetMesh compared_tets(const TetMesh& mesh, SurfaceComparison& c) {
@@ -227,6 +231,10 @@ std::vector<SurfaceComparison::Bound> SurfaceComparison::bounds() const {
   };
   std::vector<Bound> all{bound(from_mesh.upper, "the mesh is", "the surface", from_mesh.place),
                          bound(from_surfaces.upper, "the surface is", "the mesh", from_surfaces.place)};
+  if (caps && caps->share > max_cap_share)
+    all.push_back({std::numeric_limits<double>::infinity(),
+                   "most of the mesh has no counterpart on the surface: " + share_text(caps->share) +
+                       " of its area are caps, up to " + short_number(caps->from_mesh.upper) + " from it"});
   if (creases) {
     if (std::isfinite(creases->max_distance))
       all.push_back(

@@ -8,6 +8,10 @@ namespace tetwright {
 
 namespace {
 
+/// Squared sine of a triangle's angle below which products of its edges say nothing of places within it: at
+/// 1e-8 the rounding of 1e-16 is 1e-8 of its weights.
+constexpr double needle_squared = 1e-8;
+
 Vec3 closest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 ab = b - a;
   const double length2 = ab.squaredNorm();
@@ -22,14 +26,19 @@ Vec3 closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   // Barycentric coordinates of the foot on the plane.
   const double d00 = ab.dot(ab), d01 = ab.dot(ac), d11 = ac.dot(ac), d20 = ap.dot(ab), d21 = ap.dot(ac);
   const double denominator = d00 * d11 - d01 * d01;
-  if (denominator > 0) {
+  const bool needle = denominator <= needle_squared * d00 * d11;
+  if (!needle) {
     const double v = (d11 * d20 - d01 * d21) / denominator, w = (d00 * d21 - d01 * d20) / denominator;
     if (v >= 0 && w >= 0 && v + w <= 1) return a + v * ab + w * ac;
   }
   Vec3 best = closest_on_segment(p, a, b);
   for (const Vec3& q : {closest_on_segment(p, b, c), closest_on_segment(p, c, a)})
     if ((p - q).squaredNorm() < (p - best).squaredNorm()) best = q;
-  return best;
+  if (!needle) return best;
+  // The weights above would be noise; these have the rounding of a cross product.
+  const std::array<double, 3> w = weights_in_triangle(p, a, b, c);
+  const Vec3 within = w[0] * a + w[1] * b + w[2] * c;
+  return (p - within).squaredNorm() < (p - best).squaredNorm() ? within : best;
 }
 
 double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -99,6 +99,8 @@ class SurfaceSizes : public SizeSource {
         of_points_(std::move(lengths), used_points(surface.triangles, surface.points.size())),
         tree_(std::move(surface.points), items_of(surface.triangles)) {}
 
+  bool fills_space() const override { return false; }
+
   std::optional<WantedLength> at(const Vec3& place) const override {
     constexpr double anywhere = std::numeric_limits<double>::infinity();
     const auto hit = tree_.nearest_of(place, anywhere, [](const ProjectionTree::Item&) { return true; });

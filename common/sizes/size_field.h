@@ -37,11 +37,12 @@ inline SizeLimits wanted_within(SizeLimits edges) {
 
 /// The edge length that is wanted at each place of a box: what a source says, between the limits, and nowhere
 /// growing faster than the grading allows (Persson 2006, "Mesh size functions for implicit geometries and
-/// PDE-based gradient limiting"): the largest function that is nowhere above the source and keeps to it.
+/// PDE-based gradient limiting").
 ///
 /// Kept as numbers on a grid of some 2 million nodes, between which it is trilinear. Every value of the
-/// source counts, also where it has more of them than the grid has nodes. Input units. Functions that read
-/// may be called concurrently.
+/// source counts, also where it has more of them than the grid has nodes: it is never above one given on a
+/// surface, and above one within the volume by at most the growth over a cell's diagonal. Input units.
+/// Functions that read may be called concurrently.
 class SizeField {
  public:
   /// For places in the box from `low` to `high`, of which at least one side must be above 0. Time: a query of
@@ -61,6 +62,8 @@ class SizeField {
            static_cast<std::size_t>(x);
   }
   Vec3 node(int x, int y, int z) const { return low_ + spacing_ * Vec3(x, y, z); }
+  /// Of the wanted length from a place of the source to a node this far from it.
+  double growth(double distance, const SizeSource& source) const;
   void sample(const SizeSource& source);
   void lower_at_values(const SizeSource& source);
   void limit_growth();

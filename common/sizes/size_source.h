@@ -25,6 +25,9 @@ class SizeSource {
   SizeSource& operator=(const SizeSource&) = delete;
   virtual ~SizeSource() = default;
 
+  /// Whether it answers within a volume, and not with the nearest place of a surface.
+  virtual bool fills_space() const { return true; }
+
   const std::string& field() const { return field_; }
 
   /// The edge length wanted at a place. Sources that fill space (tet meshes, grids) answer within it, with

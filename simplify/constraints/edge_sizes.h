@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/sizes/size_field.h"
 #include "simplify/mesh/working_space.h"
@@ -25,6 +26,8 @@ class EdgeSizes {
   void allow_shorter() { shorter_allowed_ = true; }
 
   bool has_wish() const { return wish_ != nullptr; }
+  /// Whether any edge may break a bound, beside the wish.
+  bool has_bounds() const { return min_edge_ > 0 || std::isfinite(max_edge_); }
   /// The wanted length at a place. Needs a wish.
   double wish(const Vec3& at) const {
     return std::min(extent_, wish_->at(space_.to_input(at)) * space_.scale());

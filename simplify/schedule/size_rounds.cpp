@@ -14,10 +14,13 @@ namespace tetwright {
 
 namespace {
 
-constexpr int max_rounds = 20;
-/// Share of the edges, each counted once for each tet, that may be left out of bounds.
+/// Edges are halved twice in three rounds or so: enough for some that are a million times too long.
+constexpr int max_rounds = 60;
+/// Share of the edges, each counted once for each tet, that may be left out of what a size field wants; of
+/// bounds none.
 constexpr double few = 0.002;
-/// A round that leaves more than this share of what the best one before left gains too little; so many may.
+/// A round that leaves more than this share of the excess that the best one before left gains too little; so
+/// many may.
 constexpr double idle_above = 0.97;
 constexpr int max_idle = 2;
 /// Of the bound of shapes: what collapses and splits must leave. Flips and better places mend it.
@@ -40,17 +43,17 @@ class SizeRounds {
   }
 
   void run() {
-    double fewest = 1;
+    double least = std::numeric_limits<double>::infinity();
     int idle = 0;
     for (int i = 0; i < max_rounds; ++i) {
-      const double share = share_out_of_bounds();
-      if (share <= few) break;
-      idle = share > idle_above * fewest ? idle + 1 : 0;
+      const OutOfBounds out = out_of_bounds();
+      if (out.share == 0 || (sizes_.has_wish() && !sizes_.has_bounds() && out.share <= few)) break;
+      idle = out.excess > idle_above * least ? idle + 1 : 0;
       if (idle > max_idle) break;
-      fewest = std::min(fewest, share);
+      least = std::min(least, out.excess);
       {
         RoundRecorder::Round round(tools_.recorder, plan_.kind, 0);
-        round.report().percent = 100 * share;
+        round.report().percent = 100 * out.share;
         collapse_short();
         split_long();
         round.finish();
@@ -66,16 +69,27 @@ class SizeRounds {
   }
 
  private:
-  double share_out_of_bounds() {
+  /// Edges that are too long or too short, each counted once for each tet.
+  struct OutOfBounds {
+    double share;   ///< of all edges
+    double excess;  ///< mean of the binary logarithms of the factors: halving one that is far too long counts
+  };
+
+  OutOfBounds out_of_bounds() {
     std::size_t out = 0, all = 0;
+    double excess_sum = 0;
     for (const ListedTet& t : area_.poor_tets(1))
       for (const auto& e : tet_edges) {
         const EdgeSizes::Excess excess =
             sizes_.excess(mesh_.position(t.points[e[0]]), mesh_.position(t.points[e[1]]));
-        out += excess.longer > 1 || excess.shorter > 1;
         ++all;
+        const double factor = std::max(excess.longer, excess.shorter);
+        if (!(factor > 1)) continue;
+        ++out;
+        excess_sum += std::log2(factor);
       }
-    return static_cast<double>(out) / static_cast<double>(std::max<std::size_t>(1, all));
+    const auto edges = static_cast<double>(std::max<std::size_t>(1, all));
+    return {static_cast<double>(out) / edges, excess_sum / edges};
   }
 
   void collapse_short() {

@@ -287,6 +287,12 @@ TEST(Check, CapsAreLeftOutAndReported) {
   EXPECT_NEAR(caps["area"], 2, 0.02);
   EXPECT_NEAR(caps["share"], 0.2, 0.002);
   EXPECT_NEAR(caps["upper"], 0.5, 0.01);
+  // Where most of the mesh is beyond the rim the surface is not the mesh's.
+  put(f / "patch.off", "OFF\n4 2 0\n0 0 0\n0 0 1\n0 1 0\n0 1 1\n3 0 1 2\n3 1 3 2\n");
+  const Answer patch = run("check " + (f / "box.vtu") + " --tolerance 1 --surface " + (f / "patch.off"));
+  EXPECT_EQ(patch.status, 1) << patch.out;
+  EXPECT_NE(patch.out.find("most of the mesh has no counterpart on the surface: "), std::string::npos)
+      << patch.out;
   // What is not beyond a rim counts: the bottom is elsewhere.
   put(f / "lower.off", [&] {
     std::string text = open;

@@ -50,6 +50,20 @@ TEST(CreaseFidelity, MeasuresFromThePlacesOfTheInput) {
   EXPECT_EQ(compare_creases(mesh_creases(mesh), smooth).max_distance, same.diagonal);
 }
 
+TEST(CreaseFidelity, BoundsWhatLiesBetweenTheMeasuredPlaces) {
+  // A crease with a gap that no measured place is in: its middle is 1.2e-4 from both ends.
+  CreaseCurves expected, found;
+  expected.points = {{0, 0, 0}, {1, 0, 0}};
+  expected.segments = {{0, 1}};
+  found.points = {{0, 0, 0}, {0.00013, 0, 0}, {0.00037, 0, 0}, {1, 0, 0}};
+  found.segments = {{0, 1}, {2, 3}};
+  const CreaseFidelity c = compare_creases(expected, {found}, {}, 1);
+  EXPECT_GE(c.max_distance, 0.00012);
+  EXPECT_LE(c.max_distance, 0.00012 + 2e-6);
+  found.segments = {{0, 3}};
+  EXPECT_LE(compare_creases(expected, {found}, {}, 1).max_distance, 1e-15);
+}
+
 TEST(CreaseFidelity, IsSaidOfPartsAndNotOfScans) {
   const TemporaryFolder f;
   ASSERT_EQ(run("sample cube -o " + (f / "cube.off")).status, 0);

@@ -63,6 +63,17 @@ TEST_F(Sizes, BoundsHold) {
   EXPECT_LE(j["edge_lengths"]["longest"], 0.4);
 }
 
+TEST_F(Sizes, EdgesAreSplitHoweverMuchTooLongTheyAre) {
+  const std::string cube = f / "cube.vtu";
+  ASSERT_EQ(run("sample tet_cube -o " + cube).status, 0);
+  const Answer a =
+      run("simplify " + cube + " -o " + out + " --target-tets 100 --max-edge 0.1 --stats " + (f / "s.json"));
+  EXPECT_EQ(a.status, 1) << a.err;  // more tets than asked for, and nothing else
+  const auto j = nlohmann::json::parse(contents(f / "s.json"));
+  EXPECT_EQ(j["edge_lengths"]["above_max"], 0) << a.err;
+  EXPECT_EQ(j["shortfall"].size(), 1u) << a.err;
+}
+
 TEST_F(Sizes, BadValuesSayWhatToDo) {
   const std::string call = "prepare " + surface + " -o " + out + " ";
   put(field, tet_with_sizes(0.25, 0.25));

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
 #include <valijson/schema_parser.hpp>
@@ -59,6 +60,70 @@ TEST(StatsJson, FollowsItsSchema) {
   j.erase("surprise");
   j["result"]["tets"] = "many";
   EXPECT_NE(violations(j), "");
+}
+
+TEST(StatsJson, OfARunThatFails) {
+  const TemporaryFolder f;
+  put(f / "flat.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const Answer a = run("mesh " + (f / "flat.off") + " -o " + (f / "o.vtu") + " --stats " + (f / "s.json"));
+  EXPECT_EQ(a.status, 3);
+  const auto j = nlohmann::json::parse(contents(f / "s.json"));
+  EXPECT_EQ(violations(j), "");
+  EXPECT_EQ(j["status"], 3);
+  EXPECT_NE(j["error"]["message"].get<std::string>().find("flat.off"), std::string::npos);
+  EXPECT_NE(j["error"]["stage"], "");
+  EXPECT_EQ(f.entries(), 2u);  // and no mesh
+}
+
+TEST(StatsJson, ToStandardOutput) {
+  const TemporaryFolder f;
+  put(f / "t.off", tetrahedron_off);
+  const std::string mesh = "mesh " + (f / "t.off") + " -o " + (f / "o.vtu") + " --resolution 16";
+  const auto j = nlohmann::json::parse(run(mesh + " --stats -").out);
+  EXPECT_EQ(violations(j), "");
+  EXPECT_EQ(j["status"], 0);
+  const auto checked = nlohmann::json::parse(run("check " + (f / "o.vtu") + " --stats -").out);
+  EXPECT_EQ(violations(checked), "");
+  expect_refused("check " + (f / "o.vtu") + " --stats - --json", 2, {"--json", "--stats -"});
+}
+
+TEST(StatsJson, ProgressAsLinesOfJsonAndTheLog) {
+  const TemporaryFolder f;
+  put(f / "t.off", tetrahedron_off);
+  const std::string call =
+      "mesh " + (f / "t.off") + " -o " + (f / "o.vtu") + " --resolution 32 --log-file " + (f / "run.log");
+  const Answer a = run(call + " --progress json --quiet");
+  EXPECT_EQ(a.status, 0);
+  std::istringstream lines(a.err);
+  std::vector<std::string> stages;
+  int percent = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const auto j = nlohmann::json::parse(line);
+    if (stages.empty() || stages.back() != j["stage"]) {
+      stages.push_back(j["stage"]);
+      EXPECT_EQ(j["percent"], 0);
+    } else {
+      EXPECT_GT(j["percent"], percent);
+    }
+    percent = j["percent"];
+    EXPECT_LE(percent, 100);
+  }
+  EXPECT_GT(stages.size(), 2u);
+  EXPECT_EQ(stages.front(), "read");
+  EXPECT_EQ(run("mesh " + (f / "t.off") + " -o " + (f / "o.vtu") + " --threads 1 --resolution 8 --log-file " +
+                (f / "run.log") + " --voxel-size 9 --progress none")
+                .status,
+            2);
+  EXPECT_EQ(
+      run("mesh " + (f / "none.off") + " -o " + (f / "o.vtu") + " --log-file " + (f / "run.log")).status, 3);
+  const std::string log = contents(f / "run.log");
+  for (const char* said :
+       {"--resolution 32", "stage: read", "stage: write", "exit status 0", "none.off", "exit status 3"})
+    EXPECT_NE(log.find(said), std::string::npos) << log << "lacks: " << said;
+  expect_refused("mesh " + (f / "t.off") + " -o " + (f / "o.vtu") + " --log-file " + (f / "no/where.log"), 5,
+                 {"where.log"});
+  expect_refused("mesh " + (f / "t.off") + " -o " + (f / "o.vtu") + " --log-file " + (f / "t.off"), 2,
+                 {"--log-file", "is also an input"});
 }
 
 }  // namespace

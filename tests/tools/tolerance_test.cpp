@@ -1,6 +1,7 @@
 // --tolerance of prepare, simplify and mesh.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/program.h"
@@ -79,6 +80,44 @@ TEST_F(Tolerance, MaxEdgeHoldsBelowASizeField) {
       "POINT_DATA 4\nSCALARS size double 1\nLOOKUP_TABLE default\n0.3\n0.3\n0.3\n0.3\n");
   const auto j = work("prepare " + surface, "--size-field " + (f / "size.vtk") + " --max-edge 0.2");
   EXPECT_LE(j["edge_lengths"]["longest"], 0.2);
+}
+
+TEST_F(Tolerance, AnOutsideThatIsNotShownIsAShortfall) {
+  // A box with a bore far narrower than a cell, which the mesh closes.
+  constexpr int rings = 9;
+  std::string text;
+  int points = 0, triangles = 0;
+  const auto ring = [&](double side, double z) {
+    for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
+      text += std::to_string(x * side) + " " + std::to_string(y * side) + " " + std::to_string(z) + "\n";
+      ++points;
+    }
+  };
+  ring(1, -1);
+  ring(1, 1);
+  for (int k = 0; k < rings; ++k) ring(0.003, -1 + 2.0 * k / (rings - 1));
+  const auto quad = [&](int a, int b, int c, int d) {
+    for (const std::array<int, 3>& t : {std::array{a, b, c}, {a, c, d}}) {
+      text += "3 " + std::to_string(t[0]) + " " + std::to_string(t[1]) + " " + std::to_string(t[2]) + "\n";
+      ++triangles;
+    }
+  };
+  constexpr int lowest = 8, highest = 8 + 4 * (rings - 1);
+  for (int i = 0; i < 4; ++i) {
+    const int j = (i + 1) % 4;
+    quad(i, j, 4 + j, 4 + i);
+    quad(i, lowest + i, lowest + j, j);
+    quad(4 + j, highest + j, highest + i, 4 + i);
+    for (int k = lowest; k < highest; k += 4) quad(k + j, k + i, k + 4 + i, k + 4 + j);
+  }
+  text = "OFF\n" + std::to_string(points) + " " + std::to_string(triangles) + " 0\n" + text;
+  put(f / "bore.off", text);
+  const Answer a =
+      run("prepare " + (f / "bore.off") + " -o " + (f / "o.vtu") +
+          " --tolerance 5% --resolution 16 --max-refinement 0 --accept-changes --stats " + (f / "s.json"));
+  EXPECT_EQ(a.status, 1) << a.err;
+  EXPECT_NE(a.err.find("the mesh shows nothing of an area of "), std::string::npos) << a.err;
+  EXPECT_FALSE(nlohmann::json::parse(contents(f / "s.json"))["tolerance"]["held"]);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "common/formats/formats.h"
@@ -22,8 +23,9 @@ class Volumes : public testing::Test {
     return "mesh " + inputs + " -o " + path("out.vtu") + " --stats " + path("s.json");
   }
 
-  /// Expects the status, one line on stderr that contains each of `said`, and no new file.
+  /// Expects the status, one line on stderr that contains each of `said`, and no new file but statistics.
   void expect_refused(const std::string& inputs, int status, const std::vector<std::string>& said) const {
+    std::filesystem::remove(path("s.json"));
     const std::size_t files = folder_.entries();
     const Answer a = run(mesh(inputs));
     EXPECT_EQ(a.status, status) << inputs << '\n' << a.err;
@@ -31,6 +33,7 @@ class Volumes : public testing::Test {
     EXPECT_EQ(a.err.rfind("tetwright: ", 0), 0u) << a.err;
     EXPECT_EQ(std::count(a.err.begin(), a.err.end(), '\n'), 1) << a.err;
     for (const std::string& s : said) EXPECT_NE(a.err.find(s), std::string::npos) << a.err << "lacks: " << s;
+    std::filesystem::remove(path("s.json"));
     EXPECT_EQ(folder_.entries(), files) << inputs;
   }
 

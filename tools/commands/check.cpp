@@ -3,13 +3,11 @@
 #include <utility>
 #include <vector>
 
-#include "common/formats/atomic_file.h"
 #include "common/formats/formats.h"
 #include "common/mesh/interfaces.h"
 #include "common/mesh/topology.h"
 #include "tools/commands/command_run.h"
 #include "tools/commands/commands.h"
-#include "tools/commands/output_paths.h"
 #include "tools/commands/scan_input.h"
 #include "tools/commands/simplification.h"
 #include "tools/report.h"
@@ -117,25 +115,27 @@ CheckReport make_check(CommandRun& run) {
   // The error of the reader lists the fields that there are.
   if (!line.material_field.empty() && !field_found)
     (void)read_tet_mesh(line.inputs.front(), {line.material_field});
+  if (!(check.valid() && check.topology_kept() && check.within_tolerance()))
+    run.report.status = ExitStatus::short_of_request;
   run.report.seconds_total = run.since_start.seconds();
   return check;
 }
 
-ExitStatus run_check(const CommandLine& line, Progress& progress) {
-  CommandRun run(line, progress);
-  check_stats_path(line);
+void run_check(CommandRun& run) {
+  const CommandLine& line = run.line;
   const CheckReport check = make_check(run);
-  if (!line.stats.empty()) write_file_atomically(line.stats, stats_json(line, run.report) + "\n");
-  progress.finish();
+  OutputFiles files;
+  write_stats(run, files);
+  files.commit();
+  run.progress.finish();
   if (!line.quiet) print_notes(notes_of(run.report));
+  if (line.stats == "-") std::printf("%s\n", stats_json(line, run.report).c_str());
   if (line.json)
     std::printf("%s\n", check_json(line, run.report, check).c_str());
-  else if (line.quiet)
+  else if (line.quiet || line.stats == "-")
     print_shortfalls(check);
   else
     print_check(check, run);
-  return check.valid() && check.topology_kept() && check.within_tolerance() ? ExitStatus::done
-                                                                            : ExitStatus::short_of_request;
 }
 
 }  // namespace tetwright

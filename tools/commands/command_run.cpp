@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "tools/stats_json.h"
+
 namespace tetwright {
 
 namespace {
@@ -43,6 +45,11 @@ ReadTetMesh take_tet_mesh(CommandRun& run, const std::string& name, const ReadTe
 
 LabelVolume take_label_volume(CommandRun& run, const std::string& name) {
   return take(&InputObjects::volumes, run.objects, name, [&] { return read_label_volume(name); });
+}
+
+void write_stats(const CommandRun& run, OutputFiles& files) {
+  if (!run.line.stats.empty() && run.line.stats != "-")
+    files.write(run.line.stats, stats_json(run.line, run.report) + "\n");
 }
 
 std::vector<std::string> input_files(const CommandLine& line) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/formats/atomic_file.h"
 #include "common/formats/dropped.h"
 #include "common/formats/formats.h"
 #include "common/mesh/midside_nodes.h"
@@ -38,6 +39,9 @@ struct CommandRun {
   RunReport report;
   std::optional<MidsideNodes> midside;  ///< of the result, with --order 2
 };
+
+/// Adds the statistics to the files, unless there are none or they go to standard output.
+void write_stats(const CommandRun& run, OutputFiles& files);
 
 /// The files that a command reads: the positional inputs, then those of --material. Empty for `sample`.
 std::vector<std::string> input_files(const CommandLine& line);

@@ -1,23 +1,41 @@
 #include "tools/commands/commands.h"
 
-#include <unistd.h>
+#include <cstdio>
 
 #include "common/parallel/parallel.h"
 #include "tools/commands/output_paths.h"
 #include "tools/commands/result.h"
-#include "tools/progress_bar.h"
+#include "tools/progress_report.h"
+#include "tools/report.h"
+#include "tools/stats_json.h"
 
 namespace tetwright {
 
 namespace {
 
-ExitStatus run_meshing(const CommandLine& line, Progress& progress) {
-  CommandRun run(line, progress);
-  check_output_paths(line);
+void run_meshing(CommandRun& run) {
+  check_output_paths(run.line);
   CommandResult result = make_result(run);
   write_result(result, run);
   print_result(run);
-  return run.report.shortfall.empty() ? ExitStatus::done : ExitStatus::short_of_request;
+}
+
+/// The statistics of a run that failed. That they cannot be written either is said, and the run's own error
+/// matters more.
+void report_failure(const std::exception& error, CommandRun& run) {
+  run.report.status = exit_status(error);
+  run.report.error = error.what();
+  run.report.stage = run.progress.stage();
+  run.report.seconds_total = run.since_start.seconds();
+  try {
+    OutputFiles files;
+    write_stats(run, files);
+    files.commit();
+    if (run.line.stats == "-") std::printf("%s\n", stats_json(run.line, run.report).c_str());
+  } catch (const std::exception& of_stats) {
+    run.progress.finish();
+    print_line(of_stats.what());
+  }
 }
 
 }  // namespace
@@ -32,14 +50,23 @@ CommandResult make_result(CommandRun& run) {
 }
 
 ExitStatus run_command(const CommandLine& line) {
-  ProgressBar progress(!line.quiet && !line.no_progress && isatty(STDERR_FILENO));
-  ExitStatus status = ExitStatus::done;
-  with_threads(line.threads, [&] {
-    status = line.command == Command::check    ? run_check(line, progress)
-             : line.command == Command::sample ? run_sample(line, progress)
-                                               : run_meshing(line, progress);
-  });
-  return status;
+  check_stats_path(line);
+  ProgressReport progress(progress_style(line));
+  CommandRun run(line, progress);
+  try {
+    with_threads(line.threads, [&] {
+      if (line.command == Command::check)
+        run_check(run);
+      else if (line.command == Command::sample)
+        run_sample(run);
+      else
+        run_meshing(run);
+    });
+  } catch (const std::exception& e) {
+    report_failure(e, run);
+    throw;
+  }
+  return run.report.status;
 }
 
 }  // namespace tetwright

@@ -31,7 +31,7 @@ CommandResult run_improve(CommandRun& run);
 /// `check`, without writing or printing.
 CheckReport make_check(CommandRun& run);
 
-ExitStatus run_check(const CommandLine& line, Progress& progress);
-ExitStatus run_sample(const CommandLine& line, Progress& progress);
+void run_check(CommandRun& run);
+void run_sample(CommandRun& run);
 
 }  // namespace tetwright

@@ -7,6 +7,7 @@
 #include "common/formats/formats.h"
 #include "tools/commands/command_run.h"
 #include "tools/commands/scan_input.h"
+#include "tools/log_file.h"
 
 namespace tetwright {
 
@@ -39,17 +40,30 @@ std::vector<Written> files_written(const CommandLine& line) {
   else if (line.command != Command::check)
     for (const std::string& file : files_of_tet_mesh(line.output, line.output_format))
       files.push_back({"-o", file});
-  for (const Written& more :
-       {Written{"--boundary", line.boundary}, {"--write-sdf", line.write_sdf}, {"--stats", line.stats}})
-    if (!more.file.empty()) files.push_back(more);
+  for (const Written& more : {Written{"--boundary", line.boundary},
+                              {"--write-sdf", line.write_sdf},
+                              {"--stats", line.stats},
+                              {"--log-file", line.log_file}})
+    if (!more.file.empty() && more.file != "-") files.push_back(more);
   return files;
 }
 
-void check_files_are_different(const CommandLine& line) {
+/// How many of them are --stats and --log-file, which come last.
+std::size_t report_count(const CommandLine& line) {
+  return static_cast<std::size_t>(!line.stats.empty() && line.stats != "-") +
+         static_cast<std::size_t>(!line.log_file.empty());
+}
+
+/// Which of the written files: those that say how the run went, or all.
+enum class Which { reports, all };
+
+void check_files_are_different(const CommandLine& line, Which which) {
   // These may replace what they read.
   const bool in_place = line.command == Command::simplify || line.command == Command::improve;
   const std::vector<Written> written = files_written(line);
-  for (std::size_t i = 0; i < written.size(); ++i) {
+  // Those that say how the run went come last, so that each is compared with all others.
+  const std::size_t first = which == Which::all ? 0 : written.size() - report_count(line);
+  for (std::size_t i = first; i < written.size(); ++i) {
     const auto& [option, file] = written[i];
     std::string message = option;
     message.append(" ").append(file);
@@ -73,17 +87,22 @@ void check_sdf_path(const CommandLine& line) {
 }  // namespace
 
 void check_stats_path(const CommandLine& line) {
-  if (!line.stats.empty() && std::filesystem::path(line.stats).extension() != ".json")
+  const bool to_file = !line.stats.empty() && line.stats != "-";
+  if (to_file && std::filesystem::path(line.stats).extension() != ".json")
     throw UsageError("--stats " + line.stats + ": the statistics are JSON; give a name that ends in .json");
-  check_files_are_different(line);
-  if (!line.stats.empty()) check_output_file(line.stats);
+  check_files_are_different(line, Which::reports);
+  if (to_file) check_output_file(line.stats);
+  if (line.log_file.empty()) return;
+  check_output_file(line.log_file);
+  open_log(line.log_file);
+  log_line(line.call);
 }
 
 void check_output_paths(const CommandLine& line) {
   check_output_path(line.output, FileKind::tet_mesh, line.output_format);
   if (!line.boundary.empty()) check_output_path(line.boundary, FileKind::surface);
   check_sdf_path(line);
-  check_stats_path(line);
+  check_files_are_different(line, Which::all);
 }
 
 }  // namespace tetwright

@@ -4,12 +4,12 @@
 
 namespace tetwright {
 
-/// Checks the files that a command will write, before any work: -o, --boundary, --write-sdf and --stats have
-/// a known extension, can be written, and replace neither an input nor each other, not even through a link.
+/// Checks the files that a command will write, before any work: -o, --boundary and --write-sdf have a known
+/// extension, can be written, and replace neither an input nor each other, not even through a link.
 /// Only `simplify` and `improve` may replace their input, by -o. Throws UsageError and OutputError.
 void check_output_paths(const CommandLine& line);
 
-/// The same for --stats alone, of commands that write no mesh; does nothing if it is not given.
+/// The same for --stats and --log-file, which then say how the rest went; opens the log.
 void check_stats_path(const CommandLine& line);
 
 }  // namespace tetwright

@@ -109,6 +109,11 @@ void find_count_and_shape_shortfall(const CommandLine& line, RunReport& report) 
 void find_deviation(RunReport& report) {
   if (!report.deviation) return;
   const DeviationReport& d = *report.deviation;
+  if (report.lost_area() > 0)
+    report.shortfall.push_back(
+        {"surface_shown", 0, report.lost_area(), "the size of the cells",
+         "short of --tolerance: the mesh shows nothing of an area of " + short_number(report.lost_area()) +
+             " of the surface, all of which is its outside; raise --resolution or --max-refinement"});
   if (d.upper() <= report.tolerance) return;
   const bool mesh = d.from_mesh.upper >= d.from_surface.upper;
   const SurfaceDeviation& worst = mesh ? d.from_mesh : d.from_surface;
@@ -128,8 +133,8 @@ void find_deviation(RunReport& report) {
 void find_edge_lengths(const TetMesh& mesh, RunReport& report) {
   const RequestedSizes& sizes = report.sizes;
   if (!report.simplify || !sizes.any()) return;
-  report.edge_lengths =
-      compare_edge_lengths(mesh, sizes.wish.get(), sizes.limits.min_edge, sizes.limits.max_edge);
+  report.edge_lengths = compare_edge_lengths(mesh, sizes.wish.get(), sizes.source.get(),
+                                             sizes.limits.min_edge, sizes.limits.max_edge);
   const EdgeLengthReport& e = *report.edge_lengths;
   const auto offend = [&](const char* what, const char* option, double asked,
                           const EdgeLengthReport::Offender& worst, const char* way, const char* limit) {
@@ -405,6 +410,7 @@ void assess(const TetMesh& mesh, CommandRun& run) {
   find_lost_patches(run.line, mesh, report);
   if (!run.line.output.empty()) find_unwritten(run.line, mesh, report);
   find_notes(run.line, notes_of(report), report);
+  report.status = report.shortfall.empty() ? ExitStatus::done : ExitStatus::short_of_request;
   report.seconds_total = run.since_start.seconds();
 }
 
@@ -422,14 +428,17 @@ void write_result(CommandResult& result, CommandRun& run) {
   if (!line.boundary.empty()) write_surface(interface_surface(result.mesh), line.boundary, &files);
   run.report.seconds_write = watch.seconds();
   run.report.seconds_total = run.since_start.seconds();
-  if (!line.stats.empty()) files.write(line.stats, stats_json(line, run.report) + "\n");
+  write_stats(run, files);
   files.commit();
   run.progress.finish();
 }
 
 void print_result(const CommandRun& run) {
   if (!run.line.quiet) print_notes(notes_of(run.report));
-  if (!run.line.quiet) print_report(run.line, run.report);
+  if (run.line.stats == "-")
+    std::printf("%s\n", stats_json(run.line, run.report).c_str());
+  else if (!run.line.quiet)
+    print_report(run.line, run.report);
   for (const Shortfall& s : run.report.shortfall) print_line(s.message);
 }
 

@@ -1,10 +1,11 @@
 #include "common/samples.h"
 
+#include <cstdio>
+
 #include "common/formats/atomic_file.h"
 #include "common/formats/formats.h"
 #include "tools/commands/command_run.h"
 #include "tools/commands/commands.h"
-#include "tools/commands/output_paths.h"
 #include "tools/stats_json.h"
 
 namespace tetwright {
@@ -27,17 +28,16 @@ void write(const LabelVolume& volume, const std::string& path, OutputFiles& file
 
 }  // namespace
 
-ExitStatus run_sample(const CommandLine& line, Progress& progress) {
-  CommandRun run(line, progress);
+void run_sample(CommandRun& run) {
+  const CommandLine& line = run.line;
   const Sample sample = make_sample(line.inputs.front());
   check_output_path(line.output, std::visit([](const auto& made) { return kind_of(made); }, sample));
-  check_stats_path(line);
   OutputFiles files;
   std::visit([&](const auto& made) { write(made, line.output, files); }, sample);
   run.report.seconds_total = run.since_start.seconds();
-  if (!line.stats.empty()) files.write(line.stats, stats_json(line, run.report) + "\n");
+  write_stats(run, files);
   files.commit();
-  return ExitStatus::done;
+  if (line.stats == "-") std::printf("%s\n", stats_json(line, run.report).c_str());
 }
 
 }  // namespace tetwright

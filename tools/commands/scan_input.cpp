@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -216,7 +217,8 @@ DenseMesh mesh_input(const MesherInput& surfaces, CommandRun& run) {
   if (line.tolerance.value == 0) return mesh_surfaces(surfaces, options, &run.progress);
   run.report.tolerance = tolerance_of(line, diagonal);
   if (!choose) return mesh_surfaces(surfaces, options, &run.progress);
-  if (line.target_tets == 0 && !run.report.sizes.wish) options.resolution = 0;
+  const RequestedSizes& sizes = run.report.sizes;
+  if (line.target_tets == 0 && !sizes.wish && !std::isfinite(sizes.limits.max_edge)) options.resolution = 0;
   return mesh_within(surfaces, options, run.report.tolerance, &run.progress);
 }
 
@@ -248,6 +250,18 @@ DenseMesh mesh_input(const LabelInput& labels, CommandRun& run) {
   return dense;
 }
 
+/// The points of tets that are not of the outside.
+std::vector<Vec3> inner_points(const TetMesh& mesh) {
+  std::vector<std::uint8_t> used(mesh.points.size(), 0);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    if (mesh.materials[t] != outside_tag)
+      for (const Index p : mesh.tets[t]) used[p] = 1;
+  std::vector<Vec3> points;
+  for (std::size_t p = 0; p < used.size(); ++p)
+    if (used[p]) points.push_back(mesh.points[p]);
+  return points;
+}
+
 }  // namespace
 
 bool is_vdb(const std::string& path) {
@@ -275,7 +289,7 @@ DenseMesh make_dense_mesh(ScanInput input, CommandRun& run) {
     if (run.line.write_sdf.empty()) dense.field.reset();
   }
   // The outside has the sizes of the nearest place where the field has none.
-  if (!run.line.keep_outside) require_sizes_at(run, dense.mesh.points);
+  require_sizes_at(run, run.line.keep_outside ? inner_points(dense.mesh) : dense.mesh.points);
   run.report.features = dense.report.features;
   run.report.creases = std::move(dense.report.creases);
   run.report.mesher = std::move(dense.report);

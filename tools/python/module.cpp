@@ -299,7 +299,10 @@ std::shared_ptr<Mesh> run(std::vector<std::string> arguments, InputObjects& inpu
       [&] {
         with_threads(line.threads, [&] {
           CommandRun run(line, progress, &inputs);
-          if (!line.output.empty()) check_output_paths(line);
+          if (!line.output.empty()) {
+            check_stats_path(line);
+            check_output_paths(line);
+          }
           CommandResult result = make_result(run);
           if (!line.output.empty()) write_result(result, run);
           made->stats = stats_json(line, run.report);

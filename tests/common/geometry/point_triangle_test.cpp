@@ -54,5 +54,18 @@ TEST(PointTriangle, DegenerateOnesAreSegmentsAndPoints) {
   EXPECT_DOUBLE_EQ(squared_distance({0, 5, 0}, a, a, a), 25);
 }
 
+TEST(PointTriangle, NeedlesGiveTheNearestPlace) {
+  // Of a triangle this thin the long edge is the nearest place but for its thickness.
+  for (const double thickness : {1e-5, 1e-6, 1e-7, 1e-8, 1e-10, 1e-12}) {
+    const Vec3 a(0.1, 0.2, 0.3), b = a + Vec3(1, 1, 0.5), across = Vec3(1, -1, 0).normalized();
+    const Vec3 c = a + 0.37 * (b - a) + thickness * across;
+    for (const double along : {0.05, 0.3, 0.37, 0.6, 0.95})
+      for (const double away : {0.0, 1e-9, 1e-3, 0.5}) {
+        const Vec3 p = a + along * (b - a) - away * across;
+        EXPECT_NEAR((p - closest_point(p, a, b, c)).norm(), away, 1e-12) << thickness << " " << along;
+      }
+  }
+}
+
 }  // namespace
 }  // namespace tetwright::point_triangle_test

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "common/random.h"
@@ -99,6 +100,24 @@ TEST(Parallel, LimitsNestAndEnd) {
     EXPECT_EQ(thread_count(), 3u);
   }
   EXPECT_EQ(thread_count(), before);
+}
+
+TEST(Parallel, LimitsBelongToTheThreadThatSetsThem) {
+  const ThreadLimit three(3);
+  unsigned there = 0, within = 0;
+  std::thread([&] {
+    there = thread_count();
+    with_threads(1, [&] { within = thread_count(); });
+  }).join();
+  EXPECT_EQ(there, hardware_threads());
+  EXPECT_EQ(within, 1u);
+  EXPECT_EQ(thread_count(), 3u);
+  // Bodies of loops have the limit of who started the loop.
+  std::vector<unsigned> counts(100, 0);
+  parallel_for(0, counts.size(), 1, [&](std::size_t begin, std::size_t) { counts[begin] = thread_count(); });
+  EXPECT_EQ(std::count(counts.begin(), counts.end(), 3u), 100);
+  EXPECT_THROW(with_threads(2, [] { throw std::runtime_error("work"); }), std::runtime_error);
+  EXPECT_EQ(thread_count(), 3u);
 }
 
 }  // namespace
