@@ -1,5 +1,6 @@
 #include "common/sizes/size_files.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <utility>
@@ -41,6 +42,12 @@ MeshField take_field(Fields fields, const std::string& file) {
   for (const std::string_view name : size_names)
     for (MeshField* field : scalars)
       if (field->name == name) return std::move(*field);
+  for (const MeshField& field : fields)
+    if (field.components != 1 &&
+        std::find(size_names.begin(), size_names.end(), field.name) != size_names.end())
+      throw InputError(file + ": its point field " + in_quotes(field.name) + " has " +
+                       std::to_string(field.components) +
+                       " numbers for each point, and an edge length is one; give it one, or another name");
   if (floating.size() == 1) return std::move(*floating.front());
   if (scalars.size() == 1) return std::move(*scalars.front());
   fail_without_field(file, fields, scalars.size() > 1);

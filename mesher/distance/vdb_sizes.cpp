@@ -128,6 +128,11 @@ VdbGrid& choose_grid(std::vector<VdbGrid>& grids, const std::string& file) {
     }
     if (found) return *found;
   }
+  for (const VdbGrid& grid : grids)
+    if (std::find(size_names.begin(), size_names.end(), grid.name) != size_names.end())
+      throw InputError(file, 0,
+                       "the grid '" + grid.name + "' is of type " + grid.type +
+                           ", and edge lengths are a grid of float or double; convert or rename it");
   std::vector<VdbGrid*> candidates;
   std::string all;
   for (VdbGrid& grid : grids) {

@@ -53,7 +53,8 @@ TEST_F(SizeFiles, TheFieldByItsNameOrTheOnlyOne) {
   EXPECT_EQ(at(tet({other, h, vector, size}), p), 1);
   EXPECT_EQ(at(tet({other, vector, h}), p), 2);
   EXPECT_EQ(at(tet({ids, vector, other}), p), 4);
-  EXPECT_NEAR(at(tet({vector, ids}), p), 5 * 0.4 + 6 * 0.1 + 7 * 0.2 + 8 * 0.3, 1e-12);
+  EXPECT_NEAR(at(tet({{"v", 3, false, std::vector<double>(12, 3)}, ids}), p),
+              5 * 0.4 + 6 * 0.1 + 7 * 0.2 + 8 * 0.3, 1e-12);
   EXPECT_EQ(at(tet({other}, "a.msh"), p), 4);
   EXPECT_EQ(at(tet({size}), {2, 2, 2}), -1);
 }
@@ -65,6 +66,10 @@ TEST_F(SizeFiles, WhichFieldIsNotClear) {
             "several of its point fields may be the edge length: \"a\", \"b\"; name one \"size\"");
   EXPECT_EQ(message(tet({v})),
             "no point field has one number for each point; there are \"v\"; add one named \"size\"");
+  EXPECT_EQ(
+      message(tet({a, {"sizing", 3, false, std::vector<double>(12, 1)}})),
+      "its point field \"sizing\" has 3 numbers for each point, and an edge length is one; give it one, or "
+      "another name");
   EXPECT_EQ(message(tet({})),
             "its points have no numbers; write the edge length wanted at each point as a point field named "
             "\"size\"");
