@@ -52,7 +52,7 @@ TEST_F(SizeFiles, TheFieldByItsNameOrTheOnlyOne) {
   const Vec3 p(0.1, 0.2, 0.3);
   EXPECT_EQ(at(tet({other, h, vector, size}), p), 1);
   EXPECT_EQ(at(tet({other, vector, h}), p), 2);
-  EXPECT_EQ(at(tet({ids, vector, other}), p), 4);
+  EXPECT_EQ(at(tet({ids, {"v", 3, false, std::vector<double>(12, 3)}, other}), p), 4);
   EXPECT_NEAR(at(tet({{"v", 3, false, std::vector<double>(12, 3)}, ids}), p),
               5 * 0.4 + 6 * 0.1 + 7 * 0.2 + 8 * 0.3, 1e-12);
   EXPECT_EQ(at(tet({other}, "a.msh"), p), 4);
