@@ -263,7 +263,13 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
   int worse = 0;                                                 // rounds since the best one
   double level_worst = std::numeric_limits<double>::infinity();  // with all larger cells
   for (int round = 0, attempts = 0; attempts < max_attempts; ++attempts) {
-    DenseMesh dense = mesh_surfaces(input, options, progress);
+    DenseMesh dense;
+    try {
+      dense = mesh_surfaces(input, options, progress);
+    } catch (const OutputError&) {
+      if (!best) throw;
+      break;  // smaller cells would not fit in memory
+    }
     Misfit misfit = misfit_of(
         dense, allowed, std::max(reach_cells * longest / options.resolution, reach_tolerances * tolerance));
     if (misfit.places.empty() || (counted && misfit.worst <= enough_share * tolerance)) return dense;
