@@ -278,6 +278,7 @@ void write_mesh_files(const Mesh& mesh, const std::string& path, const std::stri
 CommandLine parse(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "tetwright");
   std::vector<char*> argv;
+  argv.reserve(arguments.size());
   for (std::string& a : arguments) argv.push_back(a.data());
   CommandLine line;
   line.in_memory = true;
@@ -293,7 +294,7 @@ CommandLine parse(std::vector<std::string> arguments) {
 std::shared_ptr<Mesh> run(std::vector<std::string> arguments, InputObjects& inputs,
                           const py::object& callback) {
   const CommandLine line = parse(std::move(arguments));
-  const auto made = std::make_shared<Mesh>();
+  auto made = std::make_shared<Mesh>();
   SharedProgress progress;
   run_in_background(
       [&] {
@@ -401,6 +402,7 @@ PYBIND11_MODULE(_core, module) {
   module.doc() = "The compiled part of tetwright; import tetwright instead.";
   module.attr("version") = TETWRIGHT_VERSION;
   make_error_classes(module);
+  // By value, as pybind11 calls it.  NOLINTNEXTLINE(performance-unnecessary-value-param)
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);
@@ -489,7 +491,7 @@ PYBIND11_MODULE(_core, module) {
   module.def("run", &run);
   module.def("check", &check);
   module.def("read", [](const std::string& path, const std::string& material_field) {
-    const auto mesh = std::make_shared<Mesh>();
+    auto mesh = std::make_shared<Mesh>();
     const py::gil_scoped_release release;
     ReadTetMesh read = read_tet_mesh(path, {material_field});
     mesh->mesh = std::move(read.mesh);
