@@ -160,7 +160,8 @@ MesherEstimate estimate_mesh(const MesherInput& input, const MesherOptions& opti
 DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, Progress* progress);
 
 /// mesh_surfaces() with cells that bring the surfaces within half of `tolerance` (input units, above 0) of
-/// the mesh: begins with cells of twice that size or, if they are smaller, those of `options`, measures at
+/// the mesh: begins with cells of twice that size (where surfaces have creases, and may have flat faces, it
+/// tries six times as large ones before) or, if they are smaller, those of `options`, measures at
 /// vertices and centroids, and halves them up to max_refinement times where that is not enough; all become
 /// smaller where that leaves more than most of the tolerance. Where cells of `options` are the smaller ones,
 /// most of the tolerance is enough at once. What is reached in the end is for the caller to
