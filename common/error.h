@@ -45,6 +45,13 @@ class Interrupted : public Error {
   Interrupted() : Error("interrupted, nothing was written") {}
 };
 
+/// The deadline of the work passed (Progress::set_deadline()).
+class OutOfTime : public Error {
+ public:
+  OutOfTime() : Error("out of time") {}
+  using Error::Error;
+};
+
 /// An invariant of this library is broken: a bug of ours, not of the caller. The objects that took part must
 /// not be used any more; the host program goes on.
 class InternalError : public std::logic_error {

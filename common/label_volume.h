@@ -24,6 +24,8 @@ struct LabelVolume {
   std::vector<MaterialTag> labels;  ///< the first axis fastest
   /// What the file calls its labels, also some that no voxel has; names may repeat.
   std::map<MaterialTag, std::string> names = {};
+  /// The colours that it gives them: red, green, blue, 0 to 1.
+  std::map<MaterialTag, std::array<double, 3>> colours = {};
 
   /// The position of a voxel index, which need not be whole, input units.
   Vec3 to_input(const Vec3& index) const;

@@ -61,19 +61,29 @@ double control_group_limit(const std::filesystem::path& root) {
   return smallest;
 }
 
-double address_space_limit() {
+double process_limit(int resource) {
   rlimit limit;
-  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return no_limit;
+  if (getrlimit(static_cast<__rlimit_resource_t>(resource), &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+    return no_limit;
   return static_cast<double>(limit.rlim_cur);
 }
+
+thread_local double thread_memory_limit = no_limit;
 
 }  // namespace
 
 double available_memory(const std::filesystem::path& root) {
   const double machine =
       static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  return std::min({machine, control_group_limit(root), address_space_limit()});
+  return std::min({machine, control_group_limit(root), process_limit(RLIMIT_AS), process_limit(RLIMIT_DATA),
+                   thread_memory_limit});
 }
+
+MemoryLimit::MemoryLimit(double bytes) : before_(thread_memory_limit) {
+  if (bytes > 0) thread_memory_limit = std::min(before_, bytes);
+}
+
+MemoryLimit::~MemoryLimit() { thread_memory_limit = before_; }
 
 void require_memory(double bytes, const std::string& what, const std::string& remedy) {
   constexpr double gigabyte = 1 << 30;

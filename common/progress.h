@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <string>
 #include <string_view>
 
@@ -11,8 +12,8 @@ namespace tetwright {
 /// How long-running functions report and get cancelled. The base class only cancels; a program derives one
 /// that draws.
 ///
-/// `begin_stage`, `update` and `finish` are called from the thread that called the long-running function;
-/// `cancel` may be called from any thread and from a signal handler.
+/// `begin_stage`, `update`, `finish` and `set_deadline` are called from the thread that called the
+/// long-running function; `cancel` may be called from any thread and from a signal handler.
 class Progress {
  public:
   Progress() = default;
@@ -31,14 +32,30 @@ class Progress {
 
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
   bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
-  /// Throws Interrupted once cancel() was called.
-  void throw_if_cancelled() const {
+
+  using Clock = std::chrono::steady_clock;
+  static constexpr Clock::time_point no_deadline = Clock::time_point::max();
+  /// When the work has to end with what there is by then, or with OutOfTime.
+  void set_deadline(Clock::time_point deadline) noexcept {
+    deadline_.store(deadline, std::memory_order_relaxed);
+  }
+  Clock::time_point deadline() const noexcept { return deadline_.load(std::memory_order_relaxed); }
+  bool out_of_time() const noexcept {
+    const Clock::time_point end = deadline();
+    return end != no_deadline && Clock::now() >= end;
+  }
+
+  bool stopped() const noexcept { return cancelled() || out_of_time(); }
+  /// Throws Interrupted once cancel() was called, OutOfTime once the deadline has passed.
+  void throw_if_stopped() const {
     if (cancelled()) throw Interrupted();
+    if (out_of_time()) throw OutOfTime();
   }
 
  private:
-  // Relaxed: the flag carries no data, it only has to arrive some time.
+  // Relaxed: both carry no other data, they only have to arrive some time.
   std::atomic<bool> cancelled_{false};
+  std::atomic<Clock::time_point> deadline_{no_deadline};
 };
 
 }  // namespace tetwright

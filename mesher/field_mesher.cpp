@@ -241,7 +241,7 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   }
   result.mesh = to_input_units(std::move(cut), *field);
   report.seconds_cut = stages.seconds();
-  if (progress) progress->throw_if_cancelled();
+  if (progress) progress->throw_if_stopped();
 
   result.reference = field;
   if (std::any_of(result.mesh.interfaces.begin(), result.mesh.interfaces.end(),

@@ -20,7 +20,7 @@ class Stages {
   explicit Stages(Progress* progress) : progress_(progress) {}
   void begin(const char* name) {
     if (progress_) {
-      progress_->throw_if_cancelled();
+      progress_->throw_if_stopped();
       progress_->begin_stage(name);
     }
     start_ = std::chrono::steady_clock::now();

@@ -121,6 +121,7 @@ struct MesherReport {
   std::vector<std::string> unknown;
   std::vector<FeatureReport> features;  ///< of each surface, in their order
   CreaseCurves creases;                 ///< of all of them
+  bool out_of_time = false;             ///< a deadline ended the search for cells small enough
   MesherEstimate estimate;              ///< from the input, see estimate_mesh()
   MesherEstimate lattice_estimate;      ///< from the regions of the lattice's points
   double seconds_sdf = 0, seconds_octree = 0, seconds_lattice = 0, seconds_move = 0, seconds_cut = 0;

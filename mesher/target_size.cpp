@@ -269,6 +269,10 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
     } catch (const OutputError&) {
       if (!best) throw;
       break;  // smaller cells would not fit in memory
+    } catch (const OutOfTime&) {
+      if (!best) throw;
+      best->report.out_of_time = true;
+      break;
     }
     Misfit misfit = misfit_of(
         dense, allowed, std::max(reach_cells * longest / options.resolution, reach_tolerances * tolerance));

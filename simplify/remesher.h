@@ -40,7 +40,7 @@ struct RemesherOptions {
   /// distances may add up.
   bool keep_surfaces = false;
   SimplifyReport* report = nullptr;  ///< gets the rounds of improvement
-  Progress* progress = nullptr;      ///< is told of them; what it cancels throws Interrupted
+  Progress* progress = nullptr;      ///< is told of them; its end throws Interrupted or OutOfTime
 };
 
 /// What improve() goes for.
@@ -111,8 +111,9 @@ struct Renumbering {
 /// be rounded in the last one.
 ///
 /// The result of a call depends on the calls before it and their arguments, never on the number of threads.
-/// One call at a time. Where a call throws UsageError or InputError, nothing was changed; after anything
-/// else the object must not be used.
+/// One call at a time. Where a call throws UsageError or InputError, nothing was changed; after Interrupted
+/// or OutOfTime there is mesh() alone, whose fields are not carried; after anything else the object must not
+/// be used.
 class Remesher {
  public:
   /// Takes a mesh over and renumbers it: `numbers`, unless it is null, says how. Errors as of simplify().

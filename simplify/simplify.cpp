@@ -24,6 +24,9 @@ namespace tetwright {
 
 namespace {
 
+/// Where time is limited: the share of it that the loop may take. The closing takes about as long as the last
+/// fifth of the loop.
+constexpr double loop_time_share = 0.75;
 /// Rounds that close simplify().
 constexpr int max_closing_rounds = 40;
 /// The closing works on tets whose quality is below this many times the bound: dihedral angles up to 25
@@ -109,16 +112,116 @@ std::size_t target_for_sizes(const Engine& engine, const SimplifyOptions& option
 
 }  // namespace
 
-TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report, Progress* progress) {
-  const bool tuned = options.schedule == Schedule::tuned;
-  if (options.target_tets == 0 && !((options.tolerance > 0 || options.sizes) && tuned))
+namespace {
+
+void check_options(const SimplifyOptions& options) {
+  if (options.target_tets == 0 &&
+      !((options.tolerance > 0 || options.sizes) && options.schedule == Schedule::tuned))
     throw UsageError("a target of 0 tets leaves nothing; give 1 or more");
   if (!(options.min_edge >= 0) || !(options.max_edge > options.min_edge))
     throw UsageError("the max edge must be above the min edge, and that at least 0");
   if (!(options.tolerance >= 0)) throw UsageError("the tolerance must be at least 0");
   if (!(options.beta > 0) || !(options.gamma >= 0))
     throw UsageError("beta must be above 0 and gamma at least 0");
+}
+
+/// True where it was done; false where the deadline of `progress` ended it. What was changed until then is
+/// kept: a BlockRunner stops between batches, where the mesh is whole.
+template <class Work>
+bool done_in_time(const Work& work) {
+  try {
+    work();
+  } catch (const OutOfTime&) {
+    return false;
+  }
+  return true;
+}
+
+/// Until the end of its life the deadline is earlier: at this share of the time that is left.
+class EarlierDeadline {
+ public:
+  EarlierDeadline(Progress* progress, double share) : progress_(progress) {
+    if (!progress_ || (deadline_ = progress_->deadline()) == Progress::no_deadline) return;
+    const auto now = Progress::Clock::now();
+    progress_->set_deadline(now +
+                            std::chrono::duration_cast<Progress::Clock::duration>(share * (deadline_ - now)));
+  }
+  ~EarlierDeadline() {
+    if (progress_) progress_->set_deadline(deadline_);
+  }
+  EarlierDeadline(const EarlierDeadline&) = delete;
+  EarlierDeadline& operator=(const EarlierDeadline&) = delete;
+
+ private:
+  Progress* progress_;
+  Progress::Clock::time_point deadline_ = Progress::no_deadline;
+};
+
+bool is_bounded(const SimplifyOptions& options) {
+  return options.sizes || options.min_edge > 0 || std::isfinite(options.max_edge);
+}
+
+/// The improvement that closes the tuned schedule. `target`: of tets; 0: what is there. Sets the deviation if
+/// it knows that of the result.
+void close(Engine& engine, const SimplifyOptions& options, std::size_t target, std::size_t first_count,
+           std::optional<DeviationReport>& deviation) {
+  const bool bounded = is_bounded(options);
+  engine.begin_improvement();
+  if (bounded) {
+    WholeMesh whole(engine);
+    run_size_rounds(tools_of(engine), whole,
+                    {.kind = "close",
+                     .angle = closing_margin * options.min_solid_angle,
+                     .min_tets = 1,
+                     .max_tets = std::numeric_limits<std::int64_t>::max()});
+  }
+  const auto near_target = [&](std::size_t tets) {
+    return std::fabs(static_cast<double>(tets) - static_cast<double>(target)) <=
+           closing_slack * static_cast<double>(target);
+  };
+  const bool counted = target > 0 && !options.sizes && (!bounded || near_target(engine.mesh().live_tets()));
+  const auto count = static_cast<double>(counted ? std::min(target, first_count) : engine.mesh().live_tets());
+  // Without a count shapes are worth some tets more, and edges shorter than wanted.
+  const double slack = counted ? closing_slack : free_closing_slack;
+  if (options.sizes) engine.allow_shorter_edges();
+  const ImprovementPlan plan{.kind = "close",
+                             .angle = closing_margin * options.min_solid_angle,
+                             .leave_surface_angle = closing_margin * options.min_solid_angle,
+                             .target_tets = static_cast<std::size_t>(count),
+                             .min_tets = static_cast<std::size_t>(std::ceil(count * (1 - slack))),
+                             .max_tets = static_cast<std::size_t>(count * (1 + slack)),
+                             .fast = false,
+                             .brief = false,
+                             .max_rounds = max_closing_rounds};
+  // Where a point has arrived its neighbours may have more room.
+  for (int i = 0; i < crease_sweeps; ++i) engine.fit_creases();
+  fit(engine, sweeps_before_closing, quality_at(engine, plan.angle));
+  WholeMesh whole(engine);
+  improve_area(tools_of(engine), whole, plan, 1);
+  if (!counted) refine_poor_spots(tools_of(engine), whole, plan, options.min_solid_angle);
+  // Shapes were had at the cost of places.
+  fit(engine, sweeps_after_closing, quality_at(engine, plan.angle));
+  // Fitting may cost a tet that is just above the bound.
+  if (!counted) refine_poor_spots(tools_of(engine), whole, plan, options.min_solid_angle);
+  if (options.tolerance == 0) return;
+  deviation = engine.deviation();
+  if (deviation->upper() <= options.tolerance) return;
+  deviation.reset();
+  // Where the tolerance has held the count back it may do so here.
+  ImprovementPlan holding = plan;
+  const auto live = static_cast<double>(engine.mesh().live_tets());
+  if (live > static_cast<double>(plan.max_tets))
+    holding.max_tets = static_cast<std::size_t>(live * (1 + free_closing_slack));
+  refine_far_spots(engine, whole, holding, options.min_solid_angle,
+                   options.tolerance * engine.mesh().space().scale() / (1 + relative_deviation_accuracy));
+}
+
+}  // namespace
+
+TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report, Progress* progress) {
+  check_options(options);
   check(mesh, options.name);
+  const bool tuned = options.schedule == Schedule::tuned;
   const auto start = std::chrono::steady_clock::now();
   const std::size_t first_count = mesh.tets.size();
   Engine engine(
@@ -128,77 +231,40 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
        options.frozen, options.fix_boundary, tuned},
       report, progress);
   std::size_t target = options.target_tets;
-  const bool bounded = options.sizes || options.min_edge > 0 || std::isfinite(options.max_edge);
-  if (bounded && tuned) {
+  if (is_bounded(options) && tuned) {
     engine.set_sizes(options.sizes, options.min_edge, options.max_edge);
     target = target_for_sizes(engine, options);
     if (target != options.target_tets)
       engine.rules.objective.quality =
           TetQuality::for_target(engine.mesh().total_volume(), static_cast<double>(target), options.beta);
   }
-  engine.recorder().begin_stage("simplify");
+  if (tuned) {
+    engine.compact();
+    engine.keep_input_surface(options.surface, options.tolerance > 0);
+  }
   const double build = seconds_since(start);
-  if (options.schedule == Schedule::paper) {
-    run_paper_schedule(engine, options);
-  } else {
-    run_tuned_schedule(engine, options, target);
-  }
-  const double loop_end = seconds_since(start);
   std::optional<DeviationReport> deviation;
-  if (options.schedule == Schedule::tuned) {
-    engine.recorder().begin_stage("improve");
-    engine.begin_improvement();
-    if (bounded) {
-      WholeMesh whole(engine);
-      run_size_rounds(tools_of(engine), whole,
-                      {.kind = "close",
-                       .angle = closing_margin * options.min_solid_angle,
-                       .min_tets = 1,
-                       .max_tets = std::numeric_limits<std::int64_t>::max()});
-    }
-    const auto near_target = [&](std::size_t tets) {
-      return std::fabs(static_cast<double>(tets) - static_cast<double>(target)) <=
-             closing_slack * static_cast<double>(target);
-    };
-    const bool counted = target > 0 && !options.sizes && (!bounded || near_target(engine.mesh().live_tets()));
-    const auto count =
-        static_cast<double>(counted ? std::min(target, first_count) : engine.mesh().live_tets());
-    // Without a count shapes are worth some tets more, and edges shorter than wanted.
-    const double slack = counted ? closing_slack : free_closing_slack;
-    if (options.sizes) engine.allow_shorter_edges();
-    const ImprovementPlan plan{.kind = "close",
-                               .angle = closing_margin * options.min_solid_angle,
-                               .leave_surface_angle = closing_margin * options.min_solid_angle,
-                               .target_tets = static_cast<std::size_t>(count),
-                               .min_tets = static_cast<std::size_t>(std::ceil(count * (1 - slack))),
-                               .max_tets = static_cast<std::size_t>(count * (1 + slack)),
-                               .fast = false,
-                               .brief = false,
-                               .max_rounds = max_closing_rounds};
-    // Where a point has arrived its neighbours may have more room.
-    for (int i = 0; i < crease_sweeps; ++i) engine.fit_creases();
-    fit(engine, sweeps_before_closing, quality_at(engine, plan.angle));
-    WholeMesh whole(engine);
-    improve_area(tools_of(engine), whole, plan, 1);
-    if (!counted) refine_poor_spots(tools_of(engine), whole, plan, options.min_solid_angle);
-    // Shapes were had at the cost of places.
-    fit(engine, sweeps_after_closing, quality_at(engine, plan.angle));
-    // Fitting may cost a tet that is just above the bound.
-    if (!counted) refine_poor_spots(tools_of(engine), whole, plan, options.min_solid_angle);
-    if (options.tolerance > 0) deviation = engine.deviation();
-    if (deviation && deviation->upper() > options.tolerance) {
-      // Where the tolerance has held the count back it may do so here.
-      ImprovementPlan holding = plan;
-      const auto live = static_cast<double>(engine.mesh().live_tets());
-      if (live > static_cast<double>(plan.max_tets))
-        holding.max_tets = static_cast<std::size_t>(live * (1 + free_closing_slack));
-      refine_far_spots(engine, whole, holding, options.min_solid_angle,
-                       options.tolerance * engine.mesh().space().scale() / (1 + relative_deviation_accuracy));
-      deviation = engine.deviation();
-    }
+  bool in_time = done_in_time([&] {
+    const EarlierDeadline closing_has_time(progress, tuned ? loop_time_share : 1);
+    engine.recorder().begin_stage("simplify");
+    if (tuned)
+      run_tuned_schedule(engine, options, target);
+    else
+      run_paper_schedule(engine, options);
+  });
+  const double loop_end = seconds_since(start);
+  if (tuned) {
+    // A count that was not reached is no aim for the closing.
+    const std::size_t closing_target = in_time ? target : engine.mesh().live_tets();
+    in_time &= done_in_time([&] {
+      engine.recorder().begin_stage("improve");
+      close(engine, options, closing_target, first_count, deviation);
+    });
   }
+  if (options.tolerance > 0 && !deviation) deviation = engine.deviation();
   if (report) {
     report->deviation = deviation;
+    report->out_of_time = !in_time;
     report->touching_points = engine.mesh().touching_points();
     report->seconds_build = build;
     report->seconds_simplify = loop_end - build;
@@ -233,8 +299,7 @@ TetMesh improve_poor_regions(TetMesh&& mesh, const ImproveOptions& options, std:
                                       .progress = progress});
   const double build = seconds_since(start);
   int rounds = options.max_iterations;
-  for (const double angle : rising_bounds(std::min(options.only_below, first_bound(options.min_solid_angle)),
-                                          options.only_below)) {
+  const auto improve_up_to = [&](double angle) {
     const double bound = shape_quality_bound(options.objective, angle);
     // The last bound gets what is left, each other one half of it.
     const int kept = angle < options.only_below ? rounds / 2 : 0;
@@ -255,8 +320,14 @@ TetMesh improve_poor_regions(TetMesh&& mesh, const ImproveOptions& options, std:
                             .max_rounds = rounds - kept});
       rounds -= std::max(changes.rounds, 1);
     }
-  }
+  };
+  const bool in_time = done_in_time([&] {
+    for (const double angle : rising_bounds(
+             std::min(options.only_below, first_bound(options.min_solid_angle)), options.only_below))
+      improve_up_to(angle);
+  });
   if (report) {
+    report->out_of_time = !in_time;
     report->touching_points = remesher.touching_points();
     report->seconds_build = build;
     report->seconds_close = seconds_since(start) - build;
@@ -298,13 +369,14 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
                        .max_rounds = options.max_iterations - kept_rounds};
   const ImprovementTools tools = tools_of(engine);
   WholeMesh whole(engine);
-  for (const double bound : rising_bounds(first_bound(options.min_solid_angle), below)) {
-    plan.angle = bound;
-    plan.max_rounds -= improve_area(tools, whole, plan, bulk_before);
-    if (plan.max_rounds <= 0) break;
-  }
-  plan.max_rounds += kept_rounds;
-  if (plan.max_rounds > 0) {
+  const bool in_time = done_in_time([&] {
+    for (const double bound : rising_bounds(first_bound(options.min_solid_angle), below)) {
+      plan.angle = bound;
+      plan.max_rounds -= improve_area(tools, whole, plan, bulk_before);
+      if (plan.max_rounds <= 0) break;
+    }
+    plan.max_rounds += kept_rounds;
+    if (plan.max_rounds <= 0) return;
     plan.max_rounds -= run_bulk_improvement(tools, whole,
                                             {.kind = plan.kind,
                                              .poor = quality_at(engine, std::max(below, polish_below)),
@@ -314,8 +386,9 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
                                              .remodel = false});
     // Other connectivity around them lets the last ones go on.
     if (plan.max_rounds > 0) run_improvement(tools, whole, plan);
-  }
+  });
   if (report) {
+    report->out_of_time = !in_time;
     report->touching_points = engine.mesh().touching_points();
     report->seconds_build = build;
     report->seconds_close = seconds_since(start) - build;

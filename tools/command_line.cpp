@@ -1,6 +1,7 @@
 #include "tools/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <iostream>
 #include <limits>
@@ -21,6 +22,7 @@ namespace {
 constexpr std::uint64_t max_target_tets = std::uint64_t{1} << 30;
 constexpr std::uint64_t max_rounds = 10'000;
 constexpr std::uint64_t max_threads_option = 1024;
+constexpr std::uint64_t max_jobs = 64;
 /// More voxels than any volume has.
 constexpr std::uint64_t max_min_voxels = 1'000'000'000'000'000'000;
 
@@ -50,6 +52,9 @@ void add_common(CLI::App& app, CommandLine& c) {
   add_whole_number(app, "--threads", c.threads, 1, max_threads_option,
                    "Max number of threads, 1 to 1024 (default: all of the machine); more than four for each "
                    "processor, or 16, are never used");
+  add_number(app, "--memory-limit", c.memory_limit, positive,
+             "Use at most so many GB (2^30 bytes) of memory: cells that would not fit become larger where no "
+             "option decides them (status 1), and what still does not fit is refused");
   app.add_option("--stats", c.stats,
                  "Write statistics of the run to this .json file, also of one that fails; -: to standard "
                  "output, instead of the report")
@@ -64,6 +69,12 @@ void add_common(CLI::App& app, CommandLine& c) {
   app.add_option("--log-file", c.log_file,
                  "Append the call, its stages, all messages and the exit status to this file, with times")
       ->type_name("FILE");
+}
+
+void add_time_limit(CLI::App& app, CommandLine& c) {
+  add_number(app, "--time-limit", c.time_limit, positive,
+             "End after so many seconds with the best mesh so far (status 1), or, where there is none yet, "
+             "without one. Results then depend on the machine");
 }
 
 void add_seed(CLI::App& app, CommandLine& c) {
@@ -82,8 +93,9 @@ void add_mesh_output(CLI::App& app, CommandLine& c) {
   std::string formats;
   for (const TetFormatInfo& format : written_tet_formats())
     formats += (formats.empty() ? "" : " ") + format.name;
-  app.add_option("--output-format", c.output_format,
-                 "Format of the mesh instead of its extension's first: " + formats)
+  app.add_option(
+         "--output-format", c.output_format,
+         "Format of the mesh instead of its extension's first, and of standard output (-o -): " + formats)
       ->type_name("NAME");
   add_whole_number(app, "--order", c.order, 1, 2,
                    "2: ten-node tets, with nodes in the middle of the edges; not in .mesh .meshb .node")
@@ -278,6 +290,13 @@ std::string joined(const std::vector<std::string>& names) {
   return out;
 }
 
+/// Of commands whose input may be a stream.
+void add_input_format(CLI::App& app, CommandLine& c) {
+  app.add_option("--input-format", c.input_format,
+                 "Format of standard input, which the input - is: " + streamed_extensions())
+      ->type_name("NAME");
+}
+
 constexpr const char* scans =
     "Surfaces (.ply .obj .stl .off .vtp .msh .mesh) and level sets (.vdb), each a material, of which later "
     "ones carve "
@@ -288,21 +307,25 @@ constexpr const char* meshes = "Tet mesh: .vtu .msh .mesh .meshb .vtk .inp .bdf 
 
 void add_prepare(CLI::App& app, CommandLine& c) {
   app.add_option("INPUT", c.inputs, scans);
+  add_input_format(app, c);
   add_mesh_output(app, c);
   add_simplifying(app, c);
   add_meshing(app, c, "what the target needs");
   add_labels(app, c);
   add_common(app, c);
+  add_time_limit(app, c);
   add_seed(app, c);
 }
 
 void add_mesh(CLI::App& app, CommandLine& c) {
   app.add_option("INPUT", c.inputs, scans);
+  add_input_format(app, c);
   add_mesh_output(app, c);
   add_meshing(app, c, "128, or with --tolerance what that needs; for segmented volumes one cell to a voxel");
   add_tolerance(app, c);
   add_labels(app, c);
   add_common(app, c);
+  add_time_limit(app, c);
   add_seed(app, c);
 }
 
@@ -313,6 +336,7 @@ void add_fix_boundary(CLI::App& app, CommandLine& c) {
 
 void add_simplify(CLI::App& app, CommandLine& c) {
   app.add_option("MESH", c.inputs, meshes)->required()->expected(1);
+  add_input_format(app, c);
   add_mesh_output(app, c);
   add_simplifying(app, c);
   add_fix_boundary(app, c);
@@ -320,11 +344,13 @@ void add_simplify(CLI::App& app, CommandLine& c) {
   add_strict(app, c);
   add_material_field(app, c);
   add_common(app, c);
+  add_time_limit(app, c);
   add_seed(app, c);
 }
 
 void add_improve(CLI::App& app, CommandLine& c) {
   app.add_option("MESH", c.inputs, meshes)->required()->expected(1);
+  add_input_format(app, c);
   add_mesh_output(app, c);
   add_number(
       app, "--only-below", c.only_below, solid_angle,
@@ -339,11 +365,13 @@ void add_improve(CLI::App& app, CommandLine& c) {
   add_strict(app, c);
   add_material_field(app, c);
   add_common(app, c);
+  add_time_limit(app, c);
   add_seed(app, c);
 }
 
 void add_check(CLI::App& app, CommandLine& c) {
   app.add_option("MESH", c.inputs, meshes)->required()->expected(1);
+  add_input_format(app, c);
   app.add_option("--before", c.before, "Another mesh, whose topology MESH must have")->type_name("FILE");
   app.add_option(
          "--surface", c.surfaces,
@@ -356,6 +384,26 @@ void add_check(CLI::App& app, CommandLine& c) {
              "input units or percent of the surfaces' diagonal");
   app.add_flag("--json", c.json, "Print JSON");
   add_material_field(app, c);
+  add_common(app, c);
+}
+
+void add_batch(CLI::App& app, CommandLine& c) {
+  app.add_option("JOBS", c.inputs,
+                 "File with a line of JSON for each job, the arguments as they would be given to tetwright: "
+                 R"({"id": "a", "args": ["prepare", "a.ply", "-o", "a.vtu", "--target-tets", "10000"]})")
+      ->required()
+      ->expected(1);
+  app.add_option(
+         "--results", c.results,
+         "File that gets a line of JSON for each job that ended: id, args, status, seconds, messages, "
+         "stats. Jobs that it has are not done again, unless they ended with status 5, 70 or 130 "
+         "(default: the name of JOBS with .results.jsonl)")
+      ->type_name("FILE");
+  add_whole_number(
+      app, "--jobs", c.jobs, 1, max_jobs,
+      "Max number of jobs at the same time, 1 to 64; they share the threads (default: one for each "
+      "thread)");
+  app.add_flag("--retry", c.retry, "Do all jobs again that did not end with status 0");
   add_common(app, c);
 }
 
@@ -375,7 +423,7 @@ struct CommandEntry {
   const char* description;
   void (*add_options)(CLI::App& app, CommandLine& c);
 };
-constexpr std::array<CommandEntry, 6> commands{{
+constexpr std::array<CommandEntry, 7> commands{{
     {Command::prepare, "Turns scans or a segmented volume into a simulation mesh, in one go", add_prepare},
     {Command::mesh, "Turns scans or a segmented volume into a dense mesh", add_mesh},
     {Command::simplify, "Turns a tet mesh into one of fewer tets", add_simplify},
@@ -384,6 +432,11 @@ constexpr std::array<CommandEntry, 6> commands{{
      "Reports validity, topology and quality of a tet mesh, and how far it is from surfaces; status 1 if it "
      "is not valid (a warning, such as an unused point, leaves it valid)",
      add_check},
+    {Command::batch,
+     "Carries out many jobs in one process, several at a time, and goes on where a call before ended; status "
+     "1 "
+     "unless all ended with 0",
+     add_batch},
     {Command::sample, "Writes a built-in sample", add_sample},
 }};
 
@@ -457,8 +510,38 @@ bool parse_arguments(CLI::App& app, int argc, char** argv) {
   return true;
 }
 
+/// The streams among inputs and outputs.
+void complete_streams(CommandLine& out) {
+  const auto stream = std::find(out.inputs.begin(), out.inputs.end(), "-");
+  const bool given = stream != out.inputs.end();
+  if (given && std::count(out.inputs.begin(), out.inputs.end(), "-") > 1)
+    throw UsageError("standard input (-) is one input; give the others as files");
+  if (given && out.input_format.empty())
+    throw UsageError("standard input (-) has no extension; give --input-format, one of " +
+                     streamed_extensions());
+  if (!given && !out.input_format.empty())
+    throw UsageError("--input-format is for standard input; give - as the input, or leave it out");
+  if (given) {
+    *stream = standard_input;
+    if (!out.input_format.starts_with('.')) out.input_format.insert(0, ".");
+    if (!streams(out.input_format))
+      throw UsageError("--input-format " + out.input_format.substr(1) +
+                       " is no format of a stream; known are " + streamed_extensions());
+  }
+  if (out.output != "-") return;
+  if (out.output_format.empty())
+    throw UsageError("standard output (-o -) has no extension; give --output-format");
+  if (files_of_tet_mesh(out.output, out.output_format).size() > 1)
+    throw UsageError("--output-format " + out.output_format +
+                     " is several files, which standard output is not; "
+                     "give -o a name, or another format");
+  if (out.stats == "-")
+    throw UsageError("-o - and --stats - both print to standard output; give one of them a file");
+}
+
 /// Finds out which options were given, and refuses those that do not go together.
 void complete(const CLI::App& chosen, CommandLine& out) {
+  complete_streams(out);
   const bool meshes_scans = out.command == Command::prepare || out.command == Command::mesh;
   if (out.command == Command::prepare || out.command == Command::simplify || out.command == Command::improve)
     out.min_solid_angle_given = chosen.count("--min-solid-angle") > 0;
@@ -492,6 +575,8 @@ void complete(const CLI::App& chosen, CommandLine& out) {
   if (out.json && out.stats == "-")
     throw UsageError(
         "--json and --stats - both print to standard output; give --stats a file, or leave one out");
+  if (out.command == Command::batch && !out.stats.empty())
+    throw UsageError("--stats is of a single run; the results of a batch have those of each job");
   if (out.resolution && out.voxel_size > 0) throw UsageError("give --resolution or --voxel-size, not both");
 }
 
@@ -509,6 +594,8 @@ const char* name_of(Command command) {
       return "improve";
     case Command::check:
       return "check";
+    case Command::batch:
+      return "batch";
     case Command::sample:
       return "sample";
   }
@@ -547,7 +634,8 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
   app.footer(
       "Exit status: 0 done, 1 written but short of what was asked (check: not valid), 2 wrong call, 3 bad "
       "input,\n"
-      "4 nothing to mesh, 5 output could not be written or out of memory, 70 a bug in tetwright, 130 "
+      "4 nothing to mesh, 5 output could not be written, or out of memory or time, 70 a bug in tetwright, "
+      "130 "
       "interrupted.");
   for (const CommandEntry& entry : commands)
     entry.add_options(*app.add_subcommand(name_of(entry.command), entry.description), out);

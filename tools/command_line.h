@@ -28,10 +28,13 @@ struct LengthOption {
   double in_input_units(double diagonal) const { return percent ? value / 100 * diagonal : value; }
 };
 
+/// What messages call standard input.
+inline constexpr const char* standard_input = "stdin";
+
 /// What shows how far a command is.
 enum class ProgressStyle { automatic, bar, json, none };
 
-enum class Command { prepare, mesh, simplify, improve, check, sample };
+enum class Command { prepare, mesh, simplify, improve, check, batch, sample };
 
 /// The parsed command line, with the defaults that --help shows.
 struct CommandLine {
@@ -39,13 +42,14 @@ struct CommandLine {
   std::string call;  ///< as it was given, for the log
   /// The result stays in the memory of a host program, and -o may be left out; set before parsing.
   bool in_memory = false;
-  std::vector<std::string> inputs;  ///< of `sample`: the name
-  std::string output;
-  std::string output_format;          ///< of `output`; empty: by its extension
-  int order = 1;                      ///< of the elements: 2 has ten nodes
-  std::string boundary;               ///< file of the boundary and interfaces as a surface; empty: none
-  bool no_boundary = false;           ///< leave triangles out of `output`
-  std::string before;                 ///< `check`: the mesh whose topology must be the same
+  std::vector<std::string> inputs;  ///< of `sample`: the name; standard_input for "-"
+  std::string input_format;   ///< extension that standard input is read by, ".ply"; empty: it is no input
+  std::string output;         ///< "-": standard output
+  std::string output_format;  ///< of `output`; empty: by its extension
+  int order = 1;              ///< of the elements: 2 has ten nodes
+  std::string boundary;       ///< file of the boundary and interfaces as a surface; empty: none
+  bool no_boundary = false;   ///< leave triangles out of `output`
+  std::string before;         ///< `check`: the mesh whose topology must be the same
   std::vector<std::string> surfaces;  ///< `check`: what the mesh is compared with
   bool json = false;                  ///< `check`
   std::string material_field;         ///< cell field of the tet mesh that is read; empty: chosen by its name
@@ -91,13 +95,19 @@ struct CommandLine {
   bool accept_changes = false;  ///< another solid than the input's is a note
   bool strict = false;          ///< a note is a shortfall
 
-  unsigned threads = 0;  ///< 0: all
+  unsigned threads = 0;     ///< 0: all
+  double time_limit = 0;    ///< seconds; 0: none
+  double memory_limit = 0;  ///< 2^30 bytes; 0: none
   std::uint64_t seed = 1;
   std::string stats;
   bool quiet = false;
   ProgressStyle progress = ProgressStyle::automatic;
   bool no_progress = false;
   std::string log_file;  ///< empty: none
+
+  std::string results;  ///< `batch`: file; empty: beside the jobs
+  unsigned jobs = 0;    ///< `batch`: at the same time; 0: as many as there are threads
+  bool retry = false;   ///< `batch`: all jobs that did not end with status 0
 };
 
 /// Parses the arguments. Returns false if it printed the help or the version instead. Throws UsageError, with

@@ -9,7 +9,8 @@ namespace tetwright {
 ExitStatus exit_status(const std::exception& error) {
   if (dynamic_cast<const UsageError*>(&error)) return ExitStatus::usage;
   if (dynamic_cast<const NothingToMeshError*>(&error)) return ExitStatus::nothing_to_mesh;
-  if (dynamic_cast<const OutputError*>(&error) || dynamic_cast<const std::bad_alloc*>(&error))
+  if (dynamic_cast<const OutputError*>(&error) || dynamic_cast<const OutOfTime*>(&error) ||
+      dynamic_cast<const std::bad_alloc*>(&error))
     return ExitStatus::output_failed;
   if (dynamic_cast<const Interrupted*>(&error)) return ExitStatus::interrupted;
   if (dynamic_cast<const InternalError*>(&error)) return ExitStatus::internal_error;

@@ -11,7 +11,7 @@ enum class ExitStatus : int {
   usage = 2,
   bad_input = 3,
   nothing_to_mesh = 4,
-  output_failed = 5,    ///< output could not be written, or memory ran out
+  output_failed = 5,    ///< output could not be written, or memory or time ran out
   internal_error = 70,  ///< a broken invariant, which is a bug here (EX_SOFTWARE of sysexits.h)
   interrupted = 130
 };

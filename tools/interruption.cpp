@@ -3,8 +3,9 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <csignal>
-#include <cstddef>
+#include <cstring>
 
 #include "common/formats/atomic_file.h"
 #include "tools/exit_status.h"
@@ -18,16 +19,19 @@ constexpr std::array<int, 3> ending_signals{SIGHUP, SIGINT, SIGTERM};
 /// Determined in advance, since isatty() is not async-signal-safe everywhere.
 bool stderr_is_terminal = false;
 
-template <std::size_t N>
-void say(const char (&text)[N]) {
-  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text, N - 1);
+std::atomic<const char*> line_to_say{nullptr};
+
+void say(const char* text) {
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text, std::strlen(text));
 }
 
 /// Async-signal-safe.
 void end_at_once(int) {
   const bool output_is_there = abandon_output_files();
   if (stderr_is_terminal) say("\r\x1b[K");  // in place of a progress bar
-  if (output_is_there)
+  if (const char* line = line_to_say)
+    say(line);
+  else if (output_is_there)
     say("tetwright: interrupted after the output was written\n");
   else
     say("tetwright: interrupted, nothing was written\n");
@@ -35,6 +39,8 @@ void end_at_once(int) {
 }
 
 }  // namespace
+
+void say_when_interrupted(const char* line) { line_to_say = line; }
 
 void handle_interruptions() {
   struct sigaction action {};

@@ -12,6 +12,7 @@
 #include "common/mesh/curved_elements.h"
 #include "common/mesh/mesh_check.h"
 #include "common/mesh/mesh_statistics.h"
+#include "common/mesh/topology.h"
 #include "common/sizes/size_field.h"
 #include "mesher/mesher.h"
 #include "simplify/simplify.h"
@@ -66,6 +67,12 @@ struct RequestedSizes {
   bool any() const { return wish || limits.min_edge > 0 || std::isfinite(limits.max_edge); }
 };
 
+/// Cells that are larger than was meant, since memory would not hold smaller ones.
+struct CoarserCells {
+  double asked, used;  ///< edges of the finest cells, input units
+  double bytes;        ///< that those asked for would take
+};
+
 /// Everything that a run of the program reports. What a command does not do stays empty.
 struct RunReport {
   std::vector<std::string> inputs;
@@ -74,6 +81,7 @@ struct RunReport {
   std::optional<VolumeReport> volume;  ///< if the input is a segmented volume
   std::vector<InputFinding> findings;
   std::optional<MesherReport> mesher;
+  std::optional<CoarserCells> coarser;
   std::optional<MeshStatistics> dense, result;
   std::vector<FeatureReport> features;  ///< of each surface, or of the tet mesh
   CreaseCurves creases;                 ///< of all of them
@@ -83,6 +91,8 @@ struct RunReport {
   std::size_t held_by_input = 0;  ///< tets of the result below the bound, see tets_held_by_input()
   std::vector<MaterialFidelity> fidelity;
   std::map<MaterialTag, std::string> material_names;
+  /// Of a segmented volume whose file gives its labels colours: red, green, blue, 0 to 1.
+  std::map<MaterialTag, std::array<double, 3>> material_colours;
   std::optional<SimplifyReport> simplify;
   double tolerance = 0;                      ///< input units; 0: none
   std::optional<DeviationReport> deviation;  ///< of the result, with a tolerance
@@ -102,7 +112,7 @@ struct CheckReport {
   std::vector<MeshFinding> findings;
   /// False if indices or coordinates are unsound: then there are no statistics and no topology.
   bool measurable = true;
-  std::vector<std::string> topology;                             ///< lines of text
+  std::optional<Topology> topology, topology_before;             ///< of the mesh, and of that of --before
   std::optional<std::vector<std::string>> topology_differences;  ///< from the mesh of --before, if given
   std::optional<SurfaceComparison> surface;                      ///< with --surface
   double tolerance = 0;                                          ///< input units; 0: none

@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -42,17 +43,21 @@ nlohmann::json iteration_json(const IterationReport& it) {
 
 nlohmann::json place_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
-nlohmann::json volume_json(const VolumeReport& v) {
+nlohmann::json volume_json(const VolumeReport& v,
+                           const std::map<MaterialTag, std::array<double, 3>>& colours) {
   nlohmann::json directions = nlohmann::json::array();
   for (int a = 0; a < 3; ++a) directions.push_back(place_json(v.directions.col(a)));
   const double voxel = std::abs(v.directions.determinant());
   nlohmann::json labels = nlohmann::json::array(), lost = nlohmann::json::array();
-  for (const LabelMaterial& l : v.labels)
+  for (const LabelMaterial& l : v.labels) {
     labels.push_back({{"tag", l.tag},
                       {"name", l.name},
                       {"voxels", l.voxels},
                       {"voxels_in_file", l.voxels_in_file},
                       {"volume", voxel * static_cast<double>(l.voxels)}});
+    if (const auto colour = colours.find(l.tag); colour != colours.end())
+      labels.back()["color"] = colour->second;
+  }
   for (const LostLabel& l : v.lost) lost.push_back({{"tag", l.tag}, {"name", l.name}, {"voxels", l.voxels}});
   return {{"size", v.size},
           {"spacing", place_json(v.spacing())},
@@ -65,9 +70,78 @@ nlohmann::json volume_json(const VolumeReport& v) {
           {"merged_voxels", v.merged_voxels}};
 }
 
-/// The text of a document; bytes that are not UTF-8 become replacement characters.
+bool is_flat(const nlohmann::json& json) {
+  return std::none_of(json.begin(), json.end(),
+                      [](const nlohmann::json& item) { return item.is_structured(); });
+}
+
+/// The text of a document, an indented line for each value, but lists of plain values in one line: histograms
+/// have hundreds of numbers. Bytes that are not UTF-8 become replacement characters.
+void append_json(const nlohmann::json& json, std::size_t indent, std::string& out) {
+  if (!json.is_structured() || json.empty() || (json.is_array() && is_flat(json))) {
+    out += json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    return;
+  }
+  const bool object = json.is_object();
+  out += object ? '{' : '[';
+  bool first = true;
+  for (const auto& [key, value] : json.items()) {
+    out += first ? "\n" : ",\n";
+    first = false;
+    out.append(indent + 1, ' ');
+    if (object) {
+      append_json(key, 0, out);
+      out += ": ";
+    }
+    append_json(value, indent + 1, out);
+  }
+  out += '\n';
+  out.append(indent, ' ');
+  out += object ? '}' : ']';
+}
+
 std::string json_text(const nlohmann::json& json) {
-  return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::string out;
+  append_json(json, 0, out);
+  return out;
+}
+
+std::string name_of(MaterialTag tag, const std::map<MaterialTag, std::string>& names) {
+  const auto name = names.find(tag);
+  return name == names.end() ? "" : name->second;
+}
+
+/// Null for the outside.
+nlohmann::json pair_json(const MaterialPair& pair) {
+  nlohmann::json other;
+  if (pair.second) other = *pair.second;
+  return nlohmann::json::array({pair.first, other});
+}
+
+nlohmann::json topology_json(const Topology& t, const std::map<MaterialTag, std::string>& names) {
+  const auto solid = [](const Topology::Solid& s) {
+    return nlohmann::json{{"components", s.components},
+                          {"euler", s.euler},
+                          {"boundary_components", s.boundary_components},
+                          {"boundary_euler", s.boundary_euler}};
+  };
+  nlohmann::json j{{"domain", solid(t.domain)},
+                   {"materials", nlohmann::json::array()},
+                   {"interfaces", nlohmann::json::array()}};
+  for (const auto& [tag, of_tag] : t.materials) {
+    j["materials"].push_back(solid(of_tag));
+    j["materials"].back()["tag"] = tag;
+    j["materials"].back()["name"] = name_of(tag, names);
+  }
+  for (const auto& [pair, surface] : t.interfaces)
+    j["interfaces"].push_back(
+        {{"materials", pair_json(pair)}, {"components", surface.components}, {"euler", surface.euler}});
+  if (t.touching_fans) j["touching_fans"] = *t.touching_fans;
+  if (t.junction_curves)
+    j["junction_curves"] = {{"components", t.junction_curves->components},
+                            {"euler", t.junction_curves->euler},
+                            {"branch_points", t.junction_curves->branch_points}};
+  return j;
 }
 
 /// `names` are those of the materials that have one; `threshold` is the solid angle that the statistics were
@@ -76,19 +150,13 @@ nlohmann::json mesh_json(const MeshStatistics& m, const std::map<MaterialTag, st
                          double threshold) {
   nlohmann::json materials = nlohmann::json::array();
   for (const auto& [tag, material] : m.materials) {
-    const auto name = names.find(tag);
-    materials.push_back({{"tag", tag},
-                         {"name", name == names.end() ? "" : name->second},
-                         {"tets", material.tets},
-                         {"volume", material.volume}});
+    materials.push_back(
+        {{"tag", tag}, {"name", name_of(tag, names)}, {"tets", material.tets}, {"volume", material.volume}});
   }
   nlohmann::json interfaces = nlohmann::json::array();
   for (const auto& [pair, interface] : m.interfaces) {
-    nlohmann::json other;  // null: outside
-    if (pair.second) other = *pair.second;
-    interfaces.push_back({{"materials", nlohmann::json::array({pair.first, other})},
-                          {"triangles", interface.triangles},
-                          {"area", interface.area}});
+    interfaces.push_back(
+        {{"materials", pair_json(pair)}, {"triangles", interface.triangles}, {"area", interface.area}});
   }
   return {{"tets", m.tets},
           {"points", m.points},
@@ -109,7 +177,7 @@ nlohmann::json input_json(const RunReport& run) {
   nlohmann::json j = {
       {"files", run.inputs}, {"triangles", run.input_triangles}, {"points", run.input_points}};
   if (!run.material_field.empty()) j["material_field"] = run.material_field;
-  if (run.volume) j["volume"] = volume_json(*run.volume);
+  if (run.volume) j["volume"] = volume_json(*run.volume, run.material_colours);
   j["findings"] = nlohmann::json::array();
   for (const InputFinding& f : run.findings) {
     nlohmann::json finding = {
@@ -337,17 +405,24 @@ std::string stats_json(const CommandLine& line, const RunReport& run) {
 
 std::string check_json(const CommandLine& line, const RunReport& run, const CheckReport& check) {
   nlohmann::json j = {{"valid", check.valid()}, {"findings", nlohmann::json::array()}};
-  for (const MeshFinding& f : check.findings)
+  for (const MeshFinding& f : check.findings) {
+    nlohmann::json places = nlohmann::json::array();
+    for (const MeshPlace& place : f.places) {
+      places.push_back({{"text", place.text}, {"points", place.points}});
+      if (place.at) places.back()["at"] = place_json(*place.at);
+    }
     j["findings"].push_back({{"number", static_cast<int>(f.fault)},
                              {"name", mesh_fault_name(f.fault)},
                              {"severity", is_warning(f.fault) ? "warning" : "error"},
                              {"what", mesh_fault_text(f.fault)},
                              {"count", f.count},
-                             {"places", f.places}});
+                             {"places", places}});
+  }
   if (check.measurable) {
     j["mesh"] = mesh_json(*run.result, run.material_names, line.min_solid_angle);
-    j["topology"] = check.topology;
+    j["topology"] = topology_json(*check.topology, run.material_names);
   }
+  if (check.topology_before) j["topology_before"] = topology_json(*check.topology_before, run.material_names);
   if (check.topology_differences) j["topology_differences"] = *check.topology_differences;
   if (check.surface) j["surface"] = surface_json(*check.surface);
   if (check.tolerance > 0)

@@ -13,6 +13,7 @@
 #include <ctime>
 #include <filesystem>
 #include <mutex>
+#include <utility>
 
 #include "common/error.h"
 #include "common/progress.h"
@@ -22,6 +23,8 @@ namespace tetwright {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::string_view standard_stream = "-";
 
 [[noreturn]] void fail(const std::string& path, const std::string& what, int error) {
   throw OutputError("cannot write " + path + ": " + what + (error ? ": " : "") +
@@ -78,7 +81,7 @@ struct TemporaryName {
   std::atomic<bool> valid{false};
   std::array<char, 4001> path;
 };
-std::array<TemporaryName, 16> temporary_names;
+std::array<TemporaryName, 256> temporary_names;
 
 // The protocol between threads that create or rename files and abandon_output_files(). All of it is
 // sequentially consistent: either a thread sees `abandoned` and goes no further, or abandon_output_files()
@@ -187,6 +190,16 @@ class TemporaryFile {
 /// 2 GiB at once anyway.
 constexpr std::size_t piece_size = std::size_t{1} << 26;
 
+/// Whoever reads a pipe gets the bytes as they come: they cannot be taken back.
+void write_to_stdout(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(STDOUT_FILENO, bytes.data(), std::min(bytes.size(), piece_size));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail("to standard output", "writing failed", errno);
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
 /// The new names reach the disk with the folder; where that can't be synced the file is there all the same.
 void sync_folder(const std::string& path) {
   const int folder = open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -195,9 +208,28 @@ void sync_folder(const std::string& path) {
   close(folder);
 }
 
+/// All bytes up to the end, about `size` of them.
+std::string read_all(int file, const std::string& path, std::size_t size) {
+  std::string bytes;
+  std::size_t used = 0;
+  // One more than the size, so that the end is met without growing; a pipe's size is 0.
+  bytes.resize(size + 1);
+  for (;;) {
+    if (used == bytes.size()) bytes.resize(bytes.size() * 2 + 4096);
+    const ssize_t n = read(file, bytes.data() + used, std::min(bytes.size() - used, piece_size));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw InputError("cannot read " + path + ": " + std::strerror(errno));
+    if (n == 0) break;
+    used += static_cast<std::size_t>(n);
+  }
+  bytes.resize(used);
+  return bytes;
+}
+
 }  // namespace
 
 void check_output_file(const std::string& path) {
+  if (path == standard_stream) return;
   const std::string target = link_target(path);
   struct stat status;
   if (stat(target.c_str(), &status) == 0) {
@@ -230,8 +262,15 @@ void OutputFiles::write(const std::string& path, std::string_view bytes) {
 }
 
 void OutputFiles::write(const std::string& path, const std::function<void(const ByteSink&)>& content) {
+  if (path == standard_stream) {
+    content([&](std::string_view bytes) {
+      if (progress_) progress_->throw_if_stopped();
+      to_stdout_ += bytes;
+    });
+    return;
+  }
   check_output_file(path);
-  if (progress_) progress_->throw_if_cancelled();
+  if (progress_) progress_->throw_if_stopped();
   const FileSizeSignalIgnored ignored;
   auto pending = std::make_unique<Pending>(path);
   TemporaryFile& temporary = pending->temporary;
@@ -241,7 +280,7 @@ void OutputFiles::write(const std::string& path, const std::function<void(const 
     fail(path, "permissions", errno);
   content([&](std::string_view bytes) {
     while (!bytes.empty()) {
-      if (progress_) progress_->throw_if_cancelled();
+      if (progress_) progress_->throw_if_stopped();
       const ssize_t written = ::write(temporary.file(), bytes.data(), std::min(bytes.size(), piece_size));
       if (written < 0) {
         if (errno == EINTR) continue;
@@ -256,7 +295,8 @@ void OutputFiles::write(const std::string& path, const std::function<void(const 
 }
 
 void OutputFiles::commit() {
-  if (progress_) progress_->throw_if_cancelled();
+  if (progress_) progress_->throw_if_stopped();
+  write_to_stdout(std::exchange(to_stdout_, {}));
   {
     const FolderChange change;
     for (const std::unique_ptr<Pending>& pending : pending_) {
@@ -289,6 +329,7 @@ bool abandon_output_files() noexcept {
 }
 
 std::string read_whole_file(const std::string& path) {
+  if (path == standard_stream) return read_all(STDIN_FILENO, "standard input", 0);
   int file = -1;
   // Opening a pipe waits for who writes into it; signals that the host handles do not end this.
   do file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -304,20 +345,7 @@ std::string read_whole_file(const std::string& path) {
   // A device need not have an end.
   if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode))
     throw InputError("cannot read " + path + ": it is neither a regular file nor a pipe");
-  std::string bytes;
-  std::size_t used = 0;
-  // One more than the size, so that the end is met without growing; a pipe's size is 0.
-  bytes.resize(static_cast<std::size_t>(status.st_size) + 1);
-  for (;;) {
-    if (used == bytes.size()) bytes.resize(bytes.size() * 2 + 4096);
-    const ssize_t n = read(file, bytes.data() + used, std::min(bytes.size() - used, piece_size));
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) throw InputError("cannot read " + path + ": " + std::strerror(errno));
-    if (n == 0) break;
-    used += static_cast<std::size_t>(n);
-  }
-  bytes.resize(used);
-  return bytes;
+  return read_all(file, path, static_cast<std::size_t>(status.st_size));
 }
 
 }  // namespace tetwright

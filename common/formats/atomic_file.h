@@ -10,9 +10,9 @@ namespace tetwright {
 
 class Progress;
 
-/// Throws OutputError unless a file can be written at `path`: its folder exists and is writable, and what is
-/// already at `path` is a writable regular file, or a link to one or to nothing. Changes nothing. To be
-/// called before any work.
+/// Throws OutputError unless a file can be written at `path` ("-" always can): its folder exists and is
+/// writable, and what is already at `path` is a writable regular file, or a link to one or to nothing.
+/// Changes nothing. To be called before any work.
 void check_output_file(const std::string& path);
 
 /// Takes the bytes of a file piece by piece.
@@ -25,6 +25,8 @@ using ByteSink = std::function<void(std::string_view)>;
 /// exception, a full disk, cancelling, abandon_output_files()) leaves nothing behind. Only a rename that
 /// fails, or a machine that stops during commit(), can leave some of the files in place without the others,
 /// each of them whole; SIGKILL leaves the files under their other names (".tetwright-*.tmp").
+///
+/// "-" is standard output: its bytes are kept in memory and written by commit() before the first rename.
 ///
 /// A link stays, and its target is replaced; the permissions of an existing file are kept. SIGXFSZ is ignored
 /// during write(), for the whole process. Different objects may be used concurrently.
@@ -50,6 +52,7 @@ class OutputFiles {
   struct Pending;
   const Progress* progress_;
   std::vector<std::unique_ptr<Pending>> pending_;
+  std::string to_stdout_;
 };
 
 /// Writes one file whole or not at all, as OutputFiles does.
@@ -61,11 +64,11 @@ void write_file_atomically(const std::string& path, const std::function<void(con
 /// Returns whether any file was committed in the life of the process. Async-signal-safe.
 ///
 /// The handler's signal should be blocked while a file is created or renamed; this is so for SIGHUP, SIGINT
-/// and SIGTERM, in the thread that does it. Files beyond the 16th at a time, or with names beyond 4,000
+/// and SIGTERM, in the thread that does it. Files beyond the 256th at a time, or with names beyond 4,000
 /// bytes, are not known to this function.
 bool abandon_output_files() noexcept;
 
-/// All bytes of a file or pipe. Throws InputError if it can't be read or is neither.
+/// All bytes of a file or pipe; "-" is standard input. Throws InputError if it can't be read or is neither.
 std::string read_whole_file(const std::string& path);
 
 }  // namespace tetwright

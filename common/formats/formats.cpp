@@ -56,13 +56,22 @@ constexpr std::array<SurfaceFormat, 5> surface_formats{
      {".off", read_off, write_whole_surface<write_off>, nullptr},
      {".vtp", read_vtp, write_vtp, always_surface<read_vtp_with_fields>}}};
 /// Those of tet meshes that may hold a surface instead.
-constexpr std::array<SurfaceFormat, 2> shared_formats{
+constexpr std::array<SurfaceFormat, 3> shared_formats{
     {{".msh", read_msh_surface, nullptr, read_msh_surface_with_fields},
-     {".mesh", read_medit_surface, nullptr, nullptr}}};
+     {".mesh", read_medit_surface, nullptr, nullptr},
+     {".vtk", read_vtk_surface, nullptr, read_vtk_surface_with_fields}}};
 
-template <ReadTetMesh (*read)(std::string_view, const std::string&, const ReadTetMeshOptions&)>
-ReadTetMesh read_one_file(const std::string& path, const ReadTetMeshOptions& options) {
-  return read(read_whole_file(path), path, options);
+std::string in_lower_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// The extension in lower case; .nii.gz and .inr.gz count as one extension.
+std::string extension_of(const std::string& path) {
+  const std::string name = in_lower_case(std::filesystem::path(path).filename().string());
+  for (const char* compound : {".nii.gz", ".inr.gz"})
+    if (name.ends_with(compound) && name != compound) return compound;
+  return std::filesystem::path(name).extension().string();
 }
 
 /// `path` with something else in place of its extension, in upper case if that is.
@@ -77,14 +86,18 @@ ReadTetMesh read_xdmf_files(const std::string& path, const ReadTetMeshOptions& o
   return read_xdmf(read_whole_file(path), path, read_whole_file, options);
 }
 
-ReadTetMesh read_node_with_ele(const std::string& path, const ReadTetMeshOptions& options) {
-  const std::string ele = with_extension(path, ".ele");
-  return read_tetgen(read_whole_file(path), path, read_whole_file(ele), ele, options);
-}
-
-ReadTetMesh read_ele_with_node(const std::string& path, const ReadTetMeshOptions& options) {
-  const std::string node = with_extension(path, ".node");
-  return read_tetgen(read_whole_file(node), node, read_whole_file(path), path, options);
+/// The .node, .ele and, where there is one, .face file of one name, which any of them gives.
+ReadTetMesh read_tetgen_files(const std::string& path, const ReadTetMeshOptions& options) {
+  const auto name = [&](const char* extension) {
+    return extension_of(path) == extension ? path : with_extension(path, extension);
+  };
+  const std::string node = name(".node"), ele = name(".ele"), face = name(".face");
+  const std::string node_bytes = read_whole_file(node), ele_bytes = read_whole_file(ele);
+  std::string face_bytes;
+  std::optional<NamedBytes> faces;
+  if (std::error_code error; std::filesystem::exists(face, error))
+    faces = NamedBytes{face_bytes = read_whole_file(face), face};
+  return read_tetgen({node_bytes, node}, {ele_bytes, ele}, faces, options);
 }
 
 /// A file that a tet mesh is written as.
@@ -107,10 +120,13 @@ void write_as_one(const MeshToWrite& mesh, const std::string& /*first*/, const B
 struct TetFormat {
   const char* extension;
   const char* name;
-  ReadTetMesh (*read)(const std::string& path, const ReadTetMeshOptions& options);  ///< null: only written
-  std::vector<WrittenFile> write;                                                   ///< empty: only read
-  bool point_fields = true;                                                         ///< when it is read
-  bool names = true, surfaces = true, fields = true, second_order = false;          ///< as in TetFormatInfo
+  /// Of a format of one file, and of one of several; both null: only written.
+  ReadTetMesh (*read)(std::string_view bytes, const std::string& name,
+                      const ReadTetMeshOptions& options) = nullptr;
+  ReadTetMesh (*read_files)(const std::string& path, const ReadTetMeshOptions& options) = nullptr;
+  std::vector<WrittenFile> write;                                           ///< empty: only read
+  bool point_fields = true;                                                 ///< when it is read
+  bool names = true, surfaces = true, fields = true, second_order = false;  ///< as in TetFormatInfo
 };
 
 const std::vector<TetFormat>& tet_formats() {
@@ -120,124 +136,117 @@ const std::vector<TetFormat>& tet_formats() {
   static const std::vector<WrittenFile> xdmf{{".h5", write_alone<write_xdmf_numbers>},
                                              {".xdmf", write_xdmf_mesh},
                                              {"_facets.xdmf", write_xdmf_facets}};
-  static const std::vector<TetFormat> formats{
-      {.extension = ".vtu",
-       .name = "vtu",
-       .read = read_one_file<read_vtu>,
-       .write = {{".vtu", write_alone<write_vtu>}},
-       .surfaces = false,
-       .second_order = true},
-      {.extension = ".msh",
-       .name = "msh22",
-       .read = read_one_file<read_msh>,
-       .write = {{".msh", write_as_one<write_msh>}},
-       .second_order = true},
-      {.extension = ".msh",
-       .name = "msh41",
-       .read = read_one_file<read_msh>,
-       .write = {{".msh", write_alone<write_msh41>}},
-       .second_order = true},
-      {.extension = ".msh",
-       .name = "msh41-binary",
-       .read = read_one_file<read_msh>,
-       .write = {{".msh", write_alone<write_msh41_binary>}},
-       .second_order = true},
-      {.extension = ".mesh",
-       .name = "medit",
-       .read = read_one_file<read_medit>,
-       .write = {{".mesh", write_as_one<write_medit>}},
-       .point_fields = false,
-       .names = false,
-       .fields = false},
-      {.extension = ".meshb",
-       .name = "medit-binary",
-       .read = read_one_file<read_medit_binary>,
-       .write = {{".meshb", write_alone<write_medit_binary>}},
-       .point_fields = false,
-       .names = false,
-       .fields = false},
-      {.extension = ".vtk",
-       .name = "vtk",
-       .read = read_one_file<read_vtk>,
-       .write = {{".vtk", write_alone<write_vtk>}},
-       .second_order = true},
-      {.extension = ".inp",
-       .name = "abaqus",
-       .read = read_one_file<read_abaqus>,
-       .write = {{".inp", write_alone<write_abaqus>}},
-       .point_fields = false,
-       .fields = false,
-       .second_order = true},
-      {.extension = ".bdf",
-       .name = "nastran",
-       .read = read_one_file<read_nastran>,
-       .write = {{".bdf", write_alone<write_nastran>}},
-       .point_fields = false,
-       .fields = false,
-       .second_order = true},
-      {.extension = ".feb",
-       .name = "febio",
-       .read = nullptr,
-       .write = {{".feb", write_alone<write_febio>}},
-       .fields = false,
-       .second_order = true},
-      {.extension = ".xdmf", .name = "xdmf", .read = read_xdmf_files, .write = xdmf, .second_order = true},
-      {.extension = ".node", .name = "tetgen", .read = read_node_with_ele, .write = tetgen, .fields = false},
-      {.extension = ".ele", .name = "tetgen", .read = read_ele_with_node, .write = tetgen, .fields = false}};
+  static const std::vector<TetFormat> formats{{.extension = ".vtu",
+                                               .name = "vtu",
+                                               .read = read_vtu,
+                                               .write = {{".vtu", write_alone<write_vtu>}},
+                                               .surfaces = false,
+                                               .second_order = true},
+                                              {.extension = ".msh",
+                                               .name = "msh22",
+                                               .read = read_msh,
+                                               .write = {{".msh", write_as_one<write_msh>}},
+                                               .second_order = true},
+                                              {.extension = ".msh",
+                                               .name = "msh41",
+                                               .read = read_msh,
+                                               .write = {{".msh", write_alone<write_msh41>}},
+                                               .second_order = true},
+                                              {.extension = ".msh",
+                                               .name = "msh41-binary",
+                                               .read = read_msh,
+                                               .write = {{".msh", write_alone<write_msh41_binary>}},
+                                               .second_order = true},
+                                              {.extension = ".mesh",
+                                               .name = "medit",
+                                               .read = read_medit,
+                                               .write = {{".mesh", write_as_one<write_medit>}},
+                                               .point_fields = false,
+                                               .names = false,
+                                               .fields = false},
+                                              {.extension = ".meshb",
+                                               .name = "medit-binary",
+                                               .read = read_medit_binary,
+                                               .write = {{".meshb", write_alone<write_medit_binary>}},
+                                               .point_fields = false,
+                                               .names = false,
+                                               .fields = false},
+                                              {.extension = ".vtk",
+                                               .name = "vtk",
+                                               .read = read_vtk,
+                                               .write = {{".vtk", write_alone<write_vtk>}},
+                                               .second_order = true},
+                                              {.extension = ".inp",
+                                               .name = "abaqus",
+                                               .read = read_abaqus,
+                                               .write = {{".inp", write_alone<write_abaqus>}},
+                                               .point_fields = false,
+                                               .fields = false,
+                                               .second_order = true},
+                                              {.extension = ".bdf",
+                                               .name = "nastran",
+                                               .read = read_nastran,
+                                               .write = {{".bdf", write_alone<write_nastran>}},
+                                               .point_fields = false,
+                                               .fields = false,
+                                               .second_order = true},
+                                              {.extension = ".feb",
+                                               .name = "febio",
+                                               .write = {{".feb", write_alone<write_febio>}},
+                                               .fields = false,
+                                               .second_order = true},
+                                              {.extension = ".xdmf",
+                                               .name = "xdmf",
+                                               .read_files = read_xdmf_files,
+                                               .write = xdmf,
+                                               .second_order = true},
+                                              {.extension = ".node",
+                                               .name = "tetgen",
+                                               .read_files = read_tetgen_files,
+                                               .write = tetgen,
+                                               .fields = false},
+                                              {.extension = ".ele",
+                                               .name = "tetgen",
+                                               .read_files = read_tetgen_files,
+                                               .write = tetgen,
+                                               .fields = false}};
   return formats;
 }
 
 template <LabelVolume (*read)(std::string_view, const std::string&)>
-LabelVolume read_one_volume_file(const std::string& path) {
-  return read(read_whole_file(path), path);
-}
-
-template <LabelVolume (*read)(std::string_view, const std::string&, const FileReader&)>
-LabelVolume read_volume_files(const std::string& path) {
-  return read(read_whole_file(path), path, read_whole_file);
-}
-
-LabelVolume read_image_with_header(const std::string& path) {
-  const std::string header = with_extension(path, ".hdr");
-  return read_nifti(read_whole_file(header), header, read_whole_file);
+LabelVolume read_alone(std::string_view bytes, const std::string& name, const FileReader& /*others*/) {
+  return read(bytes, name);
 }
 
 struct VolumeFormat {
   const char* extension;
-  LabelVolume (*read)(const std::string& path);
-  std::string (*write)(const LabelVolume& volume);  ///< null: the format is only read
+  LabelVolume (*read)(std::string_view bytes, const std::string& name, const FileReader& others);
+  std::string (*write)(const LabelVolume& volume) = nullptr;  ///< null: the format is only read
+  const char* header = nullptr;  ///< extension of the file that is read before this one
+  bool one_file = true;          ///< false: the voxels are in another file
 };
-constexpr std::array<VolumeFormat, 10> volume_formats{{{".nrrd", read_volume_files<read_nrrd>, write_nrrd},
-                                                       {".nhdr", read_volume_files<read_nrrd>, nullptr},
-                                                       {".mhd", read_volume_files<read_metaimage>, nullptr},
-                                                       {".mha", read_volume_files<read_metaimage>, nullptr},
-                                                       {".nii", read_volume_files<read_nifti>, nullptr},
-                                                       {".nii.gz", read_volume_files<read_nifti>, nullptr},
-                                                       {".hdr", read_volume_files<read_nifti>, nullptr},
-                                                       {".img", read_image_with_header, nullptr},
-                                                       {".inr", read_one_volume_file<read_inr>, nullptr},
-                                                       {".inr.gz", read_one_volume_file<read_inr>, nullptr}}};
-
-std::string in_lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
-/// The extension in lower case; .nii.gz and .inr.gz count as one extension.
-std::string extension_of(const std::string& path) {
-  const std::string name = in_lower_case(std::filesystem::path(path).filename().string());
-  for (const char* compound : {".nii.gz", ".inr.gz"})
-    if (name.ends_with(compound) && name != compound) return compound;
-  return std::filesystem::path(name).extension().string();
-}
+constexpr std::array<VolumeFormat, 10> volume_formats{{{".nrrd", read_nrrd, write_nrrd},
+                                                       {".nhdr", read_nrrd, nullptr, nullptr, false},
+                                                       {".mhd", read_metaimage, nullptr, nullptr, false},
+                                                       {".mha", read_metaimage},
+                                                       {".nii", read_nifti},
+                                                       {".nii.gz", read_nifti},
+                                                       {".hdr", read_nifti, nullptr, nullptr, false},
+                                                       {".img", read_nifti, nullptr, ".hdr", false},
+                                                       {".inr", read_alone<read_inr>},
+                                                       {".inr.gz", read_alone<read_inr>}}};
 
 template <class Format>
 bool is_for(const Format& format, FileUse use) {
   return use == FileUse::read || format.write != nullptr;
 }
 bool is_for(const TetFormat& format, FileUse use) {
-  return use == FileUse::read ? format.read != nullptr : !format.write.empty();
+  return use == FileUse::read ? format.read || format.read_files : !format.write.empty();
 }
+
+bool is_one_file(const SurfaceFormat&) { return true; }
+bool is_one_file(const TetFormat& format) { return format.read != nullptr; }
+bool is_one_file(const VolumeFormat& format) { return format.one_file; }
 
 /// The format of a file's extension; null if there is none.
 template <class Formats>
@@ -280,6 +289,20 @@ const TetFormat& need_written_format(const std::string& path, const std::string&
     if (!known.ends_with(format.name)) known.append(known.empty() ? "" : " ").append(format.name);
   }
   throw UsageError("there is no format " + in_quotes(name) + " for a tet mesh; known are " + known);
+}
+
+const SurfaceFormat& need_surface_format(const std::string& path) {
+  const SurfaceFormat* shared = find_format(shared_formats, path, FileUse::read);
+  return shared ? *shared : need_format(surface_formats, path, FileKind::surface, FileUse::read);
+}
+
+/// The format, which must be one file.
+template <class Format>
+const Format& streamed(const Format& format, const std::string& name) {
+  if (is_one_file(format)) return format;
+  throw UsageError(name + ": " + format.extension +
+                   " is several files, which no stream is; give their name, or " + "one of " +
+                   streamed_extensions());
 }
 
 /// Among `files`, or alone if that is null.
@@ -366,14 +389,48 @@ std::string file_stem(const std::string& path) {
 }
 
 TriangleMesh read_surface(const std::string& path, std::vector<Dropped>* dropped) {
-  const SurfaceFormat* shared = find_format(shared_formats, path, FileUse::read);
-  const SurfaceFormat& format =
-      shared ? *shared : need_format(surface_formats, path, FileKind::surface, FileUse::read);
-  return format.read(read_whole_file(path), path, dropped);
+  return need_surface_format(path).read(read_whole_file(path), path, dropped);
 }
 
 ReadTetMesh read_tet_mesh(const std::string& path, const ReadTetMeshOptions& options) {
-  return need_format(tet_formats(), path, FileKind::tet_mesh, FileUse::read).read(path, options);
+  const TetFormat& format = need_format(tet_formats(), path, FileKind::tet_mesh, FileUse::read);
+  return format.read ? format.read(read_whole_file(path), path, options) : format.read_files(path, options);
+}
+
+TriangleMesh read_surface_bytes(std::string_view bytes, const std::string& name, const std::string& extension,
+                                std::vector<Dropped>* dropped) {
+  return streamed(need_surface_format(name + extension), name).read(bytes, name, dropped);
+}
+
+ReadTetMesh read_tet_mesh_bytes(std::string_view bytes, const std::string& name, const std::string& extension,
+                                const ReadTetMeshOptions& options) {
+  return streamed(need_format(tet_formats(), name + extension, FileKind::tet_mesh, FileUse::read), name)
+      .read(bytes, name, options);
+}
+
+LabelVolume read_label_volume_bytes(std::string_view bytes, const std::string& name,
+                                    const std::string& extension) {
+  return streamed(need_format(volume_formats, name + extension, FileKind::volume, FileUse::read), name)
+      .read(bytes, name, [&](const std::string& other) -> std::string {
+        throw InputError(name, 0, "its voxels are in another file, " + other + "; give the header's name");
+      });
+}
+
+std::string streamed_extensions() {
+  std::string out;
+  const auto add = [&](const auto& formats) {
+    for (const auto& format : formats)
+      if (is_for(format, FileUse::read) && is_one_file(format) && !out.ends_with(format.extension))
+        out.append(out.empty() ? "" : " ").append(format.extension);
+  };
+  add(surface_formats);
+  add(tet_formats());
+  add(volume_formats);
+  return out;
+}
+
+bool streams(const std::string& extension) {
+  return (" " + streamed_extensions() + " ").find(" " + extension + " ") != std::string::npos;
 }
 
 std::optional<SurfaceWithFields> read_surface_with_fields(const std::string& path) {
@@ -388,7 +445,9 @@ std::optional<SurfaceWithFields> read_surface_with_fields(const std::string& pat
 }
 
 LabelVolume read_label_volume(const std::string& path) {
-  return need_format(volume_formats, path, FileKind::volume, FileUse::read).read(path);
+  const VolumeFormat& format = need_format(volume_formats, path, FileKind::volume, FileUse::read);
+  const std::string first = format.header ? with_extension(path, format.header) : path;
+  return format.read(read_whole_file(first), first, read_whole_file);
 }
 
 void write_surface(const TriangleMesh& mesh, const std::string& path, OutputFiles* files) {

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/formats/dropped.h"
@@ -71,15 +72,29 @@ TriangleMesh read_surface(const std::string& path, std::vector<Dropped>* dropped
 ReadTetMesh read_tet_mesh(const std::string& path, const ReadTetMeshOptions& options = {});
 LabelVolume read_label_volume(const std::string& path);
 
+/// The same of a file's bytes, such as a stream's, of a format that is one file: `extension` tells which, and
+/// messages call them `name`. Throws UsageError where the extension is none of those of streams().
+TriangleMesh read_surface_bytes(std::string_view bytes, const std::string& name, const std::string& extension,
+                                std::vector<Dropped>* dropped = nullptr);
+ReadTetMesh read_tet_mesh_bytes(std::string_view bytes, const std::string& name, const std::string& extension,
+                                const ReadTetMeshOptions& options = {});
+LabelVolume read_label_volume_bytes(std::string_view bytes, const std::string& name,
+                                    const std::string& extension);
+
+/// The extensions that are read from streams, ".ply .obj", and whether one is.
+std::string streamed_extensions();
+bool streams(const std::string& extension);
+
 /// Reads the surface of a file together with the fields of its points; nothing for a tet mesh, by its
 /// extension or since there are tets in it. Throws UsageError for surfaces of an extension that
 /// may_hold_point_fields() doesn't know, else as read_surface() does.
 std::optional<SurfaceWithFields> read_surface_with_fields(const std::string& path);
 
 /// Writes a file whole or not at all; coordinates come back bit by bit. With `files` it appears when these
-/// are committed (see atomic_file.h), and writing can be cancelled. Throws UsageError if the extension is not
-/// one of the kind, OutputError if the file can't be written, Interrupted if cancelled. A tet mesh is written
-/// in written_tet_format(), and as several files if that has several: their names differ in the extension.
+/// are committed (see atomic_file.h), and writing can be cancelled; "-" is standard output. Throws UsageError
+/// if the extension is not one of the kind, OutputError if the file can't be written, Interrupted if
+/// cancelled. A tet mesh is written in written_tet_format(), and as several files if that has several: their
+/// names differ in the extension.
 void write_surface(const TriangleMesh& mesh, const std::string& path, OutputFiles* files = nullptr);
 void write_tet_mesh(const MeshToWrite& mesh, const std::string& path, OutputFiles* files = nullptr,
                     const std::string& format = {});

@@ -119,7 +119,8 @@ bool is_list(std::string_view value) {
   return text == "list" || text.starts_with("list ");
 }
 
-/// What 3D Slicer says of the segments of a .seg.nrrd: "Segment3_Name:=liver", "Segment3_LabelValue:=4".
+/// What 3D Slicer says of the segments of a .seg.nrrd: "Segment3_Name:=liver", "Segment3_LabelValue:=4",
+/// "Segment3_Color:=0.87 0.51 0.4".
 class Segments {
  public:
   void add(std::string_view key, std::string_view value) {
@@ -135,24 +136,41 @@ class Segments {
       segment.name = std::string(trimmed(value));
     else if (what == "LabelValue")
       segment.has_label = parse_number(trimmed(value), segment.label);
+    else if (what == "Color")
+      segment.colour = parse_colour(value);
     else if (what == "Layer" && parse_number(trimmed(value), segment.layer))
       layers_ = std::max(layers_, segment.layer + 1);
   }
   /// Segments that overlap are in several of them.
   std::int64_t layers() const { return layers_; }
-  std::map<MaterialTag, std::string> names() const {
-    std::map<MaterialTag, std::string> names;
-    for (const auto& [number, segment] : segments_)
-      if (segment.has_label && !segment.name.empty() &&
-          segment.label >= std::numeric_limits<MaterialTag>::min() &&
-          segment.label <= std::numeric_limits<MaterialTag>::max())
-        names.emplace(static_cast<MaterialTag>(segment.label), segment.name);
-    return names;
+  void give_names_and_colours(LabelVolume& volume) const {
+    for (const auto& [number, segment] : segments_) {
+      if (!segment.has_label || segment.label < std::numeric_limits<MaterialTag>::min() ||
+          segment.label > std::numeric_limits<MaterialTag>::max())
+        continue;
+      const auto tag = static_cast<MaterialTag>(segment.label);
+      if (!segment.name.empty()) volume.names.emplace(tag, segment.name);
+      if (segment.colour) volume.colours.emplace(tag, *segment.colour);
+    }
   }
 
  private:
+  using Colour = std::array<double, 3>;
+  /// Nothing for what is no colour: it is not worth refusing a volume.
+  static std::optional<Colour> parse_colour(std::string_view value) {
+    Colour colour;
+    for (double& part : colour) {
+      value = trimmed(value);
+      const std::size_t end = std::min(value.find(' '), value.size());
+      if (!parse_number(value.substr(0, end), part) || !(part >= 0 && part <= 1)) return {};
+      value.remove_prefix(end);
+    }
+    return colour;
+  }
+
   struct Segment {
     std::string name;
+    std::optional<Colour> colour;
     std::int64_t label = 0, layer = 0;
     bool has_label = false;
   };
@@ -413,7 +431,7 @@ LabelVolume read_nrrd(std::string_view bytes, const std::string& name, const Fil
     header.fail("encoding",
                 "encoding " + in_quotes(encoding) + " is not supported; save the volume as raw or gzip");
   LabelVolume volume = NrrdHeader(header).volume();
-  volume.names = segments.names();
+  segments.give_names_and_colours(volume);
   check_geometry(volume, name);
   VoxelFormat format;
   format.type = nrrd_voxel_type(header);

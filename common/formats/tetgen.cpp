@@ -1,10 +1,14 @@
 #include "common/formats/tetgen.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "common/error.h"
+#include "common/formats/file_triangles.h"
 #include "common/formats/mesh_fields.h"
+#include "common/formats/mesh_parts.h"
 #include "common/formats/midside_nodes_read.h"
 #include "common/formats/text_scanner.h"
 
@@ -13,6 +17,7 @@ namespace tetwright {
 namespace {
 
 constexpr std::int64_t max_attributes = 1000;
+constexpr const char* material_attribute = "attribute";
 
 /// One of the two files: a line of counts, then a line for each item; # begins a comment.
 class Lines {
@@ -110,7 +115,8 @@ std::int64_t read_nodes(Lines& in, TetMesh& mesh) {
   return first;
 }
 
-void read_tets(Lines& in, std::int64_t first, ReadTetMesh& read) {
+/// `faces` are renumbered where midside nodes go.
+void read_tets(Lines& in, std::int64_t first, std::vector<Triangle>& faces, ReadTetMesh& read) {
   TetMesh& mesh = read.mesh;
   const auto promised = in.next<std::int64_t>("number of tets");
   const auto corners = in.next<std::int64_t>("number of points of a tet");
@@ -121,7 +127,7 @@ void read_tets(Lines& in, std::int64_t first, ReadTetMesh& read) {
   const std::size_t n = in.checked(promised, static_cast<std::size_t>(1 + corners + attributes), "tets");
   if (n == 0) in.fail("there are no tets in it; a tet mesh is needed, not a surface");
   mesh.tets.resize(n);
-  mesh.cell_fields = attribute_fields(attributes, n, "attribute");
+  mesh.cell_fields = attribute_fields(attributes, n, material_attribute);
   MidsideNodesRead midside;
   for (std::size_t t = 0; t < n; ++t) {
     in.begin_line("tet");
@@ -143,22 +149,79 @@ void read_tets(Lines& in, std::int64_t first, ReadTetMesh& read) {
     for (MeshField& field : mesh.cell_fields) field.values[t] = in.next<double>("attribute");
     in.end_line();
   }
-  std::vector<Triangle> no_triangles;
-  midside.remove_from(read, no_triangles);
+  midside.remove_from(read, faces);
   // Attributes are numbers of regions, which the file writes as any other number.
   for (MeshField& field : mesh.cell_fields) field.integer = all_whole(field);
 }
 
+/// What our own files say at their beginning: lines "# material 3: bone".
+std::map<std::int64_t, std::string> read_name_comments(std::string_view bytes, std::string_view what) {
+  std::map<std::int64_t, std::string> names;
+  const std::string begin = "# " + std::string(what) + " ";
+  while (bytes.starts_with('#')) {
+    const std::size_t end = std::min(bytes.find('\n'), bytes.size());
+    std::string_view line = bytes.substr(0, end);
+    bytes.remove_prefix(std::min(end + 1, bytes.size()));
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    const std::size_t colon = line.find(": ");
+    std::int64_t number = 0;
+    if (line.starts_with(begin) && colon != std::string_view::npos &&
+        parse_number(line.substr(begin.size(), colon - begin.size()), number))
+      names.emplace(number, line.substr(colon + 2));
+  }
+  return names;
+}
+
+/// The faces with a boundary marker other than 0, in groups by it.
+FileTriangles read_faces(Lines& in, std::int64_t first, std::size_t points) {
+  FileTriangles listed;
+  const auto promised = in.next<std::int64_t>("number of faces");
+  const std::int64_t markers = in.optional_count("number of boundary markers", 1);
+  in.end_line();
+  const std::size_t n = in.checked(promised, static_cast<std::size_t>(4 + markers), "faces");
+  for (std::size_t f = 0; f < n; ++f) {
+    in.begin_line("face");
+    const auto number = in.next<std::int64_t>("number of a face");
+    Triangle ids{};
+    for (Index& id : ids) {
+      const auto point = in.next<std::int64_t>("number of a point");
+      if (point < first || static_cast<std::uint64_t>(point - first) >= points)
+        in.fail("face " + std::to_string(number) + " names point " + std::to_string(point) +
+                ", but those of the .node file are " + std::to_string(first) + " to " +
+                std::to_string(first + static_cast<std::int64_t>(points) - 1) +
+                "; do the files belong together?");
+      id = static_cast<Index>(point - first);
+    }
+    const std::int64_t marker = markers ? in.next<std::int64_t>("boundary marker") : 0;
+    in.end_line();
+    // TetGen lists all faces if it is asked to; those without a marker are no patch.
+    if (marker != 0) listed.add(ids, marker);
+  }
+  return listed;
+}
+
 }  // namespace
 
-ReadTetMesh read_tetgen(std::string_view node, const std::string& node_name, std::string_view ele,
-                        const std::string& ele_name, const ReadTetMeshOptions& options) {
+ReadTetMesh read_tetgen(const NamedBytes& node, const NamedBytes& ele, const std::optional<NamedBytes>& face,
+                        const ReadTetMeshOptions& options) {
   ReadTetMesh read;
-  Lines nodes(node, node_name);
+  Lines nodes(node.bytes, node.name);
   const std::int64_t first = read_nodes(nodes, read.mesh);
-  Lines tets(ele, ele_name);
-  read_tets(tets, first, read);
-  take_material(read, options, ele_name);
+  FileTriangles listed;
+  if (face) {
+    Lines faces(face->bytes, face->name);
+    listed = read_faces(faces, first, read.mesh.points.size());
+    listed.names = read_name_comments(face->bytes, "marker");
+    listed.name_form = printable_name;
+  }
+  Lines tets(ele.bytes, ele.name);
+  read_tets(tets, first, listed.triangles, read);
+  take_material(read, options, ele.name);
+  // Of another field the numbers are not those that the names are for.
+  if (read.material_field == material_attribute)
+    for (const auto& [tag, name] : read_name_comments(ele.bytes, "material"))
+      read.mesh.material_names[checked_material(tag, ele.name, 0)] = name;
+  if (face) take_triangles(listed, "boundary marker", face->name, read);
   return read;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -8,17 +9,24 @@
 
 namespace tetwright {
 
-/// Reads the pair of files that TetGen writes: `node` (.node) and `ele` (.ele), whose names are used in
-/// messages. Numbers begin at 0 or 1. Attributes of points become the fields "attribute1", "attribute2", ...,
-/// boundary markers the integer field "boundary_marker". Attributes of tets become "attribute", "attribute2",
-/// ..., of which the first is the material if its values are whole (see ReadTetMesh). Quadratic
-/// tets are taken by their corners; nothing else in the two files is dropped; .face and .edge files beside
-/// them are not read. Throws
-/// InputError with the line for anything that is malformed.
+/// The content of a file, and its name in messages.
+struct NamedBytes {
+  std::string_view bytes;
+  std::string name;
+};
+
+/// Reads the files that TetGen writes: `node` (.node), `ele` (.ele) and, where there is one, `face` (.face).
+/// Numbers begin at 0 or 1. Attributes of points become the fields "attribute1", "attribute2", ..., boundary
+/// markers the integer field "boundary_marker". Attributes of tets become "attribute", "attribute2", ..., of
+/// which the first is the material if its values are whole (see ReadTetMesh). Faces with a boundary marker
+/// other than 0 are patches, as take_triangles() makes them of groups. Names of materials and markers are
+/// those of the comments that we write. Quadratic tets are taken by their corners; nothing else in the files
+/// is dropped; a .edge file beside them is not read. Throws InputError with the line for anything that is
+/// malformed.
 ///
 /// Our own: the library of TetGen is under the AGPL, and the format is small.
-ReadTetMesh read_tetgen(std::string_view node, const std::string& node_name, std::string_view ele,
-                        const std::string& ele_name, const ReadTetMeshOptions& options = {});
+ReadTetMesh read_tetgen(const NamedBytes& node, const NamedBytes& ele, const std::optional<NamedBytes>& face,
+                        const ReadTetMeshOptions& options = {});
 
 /// The content of the three files of a mesh: points, tets with the tag of the material as their attribute,
 /// and the faces of the interfaces, if it has any, with the number of their group (see BoundaryGroups) as

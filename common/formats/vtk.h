@@ -1,10 +1,14 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "common/formats/dropped.h"
 #include "common/formats/mesh_to_write.h"
 #include "common/formats/read_tet_mesh_result.h"
+#include "common/formats/surface_with_fields.h"
 
 namespace tetwright {
 
@@ -18,6 +22,15 @@ namespace tetwright {
 ///
 /// Our own: libvtk9.1 takes 105 MB, without what it depends on.
 ReadTetMesh read_vtk(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options = {});
+
+/// Reads the polygons and triangle strips of a file of dataset POLYDATA, or the triangles, quads, polygons
+/// and strips of an UNSTRUCTURED_GRID without volume cells, as triangles; a cell field of whole numbers with
+/// one of the names of is_face_label() gives groups. Vertices, lines and fields are counted in `dropped`.
+/// Throws InputError as read_vtk() does, and where there are tets.
+TriangleMesh read_vtk_surface(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped);
+/// The same with the fields of points; nothing where there are tets.
+std::optional<SurfaceWithFields> read_vtk_surface_with_fields(std::string_view bytes,
+                                                              const std::string& name);
 
 /// The content of a legacy VTK file, version 3.0, ASCII: what the simplest readers know. The mesh's
 /// interfaces, if it has any, are triangles after the tets; the cell field "material" gives both their tags

@@ -68,6 +68,13 @@ CellKind cell_kind(std::int64_t type) {
 
 }  // namespace
 
+std::string vtk_text(const std::vector<double>& bytes) {
+  std::string text;
+  for (const double byte : bytes)
+    text += byte >= 0 && byte < 256 ? static_cast<char>(static_cast<unsigned char>(byte)) : '?';
+  return text;
+}
+
 std::vector<std::pair<std::int64_t, std::string>> parse_vtk_names(const std::string& text,
                                                                   const std::string& array,
                                                                   const std::string& file) {

@@ -41,6 +41,9 @@ inline constexpr const char* vtk_surface_field = "surface";
 inline constexpr const char* vtk_surface_names = "surface_names";
 inline constexpr const char* vtk_material_names = "material_names";
 
+/// The text whose bytes an array of numbers gives; ? for what is no byte.
+std::string vtk_text(const std::vector<double>& bytes);
+
 /// The numbers and names of such field data. Throws InputError for a line of another form.
 std::vector<std::pair<std::int64_t, std::string>> parse_vtk_names(const std::string& text,
                                                                   const std::string& array,

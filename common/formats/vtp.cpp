@@ -58,7 +58,7 @@ void read_names(const VtuData& data, pugi::xml_node piece, std::vector<FaceGroup
 TriangleMesh read(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped,
                   std::vector<MeshField>* point_fields) {
   const VtuData data(bytes, name);
-  const pugi::xml_node piece = data.piece("PolyData");
+  const pugi::xml_node piece = data.only_piece("PolyData");
   const auto count = [&](const char* attribute) {
     return piece.attribute(attribute) ? data.count(piece, attribute) : 0;
   };

@@ -1,6 +1,5 @@
 #include "common/formats/vtu_data.h"
 
-#include <libdeflate.h>
 #include <zlib.h>
 
 #include <cmath>
@@ -15,14 +14,13 @@
 #include "common/formats/byte_order.h"
 #include "common/formats/mesh_fields.h"
 #include "common/formats/text_scanner.h"
+#include "common/formats/vtu_blocks.h"
 #include "common/parallel/parallel.h"
 
 namespace tetwright {
 
 namespace {
 
-/// The best that deflate can do: 1032 bytes become one (zlib, "Technical Details").
-constexpr std::uint64_t max_zlib_ratio = 1032;
 /// Bytes of an uncompressed array that are decoded at a time.
 constexpr std::size_t piece_bytes = std::size_t{1} << 20;
 constexpr std::int64_t max_vtu_components = 1 << 16;
@@ -87,22 +85,27 @@ VtuData::VtuData(std::string_view bytes, std::string name)
   const std::string_view header = root_.attribute("header_type").as_string("UInt32");
   if (header != "UInt32" && header != "UInt64") fail(root_, "unknown header type " + in_quotes(header));
   wide_header_ = header == "UInt64";
-  const std::string_view compressor = root_.attribute("compressor").as_string();
-  compressed_ = !compressor.empty();
-  if (compressed_ && compressor != "vtkZLibDataCompressor")
-    fail(root_,
-         "compressor " + in_quotes(compressor) + " is not supported; save it with zlib or uncompressed");
+  compressor_ = root_.attribute("compressor").as_string();
+  if (!compressor_.empty() && !make_block_unpacker(compressor_))
+    fail(root_, "compressor " + in_quotes(compressor_) +
+                    " is not supported; save it with zlib, LZ4, LZMA or uncompressed");
 }
 
-pugi::xml_node VtuData::piece(const char* grid) const {
+std::vector<pugi::xml_node> VtuData::pieces(const char* grid) const {
   const std::string_view type = root_.attribute("type").as_string();
   const pugi::xml_node node = root_.child(grid);
   if (type != grid || !node)
     fail(root_, "a file of type " + std::string(grid) + " is needed, this one is " + in_quotes(type));
-  const pugi::xml_node piece = node.child("Piece");
-  if (!piece) fail(node, "there is no Piece in it");
-  if (piece.next_sibling("Piece")) fail(node, "more than one Piece; merge them into one first");
-  return piece;
+  std::vector<pugi::xml_node> pieces;
+  for (const pugi::xml_node piece : node.children("Piece")) pieces.push_back(piece);
+  if (pieces.empty()) fail(node, "there is no Piece in it");
+  return pieces;
+}
+
+pugi::xml_node VtuData::only_piece(const char* grid) const {
+  const std::vector<pugi::xml_node> all = pieces(grid);
+  if (all.size() > 1) fail(all[1], "more than one Piece; merge them into one first");
+  return all[0];
 }
 
 std::size_t VtuData::count(pugi::xml_node piece, const char* attribute) const {
@@ -194,7 +197,7 @@ void VtuData::decode_from(Source source, pugi::xml_node array, std::size_t max_b
       fail(array, std::to_string(size) + " bytes, but " + std::to_string(max_bytes) + " were expected");
   };
   std::string decoded;
-  if (!compressed_) {
+  if (compressor_.empty()) {
     const std::uint64_t size = read_size();
     check_size(size, source.max_left());
     out.begin(static_cast<std::size_t>(size));
@@ -217,8 +220,9 @@ void VtuData::decode_from(Source source, pugi::xml_node array, std::size_t max_b
     packed_total += packed;
   }
   if (packed_total > left) fail(array, cut_short());
+  const std::unique_ptr<BlockUnpacker> unpacker = make_block_unpacker(compressor_);
   // Compared before they are multiplied, to avoid overflow.
-  const std::uint64_t possible = packed_total * max_zlib_ratio;
+  const std::uint64_t possible = packed_total * unpacker->max_ratio();
   check_size(last, possible);
   // A single block may well be smaller than the block size.
   if (blocks > 1 || last == 0) check_size(block_size, possible);
@@ -226,18 +230,13 @@ void VtuData::decode_from(Source source, pugi::xml_node array, std::size_t max_b
   const std::uint64_t size = last > 0 ? (blocks - 1) * block_size + last : blocks * block_size;
   check_size(size, possible);
   out.begin(static_cast<std::size_t>(size));
-  const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> decompressor(
-      libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
-  if (!decompressor) throw std::bad_alloc();
   std::string packed;
   for (std::size_t b = 0; b < blocks; ++b) {
     if (packed_sizes[b] > source.max_left()) fail(array, cut_short());
     packed.resize(static_cast<std::size_t>(packed_sizes[b]));
     if (source.read(packed.data(), packed.size()) != packed.size()) fail(array, cut_short());
     decoded.resize(static_cast<std::size_t>(b + 1 == blocks && last > 0 ? last : block_size));
-    // Anything but exactly that many bytes is an error. Takes 40 % of zlib's time on these blocks.
-    if (libdeflate_zlib_decompress(decompressor.get(), packed.data(), packed.size(), decoded.data(),
-                                   decoded.size(), nullptr) != LIBDEFLATE_SUCCESS)
+    if (!unpacker->unpack(packed, decoded))
       fail(array, "block " + std::to_string(b) + " of its compressed data is damaged");
     out.piece(decoded);
   }

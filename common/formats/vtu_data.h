@@ -21,16 +21,18 @@ bool holds_numbers(pugi::xml_node array);
 class VtuData {
  public:
   /// Parses the file; the bytes must outlive this object. Throws InputError if it is not VTK XML, or is
-  /// compressed by something other than zlib.
+  /// compressed by something other than zlib, LZ4 and LZMA.
   VtuData(std::string_view bytes, std::string name);
 
   const std::string& name() const { return name_; }
   /// The XML element VTKFile.
   pugi::xml_node root() const { return root_; }
 
-  /// The only piece of a grid, "UnstructuredGrid" or "PolyData". Throws InputError if the file holds another
-  /// one, or more than one piece.
-  pugi::xml_node piece(const char* grid) const;
+  /// The pieces of a grid, "UnstructuredGrid" or "PolyData", at least one. Throws InputError if the file
+  /// holds another one.
+  std::vector<pugi::xml_node> pieces(const char* grid) const;
+  /// The same, where there is to be one alone.
+  pugi::xml_node only_piece(const char* grid) const;
   /// The number that an attribute of a piece gives.
   std::size_t count(pugi::xml_node piece, const char* attribute) const;
   /// The array of this name. Throws InputError if there is none.
@@ -79,7 +81,7 @@ class VtuData {
   bool appended_raw_ = false;
   bool swap_ = false;
   bool wide_header_ = false;  ///< sizes are UInt64
-  bool compressed_ = false;
+  std::string compressor_;    ///< empty: uncompressed
 };
 
 /// Writes an array of `size` bytes as VTK encodes it inline for format="binary", header_type="UInt32" and

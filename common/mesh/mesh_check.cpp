@@ -1,6 +1,9 @@
 #include "common/mesh/mesh_check.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
 
 #include "common/geometry/predicates.h"
 #include "common/geometry/self_intersection.h"
@@ -46,8 +49,10 @@ class Checker {
   bool check_arrays() {
     if (mesh_.tets.empty() || mesh_.materials.size() != mesh_.tets.size())
       add(MeshFault::materials_missing, 1, [&](std::size_t) {
-        return std::to_string(mesh_.tets.size()) + " tets, " + std::to_string(mesh_.materials.size()) +
-               " materials";
+        return MeshPlace{std::to_string(mesh_.tets.size()) + " tets, " +
+                             std::to_string(mesh_.materials.size()) + " materials",
+                         {},
+                         {}};
       });
     add_tets(MeshFault::index_out_of_range, find_bad(mesh_.tets.size(), [&](std::size_t t) {
                return *std::max_element(mesh_.tets[t].begin(), mesh_.tets[t].end()) >= mesh_.points.size();
@@ -80,7 +85,7 @@ class Checker {
   void check_faces(const std::vector<MeshFace>& faces) {
     const std::vector<Index> over = find_bad(faces.size(), [&](std::size_t f) { return faces[f].count > 2; });
     add(MeshFault::face_over_shared, over.size(),
-        [&](std::size_t i) { return "face " + numbers(faces[over[i]].ids); });
+        [&](std::size_t i) { return place("face " + numbers(faces[over[i]].ids), faces[over[i]].ids); });
 
     std::vector<Triangle> boundary;
     for (const MeshFace& f : faces)
@@ -90,11 +95,12 @@ class Checker {
     for (const SurfaceEdge& e : chains.edges)
       if (e.count != 2) bad_edges.push_back(e);
     add(MeshFault::boundary_edges_not_two, bad_edges.size(), [&](std::size_t i) {
-      return "edge " + numbers(bad_edges[i].ids) + " with " + std::to_string(bad_edges[i].count) +
-             " triangles";
+      return place(
+          "edge " + numbers(bad_edges[i].ids) + " with " + std::to_string(bad_edges[i].count) + " triangles",
+          bad_edges[i].ids);
     });
     add(MeshFault::boundary_points_non_manifold, chains.surplus_fans, [&](std::size_t i) {
-      return i < chains.touching_points.size() ? point_text(chains.touching_points[i]) : std::string();
+      return i < chains.touching_points.size() ? point_place(chains.touching_points[i]) : MeshPlace();
     });
     check_stars(faces);
     if (options_.self_intersections) check_self_intersections(boundary_and_interfaces(mesh_, faces));
@@ -103,27 +109,38 @@ class Checker {
   std::vector<MeshFinding> findings() { return std::move(findings_); }
 
  private:
-  /// `place(i)` is the text of the i-th place; an empty text is left out.
-  template <class Place>
-  void add(MeshFault fault, std::size_t count, const Place& place) {
+  /// `place_of(i)` is the i-th place; one with an empty text is left out.
+  template <class PlaceOf>
+  void add(MeshFault fault, std::size_t count, const PlaceOf& place_of) {
     if (count == 0) return;
     MeshFinding finding{fault, count, {}};
     for (std::size_t i = 0; i < std::min(count, options_.places); ++i)
-      if (std::string text = place(i); !text.empty()) finding.places.push_back(std::move(text));
+      if (MeshPlace found = place_of(i); !found.text.empty()) finding.places.push_back(std::move(found));
     findings_.push_back(std::move(finding));
   }
   void add_tets(MeshFault fault, const std::vector<Index>& tets) {
     add(fault, tets.size(), [&](std::size_t i) {
-      return "tet " + std::to_string(tets[i]) + " (" + numbers(mesh_.tets[tets[i]]) + ")";
+      return place("tet " + std::to_string(tets[i]) + " (" + numbers(mesh_.tets[tets[i]]) + ")",
+                   mesh_.tets[tets[i]]);
     });
   }
   void add_points(MeshFault fault, const std::vector<Index>& points) {
-    add(fault, points.size(), [&](std::size_t i) { return point_text(points[i]); });
+    add(fault, points.size(), [&](std::size_t i) { return point_place(points[i]); });
   }
-  std::string point_text(Index p) const {
+  MeshPlace point_place(Index p) const {
     std::string out = "point " + std::to_string(p) + " at ";
     append_point(out, mesh_.points[p]);
-    return out;
+    return place(std::move(out), std::array{p});
+  }
+  MeshPlace place(std::string text, std::span<const Index> points) const {
+    MeshPlace found{std::move(text), {points.begin(), points.end()}, {}};
+    Vec3 sum = Vec3::Zero();
+    for (const Index p : points) {
+      if (p >= mesh_.points.size() || !mesh_.points[p].allFinite()) return found;
+      sum += mesh_.points[p] / static_cast<double>(points.size());
+    }
+    found.at = sum;
+    return found;
   }
 
   /// The tets that have the same vertices as a tet with a smaller number.
@@ -190,13 +207,15 @@ class Checker {
       if (points[i] == points[i - 1] && (split.empty() || split.back() != points[i]))
         split.push_back(points[i]);
     add(MeshFault::point_star_split, stars - used_points_,
-        [&](std::size_t i) { return i < split.size() ? point_text(split[i]) : std::string(); });
+        [&](std::size_t i) { return i < split.size() ? point_place(split[i]) : MeshPlace(); });
   }
 
   void check_self_intersections(const std::vector<Triangle>& surface) {
     const auto pairs = self_intersections(mesh_.points, surface);
     add(MeshFault::self_intersections, pairs.size(), [&](std::size_t i) {
-      return "triangles " + numbers(surface[pairs[i].first]) + " and " + numbers(surface[pairs[i].second]);
+      const Triangle &a = surface[pairs[i].first], &b = surface[pairs[i].second];
+      return place("triangles " + numbers(a) + " and " + numbers(b),
+                   std::array{a[0], a[1], a[2], b[0], b[1], b[2]});
     });
   }
 
@@ -297,7 +316,7 @@ std::string mesh_finding_line(const MeshFinding& finding) {
                     "): " + std::to_string(finding.count);
   for (std::size_t i = 0; i < finding.places.size(); ++i) {
     out += i > 0 ? "; " : finding.count == 1 ? ", at " : ", the first at ";
-    out += finding.places[i];
+    out += finding.places[i].text;
   }
   return out;
 }

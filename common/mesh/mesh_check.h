@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,10 +36,16 @@ const char* mesh_fault_text(MeshFault fault);
 /// True for a fault that leaves the mesh valid.
 bool is_warning(MeshFault fault);
 
+struct MeshPlace {
+  std::string text;           ///< such as "tet 7 (1 2 2 5)" or "point 3 at 0 0.5 1"
+  std::vector<Index> points;  ///< numbers of the points that it is about, in the order of the text
+  std::optional<Vec3> at;     ///< the mean of these, where all are there and finite
+};
+
 struct MeshFinding {
   MeshFault fault;
   std::size_t count;
-  std::vector<std::string> places;  ///< the first few, such as "tet 7 (1 2 2 5)" or "point 3 at 0 0.5 1"
+  std::vector<MeshPlace> places;  ///< the first few
 };
 
 struct MeshCheckOptions {

@@ -166,7 +166,7 @@ class Mover {
         },
         [&](std::size_t done) {
           if (!progress_) return;
-          progress_->throw_if_cancelled();
+          progress_->throw_if_stopped();
           progress_->update(static_cast<double>(done) / static_cast<double>(starts.size()));
         });
   }

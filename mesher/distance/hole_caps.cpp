@@ -54,7 +54,7 @@ class CapFinder {
 
   TriangleMesh find(const std::vector<GridEdge>& seeds) {
     for (std::vector<MortonKey> wave = new_cells(seeds); !wave.empty();) {
-      if (progress_) progress_->throw_if_cancelled();
+      if (progress_) progress_->throw_if_stopped();
       read_corners(wave);
       std::vector<GridEdge> edges = cap_edges(wave);
       wave = new_cells(edges);

@@ -21,7 +21,7 @@ std::shared_ptr<const LevelSet> LevelSet::of_surface(const RepairedSurface& surf
     for (std::size_t i = begin; i < end; ++i) points[i] = frame.to_grid(surface.points[i]);
   });
   const NodeWinding winding(points, surface.triangles, surface.closed, frame.cells);
-  if (progress) progress->throw_if_cancelled();
+  if (progress) progress->throw_if_stopped();
 
   DistanceGrid grid = DistanceGrid::unsigned_distances(points, surface.triangles, progress);
   TriangleMesh caps = sign_band(grid, winding, progress);

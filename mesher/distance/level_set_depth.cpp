@@ -34,7 +34,7 @@ class DepthFinder {
     all.distance = surface_.distance(all.middle(), 4 * all.side);
     std::vector<GridBox> found{all};
     while (!found.empty() && found.front().side > side) {
-      if (progress) progress->throw_if_cancelled();
+      if (progress) progress->throw_if_stopped();
       found = parallel_collect<GridBox>(
           0, found.size(), 64, [&](std::size_t begin, std::size_t end, std::vector<GridBox>& out) {
             LevelSetSampler sampler(boundary_);
@@ -107,7 +107,7 @@ std::shared_ptr<const LevelSet> LevelSet::at_depth(const RepairedSurface& surfac
   leaves.reserve(boxes.size());
   for (const GridBox& box : boxes) leaves.push_back(grid.touch_leaf(box.lowest));
   parallel_for(0, boxes.size(), 16, [&](std::size_t begin, std::size_t end) {
-    if (progress) progress->throw_if_cancelled();
+    if (progress) progress->throw_if_stopped();
     LevelSetSampler sampler(boundary);
     for (std::size_t i = begin; i < end; ++i) finder.fill(boxes[i], sampler, leaves[i]);
   });

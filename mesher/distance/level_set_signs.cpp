@@ -132,7 +132,7 @@ TriangleMesh sign_band(DistanceGrid& grid, const NodeWinding& winding, Progress*
   // Caps are followed as far as they go; a later round meets only an inside that a cap's own band ran into.
   constexpr int rounds = 4;
   for (int round = 0; round < rounds; ++round) {
-    if (progress) progress->throw_if_cancelled();
+    if (progress) progress->throw_if_stopped();
     const std::vector<GridEdge> edges = edges_to_cap(grid);
     if (edges.empty()) break;
     const TriangleMesh caps = cap_holes(edges, read, progress);

@@ -29,7 +29,7 @@ struct Interrupter {
   Progress* progress;
   void start(const char* = nullptr) {}
   void end() {}
-  bool wasInterrupted(int = -1) { return progress && progress->cancelled(); }
+  bool wasInterrupted(int = -1) { return progress && progress->stopped(); }
 };
 
 /// The positions of a grid's index coordinates in the world, in doubles throughout.
@@ -80,7 +80,7 @@ DistanceGrid DistanceGrid::unsigned_distances(std::span<const Vec3> points,
       static_cast<float>(level_set_band), static_cast<float>(level_set_band),
       openvdb::tools::UNSIGNED_DISTANCE_FIELD);
   // An interrupted conversion hands back whatever it has so far.
-  if (progress) progress->throw_if_cancelled();
+  if (progress) progress->throw_if_stopped();
   return DistanceGrid(std::make_unique<Impl>(std::move(grid)));
 }
 

@@ -263,7 +263,7 @@ ThinSurvey survey_thin_walls(const RepairedSurface& surface, const LevelSet& lev
           if (may_be_thin(sampler, middle_of(morton_decode(all[i]), 0), std::max(exact.wall, exact.gap)))
             out.push_back(all[i]);
       });
-  if (progress) progress->throw_if_cancelled();
+  if (progress) progress->throw_if_stopped();
   survey.exact = std::move(exact_voxels);
   if (suspects.empty() && survey.exact.empty()) return survey;
 
@@ -284,7 +284,7 @@ ThinSurvey survey_thin_walls(const RepairedSurface& surface, const LevelSet& lev
     if (survey.exact.empty()) survey.surface = nullptr;
     return survey;
   }
-  if (progress) progress->throw_if_cancelled();
+  if (progress) progress->throw_if_stopped();
   find_regions(survey);
   count_cells(survey);
   return survey;

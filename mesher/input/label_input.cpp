@@ -329,7 +329,7 @@ void Preparation::drop_lost(const std::vector<Loss>& losses) {
 
 LabelInput make_label_input(LabelVolume volume, const std::string& file, const LabelChoice& choice,
                             Progress* progress) {
-  if (progress) progress->throw_if_cancelled();
+  if (progress) progress->throw_if_stopped();
   const Chosen chosen(choice);
   if (choice.min_voxels > 1 && volume.labels.size() >= no_index)
     throw InputError(file, 0,
@@ -347,7 +347,7 @@ LabelInput make_label_input(LabelVolume volume, const std::string& file, const L
   result.materials = name_materials(choice, counts);
   result.regions = number_regions(volume.labels, result.materials);
   std::vector<MaterialTag>().swap(volume.labels);
-  if (progress) progress->throw_if_cancelled();
+  if (progress) progress->throw_if_stopped();
 
   std::size_t outside = result.regions.size();
   for (const LabelMaterial& m : result.materials) outside -= m.voxels;

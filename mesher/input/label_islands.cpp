@@ -50,8 +50,8 @@ class Islands {
   void collect_runs(Index island);
   RegionIndex max_shared();
   void join(Index a, Index b, Index min_voxels);
-  void throw_if_cancelled() const {
-    if (progress_) progress_->throw_if_cancelled();
+  void throw_if_stopped() const {
+    if (progress_) progress_->throw_if_stopped();
   }
 
   Index runs() const { return static_cast<Index>(starts_.size() - 1); }
@@ -94,7 +94,7 @@ std::vector<Index> Islands::find_runs() const {
   const std::size_t rows_at_once = std::max<std::size_t>(1, (1 << 16) / width_);
   std::vector<Index> starts =
       parallel_collect<Index>(0, rows, rows_at_once, [&](std::size_t begin, std::size_t end, auto& out) {
-        throw_if_cancelled();
+        throw_if_stopped();
         for (std::size_t row = begin; row < end; ++row) {
           const RegionIndex* const r = regions_.data() + row * width_;
           out.push_back(static_cast<Index>(row * width_));
@@ -127,7 +127,7 @@ void Islands::unite_neighbours() {
   parallel_for(0, slabs, 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t slab = first; slab < last; ++slab)
       for (std::size_t z = slab_begin(slab); z < slab_begin(slab + 1); ++z) {
-        throw_if_cancelled();
+        throw_if_stopped();
         unite_across(z * plane_ + width_, (z + 1) * plane_, width_);
         if (z > slab_begin(slab)) unite_across(z * plane_, (z + 1) * plane_, plane_);
       }
@@ -234,7 +234,7 @@ std::vector<MergedIsland> Islands::merge(Index min_voxels) {
   for (Index island : small_) entries.emplace_back(voxels_[island], island);
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue({}, std::move(entries));
   for (std::size_t step = 0; !queue.empty(); ++step) {
-    if (step % 4096 == 0) throw_if_cancelled();
+    if (step % 4096 == 0) throw_if_stopped();
     const auto [count, island] = queue.top();
     queue.pop();
     // It may have grown since it was put there, or gone up in another one.
@@ -302,7 +302,7 @@ void Islands::unite_rows(std::size_t here, std::size_t there) {
 void Islands::unite_touching() {
   const std::size_t rows = plane_ / width_, planes = regions_.size() / plane_;
   for (std::size_t z = 0; z < planes; ++z) {
-    throw_if_cancelled();
+    throw_if_stopped();
     for (std::size_t y = 0; y < rows; ++y) {
       const std::size_t row = z * plane_ + y * width_;
       if (y > 0) unite_rows(row, row - width_);

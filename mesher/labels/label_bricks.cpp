@@ -302,7 +302,7 @@ LabelBricks make_label_bricks(const LabelInput& labels, const Progress* progress
   for (int round = 0;; ++round) {
     constexpr std::size_t grain = 2;  // tiles to a task, several milliseconds each where labels meet
     parallel_for(0, tile_count, grain, [&](std::size_t begin, std::size_t end) {
-      if (progress) progress->throw_if_cancelled();
+      if (progress) progress->throw_if_stopped();
       LabelSmoother smoother;
       for (std::size_t t = begin; t < end; ++t) {
         // Every part lists all labels that the tile depends on.

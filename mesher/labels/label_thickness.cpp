@@ -44,7 +44,7 @@ class Opening {
   /// between voxels of a line, and the number of lines side by side.
   template <class Work>
   void sweep(int axis, Work&& work) {
-    if (progress_) progress_->throw_if_cancelled();
+    if (progress_) progress_->throw_if_stopped();
     const auto nx = static_cast<std::size_t>(size_[0]), ny = static_cast<std::size_t>(size_[1]);
     // Whole rows along x at a time, for sequential memory access.
     if (axis < 2)

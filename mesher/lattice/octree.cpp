@@ -183,7 +183,7 @@ Octree build_octree(const MaterialField& field, const OctreeOptions& options,
   std::vector<MortonKey> holding = std::move(interface_voxels);
   const SplitCells split = [&](int level, const std::vector<MortonKey>& already) {
     if (progress) {
-      progress->throw_if_cancelled();
+      progress->throw_if_stopped();
       progress->update(static_cast<double>(level) / (frame.root_level + 1));
     }
     const auto place = static_cast<std::size_t>(level);

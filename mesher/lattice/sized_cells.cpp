@@ -44,7 +44,7 @@ FinerCells find_sized_cells(const MaterialField& field, const MaxCell& max_cell,
   std::vector<MortonKey> cells = root_cells(frame);
   double total = 0;
   for (int level = frame.root_level; level > -max_refinement && !cells.empty(); --level) {
-    if (progress) progress->throw_if_cancelled();
+    if (progress) progress->throw_if_stopped();
     const double side = std::ldexp(1, level);  // voxels
     std::vector<MortonKey> split = parallel_collect<MortonKey>(
         0, cells.size(), cell_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {

@@ -215,7 +215,7 @@ void BlockRunner::run(const std::vector<Item>& items, bool in_order, const Attem
   std::size_t batch = step;
   again_.clear();
   while (!order.empty() || !again_.empty()) {
-    if (progress_) progress_->throw_if_cancelled();
+    if (progress_) progress_->throw_if_stopped();
     // Those that lost come first, so that each is done some time.
     totals_.repeats += static_cast<std::uint64_t>(
         std::count_if(again_.begin(), again_.end(), [](const Entry& e) { return e.stage == 0; }));

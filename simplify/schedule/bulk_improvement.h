@@ -21,7 +21,8 @@ struct BulkPlan {
 /// makes the worst tet of a large triangle of the surface better: run_improvement() then leaves 38 % below
 /// 0.1 sr of the sample random_interior, after this phase none.
 ///
-/// The mesh is compacted and rated by shape. Returns the number of rounds it took. Throws Interrupted.
+/// The mesh is compacted and rated by shape. Returns the number of rounds it took. Throws Interrupted and
+/// OutOfTime.
 int run_bulk_improvement(const ImprovementTools& tools, ImprovementArea& area, const BulkPlan& plan);
 
 }  // namespace tetwright

@@ -34,7 +34,7 @@ struct ImprovementTools {
 };
 
 /// Improves the shapes of the worst tets, worst first (README.md, Improvement). The mesh is compacted and
-/// rated by shape. Returns the number of rounds it took. Throws Interrupted.
+/// rated by shape. Returns the number of rounds it took. Throws Interrupted and OutOfTime.
 int run_improvement(const ImprovementTools& tools, ImprovementArea& area, const ImprovementPlan& plan);
 
 }  // namespace tetwright

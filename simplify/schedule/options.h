@@ -95,6 +95,7 @@ struct SimplifyReport {
   std::size_t touching_points = 0;  ///< where parts touch without a common face: they stay as they are
   std::vector<std::uint64_t> decided_by_worker;  ///< items of blocks; the sum does not depend on the threads
   std::optional<DeviationReport> deviation;      ///< with a tolerance
+  bool out_of_time = false;                      ///< the deadline of the Progress ended it before its end
   double seconds_build = 0, seconds_simplify = 0, seconds_close = 0;
 };
 

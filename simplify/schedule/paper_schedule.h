@@ -5,7 +5,8 @@
 
 namespace tetwright {
 
-/// Figure 3 of Cutler, Dorsey & McMillan 2004 (README.md, The paper's schedule). Throws Interrupted.
+/// Figure 3 of Cutler, Dorsey & McMillan 2004 (README.md, The paper's schedule). Throws Interrupted and
+/// OutOfTime.
 void run_paper_schedule(Engine& engine, const SimplifyOptions& options);
 
 }  // namespace tetwright

@@ -32,7 +32,7 @@ void RoundRecorder::Round::finish() {
 
 void RoundRecorder::begin_stage(const char* name) {
   if (!progress_) return;
-  progress_->throw_if_cancelled();
+  progress_->throw_if_stopped();
   progress_->begin_stage(name);
 }
 

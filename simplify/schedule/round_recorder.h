@@ -34,7 +34,7 @@ class RoundRecorder {
   void update(double fraction) {
     if (progress_) progress_->update(fraction);
   }
-  /// Throws Interrupted.
+  /// Throws Interrupted and OutOfTime.
   void begin_stage(const char* name);
 
  private:

@@ -16,7 +16,7 @@ struct SizePlan {
 /// better places between, until few are left or rounds gain little. Shapes may get worse on the way, down to
 /// a share of the bound. The rules must have sizes.
 ///
-/// The mesh is compacted and rated by shape. Throws Interrupted.
+/// The mesh is compacted and rated by shape. Throws Interrupted and OutOfTime.
 void run_size_rounds(const ImprovementTools& tools, ImprovementArea& area, const SizePlan& plan);
 
 }  // namespace tetwright

@@ -9,7 +9,7 @@ namespace tetwright {
 /// by `plan` as the rest was: smaller tets have more ways to be well shaped. Again until none is left or
 /// that gains nothing, while the plan has rounds.
 ///
-/// The mesh is compacted and rated by shape. Throws Interrupted.
+/// The mesh is compacted and rated by shape. Throws Interrupted and OutOfTime.
 void refine_poor_spots(const ImprovementTools& tools, ImprovementArea& area, ImprovementPlan plan,
                        double angle);
 

@@ -168,8 +168,6 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
 void run_tuned_schedule(Engine& engine, const SimplifyOptions& options, std::size_t loop_target) {
   EditableMesh& mesh = engine.mesh();
   BlockRules& rules = engine.rules;
-  engine.compact();
-  engine.keep_input_surface(options.surface, options.tolerance > 0);
   if (options.tolerance > 0) {
     rules.tolerance = rules.max_deviation =
         loop_tolerance * std::min(options.tolerance * mesh.space().scale(), max_tolerance * mesh.diagonal());

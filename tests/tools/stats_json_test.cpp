@@ -1,6 +1,7 @@
 // Every key that --stats writes is in the schema, and every key that the schema requires is written.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
@@ -13,8 +14,8 @@
 namespace tetwright::stats_json_test {
 namespace {
 
-std::string violations(const nlohmann::json& document) {
-  const auto schema_json = nlohmann::json::parse(contents(TETWRIGHT_SCHEMA));
+std::string violations(const nlohmann::json& document, const std::string& kind = "stats") {
+  const auto schema_json = nlohmann::json::parse(contents(TETWRIGHT_DATA "/" + kind + ".schema.json"));
   valijson::Schema schema;
   valijson::SchemaParser().populateSchema(valijson::adapters::NlohmannJsonAdapter(schema_json), schema);
   valijson::ValidationResults results;
@@ -60,6 +61,54 @@ TEST(StatsJson, FollowsItsSchema) {
   j.erase("surprise");
   j["result"]["tets"] = "many";
   EXPECT_NE(violations(j), "");
+}
+
+TEST(CheckJson, FollowsItsSchema) {
+  const TemporaryFolder f;
+  const auto check = [&](const std::string& arguments) {
+    const Answer a = run("check --json " + arguments);
+    EXPECT_LE(a.status, 1) << a.err;
+    const auto j = nlohmann::json::parse(a.out);
+    EXPECT_EQ(violations(j, "check"), "") << arguments;
+    return j;
+  };
+  ASSERT_EQ(run("sample organs -o " + (f / "o.nrrd")).status, 0);
+  ASSERT_EQ(
+      run("mesh " + (f / "o.nrrd") + " -o " + (f / "o.vtu") + " --voxel-size 2 --uniform --accept-changes")
+          .status,
+      0);
+  const auto organs = check((f / "o.vtu") + " --before " + (f / "o.vtu"));
+  EXPECT_EQ(organs["topology"], organs["topology_before"]);
+  EXPECT_TRUE(organs["topology_differences"].empty());
+  EXPECT_EQ(organs["topology"]["materials"].size(), organs["mesh"]["materials"].size());
+  EXPECT_EQ(organs["topology"]["materials"][0]["name"], organs["mesh"]["materials"][0]["name"]);
+  EXPECT_GT(organs["topology"]["junction_curves"]["components"], 0);
+
+  ASSERT_EQ(run("sample torus -o " + (f / "t.ply")).status, 0);
+  ASSERT_EQ(run("mesh " + (f / "t.ply") + " -o " + (f / "t.vtu") + " --resolution 24 --accept-changes").status, 0);
+  const auto torus = check((f / "t.vtu") + " --surface " + (f / "t.ply") + " --tolerance 10%");
+  EXPECT_EQ(torus["topology"]["domain"]["euler"], 0);
+  EXPECT_TRUE(torus["tolerance"]["held"]);
+  EXPECT_EQ(torus["surface"]["solid"]["result"]["handles"], 1);
+  EXPECT_NE(violations(nlohmann::json::object(), "check"), "");
+}
+
+TEST(CheckJson, PlacesAreCoordinates) {
+  const TemporaryFolder f;
+  // The second tet is inverted, and the last point is not used.
+  put(f / "bad.mesh",
+      "MeshVersionFormatted 2\nDimension 3\nVertices 6\n0 0 0 0\n3 0 0 0\n0 3 0 0\n0 0 3 0\n0 0 -3 0\n"
+      "9 9 9 0\nTetrahedra 2\n1 2 3 4 1\n1 2 3 5 1\nEnd\n");
+  const Answer a = run("check --json " + (f / "bad.mesh"));
+  EXPECT_EQ(a.status, 1);
+  const auto j = nlohmann::json::parse(a.out);
+  EXPECT_EQ(violations(j, "check"), "");
+  std::map<std::string, nlohmann::json> places;
+  for (const auto& finding : j["findings"]) places[finding["name"]] = finding["places"][0];
+  EXPECT_EQ(places["inverted"]["points"], nlohmann::json({0, 1, 2, 4}));
+  EXPECT_EQ(places["inverted"]["at"], nlohmann::json({0.75, 0.75, -0.75}));
+  EXPECT_EQ(places["unused_points"]["points"], nlohmann::json({5}));
+  EXPECT_EQ(places["unused_points"]["at"], nlohmann::json({9.0, 9.0, 9.0}));
 }
 
 TEST(StatsJson, OfARunThatFails) {

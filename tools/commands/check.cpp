@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/error.h"
 #include "common/formats/formats.h"
 #include "common/mesh/interfaces.h"
 #include "common/mesh/topology.h"
@@ -75,7 +76,7 @@ void print_check(const CheckReport& check, const CommandRun& run) {
     std::printf("%s: %s\n", is_warning(f.fault) ? "warning" : "error", mesh_finding_line(f).c_str());
   if (check.measurable) {
     print_report(run.line, run.report);
-    for (const std::string& l : check.topology) std::printf("%s\n", l.c_str());
+    for (const std::string& l : topology_lines(*check.topology)) std::printf("%s\n", l.c_str());
     if (check.surface)
       for (const std::string& l : comparison_lines(*check.surface)) std::printf("%s\n", l.c_str());
     if (check.tolerance > 0) std::printf("%s\n", tolerance_line(*check.surface, check.tolerance).c_str());
@@ -105,14 +106,17 @@ CheckReport make_check(CommandRun& run) {
   CheckReport check = examine(mesh, run);
   if (!line.before.empty()) check.topology_differences.emplace();
   if (check.measurable) {
-    const Topology signature = topology(mesh);
-    check.topology = topology_lines(signature);
-    if (!line.before.empty())
-      check.topology_differences =
-          topology_differences(topology(read_checked(line.before, run, field_found)), signature);
+    check.topology = topology(mesh);
+    if (!line.before.empty()) {
+      check.topology_before = topology(read_checked(line.before, run, field_found));
+      check.topology_differences = topology_differences(*check.topology_before, *check.topology);
+    }
   }
   if (check.measurable && !line.surfaces.empty()) compare_with_surfaces(mesh, run, check);
-  // The error of the reader lists the fields that there are.
+  // The error of the reader lists the fields that there are. A stream cannot be read twice.
+  if (!line.material_field.empty() && !field_found && !line.input_format.empty())
+    throw InputError(line.inputs.front(), 0,
+                     "it has no whole-number cell field '" + line.material_field + "'");
   if (!line.material_field.empty() && !field_found)
     (void)read_tet_mesh(line.inputs.front(), {line.material_field});
   if (!(check.valid() && check.topology_kept() && check.within_tolerance()))

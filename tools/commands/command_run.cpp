@@ -1,5 +1,6 @@
 #include "tools/commands/command_run.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "tools/stats_json.h"
@@ -7,6 +8,14 @@
 namespace tetwright {
 
 namespace {
+
+constexpr double gigabyte = 1 << 30;
+/// More than a clock can count would be no limit.
+constexpr double max_seconds = 1e9;
+
+bool is_stream(const CommandLine& line, const std::string& name) {
+  return name == standard_input && !line.input_format.empty();
+}
 
 /// Takes the object of that name, or `read`s the file.
 template <class Object, class Read>
@@ -22,7 +31,11 @@ auto take(std::map<std::string, Object> InputObjects::*kind, InputObjects* objec
 }  // namespace
 
 CommandRun::CommandRun(const CommandLine& call, Progress& shown, InputObjects* in_memory)
-    : line(call), progress(shown), objects(in_memory) {
+    : line(call), memory_limit(call.memory_limit * gigabyte), progress(shown), objects(in_memory) {
+  if (call.time_limit > 0)
+    progress.set_deadline(Progress::Clock::now() + std::chrono::duration_cast<Progress::Clock::duration>(
+                                                       making_share * std::chrono::duration<double>(std::min(
+                                                                          call.time_limit, max_seconds))));
   report.inputs = input_files(call);
 }
 
@@ -32,19 +45,35 @@ FileKind input_kind(const CommandRun& run, const std::string& name) {
     if (run.objects->meshes.contains(name)) return FileKind::tet_mesh;
     if (run.objects->volumes.contains(name)) return FileKind::volume;
   }
-  return file_kind(name);
+  return file_kind(typed_name(run.line, name));
+}
+
+std::string typed_name(const CommandLine& line, const std::string& name) {
+  return is_stream(line, name) ? name + line.input_format : name;
 }
 
 TriangleMesh take_surface(CommandRun& run, const std::string& name, std::vector<Dropped>* dropped) {
-  return take(&InputObjects::surfaces, run.objects, name, [&] { return read_surface(name, dropped); });
+  return take(&InputObjects::surfaces, run.objects, name, [&] {
+    return is_stream(run.line, name)
+               ? read_surface_bytes(read_whole_file("-"), name, run.line.input_format, dropped)
+               : read_surface(name, dropped);
+  });
 }
 
 ReadTetMesh take_tet_mesh(CommandRun& run, const std::string& name, const ReadTetMeshOptions& options) {
-  return take(&InputObjects::meshes, run.objects, name, [&] { return read_tet_mesh(name, options); });
+  return take(&InputObjects::meshes, run.objects, name, [&] {
+    return is_stream(run.line, name)
+               ? read_tet_mesh_bytes(read_whole_file("-"), name, run.line.input_format, options)
+               : read_tet_mesh(name, options);
+  });
 }
 
 LabelVolume take_label_volume(CommandRun& run, const std::string& name) {
-  return take(&InputObjects::volumes, run.objects, name, [&] { return read_label_volume(name); });
+  return take(&InputObjects::volumes, run.objects, name, [&] {
+    return is_stream(run.line, name)
+               ? read_label_volume_bytes(read_whole_file("-"), name, run.line.input_format)
+               : read_label_volume(name);
+  });
 }
 
 void write_stats(const CommandRun& run, OutputFiles& files) {

@@ -8,6 +8,7 @@
 #include "common/formats/atomic_file.h"
 #include "common/formats/dropped.h"
 #include "common/formats/formats.h"
+#include "common/memory.h"
 #include "common/mesh/midside_nodes.h"
 #include "common/progress.h"
 #include "tools/command_line.h"
@@ -27,12 +28,17 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// Share of --time-limit that making the mesh may take; the rest is for comparing and writing it.
+inline constexpr double making_share = 0.9;
+
 /// What all steps of a command share. The meshes themselves are handed from step to step.
 struct CommandRun {
-  /// What it is given must outlive it. Inputs are moved out of `objects` as they are read.
+  /// What it is given must outlive it. Inputs are moved out of `objects` as they are read. The time and the
+  /// memory of --time-limit and --memory-limit are those of its life, on the thread that makes it.
   CommandRun(const CommandLine& line, Progress& progress, InputObjects* objects = nullptr);
 
   const CommandLine& line;
+  MemoryLimit memory_limit;
   Stopwatch since_start;
   Progress& progress;
   InputObjects* objects;
@@ -45,6 +51,9 @@ void write_stats(const CommandRun& run, OutputFiles& files);
 
 /// The files that a command reads: the positional inputs, then those of --material. Empty for `sample`.
 std::vector<std::string> input_files(const CommandLine& line);
+
+/// The name, with the extension of --input-format if it is standard input.
+std::string typed_name(const CommandLine& line, const std::string& name);
 
 /// Of a file by its extension, of an object by what it is.
 FileKind input_kind(const CommandRun& run, const std::string& name);

@@ -1,7 +1,12 @@
 #include "tools/commands/commands.h"
 
+#include <sys/resource.h>
+
+#include <algorithm>
 #include <cstdio>
 
+#include "common/error.h"
+#include "common/message_text.h"
 #include "common/parallel/parallel.h"
 #include "tools/commands/output_paths.h"
 #include "tools/commands/result.h"
@@ -13,6 +18,9 @@ namespace tetwright {
 
 namespace {
 
+/// More than any machine has, and what fits into 64 bits.
+constexpr double max_gigabytes = 1e9;
+
 void run_meshing(CommandRun& run) {
   check_output_paths(run.line);
   CommandResult result = make_result(run);
@@ -20,8 +28,38 @@ void run_meshing(CommandRun& run) {
   print_result(run);
 }
 
-/// The statistics of a run that failed. That they cannot be written either is said, and the run's own error
-/// matters more.
+/// What estimates do not see ends as memory that runs out.
+void limit_process_memory(const CommandLine& line) {
+  // The system counts what is reserved, too: the stacks of threads, and what their heaps may grow into.
+  constexpr double reserved = 64 << 20, reserved_by_thread = 16 << 20;
+  rlimit limit;
+  if (line.memory_limit == 0 || getrlimit(RLIMIT_DATA, &limit) != 0) return;
+  const double bytes = std::min(line.memory_limit, max_gigabytes) * (1 << 30) + reserved +
+                       reserved_by_thread * (line.threads > 0 ? line.threads : thread_count());
+  limit.rlim_cur = static_cast<rlim_t>(std::min(static_cast<double>(limit.rlim_max), bytes));
+  setrlimit(RLIMIT_DATA, &limit);
+}
+
+}  // namespace
+
+CommandResult make_result(CommandRun& run) {
+  CommandResult result;
+  try {
+    result = run.line.command == Command::prepare    ? run_prepare(run)
+             : run.line.command == Command::mesh     ? run_mesh(run)
+             : run.line.command == Command::simplify ? run_simplify(run)
+                                                     : run_improve(run);
+  } catch (const OutOfTime&) {
+    throw OutOfTime("out of time: after the " + short_number(run.line.time_limit) +
+                    " s of --time-limit there was no mesh yet (in stage '" + run.progress.stage() +
+                    "'), and nothing was written; give more time, or larger cells by --resolution");
+  }
+  // What there is, is compared and written.
+  run.progress.set_deadline(Progress::no_deadline);
+  assess(result.mesh, run);
+  return result;
+}
+
 void report_failure(const std::exception& error, CommandRun& run) {
   run.report.status = exit_status(error);
   run.report.error = error.what();
@@ -38,25 +76,17 @@ void report_failure(const std::exception& error, CommandRun& run) {
   }
 }
 
-}  // namespace
-
-CommandResult make_result(CommandRun& run) {
-  CommandResult result = run.line.command == Command::prepare    ? run_prepare(run)
-                         : run.line.command == Command::mesh     ? run_mesh(run)
-                         : run.line.command == Command::simplify ? run_simplify(run)
-                                                                 : run_improve(run);
-  assess(result.mesh, run);
-  return result;
-}
-
 ExitStatus run_command(const CommandLine& line) {
   check_stats_path(line);
   ProgressReport progress(progress_style(line));
   CommandRun run(line, progress);
+  limit_process_memory(line);
   try {
     with_threads(line.threads, [&] {
       if (line.command == Command::check)
         run_check(run);
+      else if (line.command == Command::batch)
+        run_batch(run);
       else if (line.command == Command::sample)
         run_sample(run);
       else

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <exception>
 #include <memory>
 
 #include "mesher/mesher.h"
@@ -23,6 +24,10 @@ struct CommandResult {
 /// prints. Throws as run_command() does.
 CommandResult make_result(CommandRun& run);
 
+/// Writes the statistics of a run that failed. That they cannot be written either is said, and the run's own
+/// error matters more.
+void report_failure(const std::exception& error, CommandRun& run);
+
 CommandResult run_prepare(CommandRun& run);
 CommandResult run_mesh(CommandRun& run);
 CommandResult run_simplify(CommandRun& run);
@@ -32,6 +37,8 @@ CommandResult run_improve(CommandRun& run);
 CheckReport make_check(CommandRun& run);
 
 void run_check(CommandRun& run);
+/// Prints a line for each job that ends.
+void run_batch(CommandRun& run);
 void run_sample(CommandRun& run);
 
 }  // namespace tetwright

@@ -37,6 +37,8 @@ std::vector<Written> files_written(const CommandLine& line) {
   std::vector<Written> files;
   if (line.command == Command::sample)
     files.push_back({"-o", line.output});
+  else if (line.command == Command::batch)
+    files.push_back({"--results", results_file_of(line)});
   else if (line.command != Command::check)
     for (const std::string& file : files_of_tet_mesh(line.output, line.output_format))
       files.push_back({"-o", file});
@@ -62,7 +64,8 @@ void check_files_are_different(const CommandLine& line, Which which) {
   const bool in_place = line.command == Command::simplify || line.command == Command::improve;
   const std::vector<Written> written = files_written(line);
   // Those that say how the run went come last, so that each is compared with all others.
-  const std::size_t first = which == Which::all ? 0 : written.size() - report_count(line);
+  const std::size_t first =
+      which == Which::all || line.command == Command::batch ? 0 : written.size() - report_count(line);
   for (std::size_t i = first; i < written.size(); ++i) {
     const auto& [option, file] = written[i];
     std::string message = option;
@@ -85,6 +88,18 @@ void check_sdf_path(const CommandLine& line) {
 }
 
 }  // namespace
+
+std::vector<std::string> written_files(const CommandLine& line) {
+  std::vector<std::string> names;
+  for (const Written& written : files_written(line)) names.push_back(written.file);
+  return names;
+}
+
+std::string results_file_of(const CommandLine& line) {
+  return line.results.empty()
+             ? std::filesystem::path(line.inputs.front()).replace_extension(".results.jsonl").string()
+             : line.results;
+}
 
 void check_stats_path(const CommandLine& line) {
   const bool to_file = !line.stats.empty() && line.stats != "-";

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "tools/command_line.h"
 
 namespace tetwright {
@@ -8,6 +11,12 @@ namespace tetwright {
 /// extension, can be written, and replace neither an input nor each other, not even through a link.
 /// Only `simplify` and `improve` may replace their input, by -o. Throws UsageError and OutputError.
 void check_output_paths(const CommandLine& line);
+
+/// All files that the call writes.
+std::vector<std::string> written_files(const CommandLine& line);
+
+/// The file of a batch's results.
+std::string results_file_of(const CommandLine& line);
 
 /// The same for --stats and --log-file, which then say how the rest went; opens the log.
 void check_stats_path(const CommandLine& line);

@@ -69,6 +69,7 @@ void report_touching_points(const std::string& file, RunReport& report) {
 
 std::string rules_behind_count(const CommandLine& line, const RunReport& report, double asked,
                                double reached) {
+  if (report.simplify->out_of_time) return "--time-limit";
   if (line.command == Command::improve)
     return "nothing: shapes were worth " + std::string(reached < asked ? "fewer" : "more") + " tets";
   if (reached > asked && report.mesher && static_cast<double>(report.mesher->filling_tets) > asked)
@@ -103,6 +104,27 @@ void find_count_and_shape_shortfall(const CommandLine& line, RunReport& report) 
   if (line.min_solid_angle_given && report.result->min_solid_angle < line.min_solid_angle)
     add("min_solid_angle", "--min-solid-angle", line.min_solid_angle, report.result->min_solid_angle,
         rules_limiting_shapes(*report.simplify));
+}
+
+/// Work that --time-limit or memory has cut short.
+void find_limits(const CommandLine& line, RunReport& report) {
+  if ((report.simplify && report.simplify->out_of_time) || (report.mesher && report.mesher->out_of_time)) {
+    const bool counted = line.command != Command::improve && report.simplify &&
+                         report.result->tets > std::max<std::size_t>(1, line.target_tets);
+    const char* undone = !report.simplify ? "smaller cells where the tolerance asks for them"
+                         : counted        ? "the rest of simplifying and of improving shapes"
+                                          : "the rest of improving shapes";
+    report.shortfall.push_back({"time_limit", line.time_limit, report.seconds_total, "--time-limit",
+                                "out of time: --time-limit " + number(line.time_limit) +
+                                    " s ended it; left undone: " + undone + "; give more time"});
+  }
+  if (report.coarser)
+    report.shortfall.push_back({"memory_limit", report.coarser->asked, report.coarser->used, "memory",
+                                "short of memory: cells of " + number(report.coarser->asked) +
+                                    " would take about " + short_number(report.coarser->bytes / (1 << 30)) +
+                                    " GB, and cells of " + number(report.coarser->used) +
+                                    " were taken; free some, give a larger --memory-limit, or say "
+                                    "--resolution"});
 }
 
 /// A tolerance that is not proven to be held.
@@ -402,6 +424,7 @@ void assess(const TetMesh& mesh, CommandRun& run) {
   } else {
     report.result = report.dense;  // the dense mesh is the result
   }
+  find_limits(run.line, report);
   find_deviation(report);
   find_lost_labels(run.line, report);
   find_changed_solids(run.line, mesh, report);
@@ -437,7 +460,7 @@ void print_result(const CommandRun& run) {
   if (!run.line.quiet) print_notes(notes_of(run.report));
   if (run.line.stats == "-")
     std::printf("%s\n", stats_json(run.line, run.report).c_str());
-  else if (!run.line.quiet)
+  else if (!run.line.quiet && run.line.output != "-")
     print_report(run.line, run.report);
   for (const Shortfall& s : run.report.shortfall) print_line(s.message);
 }

@@ -11,8 +11,10 @@
 #include "common/formats/formats.h"
 #include "common/formats/label_names.h"
 #include "common/formats/unique_names.h"
+#include "common/memory.h"
 #include "common/utf8.h"
 #include "mesher/input/split_solids.h"
+#include "mesher/mesh_estimate.h"
 #include "tools/commands/edge_sizes_input.h"
 #include "tools/commands/simplification.h"
 
@@ -25,7 +27,8 @@ void check_input_kinds(const CommandRun& run) {
   const CommandLine& line = run.line;
   for (const std::string& file : input_files(line)) {
     const FileKind kind = input_kind(run, file);
-    if (kind == FileKind::surface || kind == FileKind::volume || is_vdb(file) || may_hold_surface(file))
+    if (kind == FileKind::surface || kind == FileKind::volume || is_vdb(file) ||
+        may_hold_surface(typed_name(line, file)))
       continue;
     std::string read = name_of(line.command);
     read.append(" reads surfaces (").append(known_extensions(FileKind::surface));
@@ -103,6 +106,7 @@ LabelInput read_labels(std::optional<LabelVolume> vdb_labels, CommandRun& run) {
   LabelChoice choice = label_choice(run.line);  // before the volume, which takes longer to read
   LabelVolume volume = vdb_labels ? std::move(*vdb_labels) : take_label_volume(run, file);
   if (run.line.label_names.empty()) take_names(volume, choice);
+  run.report.material_colours = volume.colours;
   LabelInput labels = make_label_input(std::move(volume), file, choice, &run.progress);
   run.report.findings = labels.findings;
   run.report.volume.emplace(labels);
@@ -194,6 +198,30 @@ MesherOptions common_options(const CommandLine& line) {
   return options;
 }
 
+/// Makes cells that nobody asked for larger until memory holds what they take, by estimate.
+template <class Input>
+void fit_memory(const Input& input, MesherOptions& options, CommandRun& run) {
+  constexpr double growth = 1.25;
+  constexpr double estimate_margin = 1.25;      // estimates are mostly within this
+  constexpr double min_fitted_resolution = 16;  // fewer cells show nothing of a body
+  const double available = available_memory() / estimate_margin;
+  const MesherEstimate wanted = estimate_mesh(input, options);
+  if (static_cast<double>(wanted.bytes) <= available) return;
+  const auto cell = [&](const MesherOptions& o) {
+    return o.voxel_size > 0 ? o.voxel_size : longest_side(input) / o.resolution;
+  };
+  MesherOptions larger = options;
+  do {
+    if (options.voxel_size > 0)
+      larger.voxel_size *= growth;
+    else
+      larger.resolution = static_cast<int>(larger.resolution / growth);
+    if (longest_side(input) / cell(larger) < min_fitted_resolution) return;  // refused with its numbers
+  } while (static_cast<double>(estimate_mesh(input, larger).bytes) > available);
+  run.report.coarser = {cell(options), cell(larger), static_cast<double>(wanted.bytes)};
+  options = larger;
+}
+
 DenseMesh mesh_input(const MesherInput& surfaces, CommandRun& run) {
   const CommandLine& line = run.line;
   MesherOptions options = common_options(line);
@@ -214,6 +242,7 @@ DenseMesh mesh_input(const MesherInput& surfaces, CommandRun& run) {
     options.resolution = resolution_for_target(surfaces, line.target_tets, line.feature_angle);
   if (choose && prepares)
     choose_cells_for_sizes(surfaces, run.report.sizes.wish.get(), run.report.sizes.limits.max_edge, options);
+  if (choose) fit_memory(surfaces, options, run);
   if (line.tolerance.value == 0) return mesh_surfaces(surfaces, options, &run.progress);
   run.report.tolerance = tolerance_of(line, diagonal);
   if (!choose) return mesh_surfaces(surfaces, options, &run.progress);
@@ -239,6 +268,7 @@ DenseMesh mesh_input(const LabelInput& labels, CommandRun& run) {
     options.voxel_size = line.command == Command::prepare && line.target_tets > 0
                              ? cell_size_for_target(labels, line.target_tets, options)
                              : default_cell_size(labels);
+  if (!line.resolution && line.voxel_size == 0) fit_memory(labels, options, run);
   read_sizes(run, box_of(labels));
   if (line.tolerance.value > 0 && line.command == Command::mesh)
     throw UsageError(

@@ -39,10 +39,12 @@ TEST(Nrrd, NamesOfSegments) {
   const LabelVolume v =
       read_nrrd(two_voxels +
                     "Segment0_ID:=Segment_1\nSegment0_Name:=liver, left\nSegment0_LabelValue:=4\n"
+                    "Segment0_Color:=0.5 0.25  1\nSegment1_Color:=red\n"
                     "Segment0_Layer:=0\nSegment1_Name:=tumour\nSegment1_LabelValue:=7\n"
                     "Segment2_Name:=no label\nSegment3_LabelValue:=9\nSegmentation_x:=1\n\n\4\7",
                 "f");
   EXPECT_EQ(v.names, (std::map<MaterialTag, std::string>{{4, "liver, left"}, {7, "tumour"}}));
+  EXPECT_EQ(v.colours, (std::map<MaterialTag, std::array<double, 3>>{{4, {0.5, 0.25, 1}}}));
   EXPECT_EQ(v.labels, (std::vector<MaterialTag>{4, 7}));
   expect_input_error(read_nrrd, two_voxels + "Segment0_Layer:=0\nSegment1_Layer:=2\n\n\4\7", "line 4",
                      "overlap, in 3 layers");

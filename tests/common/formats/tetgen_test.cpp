@@ -1,6 +1,7 @@
 #include "common/formats/tetgen.h"
 
 #include <cmath>
+#include <map>
 
 #include "tests/common/formats/expect_error.h"
 
@@ -16,6 +17,14 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return text.replace(at, from.size(), to);
+}
+
+ReadTetMesh read_tetgen(const std::string& node, const std::string&, const std::string& ele,
+                        const std::string&) {
+  return tetwright::read_tetgen({node, "n"}, {ele, "e"}, {});
+}
+ReadTetMesh read_with_faces(const std::string& face) {
+  return tetwright::read_tetgen({node, "n"}, {ele, "e"}, NamedBytes{face, "f"});
 }
 
 TEST(TetGen, PointsTetsAndTheirNumbers) {
@@ -89,6 +98,51 @@ TEST(TetGen, BadInput) {
   expect(node, replaced(ele, "2 4 2", "3 4 2"), "e: line", "cut short");
   for (std::size_t n = 0; n + 12 < ele.size(); ++n)
     (void)error_of<InputError>([&] { (void)read_tetgen(node, "n", ele.substr(0, n), "e"); });
+}
+
+TEST(TetGen, MarkedFacesArePatches) {
+  const ReadTetMesh r = read_with_faces("# of TetGen\n4 1\n1 1 2 3 7\n2 1 2 4 -3\n3 1 3 4 7\n4 2 3 4 0\n");
+  ASSERT_EQ(r.mesh.patch_groups.size(), 2u);
+  std::map<std::int64_t, int> faces;
+  for (const InterfaceTriangle& t : r.mesh.interfaces)
+    if (const auto group = r.mesh.patch_groups.find({t.pair(), t.patch}); group != r.mesh.patch_groups.end())
+      ++faces[group->second.number];
+  EXPECT_EQ(faces, (std::map<std::int64_t, int>{{-3, 1}, {7, 2}}));
+  EXPECT_TRUE(read_with_faces("4 0\n1 1 2 3\n2 1 2 4\n3 1 3 4\n4 2 3 4\n").mesh.patch_groups.empty());
+}
+
+TEST(TetGen, NamesOfOurOwnFilesComeBack) {
+  TetMesh mesh = read_with_faces("2 1\n1 1 2 3 7\n2 1 2 4 8\n").mesh;
+  mesh.material_names = {{3, "bone"}, {-4, "grey matter"}};
+  ASSERT_EQ(mesh.patch_groups.size(), 2u);
+  mesh.patch_groups.begin()->second.name = "inlet: left";
+  const auto written = [&](auto write) {
+    std::string text;
+    write(mesh, [&](std::string_view bytes) { text += bytes; });
+    return text;
+  };
+  const std::string node_again = written(write_tetgen_node), ele_again = written(write_tetgen_ele),
+                    face_again = written(write_tetgen_face);
+  const TetMesh back =
+      tetwright::read_tetgen({node_again, "n"}, {ele_again, "e"}, NamedBytes{face_again, "f"}).mesh;
+  EXPECT_EQ(back.material_names, mesh.material_names);
+  ASSERT_EQ(back.patch_groups.size(), 2u);
+  EXPECT_EQ(back.patch_groups.begin()->second.name, "inlet: left");
+  EXPECT_EQ(back.tets, mesh.tets);
+}
+
+TEST(TetGen, BadFaces) {
+  const auto refused = [](const std::string& face, const std::string& said) {
+    const std::string message = error_of<InputError>([&] { (void)read_with_faces(face); });
+    EXPECT_NE(message.find(said), std::string::npos) << message;
+    EXPECT_EQ(message.rfind("f", 0), 0u) << message;
+  };
+  refused("", "empty");
+  refused("2 1\n1 1 2 3 7\n", "cut short");
+  refused("1 1\n1 1 2 9 7\n", "names point 9");
+  refused("1 1\n1 1 2 3 x\n", "\"x\"");
+  refused("1 2\n1 1 2 3 7\n", "2");
+  refused("1 1\n1 1 2 5 7\n", "no face");
 }
 
 }  // namespace

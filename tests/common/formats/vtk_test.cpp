@@ -11,9 +11,10 @@ namespace {
 /// Builds a file, ASCII or binary.
 class File {
  public:
-  explicit File(bool binary, const char* version = "3.0") : binary_(binary) {
+  explicit File(bool binary, const char* version = "3.0", const char* dataset = "UNSTRUCTURED_GRID")
+      : binary_(binary) {
     text_ = std::string("# vtk DataFile Version ") + version + "\na title\n" + (binary ? "BINARY" : "ASCII") +
-            "\nDATASET UNSTRUCTURED_GRID\n";
+            "\nDATASET " + dataset + "\n";
   }
   File& line(const std::string& words) {
     text_ += words + "\n";
@@ -212,6 +213,93 @@ TEST(Vtk, CutShort) {
       for (std::size_t n = 0; n + 2 < good.size(); ++n)
         (void)error_of<InputError>([&] { (void)read_vtk(good.substr(0, n), "f"); });
     }
+}
+
+/// A tetrahedron whose last face is a strip, with a quad, a line and a vertex beside it.
+std::string surface_file(bool binary, bool offsets) {
+  File f(binary, offsets ? "5.1" : "3.0", "POLYDATA");
+  f.line("POINTS 5 float").numbers<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 2, 2, 2});
+  const auto list = [&](const std::string& keyword, const std::vector<std::vector<std::int64_t>>& cells) {
+    std::vector<std::int64_t> ends{0}, points;
+    std::vector<std::int32_t> old;
+    for (const auto& cell : cells) {
+      old.push_back(static_cast<std::int32_t>(cell.size()));
+      for (const std::int64_t p : cell) {
+        points.push_back(p);
+        old.push_back(static_cast<std::int32_t>(p));
+      }
+      ends.push_back(static_cast<std::int64_t>(points.size()));
+    }
+    if (offsets) {
+      f.line(keyword + " " + std::to_string(ends.size()) + " " + std::to_string(points.size()));
+      f.line("OFFSETS vtktypeint64").numbers(ends).line("CONNECTIVITY vtktypeint64").numbers(points);
+    } else {
+      f.line(keyword + " " + std::to_string(cells.size()) + " " + std::to_string(old.size())).numbers(old);
+    }
+  };
+  list("VERTICES", {{0}});
+  list("LINES", {{0, 1}});
+  list("POLYGONS", {{0, 2, 1}, {0, 1, 3}, {1, 2, 4, 3}});
+  list("TRIANGLE_STRIPS", {{0, 3, 2, 1}});
+  f.line("CELL_DATA 6").line("SCALARS patch_id int 1").line("LOOKUP_TABLE default");
+  f.numbers<std::int32_t>({9, 9, 4, 4, 5, 6});
+  f.line("POINT_DATA 5").line("SCALARS t float").line("LOOKUP_TABLE default");
+  f.numbers<float>({1, 2, 3, 4, 5});
+  return f.text();
+}
+
+TEST(VtkSurface, PolygonsStripsAndGroups) {
+  for (const bool binary : {false, true})
+    for (const bool offsets : {false, true}) {
+      std::vector<Dropped> dropped;
+      const TriangleMesh s = read_vtk_surface(surface_file(binary, offsets), "f", &dropped);
+      EXPECT_EQ(s.points.size(), 5u);
+      // The quad becomes two triangles, the strip two that are wound alike.
+      EXPECT_EQ(s.triangles,
+                (std::vector<Triangle>{{0, 2, 1}, {0, 1, 3}, {1, 2, 4}, {1, 4, 3}, {0, 3, 2}, {2, 3, 1}}));
+      ASSERT_EQ(s.triangle_groups.size(), 6u);
+      std::vector<std::int64_t> numbers;
+      for (const auto g : s.triangle_groups) numbers.push_back(s.groups[g].number);
+      EXPECT_EQ(numbers, (std::vector<std::int64_t>{4, 4, 5, 5, 6, 6}));
+      EXPECT_EQ(dropped.size(), 3u);  // vertices, lines, the field of points
+      const auto fields = read_vtk_surface_with_fields(surface_file(binary, offsets), "f");
+      ASSERT_TRUE(fields);
+      ASSERT_EQ(fields->point_fields.size(), 1u);
+      EXPECT_EQ(fields->point_fields[0].values, (std::vector<double>{1, 2, 3, 4, 5}));
+    }
+}
+
+TEST(VtkSurface, FlatCellsOfAGrid) {
+  const std::string grid = File(false)
+                               .line("POINTS 5 float")
+                               .numbers<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 0, 1})
+                               .line("CELLS 3 14")
+                               .numbers<std::int32_t>({4, 0, 1, 2, 3, 3, 0, 1, 4, 4, 0, 1, 3, 2})
+                               .line("CELL_TYPES 3")
+                               .numbers<std::int32_t>({8, 5, 9})
+                               .text();
+  // A pixel's points go row by row.
+  EXPECT_EQ(read_vtk_surface(grid, "f", nullptr).triangles,
+            (std::vector<Triangle>{{0, 1, 3}, {0, 3, 2}, {0, 1, 4}, {0, 1, 3}, {0, 3, 2}}));
+}
+
+TEST(VtkSurface, OfSomethingElse) {
+  const auto surface = [](std::string_view bytes, const std::string& name) {
+    return read_vtk_surface(bytes, name, nullptr);
+  };
+  const std::string tets = File(false)
+                               .line("POINTS 4 float")
+                               .numbers<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1})
+                               .line("CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10")
+                               .text();
+  expect_input_error(surface, tets, "1 tets", "simplify");
+  EXPECT_FALSE(read_vtk_surface_with_fields(tets, "f"));
+  expect_input_error(surface, replaced(tets, "\n10", "\n12"), "hexahedr");
+  expect_input_error(surface, replaced(tets, "UNSTRUCTURED_GRID", "RECTILINEAR_GRID"), "POLYDATA");
+  const std::string good = surface_file(false, false);
+  expect_input_error(surface, replaced(good, "3 0 2 1", "3 0 2 7"), "point 7 of 5");
+  for (std::size_t n = 0; n + 40 < good.size(); n += 3)
+    (void)error_of<InputError>([&] { (void)surface(good.substr(0, n), "f"); });
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "common/formats/vtu.h"
 
+#include <lz4.h>
+#include <lzma.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -17,7 +19,7 @@ namespace {
 // Builds a file of a triangle and a tet in every encoding of VTK.
 struct Encoding {
   std::string format = "binary";  ///< ascii, binary, base64 or raw (the last two appended)
-  bool compressed = false;
+  std::string compressor;         ///< "ZLib", "LZ4", "LZMA"; empty: none
   bool wide = false;
   bool big = false;
 };
@@ -39,6 +41,25 @@ Array array(const std::string& type, const std::string& name, const std::vector<
   return a;
 }
 
+std::string packed_block(const std::string& bytes, const std::string& compressor) {
+  std::string packed(1000, '\0');
+  std::size_t size = 0;
+  if (compressor == "ZLib") {
+    uLongf n = packed.size();
+    compress(reinterpret_cast<Bytef*>(packed.data()), &n, reinterpret_cast<const Bytef*>(bytes.data()),
+             bytes.size());
+    size = n;
+  } else if (compressor == "LZ4") {
+    size = static_cast<std::size_t>(LZ4_compress_default(
+        bytes.data(), packed.data(), static_cast<int>(bytes.size()), static_cast<int>(packed.size())));
+  } else {
+    lzma_easy_buffer_encode(1, LZMA_CHECK_CRC32, nullptr, reinterpret_cast<const std::uint8_t*>(bytes.data()),
+                            bytes.size(), reinterpret_cast<std::uint8_t*>(packed.data()), &size,
+                            packed.size());
+  }
+  return packed.substr(0, size);
+}
+
 std::string encoded(const std::string& bytes, const Encoding& e) {
   const auto size = [&](std::uint64_t n) {
     std::string s(reinterpret_cast<const char*>(&n), e.wide ? 8 : 4);
@@ -46,17 +67,14 @@ std::string encoded(const std::string& bytes, const Encoding& e) {
     return s;
   };
   std::string header, data;
-  if (e.compressed) {
+  if (!e.compressor.empty()) {
     constexpr std::size_t block = 13;  // several blocks, the last one partial; numbers cross them
     std::string sizes;
     std::size_t blocks = 0;
     for (std::size_t at = 0; at < bytes.size(); at += block, ++blocks) {
-      std::string packed(100, '\0');
-      uLongf n = packed.size();
-      compress(reinterpret_cast<Bytef*>(packed.data()), &n, reinterpret_cast<const Bytef*>(bytes.data() + at),
-               std::min(block, bytes.size() - at));
-      sizes += size(n);
-      data += packed.substr(0, n);
+      const std::string packed = packed_block(bytes.substr(at, block), e.compressor);
+      sizes += size(packed.size());
+      data += packed;
     }
     header = size(blocks) + size(block) + size(bytes.size() % block) + sizes;
   } else {
@@ -65,7 +83,7 @@ std::string encoded(const std::string& bytes, const Encoding& e) {
   }
   if (e.format == "raw") return header + data;
   std::string out;
-  if (e.compressed) {
+  if (!e.compressor.empty()) {
     append_base64(out, header);
     append_base64(out, data);
   } else {
@@ -80,7 +98,7 @@ std::string file(const Encoding& e, const std::vector<Array>& points, const std:
       std::string(
           "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"") +
       (e.big ? "Big" : "Little") + "Endian\"" + (e.wide ? " header_type=\"UInt64\"" : "") +
-      (e.compressed ? " compressor=\"vtkZLibDataCompressor\"" : "") +
+      (e.compressor.empty() ? "" : " compressor=\"vtk" + e.compressor + "DataCompressor\"") +
       ">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"4\" NumberOfCells=\"2\">\n";
   std::string appended;
   const auto add = [&](const std::string& element, const std::vector<Array>& arrays) {
@@ -164,10 +182,10 @@ TEST(Vtu, LargeEnoughForSeveralBlocks) {
 
 TEST(Vtu, EveryEncoding) {
   for (const char* format : {"ascii", "binary", "base64", "raw"})
-    for (bool compressed : {false, true})
+    for (const char* compressor : {"", "ZLib", "LZ4", "LZMA"})
       for (bool wide : {false, true})
         for (bool big : {false, true}) {
-          const Encoding e{format, compressed, wide, big};
+          const Encoding e{format, compressor, wide, big};
           const ReadTetMesh r =
               read_vtu(file(e, some_points(big), some_cells(big), {field("MaterialID", -7, big)}), "f");
           EXPECT_EQ(r.mesh.points[3], Vec3(0, 0, 1));
@@ -291,8 +309,9 @@ TEST(Vtu, BadInput) {
   expect_input_error(read_vtu, "<VTKFile", "byte", "not XML");
   expect_input_error(read_vtu, replaced(good, "\"UnstructuredGrid\"", "\"PolyData\""), "\"PolyData\"",
                      "UnstructuredGrid");
-  expect_input_error(read_vtu, replaced(good, "byte_order", "compressor=\"vtkLZ4DataCompressor\" byte_order"),
-                     "LZ4", "zlib");
+  expect_input_error(read_vtu,
+                     replaced(good, "byte_order", "compressor=\"vtkZstdDataCompressor\" byte_order"), "Zstd",
+                     "zlib");
   expect_input_error(read_vtu, replaced(good, "NumberOfPoints=\"4\"", "NumberOfPoints=\"4000000000\""),
                      "12000000000");
   expect_input_error(read_vtu, replaced(good, "NumberOfPoints=\"4\"", "NumberOfPoints=\"5000000000\""),
@@ -323,8 +342,8 @@ TEST(Vtu, BadInput) {
 
 TEST(Vtu, BinaryCutShortOrDamaged) {
   for (const char* format : {"binary", "base64", "raw"})
-    for (bool compressed : {false, true}) {
-      const Encoding e{.format = format, .compressed = compressed};
+    for (const char* compressor : {"", "ZLib", "LZ4", "LZMA"}) {
+      const Encoding e{.format = format, .compressor = compressor};
       const std::string good = file(e, some_points(false), some_cells(false), {field("material", 1)});
       const std::string end = format == std::string("binary") ? "</Piece>" : "</AppendedData>";
       const std::size_t whole = good.find(end) - (format == std::string("binary") ? 30 : 1);
@@ -339,13 +358,69 @@ TEST(Vtu, BinaryCutShortOrDamaged) {
     }
 }
 
-TEST(Vtu, MoreThanOnePieceIsRefused) {
-  const std::string good = ascii_file({});
-  const std::size_t begin = good.find("<Piece"), end = good.find("</UnstructuredGrid>");
-  expect_input_error(
-      read_vtu,
-      replaced(good, "</UnstructuredGrid>", good.substr(begin, end - begin) + "</UnstructuredGrid>"),
-      "merge");
+/// Two tets that share a face, each a piece with points of its own, and a third piece of a triangle alone.
+std::string two_pieces(const std::string& first_fields, const std::string& second_fields) {
+  const auto piece = [](const std::string& points, const std::string& cells, int type,
+                        const std::string& data) {
+    const bool tet = type == 10;
+    return std::string("<Piece NumberOfPoints=\"") + (tet ? "4" : "3") + "\" NumberOfCells=\"1\"><Points>" +
+           "<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">" + points +
+           "</DataArray></Points><Cells>" +
+           "<DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">" + cells + "</DataArray>" +
+           "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">" + (tet ? "4" : "3") +
+           "</DataArray>" + "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">" +
+           std::to_string(type) + "</DataArray></Cells>" + data + "</Piece>\n";
+  };
+  return "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid>\n" +
+         piece("0 0 0  1 0 0  0 1 0  0 0 1", "0 1 2 3", 10, first_fields) +
+         piece("0 0 -1  0 1 0  1 0 0  -0 0 0", "3 1 2 0", 10, second_fields) +
+         piece("0 0 0  1 0 0  0 1 0", "0 1 2", 5, "") + "</UnstructuredGrid></VTKFile>\n";
+}
+
+std::string fields(const std::string& point_values, const std::string& material,
+                   const std::string& more = "") {
+  return "<PointData><DataArray type=\"Float64\" Name=\"t\" format=\"ascii\">" + point_values +
+         "</DataArray></PointData><CellData><DataArray type=\"Int32\" Name=\"material\" format=\"ascii\">" +
+         material + "</DataArray>" + more + "</CellData>";
+}
+
+TEST(Vtu, PiecesAreJoinedWhereTheyMeet) {
+  std::string file = two_pieces(fields("1 2 3 4", "5"), fields("7 8 9 10", "6"));
+  // The triangle's piece has no fields, and then none is of all pieces.
+  const std::size_t triangle = file.rfind("<Piece");
+  const ReadTetMesh all = read_vtu(file, "f");
+  EXPECT_TRUE(all.mesh.point_fields.empty());
+  file.erase(triangle, file.find("</UnstructuredGrid>") - triangle);
+  const ReadTetMesh r = read_vtu(file, "f");
+  for (const TetMesh* mesh : {&all.mesh, &r.mesh}) {
+    EXPECT_EQ(mesh->points.size(), 5u);
+    EXPECT_EQ(mesh->tets, (std::vector<Tet>{{0, 1, 2, 3}, {0, 2, 1, 4}}));
+  }
+  EXPECT_EQ(r.mesh.points[4], Vec3(0, 0, -1));
+  EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{5, 6}));
+  ASSERT_EQ(r.mesh.point_fields.size(), 1u);
+  EXPECT_EQ(r.mesh.point_fields[0].values, (std::vector<double>{1, 2, 3, 4, 7}));
+  EXPECT_EQ(r.dropped,
+            (std::vector<Dropped>{{"points of several pieces at one place but for the first", 3}}));
+}
+
+TEST(Vtu, FieldsOfSomePiecesAndGhostCellsAreLeftOutAndSaid) {
+  const std::string ghost = "<DataArray type=\"UInt8\" Name=\"vtkGhostType\" format=\"ascii\">1</DataArray>";
+  const std::string no_ghost =
+      "<DataArray type=\"UInt8\" Name=\"vtkGhostType\" format=\"ascii\">0</DataArray>";
+  std::string file = two_pieces(fields("1 2 3 4", "5", no_ghost), fields("7 8 9 10", "6", ghost));
+  const std::size_t triangle = file.rfind("<Piece");
+  file.erase(triangle, file.find("</UnstructuredGrid>") - triangle);
+  const ReadTetMesh r = read_vtu(file, "f");
+  EXPECT_EQ(r.mesh.tets, (std::vector<Tet>{{0, 1, 2, 3}}));
+  const std::string of_one =
+      file.substr(0, file.find(no_ghost)) + file.substr(file.find(no_ghost) + no_ghost.size());
+  const std::vector<Dropped> dropped = read_vtu(of_one, "f").dropped;
+  EXPECT_TRUE(std::any_of(dropped.begin(), dropped.end(), [](const Dropped& d) {
+    return d.what.find("not all pieces have (\"vtkGhostType\")") != std::string::npos;
+  }));
+  EXPECT_TRUE(std::any_of(r.dropped.begin(), r.dropped.end(),
+                          [](const Dropped& d) { return d.what.find("vtkGhostType") != std::string::npos; }));
 }
 
 }  // namespace

@@ -1,0 +1,48 @@
+"""What the tests of faults share."""
+import shutil
+import subprocess
+from pathlib import Path
+
+# The documented exit statuses: done, short of what was asked, wrong call, bad input, nothing to mesh, no output,
+# interrupted. 70 is a bug of the program's.
+STATUSES = {0, 1, 2, 3, 4, 5, 130}
+# Longer than any run here takes on a machine that is ten times slower.
+TIMEOUT = 300
+
+
+class Program:
+    def __init__(self, path, folder, keep):
+        self.path, self.folder, self.keep = path, folder, keep
+        self.faults = []
+
+    def start(self, arguments, **options):
+        return subprocess.Popen([str(self.path), *map(str, arguments)], stdin=subprocess.DEVNULL,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", **options)
+
+    def run(self, arguments, **options):
+        """The status and what was printed to stderr; a hang is the status None."""
+        process = self.start(arguments, **options)
+        try:
+            error = process.communicate(timeout=TIMEOUT)[1]
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.communicate()
+            return None, ""
+        return process.returncode, error
+
+    def must(self, arguments):
+        status, error = self.run(arguments)
+        if status not in (0, 1):
+            raise SystemExit(f"{' '.join(map(str, arguments))}: status {status}: {error}")
+
+    def wrong(self, what, *files):
+        """Notes a fault, and keeps the files that show it."""
+        self.faults.append(what)
+        for file in files:
+            file = Path(file)
+            if file.is_file():
+                shutil.copy(file, self.keep / f"{len(self.faults):03}-{file.name}")
+
+
+def temporaries(folder):
+    return list(Path(folder).glob(".tetwright-*.tmp"))

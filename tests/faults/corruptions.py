@@ -1,0 +1,115 @@
+"""Inputs of all formats with bytes flipped, cut off, left out, repeated or put in."""
+import collections
+import random
+
+SURFACES = ("ply", "obj", "stl", "off", "vtp", "msh")
+TETS = ("vtu", "msh", "mesh", "meshb", "vtk", "inp", "bdf", "xdmf", "node")
+VOLUMES = ("nrrd", "nhdr", "mha", "mhd", "nii", "nii.gz", "inr", "inr.gz")
+# Of a header it matters most: each other damage is done near the beginning.
+HEADER = 400
+
+
+def damaged(data, draw):
+    data = bytearray(data)
+    if not data:
+        return bytes(data)
+    near = HEADER if draw.random() < 0.5 else len(data)
+    at = draw.randrange(min(len(data), near))
+    length = min(len(data) - at, 1 + int(draw.expovariate(1 / 20)))
+    kind = draw.randrange(6)
+    if kind == 0:  # flipped
+        for _ in range(draw.choice((1, 1, 2, 8, 64))):
+            data[draw.randrange(min(len(data), near))] ^= 1 << draw.randrange(8)
+    elif kind == 1:  # cut off
+        del data[at:]
+    elif kind == 2:  # left out
+        del data[at:at + length]
+    elif kind == 3:  # repeated
+        data[at:at] = data[at:at + length] * draw.choice((1, 2, 50))
+    elif kind == 4:  # put in
+        data[at:at] = bytes(draw.randrange(256) for _ in range(length))
+    else:  # a digit becomes another one, or large
+        digits = [i for i in range(len(data)) if 48 <= data[i] <= 57]
+        for _ in range(min(len(digits), draw.choice((1, 1, 3)))):
+            i = draw.choice(digits)
+            data[i:i + 1] = draw.choice((b"0", b"9", b"-1", b"999999999", b"1e300", b"nan", b"", b" "))
+    return bytes(data)
+
+
+def inputs(p):
+    """Files, each with what it is read by."""
+    folder = p.folder / "in"
+    folder.mkdir()
+    p.must(["sample", "cube", "-o", folder / "s.ply"])
+    p.must(["sample", "organs", "-o", folder / "v.nrrd"])
+    p.must(["mesh", folder / "v.nrrd", "-o", folder / "small.vtu", "--voxel-size", "4", "--uniform"])
+    found = []
+    for ext in SURFACES:
+        p.must(["sample", "cube", "-o", folder / f"surface.{ext}"])
+        found.append((folder / f"surface.{ext}", ["mesh", "--resolution", "8"]))
+    for ext in TETS:
+        p.must(["simplify", folder / "small.vtu", "--target-tets", "300", "-o", folder / f"tets.{ext}"])
+        found.append((folder / f"tets.{ext}", ["improve"]))
+    for other in ("h5", "ele", "face"):
+        main = folder / ("tets.xdmf" if other == "h5" else "tets.node")
+        if (folder / f"tets.{other}").exists():
+            found.append((folder / f"tets.{other}", ["improve", main]))
+    for ext in ("msh41", "msh22-binary", "msh41-binary"):
+        path = folder / f"{ext}.msh"
+        status, _ = p.run(["improve", folder / "tets.vtu", "-o", path, "--output-format", ext])
+        if status in (0, 1):
+            found.append((path, ["improve"]))
+    for ext in VOLUMES:
+        p.must(["sample", "organs", "-o", folder / f"volume.{ext}"])
+        found.append((folder / f"volume.{ext}", ["mesh", "--voxel-size", "4", "--uniform"]))
+    p.must(["mesh", folder / "s.ply", "-o", folder / "s.vtu", "--resolution", "12", "--write-sdf",
+            folder / "fields.vdb"])
+    found.append((folder / "fields.vdb", ["mesh", "--resolution", "8"]))
+    return found
+
+
+def one(p, path, call, draw):
+    name = path.name
+    original = path.read_bytes()
+    out = p.folder / "out.vtu"
+    out.unlink(missing_ok=True)
+    # A file of two is damaged in place, with the other one as it was.
+    path.write_bytes(damaged(original, draw))
+    try:
+        arguments = [call[0], *(call[1:] if len(call) == 2 else [path, *call[1:]]), "-o", out, "--quiet",
+                     "--threads", "1", "--time-limit", "60", "--memory-limit", "2"]
+        status, error = p.run(arguments)
+        what = f"damaged {name}"
+        kind = path.suffix
+        if status is None:
+            p.wrong(f"{what}: hangs", path)
+            return f"{kind}: hang"
+        if status in (0, 1):
+            if status == 1 and not error.startswith("tetwright: "):
+                p.wrong(f"{what}: status 1 and nothing said", path)
+            if p.run(["check", out, "--quiet"])[0] != 0:
+                p.wrong(f"{what}: the mesh is not valid", path)
+            return "a valid mesh, status %d" % status
+        if status not in (2, 3, 4, 5):
+            p.wrong(f"{what}: status {status}: {error.strip()[:200]}", path)
+            return f"status {status}"
+        lines = error.strip().split("\n")
+        if len(lines) != 1 or not lines[0].startswith("tetwright: "):
+            p.wrong(f"{what}: says '{error.strip()[:200]}'", path)
+        elif status in (2, 3, 4) and path.stem not in lines[0]:
+            p.wrong(f"{what}: the message does not name the file: '{lines[0][:200]}'", path)
+        if out.exists():
+            p.wrong(f"{what}: status {status}, and an output is there", path)
+        return f"refused, status {status}"
+    finally:
+        path.write_bytes(original)
+
+
+def run(p, count, seed):
+    outcomes = collections.Counter()
+    draw = random.Random(seed)
+    files = inputs(p)
+    for i in range(count):
+        path, call = files[i % len(files)]
+        outcomes[one(p, path, call, draw)] += 1
+    return outcomes

@@ -1,0 +1,136 @@
+"""No room on the disk, no permission, no memory, no file handles, and company."""
+import collections
+import os
+import resource
+import subprocess
+import time
+
+from common import STATUSES, temporaries
+
+OLD = b"what was there before\n"
+NOBODY = 65534
+
+
+def expect(p, what, status, error, allowed, out, states):
+    """`states`: the contents that the output may have."""
+    if status not in allowed:
+        p.wrong(f"{what}: status {status}: {error.strip()}", out)
+    if status not in (0, 1) and not error.startswith("tetwright: "):
+        p.wrong(f"{what}: says '{error.strip()}'")
+    content = out.read_bytes() if out.exists() else None
+    if content not in states:
+        p.wrong(f"{what}: half-written output", out)
+    if temporaries(out.parent):
+        p.wrong(f"{what}: leaves temporary files")
+    return f"{what}: status {status}"
+
+
+def limit(kind, value):
+    return lambda: resource.setrlimit(kind, (value, value))
+
+
+def full_disk(p, arguments, out, new):
+    """Files may not be longer than some sizes up to the one that is needed."""
+    outcomes = collections.Counter()
+    size = len(new)
+    for share in (0, 0.01, 0.3, 0.6, 0.999, 1):
+        out.write_bytes(OLD)
+        status, error = p.run(arguments, preexec_fn=limit(resource.RLIMIT_FSIZE, int(share * size)))
+        allowed, states = ({0}, [new]) if share == 1 else ({5}, [OLD])
+        outcomes[expect(p, "a disk that fills", status, error, allowed, out, states)] += 1
+    return outcomes
+
+
+def read_only_folder(p, arguments, out, new, seconds):
+    """At first, and while the program works."""
+    outcomes = collections.Counter()
+    if os.geteuid() == 0:
+        # root may write anywhere
+        os.chmod(p.folder, 0o755)
+        os.chown(out.parent, NOBODY, NOBODY)
+        options = {"preexec_fn": lambda: (os.setgid(NOBODY), os.setuid(NOBODY))}
+    else:
+        options = {}
+    for delay in (None, 0.3 * seconds, 0.7 * seconds):
+        out.unlink(missing_ok=True)
+        if delay is None:
+            out.parent.chmod(0o555)
+        process = p.start(arguments, **options)
+        if delay is not None:
+            time.sleep(delay)
+            out.parent.chmod(0o555)
+        error = process.communicate()[1]
+        out.parent.chmod(0o755)
+        allowed = {5} if delay is None else {0, 5}
+        if process.returncode == 5 and delay is not None:
+            # A temporary file that was there when the folder became read-only cannot be removed.
+            for file in temporaries(out.parent):
+                file.unlink()
+        outcomes[expect(p, "a read-only folder", process.returncode, error, allowed, out,
+                        [new] if process.returncode == 0 else [None])] += 1
+    if os.geteuid() == 0:
+        os.chown(out.parent, 0, 0)
+    return outcomes
+
+
+def two_processes(p, arguments, out):
+    """Both end well, and the file is that of one of them."""
+    outcomes = collections.Counter()
+    results = []
+    for seed in ("1", "2"):
+        p.must([*arguments, "--seed", seed])
+        results.append(out.read_bytes())
+    for _ in range(3):
+        processes = [p.start([*arguments, "--seed", seed]) for seed in ("1", "2")]
+        for process in processes:
+            error = process.communicate()[1]
+            outcomes[expect(p, "two processes with one output", process.returncode, error, {0}, out, results)] += 1
+    return outcomes
+
+
+def little_memory(p, arguments, out, new):
+    outcomes = collections.Counter()
+    for megabytes in (20, 40, 60, 80, 100, 150, 200, 300, 500):
+        out.write_bytes(OLD)
+        status, error = p.run(arguments, preexec_fn=limit(resource.RLIMIT_AS, megabytes << 20))
+        # Below some the libraries cannot be loaded, which the system says with 127.
+        if status == 127:
+            outcomes["little memory: the program cannot be loaded"] += 1
+            continue
+        content = out.read_bytes()
+        states = [OLD] if status == 5 else [content]  # a smaller mesh where memory decides the cells
+        outcomes[expect(p, "little memory", status, error, {0, 1, 5}, out, states)] += 1
+        if status in (0, 1) and subprocess.run([p.path, "check", out], capture_output=True).returncode != 0:
+            p.wrong("little memory: the mesh is not valid", out)
+    return outcomes
+
+
+def few_files(p, arguments, out, new):
+    outcomes = collections.Counter()
+    for files in (3, 4, 5, 6, 8, 16):
+        out.write_bytes(OLD)
+        status, error = p.run(arguments, preexec_fn=limit(resource.RLIMIT_NOFILE, files))
+        if status == 127:
+            outcomes["few open files: the program cannot be loaded"] += 1
+            continue
+        outcomes[expect(p, "few open files", status, error, STATUSES - {130}, out,
+                        [new] if status == 0 else [OLD])] += 1
+    return outcomes
+
+
+def run(p):
+    scan, out = p.folder / "scan.ply", p.folder / "out" / "mesh.vtu"
+    out.parent.mkdir()
+    p.must(["sample", "knot", "-o", scan])
+    scan.chmod(0o644)
+    arguments = ["prepare", scan, "--target-tets", "2000", "-o", out]
+    start = time.monotonic()
+    p.must(arguments)
+    seconds = time.monotonic() - start
+    new = out.read_bytes()
+    outcomes = full_disk(p, arguments, out, new)
+    outcomes += read_only_folder(p, arguments, out, new, seconds)
+    outcomes += little_memory(p, arguments, out, new)
+    outcomes += few_files(p, arguments, out, new)
+    outcomes += two_processes(p, arguments, out)
+    return outcomes

@@ -1,0 +1,35 @@
+// Fuzzes the reader of .vdb files: OpenVDB, which trusts all sizes, must be given only what take_apart_vdb()
+// has validated. The file is a surface or a volume, or an InputError.
+#include <cstdint>
+#include <stdexcept>
+
+#include "common/error.h"
+#include "mesher/distance/openvdb_grids.h"
+#include "mesher/distance/vdb_structure.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace tetwright;
+  constexpr std::size_t max_voxels = 1'000'000;
+  std::vector<VdbGrid> grids;
+  try {
+    grids = take_apart_vdb({reinterpret_cast<const char*>(data), size});
+  } catch (const std::runtime_error&) {  // for the caller to put the file's name before
+    return 0;
+  }
+  for (VdbGrid& grid : grids) {
+    if (grid.alone.empty()) continue;
+    try {
+      if (grid.type == "float" || grid.type == "double") {
+        const TriangleMesh surface = DistanceGrid::from_vdb(grid, "fuzz").zero_surface();
+        for (const Triangle& t : surface.triangles)
+          for (const Index v : t) TETWRIGHT_CHECK(v < surface.points.size());
+      } else {
+        const LabelVolume volume = labels_from_vdb(grid, max_voxels, "fuzz");
+        TETWRIGHT_CHECK(volume.labels.size() <= max_voxels);
+      }
+    } catch (const InputError&) {
+    } catch (const std::domain_error&) {  // a transform without sense
+    }
+  }
+  return 0;
+}

@@ -1,0 +1,125 @@
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/tools/program.h"
+
+namespace tetwright::batch_test {
+namespace {
+
+class Batch : public ::testing::Test {
+ protected:
+  void SetUp() override { ASSERT_EQ(run("sample cube -o " + (f / "c.ply")).status, 0); }
+  std::string job(const std::string& id, const std::string& tets, const std::string& input = "c.ply") {
+    return nlohmann::json{
+               {"id", id},
+               {"args",
+                {"prepare", f / input, "--resolution", "8", "--target-tets", tets, "-o", f / (id + ".vtu")}}}
+               .dump() +
+           "\n";
+  }
+  /// The lines of the results by id; each id once.
+  std::map<std::string, nlohmann::json> results() {
+    std::map<std::string, nlohmann::json> lines;
+    std::istringstream in(contents(f / "jobs.results.jsonl"));
+    for (std::string line; std::getline(in, line);) {
+      const auto j = nlohmann::json::parse(line);
+      EXPECT_TRUE(lines.emplace(j["id"], j).second) << line;
+    }
+    return lines;
+  }
+  Answer batch(const std::string& options = "") { return run("batch " + (f / "jobs.jsonl") + " " + options); }
+
+  TemporaryFolder f;
+};
+
+TEST_F(Batch, EachJobHasItsStatusAndStatistics) {
+  put(f / "jobs.jsonl", job("few", "300") + "\n" + job("more", "600") + job("lost", "300", "nowhere.ply") +
+                            R"({"id": "typo", "args": ["prepare", "--frobnicate"]})" + "\n" +
+                            R"({"args": ["check", ")" + (f / "few2.vtu") + R"("]})" + "\n");
+  const Answer a = batch("--threads 2");
+  EXPECT_EQ(a.status, 1);
+  auto lines = results();
+  ASSERT_EQ(lines.size(), 5u);
+  EXPECT_EQ(lines["few"]["status"], 0);
+  EXPECT_NEAR(lines["few"]["stats"]["result"]["tets"].get<double>(), 300, 3);
+  EXPECT_NEAR(lines["more"]["stats"]["result"]["tets"].get<double>(), 600, 6);
+  EXPECT_EQ(lines["lost"]["status"], 3);
+  EXPECT_NE(lines["lost"]["messages"][0].get<std::string>().find("nowhere.ply"), std::string::npos);
+  EXPECT_EQ(lines["typo"]["status"], 2);
+  EXPECT_EQ(lines["6"]["status"], 3);  // named by its line
+  EXPECT_NE(a.err.find("3 of 5 jobs"), std::string::npos) << a.err;
+  // The bytes of a run of its own.
+  ASSERT_EQ(
+      run("prepare " + (f / "c.ply") + " --resolution 8 --target-tets 300 -o " + (f / "alone.vtu")).status,
+      0);
+  EXPECT_EQ(contents(f / "few.vtu"), contents(f / "alone.vtu"));
+}
+
+TEST_F(Batch, GoesOnWhereItEnded) {
+  put(f / "jobs.jsonl", job("a", "300") + job("b", "300"));
+  ASSERT_EQ(batch().status, 0);
+  const std::string first = contents(f / "jobs.results.jsonl");
+  put(f / "a.vtu", "touched");
+  // Part of a line, as a kill leaves it.
+  put(f / "jobs.results.jsonl", first + R"({"id": "c", "arg)");
+  put(f / "jobs.jsonl", job("a", "300") + job("b", "300") + job("c", "400"));
+  ASSERT_EQ(batch().status, 0);
+  EXPECT_EQ(contents(f / "a.vtu"), "touched");
+  EXPECT_EQ(contents(f / "jobs.results.jsonl").rfind(first, 0), 0u);
+  EXPECT_EQ(results().size(), 3u);
+  // Other arguments make another job of it.
+  put(f / "jobs.jsonl", job("a", "500"));
+  ASSERT_EQ(batch().status, 0);
+  EXPECT_NE(contents(f / "a.vtu"), "touched");
+}
+
+TEST_F(Batch, RetriesWhatFailed) {
+  put(f / "jobs.jsonl", job("a", "300", "later.ply"));
+  EXPECT_EQ(batch().status, 1);
+  ASSERT_EQ(run("sample cube -o " + (f / "later.ply")).status, 0);
+  EXPECT_EQ(batch().status, 1);  // finished: bad input
+  EXPECT_EQ(batch("--retry").status, 0);
+}
+
+TEST_F(Batch, RefusesWhatIsNoBatch) {
+  const std::string jobs = f / "jobs.jsonl";
+  const auto refused = [&](const std::string& text, const std::vector<std::string>& said) {
+    put(jobs, text);
+    expect_refused("batch " + jobs, 3, said);
+    EXPECT_FALSE(f.has("jobs.results.jsonl"));
+  };
+  refused("", {"no job"});
+  refused(job("a", "300") + "{\"id\": 3\n", {"line 2", "column"});
+  refused("[1]\n", {"line 1", "no JSON object"});
+  refused(R"({"id": "a", "arguments": []})", {"line 1", "'arguments'"});
+  refused(job("a", "300") + job("a", "400"), {"line 2", "'a'", "line 1"});
+  refused(job("a", "300") + R"({"args": ["improve", "x.vtu", "-o", ")" + (f / ".") + R"(/a.vtu"]})",
+          {"a.vtu", "give each its own"});
+  refused(job("a", "300") + R"({"args": ["improve", ")" + (f / "a.vtu") + R"(", "-o", "b.vtu"]})",
+          {"reads", "'a' writes"});
+  put(jobs, job("a", "300"));
+  expect_refused("batch " + jobs + " --results " + jobs, 2, {"also an input"});
+  expect_refused("batch " + jobs + " --stats " + (f / "s.json"), 2, {"--stats"});
+  // A file that is something else is not written to.
+  put(f / "jobs.results.jsonl", "my notes\n");
+  expect_refused("batch " + jobs, 3, {"jobs.results.jsonl", "line 1"});
+  EXPECT_EQ(contents(f / "jobs.results.jsonl"), "my notes\n");
+}
+
+TEST_F(Batch, HasItsResultsAlone) {
+  put(f / "jobs.jsonl", job("a", "300"));
+  const int other = open((f / "jobs.results.jsonl").c_str(), O_RDWR | O_CREAT, 0666);
+  ASSERT_EQ(flock(other, LOCK_EX), 0);
+  expect_refused("batch " + (f / "jobs.jsonl"), 5, {"another batch"});
+  close(other);
+  EXPECT_EQ(batch().status, 0);
+}
+
+}  // namespace
+}  // namespace tetwright::batch_test

@@ -1,0 +1,69 @@
+#include "tools/batch/jobs.h"
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "common/error.h"
+#include "common/formats/atomic_file.h"
+
+namespace tetwright {
+
+namespace {
+
+Job parse_job(const std::string& file, std::size_t line, const std::string& text) {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(file, line,
+                     what + R"(; a job is a line such as {"id": "a", "args": ["prepare", "a.ply", "-o", )"
+                            R"("a.vtu", "--target-tets", "10000"]})");
+  };
+  Job job;
+  try {
+    const nlohmann::json json = nlohmann::json::parse(text);
+    if (!json.is_object()) refuse("it is no JSON object");
+    for (const auto& [key, value] : json.items())
+      if (key != "id" && key != "args") refuse("unknown key '" + key + "'");
+    if (!json.contains("args") || !json["args"].is_array() || json["args"].empty())
+      refuse("\"args\" is not a list of arguments");
+    for (const nlohmann::json& argument : json["args"]) {
+      // Numbers are what they look like, so that scripts need not turn them into text.
+      if (argument.is_string())
+        job.arguments.push_back(argument.get<std::string>());
+      else if (argument.is_number())
+        job.arguments.push_back(argument.dump());
+      else
+        refuse("an argument is neither text nor a number: " + argument.dump());
+    }
+    job.id = std::to_string(line);
+    if (json.contains("id"))
+      job.id = json["id"].is_string() ? json["id"].get<std::string>() : json["id"].dump();
+  } catch (const nlohmann::json::exception& e) {
+    const std::string what = e.what();  // "[json.exception...] parse error at line 1, column 7: ..."
+    const std::size_t from = what.find("column");
+    refuse("it is no JSON (" + (from == std::string::npos ? what : what.substr(from)) + ")");
+  }
+  return job;
+}
+
+}  // namespace
+
+std::vector<Job> read_jobs(const std::string& file) {
+  std::vector<Job> jobs;
+  std::map<std::string, std::size_t> lines;
+  std::istringstream in(read_whole_file(file));
+  std::size_t number = 0;
+  for (std::string text; std::getline(in, text);) {
+    ++number;
+    if (text.find_first_not_of(" \t\r") == std::string::npos) continue;
+    jobs.push_back(parse_job(file, number, text));
+    const auto [first, added] = lines.emplace(jobs.back().id, number);
+    if (!added)
+      throw InputError(file, number,
+                       "the id '" + jobs.back().id + "' is that of line " + std::to_string(first->second) +
+                           ", too; give each job its own");
+  }
+  if (jobs.empty()) throw InputError(file, 0, "no job in it; give each a line");
+  return jobs;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,243 @@
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "common/error.h"
+#include "common/parallel/parallel.h"
+#include "tools/batch/jobs.h"
+#include "tools/batch/results_file.h"
+#include "tools/commands/commands.h"
+#include "tools/commands/output_paths.h"
+#include "tools/commands/result.h"
+#include "tools/interruption.h"
+#include "tools/log_file.h"
+#include "tools/report.h"
+#include "tools/stats_json.h"
+
+namespace tetwright {
+
+namespace {
+
+/// What a job came to.
+struct Ended {
+  ExitStatus status = ExitStatus::done;
+  std::vector<std::string> messages;
+  nlohmann::json stats;  ///< those of --stats; of `check` its report; null where there are none
+  double seconds = 0;
+};
+
+CommandLine parse(const Job& job) {
+  std::vector<std::string> words{"tetwright"};
+  words.insert(words.end(), job.arguments.begin(), job.arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  for (const std::string& word : words)
+    if (word == "--help" || word == "-h" || word == "--version")
+      throw UsageError(word + " is no job; leave the line out");
+  CommandLine line;
+  (void)parse_command_line(static_cast<int>(argv.size()), argv.data(), line);
+  if (line.command == Command::batch || line.command == Command::sample)
+    throw UsageError(std::string(name_of(line.command)) +
+                     " is no job; jobs are prepare, mesh, simplify, improve and check");
+  if (!line.log_file.empty()) throw UsageError("--log-file is of the whole batch; give it there");
+  if (!line.input_format.empty() || line.output == "-")
+    throw UsageError("a job has no standard input and output; give it files");
+  if (line.stats == "-") throw UsageError("--stats - is of a single run; the results have the statistics");
+  return line;
+}
+
+/// Refuses jobs that write one file, or read what another one writes: they have no order.
+void check_jobs_are_independent(const std::string& file, const std::vector<Job>& jobs) {
+  const auto normal = [](const std::string& path) {
+    return std::filesystem::absolute(path).lexically_normal().string();
+  };
+  std::map<std::string, std::string> written;  // and by which job
+  std::vector<std::pair<std::string, std::string>> read;
+  for (const Job& job : jobs) {
+    CommandLine line;
+    try {
+      line = parse(job);
+    } catch (const UsageError&) {
+      continue;  // its result will say so
+    }
+    for (const std::string& path : written_files(line)) {
+      const auto [first, added] = written.emplace(normal(path), job.id);
+      if (!added)
+        throw InputError(file, 0,
+                         "job '" + job.id + "' writes " + path + ", as job '" + first->second +
+                             "' does; give each its own");
+    }
+    for (const std::string& path : input_files(line)) read.emplace_back(normal(path), job.id);
+  }
+  for (const auto& [path, id] : read)
+    if (const auto writer = written.find(path); writer != written.end() && writer->second != id)
+      throw InputError(file, 0,
+                       "job '" + id + "' reads " + path + ", which job '" + writer->second +
+                           "' writes; jobs have no order: give it a batch of its own");
+}
+
+void carry_out(CommandRun& run, Ended& ended) {
+  if (run.line.command == Command::check) {
+    const CheckReport check = make_check(run);
+    ended.stats = nlohmann::json::parse(check_json(run.line, run.report, check));
+    OutputFiles files;
+    write_stats(run, files);
+    files.commit();
+  } else {
+    check_output_paths(run.line);
+    CommandResult result = make_result(run);
+    write_result(result, run);
+    ended.stats = nlohmann::json::parse(stats_json(run.line, run.report));
+  }
+  ended.messages = notes_of(run.report);
+  for (const Shortfall& s : run.report.shortfall) ended.messages.push_back(s.message);
+  ended.status = run.report.status;
+}
+
+/// All that a job throws becomes its status: another one may do better.
+Ended run_job(const Job& job, unsigned threads) {
+  const Stopwatch watch;
+  Ended ended;
+  try {
+    CommandLine line = parse(job);
+    if (line.threads == 0) line.threads = threads;
+    check_stats_path(line);
+    Progress progress;
+    with_threads(line.threads, [&] {
+      CommandRun run(line, progress);
+      try {
+        carry_out(run, ended);
+      } catch (const std::exception& e) {
+        report_failure(e, run);
+        throw;
+      }
+    });
+  } catch (const std::bad_alloc&) {
+    ended.status = ExitStatus::output_failed;
+    ended.messages = {"not enough memory; give fewer --jobs"};
+  } catch (const std::exception& e) {
+    ended.status = exit_status(e);
+    ended.messages = {e.what()};
+  }
+  ended.seconds = watch.seconds();
+  return ended;
+}
+
+std::string result_line(const Job& job, const Ended& ended) {
+  // The arguments come back as they were, bytes that are not UTF-8 replaced.
+  return nlohmann::json{{"id", job.id},
+                        {"args", job.arguments},
+                        {"status", static_cast<int>(ended.status)},
+                        {"seconds", ended.seconds},
+                        {"messages", ended.messages},
+                        {"stats", ended.stats}}
+      .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// Whether another attempt may end otherwise: no room for the output, a limit on time, a bug, an
+/// interruption.
+bool worth_another_attempt(int status) {
+  return status == static_cast<int>(ExitStatus::output_failed) ||
+         status == static_cast<int>(ExitStatus::internal_error) ||
+         status == static_cast<int>(ExitStatus::interrupted);
+}
+
+std::vector<const Job*> unfinished_jobs(const std::vector<Job>& jobs, const ResultsFile& results,
+                                        bool retry) {
+  std::vector<const Job*> left;
+  for (const Job& job : jobs) {
+    const int status = results.status_of(job);
+    const bool finished = retry ? status == 0 : status >= 0 && !worth_another_attempt(status);
+    if (!finished) left.push_back(&job);
+  }
+  return left;
+}
+
+/// Jobs that run at the same time, and what they have come to so far.
+class Batch {
+ public:
+  Batch(std::vector<const Job*> jobs, ResultsFile& results, CommandRun& run)
+      : jobs_(std::move(jobs)), results_(results), run_(run) {}
+
+  void carry_out() {
+    const unsigned all = thread_count();
+    const auto workers =
+        static_cast<unsigned>(std::min<std::size_t>(run_.line.jobs > 0 ? run_.line.jobs : all, jobs_.size()));
+    if (workers == 0) return;
+    run_.progress.begin_stage("jobs");
+    std::vector<std::thread> threads;
+    const unsigned each = std::max(1u, all / workers);
+    for (unsigned w = 0; w < workers; ++w) threads.emplace_back([this, each] { work(each); });
+    for (std::thread& t : threads) t.join();
+    run_.progress.finish();
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  void work(unsigned threads) {
+    for (std::size_t i; !stop_ && (i = next_++) < jobs_.size();) {
+      const Ended ended = run_job(*jobs_[i], threads);
+      const std::lock_guard lock(mutex_);
+      try {
+        results_.append(*jobs_[i], static_cast<int>(ended.status), result_line(*jobs_[i], ended));
+      } catch (...) {
+        // Without results nobody would know what is done.
+        if (!failure_) failure_ = std::current_exception();
+        stop_ = true;
+        return;
+      }
+      tell(*jobs_[i], ended);
+    }
+  }
+
+  void tell(const Job& job, const Ended& ended) {
+    ++ended_;
+    run_.progress.finish();  // clears the bar
+    char numbers[80];
+    std::snprintf(numbers, sizeof numbers, ": status %d, %.2f s", static_cast<int>(ended.status),
+                  ended.seconds);
+    if (ended.status != ExitStatus::done || !run_.line.quiet) {
+      print_line(
+          "job '" + job.id + "'" + numbers +
+          (ended.status == ExitStatus::done || ended.messages.empty() ? "" : "; " + ended.messages.back()));
+    }
+    run_.progress.update(static_cast<double>(ended_) / static_cast<double>(jobs_.size()));
+  }
+
+  std::vector<const Job*> jobs_;
+  ResultsFile& results_;
+  CommandRun& run_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<bool> stop_{false};
+  std::mutex mutex_;  // of what follows, and of the progress
+  std::exception_ptr failure_;
+  std::size_t ended_ = 0;
+};
+
+}  // namespace
+
+void run_batch(CommandRun& run) {
+  const CommandLine& line = run.line;
+  const std::vector<Job> jobs = read_jobs(line.inputs.front());
+  check_jobs_are_independent(line.inputs.front(), jobs);
+  ResultsFile results(results_file_of(line));
+  say_when_interrupted("tetwright: interrupted; the same call goes on with the jobs that are left\n");
+  Batch batch(unfinished_jobs(jobs, results, line.retry), results, run);
+  batch.carry_out();
+  const auto done = static_cast<std::size_t>(
+      std::count_if(jobs.begin(), jobs.end(), [&](const Job& job) { return results.status_of(job) == 0; }));
+  if (done < jobs.size()) {
+    run.report.status = ExitStatus::short_of_request;
+    print_line(std::to_string(jobs.size() - done) + " of " + std::to_string(jobs.size()) +
+               " jobs did not end with status 0; " + results_file_of(line) + " says why");
+  }
+}
+
+}  // namespace tetwright

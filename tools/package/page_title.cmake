@@ -1,0 +1,8 @@
+# help2man names a page after the file of the program; the pages of commands are named like "tetwright-mesh".
+file(READ ${FILE} page)
+string(REPLACE " " "-" name "${CALL}")
+string(TOUPPER "${name}" title)
+string(REPLACE "-" "\\-" escaped "${name}")
+string(REGEX REPLACE "\n\\.TH [^ ]+ " "\n.TH ${title} " page "${page}")
+string(REGEX REPLACE "\n\\.SH NAME\n[^ ]+ " "\n.SH NAME\n${escaped} " page "${page}")
+file(WRITE ${FILE} "${page}")
