@@ -57,6 +57,9 @@ class Gmsh:
     def version():
         return subprocess.run(["gmsh", "--version"], check=True, capture_output=True, text=True).stderr.strip()
 
+    def begin(self, surface, target, folder):
+        pass
+
     @staticmethod
     def mesh(surface, size, out):
         script = out.with_suffix(".geo")
@@ -73,8 +76,13 @@ class Gmsh:
 
 
 class TetGen:
-    """Quality Delaunay that keeps the surface; the parameter is the largest volume."""
+    """Quality Delaunay that keeps the surface; the parameter is the largest volume.
+
+    Of the bounds on shapes (ratio of circumradius and shortest edge / dihedral angle) the strictest is taken that alone
+    makes no more tets than are wanted.
+    """
     name, first, power = "TetGen", None, -1
+    BOUNDS = ("1.2/10", "1.3/5", "1.414", "2", "3", "5")
 
     @staticmethod
     def missing():
@@ -85,11 +93,19 @@ class TetGen:
         answer = subprocess.run(["dpkg-query", "-W", "-f=${Version}", "tetgen"], check=False, capture_output=True, text=True)
         return answer.stdout.split("-")[0]
 
-    @staticmethod
-    def mesh(surface, volume, out):
+    def __init__(self):
+        self.bounds = self.BOUNDS[0]
+
+    def begin(self, surface, target, folder):
+        for self.bounds in self.BOUNDS:
+            file, count = self.mesh(surface, None, folder / "tetgen_bounds")
+            if file and count <= target:
+                break
+
+    def mesh(self, surface, volume, out):
         copy = out.with_suffix(".off")
         shutil.copy(surface, copy)
-        text = run("tetgen", f"-pYq1.2/10a{volume:.17g}", copy)
+        text = run("tetgen", f"-pYq{self.bounds}" + (f"a{volume:.17g}" if volume else ""), copy)
         count = re.search(r"Mesh tetrahedra: (\d+)", text or "")
         return (copy.with_suffix(".1.ele"), int(count[1])) if count else (None, 0)
 
@@ -108,6 +124,9 @@ class Netgen:
         answer = subprocess.run(["dpkg-query", "-W", "-f=${Version}", "netgen"], check=False, capture_output=True, text=True)
         return answer.stdout.split("+dfsg")[0]
 
+    def begin(self, surface, target, folder):
+        pass
+
     @staticmethod
     def mesh(surface, grading, out):
         file = out.with_suffix(".msh")
@@ -122,6 +141,7 @@ def search(program, surface, target, first, folder):
     Between two trials that enclose the count the next parameter comes from the straight line through the logarithms
     of both, drawn towards the middle; else from the power by which counts follow the parameter.
     """
+    program.begin(surface, target, folder)
     below = above = best = None  # (parameter, count) on either side of the target; (miss, file, count)
     parameter = first
     for trial in range(MOST_TRIALS):
@@ -201,7 +221,7 @@ def main():
     options = arguments()
     options.bin = options.bin.resolve()
     programs = []
-    for program in (Gmsh, TetGen, Netgen):
+    for program in (Gmsh(), TetGen(), Netgen()):
         reason = program.missing()
         print(f"{program.name} is skipped: {reason}" if reason else f"{program.name} {program.version()}")
         if not reason:
