@@ -2,9 +2,10 @@
 
 usage: compare.py [--help]    (Debian's python3; gmsh, tetgen and python3-netgen where they are installed)
 
-Tetwright meshes a scan to a count. The others fill the boundary of that mesh, to the same count within a few percent:
-they keep the triangles of a surface that they are given, and a scan has far too many for such a count. So all have
-the same surface, of good triangles, and differ in what they make inside.
+Tetwright meshes a scan to a count, as it does by default and with a bound on the edges that makes all of about one
+size. The others fill the boundary of each of these meshes, to the same count within a few percent: they keep the
+triangles of a surface that they are given, and a scan has far too many for such a count. So all have the same surface, of
+good triangles, and differ in what they make inside.
 """
 import argparse
 import json
@@ -25,6 +26,9 @@ PYTHON = "/usr/bin/python3"  # another one on the path may not see Debian's modu
 COUNT_TOLERANCE = 0.02
 MOST_TRIALS = 10
 SECONDS_FOR_A_MESH = 600
+# Times the edge of the regular tet of the mean volume: tets of random shapes and of one size have edges up to about
+# this, and a shorter bound makes more tets than are wanted.
+LONGEST_EDGE = 1.6
 SCANS = {"bunny": "scans/bunny_pmp.off", "armadillo": "scans/armadillo_libigl.obj", "dragon": "scans/dragon_quartet.obj"}
 SAMPLES = ("knot", "sphere", "torus", "cube")
 
@@ -166,22 +170,29 @@ def search(program, surface, target, first, folder):
     return best[1] if best else None
 
 
-def make_meshes(name, surface, target, programs, options, folder):
-    """The meshes of one body by the name of their program."""
+def regular_edge(volume):
+    return (6 * math.sqrt(2) * volume) ** (1 / 3)
+
+
+def prepare(surface, target, options, folder, *more):
+    """Tetwright's mesh and its count and volume; its boundary goes to surface.off and surface.stl."""
     folder.mkdir(parents=True, exist_ok=True)
     mesh, stats, skin = folder / "tetwright.vtu", folder / "tetwright.json", folder / "surface.off"
     run(options.bin / "tetwright", "prepare", surface, "-o", mesh, "--target-tets", target, "--boundary", skin,
-        "--stats", stats, "--quiet", "--no-progress")
+        "--stats", stats, "--quiet", "--no-progress", *more)
     if not mesh.exists():
-        sys.exit(f"tetwright made no mesh of {name}")
+        sys.exit(f"tetwright made no mesh of {surface}")
     write_stl(*read_off(skin), skin.with_suffix(".stl"))
     result = json.loads(stats.read_text())["result"]
-    count, volume = result["tets"], result["volume"]
+    return mesh, result["tets"], result["volume"]
+
+
+def fill(name, mesh, count, volume, programs):
+    """Meshes of the surface beside Tetwright's, by the name of their program."""
     meshes = {"Tetwright": mesh}
     for program in programs:
-        mean_volume = volume / count
-        first = {"Gmsh": (8.5 * mean_volume) ** (1 / 3), "TetGen": 2 * mean_volume}.get(program.name, program.first)
-        file = search(program, skin, count, first, folder)
+        first = {"Gmsh": regular_edge(volume / count), "TetGen": 2 * volume / count}.get(program.name, program.first)
+        file = search(program, mesh.with_name("surface.off"), count, first, mesh.parent)
         if file is None:
             print(f"{program.name} made no mesh of {name}", file=sys.stderr)
         else:
@@ -189,18 +200,29 @@ def make_meshes(name, surface, target, programs, options, folder):
     return meshes
 
 
+def measure(name, surface, meshes, options):
+    """What the solver program says of the meshes, as a table and by program."""
+    report = meshes["Tetwright"].with_name("measured.json")
+    run(options.bin / "solver", *meshes.values(), "--surface", surface, "--json", report)
+    rows = dict(zip(meshes, json.loads(report.read_text())))
+    print_table(name, rows)
+    return rows
+
+
 def print_table(name, rows):
-    print(f"\n| {name} | tets | nodes | smallest / mean sr | dihedrals | CG heat | CG elasticity | time step | "
-          "eigenvalue heat / elasticity | L2 error % | energy error % |")
-    print("| --- " * 11 + "|")
+    own = rows["Tetwright"]
+    print(f"\n{name}: {own['boundary_triangles']:,} triangles, {own['from_surface_percent']:.3f} % of the diagonal from the "
+          "given surface (rms)\n\n| program | tets | nodes | sr, smallest / mean | dihedrals | CG heat / elasticity | "
+          "time step | eigenvalue heat / elasticity | error L2 / energy, % |\n" + "| --- " * 9 + "|")
     for program, r in rows.items():
         if "error" in r:
-            print(f"| {program} | {r['error']} |" + " |" * 9)
+            print(f"| {program} | {r['error']} |" + " |" * 7)
             continue
         print(f"| {program} | {r['tets']:,} | {r['nodes']:,} | {r['min_solid_angle']:.3f} / {r['mean_solid_angle']:.3f} | "
-              f"{r['min_dihedral']:.1f}-{r['max_dihedral']:.1f} | {r['heat_iterations']} | {r['elastic_iterations']} | "
-              f"{r['relative_time_step']:.3f} | {r['heat_eigenvalue']:.2f} / {r['elastic_eigenvalue']:.2f} | "
-              f"{100 * r['l2_error']:.3f} | {100 * r['energy_error']:.2f} |")
+              f"{r['min_dihedral']:.1f}-{r['max_dihedral']:.1f} | {r['heat_iterations']} / {r['elastic_iterations']} | "
+              f"{r['relative_time_step']:.3f} | {r['heat_eigenvalue']:.1f} / {r['elastic_eigenvalue']:.1f} | "
+              f"{100 * r['l2_error']:.2f} / {100 * r['energy_error']:.1f} |")
+    sys.stdout.flush()
 
 
 def arguments():
@@ -238,13 +260,16 @@ def main():
             if body not in SCANS and run(options.bin / "tetwright", "sample", body, "-o", surface) is None:
                 continue
             for target in map(int, options.tets.split(",")):
-                meshes = make_meshes(body, surface, target, programs, options, folder / f"{body}_{target}")
-                measured = folder / f"{body}_{target}.json"
-                run(options.bin / "solver", *meshes.values(), "--json", measured)
-                rows = dict(zip(meshes, json.loads(measured.read_text())))
-                print_table(f"{body}, {target:,}", rows)
-                sys.stdout.flush()
-                everything.append({"body": body, "target": target, "programs": rows})
+                own = folder / f"{body}_{target}"
+                mesh, count, volume = prepare(surface, target, options, own)
+                name = f"{body}, {target:,} tets"
+                everything.append({"name": name, "programs": measure(name, surface, fill(name, mesh, count, volume, programs),
+                                                                     options)})
+                longest = LONGEST_EDGE * regular_edge(volume / count)
+                mesh, count, volume = prepare(surface, target, options, own.with_name(own.name + "_even"), "--max-edge", longest)
+                name += " of one size"
+                everything.append({"name": name, "programs": measure(name, surface, fill(name, mesh, count, volume, programs),
+                                                                     options)})
     if options.json:
         options.json.write_text(json.dumps(everything, indent=1) + "\n")
 

@@ -2,13 +2,16 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "benchmarks/processes.h"
 #include "benchmarks/solver/problems.h"
 #include "benchmarks/solver/spectrum.h"
+#include "benchmarks/table1/surface_distance.h"
 #include "common/error.h"
 #include "common/formats/formats.h"
 #include "common/mesh/foreign_mesh.h"
+#include "common/mesh/mesh_faces.h"
 #include "common/mesh/mesh_statistics.h"
 
 namespace tetwright {
@@ -31,8 +34,25 @@ double wave_speed(const Elasticity& e) {
   return std::sqrt(e.young * (1 - e.poisson) / ((1 + e.poisson) * (1 - 2 * e.poisson)));
 }
 
-nlohmann::json measure(const std::string& path) {
-  const TetMesh mesh = read_for_solver(path);
+TriangleMesh boundary(const TetMesh& mesh) {
+  TriangleMesh surface;
+  surface.points = mesh.points;
+  for (const MeshFace& face : mesh_faces(mesh.tets, mesh.points.size()))
+    if (face.second == no_index) surface.triangles.push_back(face.ids);
+  return surface;
+}
+
+/// How far the mesh's boundary is from the surface that the body was given as.
+nlohmann::json distances(const TetMesh& mesh, const TriangleMesh& reference) {
+  const TriangleMesh surface = boundary(mesh);
+  const SurfaceDistance distance = surface_distance(surface, reference);
+  const double percent = 100 / diagonal(reference);
+  return {{"boundary_triangles", surface.triangles.size()},
+          {"to_surface_percent", percent * distance.to_reference.rms},
+          {"from_surface_percent", percent * distance.from_reference.rms}};
+}
+
+nlohmann::json measure(const TetMesh& mesh) {
   const MeshStatistics statistics = mesh_statistics(mesh);
   const Elasticity material;
   const double edge = mean_regular_edge(mesh);
@@ -44,8 +64,7 @@ nlohmann::json measure(const std::string& path) {
   const double step = 2 / largest_frequency(elastic, masses);
   const ElementEigenvalues eigenvalues = largest_element_eigenvalues(mesh, material, edge);
   const PoissonErrors errors = poisson_errors(mesh, heat);
-  return {{"file", path},
-          {"tets", mesh.tets.size()},
+  return {{"tets", mesh.tets.size()},
           {"nodes", mesh.points.size()},
           {"volume", statistics.volume},
           {"min_solid_angle", statistics.min_solid_angle},
@@ -80,14 +99,19 @@ void print_row(const nlohmann::json& r) {
   std::fflush(stdout);
 }
 
-int run(const std::vector<std::string>& files, const std::string& json) {
+int run(const std::vector<std::string>& files, const std::string& surface, const std::string& json) {
+  std::optional<TriangleMesh> reference;
+  if (!surface.empty()) reference = read_surface(surface);
   nlohmann::json all = nlohmann::json::array();
   bool failed = false;
   print_heads();
   for (const std::string& file : files) {
     nlohmann::json row;
     try {
-      row = measure(file);
+      const TetMesh mesh = read_for_solver(file);
+      row = measure(mesh);
+      row["file"] = file;
+      if (reference) row.update(distances(mesh, *reference));
       print_row(row);
     } catch (const std::exception& e) {
       failed = true;
@@ -112,12 +136,14 @@ int main(int argc, char** argv) {
       "tet of the mean volume), largest eigenvalues of element matrices, errors of a Poisson problem.",
       "solver");
   std::vector<std::string> files;
-  std::string json;
+  std::string surface, json;
   app.add_option("meshes", files, "Tet meshes, of any program and format that tetwright reads")->required();
+  app.add_option("--surface", surface,
+                 "A surface: its rms distance from the boundaries of the meshes is written, too");
   app.add_option("--json", json, "Write all that was measured to this file");
   CLI11_PARSE(app, argc, argv);
   try {
-    return tetwright::run(files, json);
+    return tetwright::run(files, surface, json);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "solver: %s\n", e.what());
     return 1;
