@@ -135,6 +135,7 @@ const std::vector<TetFormat>& tet_formats() {
                                                {".face", write_alone<write_tetgen_face>}};
   static const std::vector<WrittenFile> xdmf{{".h5", write_alone<write_xdmf_numbers>},
                                              {".xdmf", write_xdmf_mesh},
+                                             {"_facets.h5", write_alone<write_xdmf_facet_numbers>},
                                              {"_facets.xdmf", write_xdmf_facets}};
   static const std::vector<TetFormat> formats{{.extension = ".vtu",
                                                .name = "vtu",

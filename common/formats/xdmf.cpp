@@ -245,6 +245,13 @@ void begin_grid(TextWriter& out, const char* name) {
       << "\" GridType=\"Uniform\">\n";
 }
 
+/// The file with the numbers of facets beside that of the mesh. dolfinx opens the one that is called as the
+/// XDMF file, whatever that says.
+std::string facet_file(const std::string& hdf5) {
+  const std::size_t stem = hdf5.rfind('.');
+  return hdf5.substr(0, stem) + (hdf5.ends_with(".H5") ? "_FACETS" : "_facets") + hdf5.substr(stem);
+}
+
 void write_geometry(TextWriter& out, const MeshToWrite& written, const std::string& hdf5) {
   out << "<Geometry GeometryType=\"XYZ\">\n";
   write_item(out, hdf5, "points", written.nodes(), 3, false, 8);
@@ -317,7 +324,16 @@ void write_xdmf_numbers(const MeshToWrite& written, const ByteSink& sink) {
   file.add("tets", std::span<const std::int64_t>(ids), midside ? quadratic_tet_nodes : tet_nodes);
   file.add(material_attribute, std::span<const std::int32_t>(mesh.materials), 1);
 
-  ids.clear();
+  add_fields(file, written.node_fields(), "point_field");
+  add_fields(file, mesh.cell_fields, "cell_field");
+  sink(file.bytes());
+}
+
+void write_xdmf_facet_numbers(const MeshToWrite& written, const ByteSink& sink) {
+  const TetMesh& mesh = written.mesh;
+  const MidsideNodes* midside = written.midside;
+  const auto first_midside = static_cast<std::int64_t>(mesh.points.size());
+  std::vector<std::int64_t> ids;
   std::vector<std::int32_t> numbers(mesh.interfaces.size());
   for (std::size_t i = 0; i < mesh.interfaces.size(); ++i) {
     ids.insert(ids.end(), mesh.interfaces[i].ids.begin(), mesh.interfaces[i].ids.end());
@@ -326,10 +342,9 @@ void write_xdmf_numbers(const MeshToWrite& written, const ByteSink& sink) {
   }
   for (const MeshParts::Surface& s : mesh_parts(mesh, {printable_name}).surfaces)
     for (const std::size_t f : s.faces) numbers[f] = static_cast<std::int32_t>(s.number);
+  Hdf5Writer file;
   file.add("triangles", std::span<const std::int64_t>(ids), midside ? 6 : 3);
   file.add(facet_attribute, std::span<const std::int32_t>(numbers), 1);
-  add_fields(file, written.node_fields(), "point_field");
-  add_fields(file, mesh.cell_fields, "cell_field");
   sink(file.bytes());
 }
 
@@ -361,12 +376,12 @@ void write_xdmf_facets(const MeshToWrite& written, const std::string& hdf5, cons
   begin_grid(out, facet_attribute);
   out << "<Topology TopologyType=\"" << (written.midside ? "Triangle_6" : "Triangle")
       << "\" NumberOfElements=\"" << mesh.interfaces.size() << "\" NodesPerElement=\"" << nodes << "\">\n";
-  write_item(out, hdf5, "triangles", mesh.interfaces.size(), nodes, true, 8);
+  write_item(out, facet_file(hdf5), "triangles", mesh.interfaces.size(), nodes, true, 8);
   out << "</Topology>\n";
   write_geometry(out, written, hdf5);
   write_names(out, mesh_parts(mesh, {printable_name}).surfaces, 2, [](const auto& s) { return s.number; });
   out << "<Attribute Name=\"" << facet_attribute << "\" AttributeType=\"Scalar\" Center=\"Cell\">\n";
-  write_item(out, hdf5, facet_attribute, mesh.interfaces.size(), 1, true, 4);
+  write_item(out, facet_file(hdf5), facet_attribute, mesh.interfaces.size(), 1, true, 4);
   out << "</Attribute>\n</Grid>\n</Domain>\n</Xdmf>\n";
   out.flush();
 }

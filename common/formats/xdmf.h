@@ -19,13 +19,14 @@ namespace tetwright {
 ReadTetMesh read_xdmf(std::string_view bytes, const std::string& name, const FileReader& read_file,
                       const ReadTetMeshOptions& options = {});
 
-/// The three files of a mesh: the numbers as HDF5, and the grids "mesh", with the cell attribute "material"
-/// and the mesh's fields, and "facet_tags", the triangles of the interfaces, if the mesh has any, with the
-/// numbers of their groups (see BoundaryGroups) as the attribute "facet_tags". The grids have a file of their
-/// own, since readers take the only grid of a file. Names are Information elements as meshio reads them.
-/// `hdf5` is the name of the first file as the others give it. The numbers of tets of ten nodes are in VTK's
-/// order.
+/// The four files of a mesh: the grids "mesh", with the cell attribute "material" and the mesh's fields, and
+/// "facet_tags", the triangles of the interfaces, if the mesh has any, with the numbers of their groups (see
+/// BoundaryGroups) as the attribute "facet_tags", and the numbers of each as HDF5. The grids have files of
+/// their own, since readers take the only grid of a file; the points are in the first HDF5 file for both.
+/// Names are Information elements as meshio reads them. `hdf5` is the name of the first file as the others
+/// give it. The numbers of tets of ten nodes are in VTK's order.
 void write_xdmf_numbers(const MeshToWrite& written, const ByteSink& sink);
+void write_xdmf_facet_numbers(const MeshToWrite& written, const ByteSink& sink);
 void write_xdmf_mesh(const MeshToWrite& written, const std::string& hdf5, const ByteSink& sink);
 void write_xdmf_facets(const MeshToWrite& written, const std::string& hdf5, const ByteSink& sink);
 

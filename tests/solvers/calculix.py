@@ -15,6 +15,8 @@ import tempfile
 
 import numpy as np
 
+from surfaces import beam, spheres
+
 parser = argparse.ArgumentParser()
 parser.add_argument("tetwright")
 parser.add_argument("--quick", action="store_true")
@@ -76,20 +78,6 @@ def nodes_of(file):
     return nodes
 
 
-def beam(folder, length, side):
-    """A beam along x as an OBJ with its ends as groups."""
-    corners = [(x, y, z) for x in (0, length) for y in (0, side) for z in (0, side)]
-    quads = {"root": [(0, 1, 3, 2)], "tip": [(4, 6, 7, 5)],
-             "sides": [(0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]}
-    lines = [f"v {x} {y} {z}" for x, y, z in corners]
-    for name, faces in quads.items():
-        lines.append(f"g {name}")
-        lines += ["f " + " ".join(str(i + 1) for i in face) for face in faces]
-    path = folder / "beam.obj"
-    path.write_text("\n".join(lines) + "\n")
-    return path
-
-
 def cantilever(folder):
     length, side, young, density, gravity = 10.0, 1.0, 1000.0, 1e-3, 1.0
     area, inertia, shear = side**2, side**4 / 12, young / 2  # no Poisson's ratio: the root may be clamped
@@ -97,7 +85,7 @@ def cantilever(folder):
     # Timoshenko: bending and, with the coefficient 5/6 of a square, shear.
     sag = weight * length**4 / (8 * young * inertia) + weight * length**2 / (2 * 5 / 6 * shear * area)
     frequency = 1.875104**2 / (2 * math.pi) * math.sqrt(young * inertia / (density * area * length**4))
-    surface = beam(folder, length, side)
+    surface = beam(folder / "beam.obj", length, side)
     material = f"*MATERIAL, NAME=m\n*ELASTIC\n{young}, 0.\n*DENSITY\n{density}\n*SOLID SECTION, ELSET=beam, MATERIAL=m\n"
     errors = {}
     for order in (1, 2):
@@ -121,45 +109,12 @@ def cantilever(folder):
               errors[2, sizes[0]][k] < 0.2 * errors[1, sizes[0]][k])
 
 
-def sphere(folder, inner, outer, parts=120):
-    """A thick sphere as an OBJ with its walls as groups, the inner one wound the other way."""
-    lines, faces = [], {"outer": [], "inner": []}
-    count = 0
-    for name, radius in (("outer", outer), ("inner", inner)):
-        rings = []
-        for i in range(1, parts):
-            theta = math.pi * i / parts
-            rings.append([])
-            for j in range(2 * parts):
-                phi = math.pi * j / parts
-                lines.append(f"v {radius * math.sin(theta) * math.cos(phi)!r} {radius * math.sin(theta) * math.sin(phi)!r} "
-                             f"{radius * math.cos(theta)!r}")
-                count += 1
-                rings[-1].append(count)
-        lines += [f"v 0 0 {radius}", f"v 0 0 {-radius}"]
-        north, south = count + 1, count + 2
-        count += 2
-        n = 2 * parts
-        for j in range(n):
-            faces[name].append((north, rings[0][j], rings[0][(j + 1) % n]))
-            faces[name].append((south, rings[-1][(j + 1) % n], rings[-1][j]))
-            for a, b in zip(rings, rings[1:]):
-                faces[name].append((a[j], b[j], b[(j + 1) % n], a[(j + 1) % n]))
-    for name, all_faces in faces.items():
-        lines.append(f"g {name}")
-        for face in all_faces:
-            lines.append("f " + " ".join(map(str, face if name == "outer" else face[::-1])))
-    path = folder / "ball.obj"
-    path.write_text("\n".join(lines) + "\n")
-    return path
-
-
 def pressurised_sphere(folder):
     inner, outer, young, poisson, pressure = 1.0, 2.0, 1000.0, 0.3, 10.0
     # Lame (Timoshenko & Goodier, Theory of Elasticity, section 142): radial displacement at r.
     scale = pressure * inner**3 / (young * (outer**3 - inner**3))
     radial = lambda r: scale * ((1 - 2 * poisson) * r + (1 + poisson) * outer**3 / (2 * r**2))
-    surface = sphere(folder, inner, outer)
+    surface = spheres(folder / "ball.obj", outer, inner)
     errors = {}
     for order in (1, 2):
         for tets in (2000, 12000) if options.quick else (2000, 12000, 60000):

@@ -39,7 +39,7 @@ TEST_F(Xdmf, RoundTripKeepsEveryBit) {
   mesh.point_fields = {{"a <b>", 3, false, std::vector<double>(15, 0.1)}, {"n", 1, true, {1, 2, 3, 4, 5e9}}};
   mesh.cell_fields = {{"id", 1, true, {1, 2, 3}}};
   write_tet_mesh(mesh, path("m.xdmf"));
-  EXPECT_EQ(files(), 3u);
+  EXPECT_EQ(files(), 4u);
   const std::string first = get(path("m.h5"));
   const ReadTetMesh back = read_tet_mesh(path("m.xdmf"));
   EXPECT_TRUE(same_bits(back.mesh.points, mesh.points));
@@ -57,10 +57,14 @@ TEST_F(Xdmf, FacetsHaveAFileOfTheirOwn) {
   write_tet_mesh(mesh_with_surfaces(), path("m.xdmf"));
   const std::string facets = get(path("m_facets.xdmf"));
   for (const char* part :
-       {"<Grid Name=\"facet_tags\"", "NumberOfElements=\"7\"", "m.h5:/triangles", "m.h5:/points",
-        "key=&quot;outlet&quot; dim=&quot;2&quot;&gt;5&lt;", "Attribute Name=\"facet_tags\""})
+       {"<Grid Name=\"facet_tags\"", "NumberOfElements=\"7\"", "m_facets.h5:/triangles", "m.h5:/points",
+        "m_facets.h5:/facet_tags", "key=&quot;outlet&quot; dim=&quot;2&quot;&gt;5&lt;",
+        "Attribute Name=\"facet_tags\""})
     EXPECT_NE(facets.find(part), std::string::npos) << part << "\n" << facets;
   EXPECT_NE(get(path("m.xdmf")).find("<Grid Name=\"mesh\""), std::string::npos);
+  write_tet_mesh(mesh_with_surfaces(), path("M.XDMF"));
+  EXPECT_NE(get(path("M_FACETS.XDMF")).find("M_FACETS.H5:/triangles"), std::string::npos);
+  EXPECT_EQ(get(path("M_FACETS.H5")), get(path("m_facets.h5")));
 }
 
 TEST_F(Xdmf, TenNodesByTheirCorners) {
