@@ -85,7 +85,8 @@ TEST(CheckJson, FollowsItsSchema) {
   EXPECT_GT(organs["topology"]["junction_curves"]["components"], 0);
 
   ASSERT_EQ(run("sample torus -o " + (f / "t.ply")).status, 0);
-  ASSERT_EQ(run("mesh " + (f / "t.ply") + " -o " + (f / "t.vtu") + " --resolution 24 --accept-changes").status, 0);
+  ASSERT_EQ(
+      run("mesh " + (f / "t.ply") + " -o " + (f / "t.vtu") + " --resolution 24 --accept-changes").status, 0);
   const auto torus = check((f / "t.vtu") + " --surface " + (f / "t.ply") + " --tolerance 10%");
   EXPECT_EQ(torus["topology"]["domain"]["euler"], 0);
   EXPECT_TRUE(torus["tolerance"]["held"]);

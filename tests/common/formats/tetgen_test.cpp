@@ -19,16 +19,15 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
-ReadTetMesh read_tetgen(const std::string& node, const std::string&, const std::string& ele,
-                        const std::string&) {
-  return tetwright::read_tetgen({node, "n"}, {ele, "e"}, {});
+ReadTetMesh read_pair(const std::string& points, const std::string& tets) {
+  return read_tetgen({points, "n"}, {tets, "e"}, {});
 }
 ReadTetMesh read_with_faces(const std::string& face) {
-  return tetwright::read_tetgen({node, "n"}, {ele, "e"}, NamedBytes{face, "f"});
+  return read_tetgen({node, "n"}, {ele, "e"}, NamedBytes{face, "f"});
 }
 
 TEST(TetGen, PointsTetsAndTheirNumbers) {
-  const ReadTetMesh r = read_tetgen(node, "n", ele, "e");
+  const ReadTetMesh r = read_pair(node, ele);
   EXPECT_EQ(r.mesh.tets, (std::vector<Tet>{{0, 1, 2, 3}, {1, 2, 3, 4}}));
   EXPECT_EQ(r.mesh.points[3], Vec3(0, 0, 1));
   EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{3, -4}));
@@ -43,8 +42,7 @@ TEST(TetGen, PointsTetsAndTheirNumbers) {
 }
 
 TEST(TetGen, NumbersFromZeroAndShortHeads) {
-  const ReadTetMesh r =
-      read_tetgen("4 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1 99\n", "n", "1 4\n0 0 1 2 3\n", "e");
+  const ReadTetMesh r = read_pair("4 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1 99\n", "1 4\n0 0 1 2 3\n");
   EXPECT_EQ(r.mesh.tets, (std::vector<Tet>{{0, 1, 2, 3}}));
   EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{1}));
   EXPECT_EQ(r.material_field, "");
@@ -52,7 +50,7 @@ TEST(TetGen, NumbersFromZeroAndShortHeads) {
 }
 
 TEST(TetGen, AnAttributeThatIsNotWholeIsAField) {
-  const ReadTetMesh r = read_tetgen(node, "n", "1 4 1\n1 1 2 3 4 0.5\n", "e");
+  const ReadTetMesh r = read_pair(node, "1 4 1\n1 1 2 3 4 0.5\n");
   EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{1}));
   EXPECT_EQ(r.mesh.cell_fields, (std::vector<MeshField>{{"attribute", 1, false, {0.5}}}));
 }
@@ -60,7 +58,7 @@ TEST(TetGen, AnAttributeThatIsNotWholeIsAField) {
 TEST(TetGen, QuadraticTetsByTheirCorners) {
   std::string nodes = "10 3\n";
   for (int i = 0; i < 10; ++i) nodes += std::to_string(i) + " " + std::to_string(i * i) + " 0 1\n";
-  const ReadTetMesh r = read_tetgen(nodes, "n", "1 10\n0 4 9 1 2 0 3 5 6 7 8\n", "e");
+  const ReadTetMesh r = read_pair(nodes, "1 10\n0 4 9 1 2 0 3 5 6 7 8\n");
   EXPECT_EQ(r.mesh.tets, (std::vector<Tet>{{2, 3, 0, 1}}));
   EXPECT_EQ(r.mesh.points.size(), 4u);
   EXPECT_EQ(r.mesh.points[3], Vec3(81, 0, 1));
@@ -71,7 +69,7 @@ TEST(TetGen, QuadraticTetsByTheirCorners) {
 TEST(TetGen, BadInput) {
   const auto expect = [](const std::string& n, const std::string& e, const std::string& first,
                          const std::string& second = "") {
-    const std::string message = error_of<InputError>([&] { (void)read_tetgen(n, "n", e, "e"); });
+    const std::string message = error_of<InputError>([&] { (void)read_pair(n, e); });
     EXPECT_EQ(message.find(first), 0u) << message;
     EXPECT_NE(message.find(second), std::string::npos) << message;
   };
@@ -97,7 +95,7 @@ TEST(TetGen, BadInput) {
   expect(node, replaced(ele, "2 3 4 5", "0 3 4 5"), "e: line 4:", "point 0");
   expect(node, replaced(ele, "2 4 2", "3 4 2"), "e: line", "cut short");
   for (std::size_t n = 0; n + 12 < ele.size(); ++n)
-    (void)error_of<InputError>([&] { (void)read_tetgen(node, "n", ele.substr(0, n), "e"); });
+    (void)error_of<InputError>([&] { (void)read_pair(node, ele.substr(0, n)); });
 }
 
 TEST(TetGen, MarkedFacesArePatches) {
@@ -123,8 +121,7 @@ TEST(TetGen, NamesOfOurOwnFilesComeBack) {
   };
   const std::string node_again = written(write_tetgen_node), ele_again = written(write_tetgen_ele),
                     face_again = written(write_tetgen_face);
-  const TetMesh back =
-      tetwright::read_tetgen({node_again, "n"}, {ele_again, "e"}, NamedBytes{face_again, "f"}).mesh;
+  const TetMesh back = read_tetgen({node_again, "n"}, {ele_again, "e"}, NamedBytes{face_again, "f"}).mesh;
   EXPECT_EQ(back.material_names, mesh.material_names);
   ASSERT_EQ(back.patch_groups.size(), 2u);
   EXPECT_EQ(back.patch_groups.begin()->second.name, "inlet: left");
