@@ -66,6 +66,13 @@ void add_common(CLI::App& app, CommandLine& c) {
       ->type_name("FILE");
 }
 
+void add_report(CLI::App& app, CommandLine& c) {
+  app.add_option("--report", c.report,
+                 "Write a page to look at, .html: the mesh in 3D with a cut, its histograms and figures, what "
+                 "was found and what falls short; needs nothing but a browser")
+      ->type_name("FILE");
+}
+
 void add_seed(CLI::App& app, CommandLine& c) {
   add_whole_number(app, "--seed", c.seed, 0, std::numeric_limits<std::uint64_t>::max(),
                    "Seed of the random numbers; the same seed gives the same bytes")
@@ -96,6 +103,7 @@ void add_mesh_output(CLI::App& app, CommandLine& c) {
       "--no-boundary", c.no_boundary,
       "Leave the triangles of the boundary and of interfaces out of the mesh, for programs that take "
       "every element for a tet");
+  add_report(app, c);
 }
 
 /// Options of segmented volumes.
@@ -355,6 +363,7 @@ void add_check(CLI::App& app, CommandLine& c) {
              "Status 1 unless MESH and the surfaces are proven to be within this of each other everywhere, "
              "input units or percent of the surfaces' diagonal");
   app.add_flag("--json", c.json, "Print JSON");
+  add_report(app, c);
   add_material_field(app, c);
   add_common(app, c);
 }

@@ -94,6 +94,7 @@ struct CommandLine {
   unsigned threads = 0;  ///< 0: all
   std::uint64_t seed = 1;
   std::string stats;
+  std::string report;  ///< .html file; empty: none
   bool quiet = false;
   ProgressStyle progress = ProgressStyle::automatic;
   bool no_progress = false;

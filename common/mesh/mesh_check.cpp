@@ -38,6 +38,12 @@ std::vector<Index> find_bad(std::size_t n, const IsBad& is_bad) {
   return out;
 }
 
+/// Where something is wrong, in words and as a point of the mesh; no_index if there is none.
+struct Place {
+  std::string text;
+  Index point = no_index;
+};
+
 class Checker {
  public:
   Checker(const TetMesh& mesh, const MeshCheckOptions& options) : mesh_(mesh), options_(options) {}
@@ -46,8 +52,8 @@ class Checker {
   bool check_arrays() {
     if (mesh_.tets.empty() || mesh_.materials.size() != mesh_.tets.size())
       add(MeshFault::materials_missing, 1, [&](std::size_t) {
-        return std::to_string(mesh_.tets.size()) + " tets, " + std::to_string(mesh_.materials.size()) +
-               " materials";
+        return Place{std::to_string(mesh_.tets.size()) + " tets, " +
+                     std::to_string(mesh_.materials.size()) + " materials"};
       });
     add_tets(MeshFault::index_out_of_range, find_bad(mesh_.tets.size(), [&](std::size_t t) {
                return *std::max_element(mesh_.tets[t].begin(), mesh_.tets[t].end()) >= mesh_.points.size();
@@ -80,7 +86,9 @@ class Checker {
   void check_faces(const std::vector<MeshFace>& faces) {
     const std::vector<Index> over = find_bad(faces.size(), [&](std::size_t f) { return faces[f].count > 2; });
     add(MeshFault::face_over_shared, over.size(),
-        [&](std::size_t i) { return "face " + numbers(faces[over[i]].ids); });
+        [&](std::size_t i) {
+          return Place{"face " + numbers(faces[over[i]].ids), faces[over[i]].ids[0]};
+        });
 
     std::vector<Triangle> boundary;
     for (const MeshFace& f : faces)
@@ -90,11 +98,12 @@ class Checker {
     for (const SurfaceEdge& e : chains.edges)
       if (e.count != 2) bad_edges.push_back(e);
     add(MeshFault::boundary_edges_not_two, bad_edges.size(), [&](std::size_t i) {
-      return "edge " + numbers(bad_edges[i].ids) + " with " + std::to_string(bad_edges[i].count) +
-             " triangles";
+      return Place{
+          "edge " + numbers(bad_edges[i].ids) + " with " + std::to_string(bad_edges[i].count) + " triangles",
+          bad_edges[i].ids[0]};
     });
     add(MeshFault::boundary_points_non_manifold, chains.surplus_fans, [&](std::size_t i) {
-      return i < chains.touching_points.size() ? point_text(chains.touching_points[i]) : std::string();
+      return i < chains.touching_points.size() ? point_place(chains.touching_points[i]) : Place();
     });
     check_stars(faces);
     if (options_.self_intersections) check_self_intersections(boundary_and_interfaces(mesh_, faces));
@@ -103,26 +112,32 @@ class Checker {
   std::vector<MeshFinding> findings() { return std::move(findings_); }
 
  private:
-  /// `place(i)` is the text of the i-th place; an empty text is left out.
-  template <class Place>
-  void add(MeshFault fault, std::size_t count, const Place& place) {
+  /// `place(i)` is the i-th place; one without a text is left out.
+  template <class PlaceAt>
+  void add(MeshFault fault, std::size_t count, const PlaceAt& place) {
     if (count == 0) return;
     MeshFinding finding{fault, count, {}};
-    for (std::size_t i = 0; i < std::min(count, options_.places); ++i)
-      if (std::string text = place(i); !text.empty()) finding.places.push_back(std::move(text));
+    for (std::size_t i = 0; i < std::min(count, options_.places); ++i) {
+      Place found = place(i);
+      if (found.text.empty()) continue;
+      finding.places.push_back(std::move(found.text));
+      if (found.point < mesh_.points.size() && mesh_.points[found.point].allFinite())
+        finding.positions.push_back(mesh_.points[found.point]);
+    }
     findings_.push_back(std::move(finding));
   }
   void add_tets(MeshFault fault, const std::vector<Index>& tets) {
     add(fault, tets.size(), [&](std::size_t i) {
-      return "tet " + std::to_string(tets[i]) + " (" + numbers(mesh_.tets[tets[i]]) + ")";
+      return Place{"tet " + std::to_string(tets[i]) + " (" + numbers(mesh_.tets[tets[i]]) + ")",
+                   mesh_.tets[tets[i]][0]};
     });
   }
   void add_points(MeshFault fault, const std::vector<Index>& points) {
-    add(fault, points.size(), [&](std::size_t i) { return point_text(points[i]); });
+    add(fault, points.size(), [&](std::size_t i) { return point_place(points[i]); });
   }
-  std::string point_text(Index p) const {
-    std::string out = "point " + std::to_string(p) + " at ";
-    append_point(out, mesh_.points[p]);
+  Place point_place(Index p) const {
+    Place out{"point " + std::to_string(p) + " at ", p};
+    append_point(out.text, mesh_.points[p]);
     return out;
   }
 
@@ -190,13 +205,15 @@ class Checker {
       if (points[i] == points[i - 1] && (split.empty() || split.back() != points[i]))
         split.push_back(points[i]);
     add(MeshFault::point_star_split, stars - used_points_,
-        [&](std::size_t i) { return i < split.size() ? point_text(split[i]) : std::string(); });
+        [&](std::size_t i) { return i < split.size() ? point_place(split[i]) : Place(); });
   }
 
   void check_self_intersections(const std::vector<Triangle>& surface) {
     const auto pairs = self_intersections(mesh_.points, surface);
     add(MeshFault::self_intersections, pairs.size(), [&](std::size_t i) {
-      return "triangles " + numbers(surface[pairs[i].first]) + " and " + numbers(surface[pairs[i].second]);
+      return Place{
+          "triangles " + numbers(surface[pairs[i].first]) + " and " + numbers(surface[pairs[i].second]),
+          surface[pairs[i].first][0]};
     });
   }
 

@@ -39,6 +39,8 @@ struct MeshFinding {
   MeshFault fault;
   std::size_t count;
   std::vector<std::string> places;  ///< the first few, such as "tet 7 (1 2 2 5)" or "point 3 at 0 0.5 1"
+  /// A point of each of these places that has one with finite coordinates, input units.
+  std::vector<Vec3> positions = {};
 };
 
 struct MeshCheckOptions {
