@@ -565,7 +565,8 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
   for (const CommandEntry& entry : commands)
     if (chosen.get_name() == name_of(entry.command)) out.command = entry.command;
   complete(chosen, out);
-  for (int i = 0; i < argc; ++i) out.call += (i > 0 ? " " : "") + std::string(argv[i]);
+  for (int i = 1; i < argc; ++i) out.arguments += " " + std::string(argv[i]);
+  out.call = argv[0] + out.arguments;
   return true;
 }
 

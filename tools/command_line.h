@@ -36,7 +36,8 @@ enum class Command { prepare, mesh, simplify, improve, check, sample };
 /// The parsed command line, with the defaults that --help shows.
 struct CommandLine {
   Command command = Command::prepare;
-  std::string call;  ///< as it was given, for the log
+  std::string call;       ///< as it was given, for the log
+  std::string arguments;  ///< the same without the name of the program, each after a space
   /// The result stays in the memory of a host program, and -o may be left out; set before parsing.
   bool in_memory = false;
   std::vector<std::string> inputs;  ///< of `sample`: the name

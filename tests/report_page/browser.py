@@ -26,7 +26,7 @@ def executable():
 class Browser:
     """A browser with one tab. Use it as a context, which ends it and removes its profile."""
 
-    def __init__(self, width=900, height=700, webgl=True, dark=False):
+    def __init__(self, width=900, height=700, webgl=True):
         self._profile = tempfile.mkdtemp(prefix="tetwright-browser-")
         read_commands, self._commands = os.pipe()
         self._answers, write_answers = os.pipe()
@@ -55,9 +55,7 @@ class Browser:
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(domain + ".enable")
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
-        self.call("Emulation.setEmulatedMedia", features=[
-            {"name": "prefers-color-scheme", "value": "dark" if dark else "light"},
-            {"name": "prefers-reduced-motion", "value": "reduce"}])
+        self.prefer(dark=False)
 
     def __enter__(self):
         return self
@@ -73,6 +71,12 @@ class Browser:
         os.close(self._commands)
         os.close(self._answers)
         shutil.rmtree(self._profile, ignore_errors=True)
+
+    def prefer(self, dark):
+        """What the user would like: dark colours or light ones, and always no motion."""
+        self.call("Emulation.setEmulatedMedia", features=[
+            {"name": "prefers-color-scheme", "value": "dark" if dark else "light"},
+            {"name": "prefers-reduced-motion", "value": "reduce"}])
 
     def call(self, method, **parameters):
         """Calls a method of the protocol and returns its result."""

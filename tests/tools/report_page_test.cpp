@@ -87,7 +87,7 @@ TEST(ReportPage, NamesOfTheUserAreNoMarkup) {
   CommandLine line;
   line.command = Command::improve;
   line.output = evil + ".vtu";
-  line.call = "tetwright improve " + evil;
+  line.arguments = " improve " + evil;
   RunReport run;
   run.inputs = {evil};
   run.material_names = mesh.material_names;

@@ -96,7 +96,7 @@ int shade_of(double share) {
 }
 
 std::string quality_chart(const ChartMesh& mesh) {
-  constexpr double bin_width = 12, bin_height = 6;
+  constexpr double bin_width = 16, bin_height = 6;
   constexpr std::size_t columns = QualityHistogram::angle_bins, rows = QualityHistogram::volume_bins;
   const Plot plot{bin_width * columns, bin_height * rows};
   std::array<std::string, shades> paths;
@@ -111,7 +111,7 @@ std::string quality_chart(const ChartMesh& mesh) {
           "M" + length(x) + " " + length(y) + "h" + length(bin_width) + "v" + length(bin_height) + "h-" +
           length(bin_width) + "z";
     }
-  std::string out = "<figure>" + plot.begin(mesh.name + ": tets by smallest solid angle and volume");
+  std::string out = "<figure class=\"map\">" + plot.begin(mesh.name + ": tets by smallest solid angle and volume");
   const std::vector<Tick> volumes{{0, "1/256"}, {0.25, "1/16"}, {0.5, "1"}, {0.75, "16"}, {1, "256"}};
   out += y_axis(plot, volumes, "volume / mean volume") + x_axis(plot, solid_ticks(), solid_title);
   for (int s = 0; s < shades; ++s)

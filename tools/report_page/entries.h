@@ -18,9 +18,11 @@ struct PageEntry {
 struct PageEntries {
   std::vector<PageEntry> short_of;  ///< what was asked and not reached
   std::vector<PageEntry> found;     ///< in the input, and other notes
+  std::vector<PageEntry> worst;     ///< the worst shapes of the mesh
 };
 
-/// What a run reports; of `check` with what it found in the mesh.
-PageEntries page_entries(const RunReport& run, const CheckReport* check);
+/// What a run reports; of `check` with what it found in the mesh. Parallel; the result does not depend on the
+/// threads.
+PageEntries page_entries(const RunReport& run, const TetMesh& mesh, const CheckReport* check);
 
 }  // namespace tetwright

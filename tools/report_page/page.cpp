@@ -63,6 +63,7 @@ std::string description(const PageMesh& page, const RunReport& run, const PageEn
   nlohmann::json marks = nlohmann::json::array();
   add_marks(entries.short_of, marks);
   add_marks(entries.found, marks);
+  add_marks(entries.worst, marks);
   const Vec3& o = page.points.origin;
   const nlohmann::json j = {{"whole", page.whole},
                             {"layers", page.layers},
@@ -130,6 +131,7 @@ std::string lists(const PageEntries& entries) {
   if (!entries.short_of.empty())
     out += section("Short of what was asked", entries_list(entries.short_of, mark));
   if (!entries.found.empty()) out += section("Found and done", entries_list(entries.found, mark));
+  if (!entries.worst.empty()) out += section("Worst shapes", entries_list(entries.worst, mark));
   return out;
 }
 
@@ -144,12 +146,12 @@ std::string report_page(const CommandLine& line, const RunReport& run, const Tet
                         const SurfaceDistances* distances, const CheckReport* check,
                         const PageLimits& limits) {
   const PageMesh page = page_mesh(mesh, distances, limits);
-  const PageEntries entries = page_entries(run, check);
+  const PageEntries entries = page_entries(run, mesh, check);
   const std::vector<ChartMesh> meshes = chart_meshes(line, run);
   return filled_in(
       embedded::page_html,
       {{"title", html_text(title_of(line, run))},
-       {"call", html_text(line.call)},
+       {"call", html_text("tetwright" + line.arguments)},
        {"version", TETWRIGHT_VERSION},
        {"not_shown", not_shown(page, mesh)},
        {"lists", lists(entries)},

@@ -24,8 +24,29 @@ function ramp(stops) {
   return out;
 }
 
-/** At most four digits that matter. */
-const short = value => String(Number(value.toPrecision(4)));
+/** At most three digits that matter; beside something of another size those that matter there. */
+function short(value, size = value) {
+  const decimals = size === 0 ? 0 : 2 - Math.floor(Math.log10(Math.abs(size)));
+  return decimals <= 20 && decimals >= 0 ? String(Number(value.toFixed(decimals))) : String(Number(value.toPrecision(3)));
+}
+
+// What the numbers of `distance` stand for.
+const FARTHEST = 65534, NOT_MEASURED = 65535;
+
+/**
+ * The share of the largest distance that 98 % of the points are within, or 1 if it is more than a third: the lid of a
+ * hole is far from any scan, and would leave one colour for all the rest.
+ */
+function share_of_most(distance) {
+  const counts = new Uint32Array(FARTHEST + 1);
+  let left = 0;
+  for (const d of distance)
+    if (d !== NOT_MEASURED) ++counts[d], ++left;
+  left *= 0.98;
+  let d = 0;
+  while (d < FARTHEST && (left -= counts[d]) > 0) ++d;
+  return d > FARTHEST / 3 || d === 0 ? 1 : d / FARTHEST;
+}
 
 const byId = id => document.getElementById(id);
 
@@ -55,8 +76,10 @@ class Page {
     const scales = {material: {name: "material"}};
     scales.solid = {name: "smallest solid angle", unit: "sr", max: about.solid_angle_max, of_tets: solid, colours: ramp(BAD_TO_GOOD), stops: BAD_TO_GOOD};
     scales.dihedral = {name: "smallest dihedral angle", unit: "degrees", max: about.dihedral_max, of_tets: dihedral, colours: ramp(BAD_TO_GOOD), stops: BAD_TO_GOOD};
-    if (this.mesh.distance)
-      scales.distance = {name: "distance to " + about.distance_from, unit: "input units", max: about.distance_max, colours: ramp(NEAR_TO_FAR), stops: NEAR_TO_FAR};
+    if (this.mesh.distance) {
+      const share = share_of_most(this.mesh.distance);
+      scales.distance = {name: "distance to " + about.distance_from, unit: "input units", max: share * about.distance_max, largest: about.distance_max, share, colours: ramp(NEAR_TO_FAR), stops: NEAR_TO_FAR};
+    }
     return scales;
   }
 
@@ -69,9 +92,9 @@ class Page {
         from = this.colours[tet >= 0 ? tags[tet] : -1 - tet];
       } else if (scale.of_tets) {
         if (tet >= 0) from = scale.colours, i = 3 * scale.of_tets[tet];
-      } else if (on_interface && distance[corners[k]] !== 65535) {
+      } else if (on_interface && distance[corners[k]] !== NOT_MEASURED) {
         from = scale.colours;
-        i = 3 * Math.round(distance[corners[k]] / 65534 * 255);
+        i = 3 * Math.round(Math.min(1, distance[corners[k]] / FARTHEST / scale.share) * 255);
       }
       out[at++] = from[i];
       out[at++] = from[i + 1];
@@ -106,6 +129,8 @@ class Page {
     this.make_cut();
     this.make_marks();
     byId("edges").addEventListener("change", event => this.view.set_edges(event.target.checked));
+    for (const radio of document.getElementsByName("up"))
+      radio.addEventListener("change", () => this.view.set_up(radio.value));
     byId("reset").addEventListener("click", () => this.view.show_all());
     byId("controls").hidden = false;
     byId("controls").addEventListener("submit", event => event.preventDefault());
@@ -160,10 +185,12 @@ class Page {
     legend.hidden = !scale.stops;
     if (!scale.stops) return;
     byId("legend-title").textContent = `${scale.name}, ${scale.unit}`;
+    byId("legend-note").textContent = scale.largest > scale.max ? `largest ${short(scale.largest)}` : "";
     byId("legend-bar").style.background = `linear-gradient(to right, ${scale.stops.join(", ")})`;
     byId("legend-ticks").replaceChildren(...[0, 0.5, 1].map(share => {
       const tick = document.createElement("span");
-      tick.textContent = short(share * scale.max);
+      const beyond = share === 1 && scale.largest > scale.max;
+      tick.textContent = (beyond ? "\u2265 " : "") + short(share * scale.max);
       return tick;
     }));
   }
@@ -176,12 +203,26 @@ class Page {
     };
     for (const radio of document.getElementsByName("axis")) {
       if (!whole && radio.value && !layers["xyz".indexOf(radio.value)]) radio.disabled = true;
-      radio.addEventListener("change", changed);
+      radio.addEventListener("change", () => {
+        this.face_cut();
+        changed();
+      });
     }
     slider.addEventListener("input", changed);
     byId("flip").addEventListener("change", changed);
     // Tets of a mesh that is too large are there only behind the middle, seen from one side.
     if (!whole) byId("flip").disabled = true;
+  }
+
+  /** Lets the cut be seen: takes away what is on the camera's side, or turns the camera where only one side is there. */
+  face_cut() {
+    const chosen = [...document.getElementsByName("axis")].find(radio => radio.checked).value;
+    if (!chosen) return;
+    const axis = "xyz".indexOf(chosen), towards = this.view.towards()[axis];
+    if (this.mesh.about.whole)
+      byId("flip").checked = towards < 0;
+    else if (towards < 0.3)
+      this.view.fly_to({...START, ...this.view.angles_of([0, 1, 2].map(i => i === axis ? 1 : 0.4))});
   }
 
   /** Takes the cut over from the controls. */
@@ -195,7 +236,7 @@ class Page {
     byId("cut-place").textContent = "";
     if (axis < 0) return;
     this.state.cut = low[axis] + (high[axis] - low[axis]) * Number(slider.value);
-    byId("cut-place").textContent = `${chosen} = ${short(origin[axis] + step * this.state.cut)}`;
+    byId("cut-place").textContent = `${chosen} = ${short(origin[axis] + step * this.state.cut, step * (high[axis] - low[axis]) / 10)}`;
   }
 
   make_marks() {
@@ -232,15 +273,17 @@ class Page {
   }
 
   /**
-   * The part of the address behind #: cut=x,0.5&flip=1&colour=solid&off=2,3 (tags)&edges=0&look=azimuth,elevation in
+   * The part of the address behind #: cut=x,0.5&flip=1&colour=solid&off=2,3 (tags)&edges=0&up=y&look=azimuth,elevation in
    * degrees, distance. What is left out stays as it is.
    */
   read_address() {
     const wanted = new URLSearchParams(location.hash.slice(1));
+    let cut_is_seen = false;
     if (wanted.has("cut")) {
       const [axis, share] = wanted.get("cut").split(",");
       for (const radio of document.getElementsByName("axis")) radio.checked = radio.value === axis;
       if (share) byId("cut").value = share;
+      if (!wanted.has("flip")) cut_is_seen = true;
     }
     if (wanted.has("flip")) byId("flip").checked = wanted.get("flip") === "1";
     if (wanted.has("edges")) {
@@ -254,11 +297,16 @@ class Page {
         box.checked = this.state.on[i] = !off.includes(String(this.mesh.about.materials[i].tag));
       });
     }
+    if (UPRIGHT[wanted.get("up")]) {
+      this.view.set_up(wanted.get("up"));
+      for (const radio of document.getElementsByName("up")) radio.checked = radio.value === wanted.get("up");
+    }
     const look = (wanted.get("look") || "").split(",").map(Number);
     if (look.length === 3 && look.every(Number.isFinite)) {
       const radians = Math.PI / 180;
       this.view.look = {azimuth: look[0] * radians, elevation: look[1] * radians, distance: look[2], target: [0, 0, 0]};
     }
+    if (cut_is_seen) this.face_cut();
   }
 }
 

@@ -16,28 +16,30 @@ const FRAGMENT_SHADER = `
 uniform float edges;
 varying vec3 v_colour, v_corner, v_normal;
 void main() {
-  float light = 0.42 + 0.62 * abs(dot(normalize(v_normal), normalize(vec3(0.35, 0.55, 1.0))));
+  float light = 0.5 + 0.55 * abs(dot(normalize(v_normal), normalize(vec3(0.35, 0.55, 1.0))));
   vec3 width = fwidth(v_corner);
-  vec3 inside = smoothstep(width * 0.35, width * 1.25, v_corner);
+  vec3 inside = smoothstep(width * 0.2, width * 1.1, v_corner);
   float line = 1.0 - min(inside.x, min(inside.y, inside.z));
   // Where triangles are a few pixels large lines would be all there is.
   float fine = max(width.x, max(width.y, width.z));
-  line *= edges * 0.62 * (1.0 - smoothstep(0.25, 0.7, fine));
+  line *= edges * 0.5 * (1.0 - smoothstep(0.25, 0.7, fine));
   gl_FragColor = vec4(mix(v_colour * light, vec3(0.08, 0.1, 0.14), line), 1.0);
 }`;
 
 /** The camera: where it looks, from which side, how far away; angles in radians. */
 const START = {azimuth: -0.65, elevation: 0.35, distance: 2.1, target: [0, 0, 0]};
+// Which axis of the mesh is which of x, y and z of the camera, of which z points up.
+const UPRIGHT = {z: [0, 1, 2], y: [2, 0, 1], x: [1, 2, 0]};
 const FIELD_OF_VIEW = 35;
 
-/** Draws on a canvas. World units: the longest side of the mesh is 1, its middle the origin, z up. */
+/** Draws on a canvas. World units: the longest side of the mesh is 1, its middle the origin. */
 class View {
   /** Throws where there is no WebGL with the derivatives that lines need. */
   constructor(canvas, mesh) {
     this.canvas = canvas;
     this.renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
     this.camera = new THREE.PerspectiveCamera(FIELD_OF_VIEW, 1, 0.001, 100);
-    this.camera.up.set(0, 0, 1);
+    this.up = "z";
     this.scene = new THREE.Scene();
     this.material = new THREE.ShaderMaterial({
       vertexShader: VERTEX_SHADER,
@@ -67,7 +69,7 @@ class View {
     this.positions = new Float32Array(points.length);
     for (let i = 0; i < points.length; ++i) this.positions[i] = this.to_world(points[i], i % 3);
     const size = Math.hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]) / side;
-    START.distance = 0.62 * size / Math.sin(FIELD_OF_VIEW / 2 * Math.PI / 180);
+    START.distance = 0.5 * size / Math.sin(FIELD_OF_VIEW / 2 * Math.PI / 180);
   }
 
   /** Draws these triangles from now on: `corners` are indices into the points, `colours` 0 to 255. */
@@ -121,17 +123,30 @@ class View {
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
-    const {azimuth, elevation, distance, target} = this.look, flat = Math.cos(elevation);
-    this.camera.position.set(
-      target[0] + distance * flat * Math.cos(azimuth),
-      target[1] + distance * flat * Math.sin(azimuth),
-      target[2] + distance * Math.sin(elevation));
+    const {distance, target} = this.look, towards = this.towards();
+    this.camera.position.set(...target.map((value, axis) => value + distance * towards[axis]));
+    this.camera.up.set(...["x", "y", "z"].map(axis => axis === this.up ? 1 : 0));
     this.camera.near = Math.max(distance / 100, 1e-4);
     this.camera.far = distance + 4;
     this.camera.lookAt(...target);
     this.camera.updateProjectionMatrix();
     this.renderer.render(this.scene, this.camera);
     for (const listener of this.listeners) listener();
+  }
+
+  /** The direction from what is looked at to the camera, of length 1. */
+  towards() {
+    const {azimuth, elevation} = this.look, out = [0, 0, 0], flat = Math.cos(elevation);
+    [flat * Math.cos(azimuth), flat * Math.sin(azimuth), Math.sin(elevation)].forEach((value, i) => {
+      out[UPRIGHT[this.up][i]] = value;
+    });
+    return out;
+  }
+
+  /** Makes an axis of the mesh, x, y or z, point up. */
+  set_up(axis) {
+    this.up = axis;
+    this.redraw();
   }
 
   /** Where a place of the world is on the canvas, in pixels, or null behind the camera. */
@@ -187,13 +202,19 @@ class View {
 
   show_all() { this.fly_to(START); }
 
+  /** The angles of a direction of the world; those of now where it has none. */
+  angles_of(direction) {
+    const steepest = 1.2, [x, y, z] = UPRIGHT[this.up].map(axis => direction[axis]), flat = Math.hypot(x, y);
+    return {
+      azimuth: flat < 1e-6 ? this.look.azimuth : Math.atan2(y, x),
+      elevation: Math.hypot(flat, z) < 1e-6 ? this.look.elevation : Math.max(-steepest, Math.min(steepest, Math.atan2(z, flat))),
+    };
+  }
+
   /** Looks at a place from outside, near enough to see the tets about it. */
   show_place(place) {
-    const flat = Math.hypot(place[0], place[1]);
-    const centre = flat < 1e-6 && Math.abs(place[2]) < 1e-6;
     this.fly_to({
-      azimuth: flat < 1e-6 ? this.look.azimuth : Math.atan2(place[1], place[0]),
-      elevation: centre ? this.look.elevation : Math.max(-1.2, Math.min(1.2, Math.atan2(place[2], flat))),
+      ...this.angles_of(place),
       distance: 0.6,
       target: place,
     });
