@@ -67,9 +67,10 @@ void add_common(CLI::App& app, CommandLine& c) {
 }
 
 void add_report(CLI::App& app, CommandLine& c) {
-  app.add_option("--report", c.report,
-                 "Write a page to look at, .html: the mesh in 3D with a cut, its histograms and figures, what "
-                 "was found and what falls short; needs nothing but a browser")
+  app.add_option(
+         "--report", c.report,
+         "Write a page to look at, .html: the mesh in 3D with a cut, its histograms and figures, what "
+         "was found and what falls short; needs nothing but a browser")
       ->type_name("FILE");
 }
 

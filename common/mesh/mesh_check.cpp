@@ -52,8 +52,8 @@ class Checker {
   bool check_arrays() {
     if (mesh_.tets.empty() || mesh_.materials.size() != mesh_.tets.size())
       add(MeshFault::materials_missing, 1, [&](std::size_t) {
-        return Place{std::to_string(mesh_.tets.size()) + " tets, " +
-                     std::to_string(mesh_.materials.size()) + " materials"};
+        return Place{std::to_string(mesh_.tets.size()) + " tets, " + std::to_string(mesh_.materials.size()) +
+                     " materials"};
       });
     add_tets(MeshFault::index_out_of_range, find_bad(mesh_.tets.size(), [&](std::size_t t) {
                return *std::max_element(mesh_.tets[t].begin(), mesh_.tets[t].end()) >= mesh_.points.size();
@@ -85,10 +85,9 @@ class Checker {
 
   void check_faces(const std::vector<MeshFace>& faces) {
     const std::vector<Index> over = find_bad(faces.size(), [&](std::size_t f) { return faces[f].count > 2; });
-    add(MeshFault::face_over_shared, over.size(),
-        [&](std::size_t i) {
-          return Place{"face " + numbers(faces[over[i]].ids), faces[over[i]].ids[0]};
-        });
+    add(MeshFault::face_over_shared, over.size(), [&](std::size_t i) {
+      return Place{"face " + numbers(faces[over[i]].ids), faces[over[i]].ids[0]};
+    });
 
     std::vector<Triangle> boundary;
     for (const MeshFace& f : faces)

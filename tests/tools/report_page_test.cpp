@@ -1,5 +1,5 @@
-// The page of --report: what is in it, how large it is and when it is written. tests/report_page/ looks at it in
-// a browser.
+// The page of --report: what is in it, how large it is and when it is written. tests/report_page/ looks at it
+// in a browser.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -51,8 +51,7 @@ TEST(ReportPage, PointsAreOffByHalfAStepAtMost) {
   double worst = 0;
   for (std::size_t i = 0; i < points.size(); ++i)
     for (int axis = 0; axis < 3; ++axis) {
-      const auto steps =
-          static_cast<double>(number_at(q.bytes, 3 * i + static_cast<std::size_t>(axis), 2));
+      const auto steps = static_cast<double>(number_at(q.bytes, 3 * i + static_cast<std::size_t>(axis), 2));
       worst = std::max(worst, std::abs(q.origin[axis] + q.step * steps - points[i][axis]));
     }
   EXPECT_LE(worst, 0.5001 * q.step);
@@ -64,7 +63,8 @@ TEST(ReportPage, PointsOfAnyBoxAreQuantised) {
   const QuantisedPoints one = quantise(std::vector<Vec3>{{1, 2, 3}});
   EXPECT_EQ(one.bytes, std::string(6, '\0'));
   EXPECT_GT(one.step, 0);
-  const QuantisedPoints large = quantise(std::vector<Vec3>{Vec3::Constant(-1.7e308), Vec3::Constant(1.7e308)});
+  const QuantisedPoints large =
+      quantise(std::vector<Vec3>{Vec3::Constant(-1.7e308), Vec3::Constant(1.7e308)});
   EXPECT_TRUE(std::isfinite(large.step));
   EXPECT_EQ(number_at(large.bytes, 0, 2), 0u);
   EXPECT_EQ(number_at(large.bytes, 3, 2), 65535u);
@@ -131,8 +131,8 @@ TEST(ReportPage, OfAHundredThousandTetsIsBelowFiveMegabytes) {
   // A dense mesh is the densest in points, random ones in tets for each point.
   const TemporaryFolder f;
   ASSERT_EQ(run("sample sphere -o " + (f / "s.ply")).status, 0);
-  ASSERT_LE(run("mesh " + (f / "s.ply") + " -o " + (f / "s.vtu") + " --resolution 56 --report " + (f / "s.html") +
-                " --stats " + (f / "s.json"))
+  ASSERT_LE(run("mesh " + (f / "s.ply") + " -o " + (f / "s.vtu") + " --resolution 56 --report " +
+                (f / "s.html") + " --stats " + (f / "s.json"))
                 .status,
             1);
   const std::size_t tets = nlohmann::json::parse(contents(f / "s.json"))["result"]["tets"];
@@ -140,11 +140,11 @@ TEST(ReportPage, OfAHundredThousandTetsIsBelowFiveMegabytes) {
   EXPECT_GT(tets, 60'000u);
   EXPECT_LT(bytes * std::max(1.0, 100'000.0 / static_cast<double>(tets)), 5e6);
   // 200,000 tets: more than two pages of 100,000, but for the script.
-  EXPECT_LT(page_of(sample_mesh("random_interior_large")).size(), 8'000'000u);
+  EXPECT_LT(page_of(sample_mesh("random-interior-large")).size(), 8'000'000u);
 }
 
 TEST(ReportPage, OfALargerMeshIsBounded) {
-  const TetMesh mesh = sample_mesh("random_interior");
+  const TetMesh mesh = sample_mesh("random-interior");
   const PageLimits limits{1000, 2000, 5000};
   const PageMesh page = page_mesh(mesh, nullptr, limits);
   EXPECT_FALSE(page.whole);
@@ -165,7 +165,7 @@ TEST(ReportPage, OfALargerMeshIsBounded) {
 }
 
 TEST(ReportPage, ASkinIsCoarsenedToWhatIsAllowed) {
-  const TetMesh mesh = sample_mesh("random_interior");
+  const TetMesh mesh = sample_mesh("random-interior");
   EXPECT_EQ(skin_within(mesh, mesh.interfaces.size()), mesh.interfaces);
   const auto fewer = skin_within(mesh, mesh.interfaces.size() / 2);
   EXPECT_LE(fewer.size(), mesh.interfaces.size() / 2);
@@ -179,8 +179,8 @@ TEST(ReportPage, DistancesAreThoseOfThePoints) {
   for (const Vec3& p : mesh.points) low = std::min(low, p.x());
   // A plane far beyond the mesh, parallel to one of its sides.
   constexpr double apart = 2, far = 1e4;
-  const TriangleMesh plane{
-      {{low - apart, -far, -far}, {low - apart, far, -far}, {low - apart, 0, far}}, {{0, 1, 2}}};
+  const TriangleMesh plane{{{low - apart, -far, -far}, {low - apart, far, -far}, {low - apart, 0, far}},
+                           {{0, 1, 2}}};
   const SurfaceDistances d = surface_distances(mesh, plane, "a plane");
   std::vector<char> on_interface(mesh.points.size(), 0);
   for (const InterfaceTriangle& t : mesh.interfaces)
@@ -215,7 +215,8 @@ TEST(ReportPage, OfEveryCommandThatHasAMesh) {
   ASSERT_EQ(run("sample layers -o " + (f / "l.vtu")).status, 0);
   for (const char* call : {"improve", "simplify --target-tets 500", "check"}) {
     const std::string output = std::string(call) == "check" ? "" : " -o " + (f / "o.vtu");
-    EXPECT_LE(run(std::string(call) + " " + (f / "l.vtu") + output + " --report " + (f / "p.html")).status, 1);
+    EXPECT_LE(run(std::string(call) + " " + (f / "l.vtu") + output + " --report " + (f / "p.html")).status,
+              1);
     EXPECT_NE(contents(f / "p.html").find("id=\"tets\""), std::string::npos) << call;
     std::filesystem::remove(f / "p.html");
   }

@@ -64,8 +64,7 @@ TriangleMesh joined(const std::vector<TriangleMesh>& surfaces) {
   for (const TriangleMesh& s : surfaces) {
     const auto first = static_cast<Index>(all.points.size());
     all.points.insert(all.points.end(), s.points.begin(), s.points.end());
-    for (const Triangle& t : s.triangles)
-      all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    for (const Triangle& t : s.triangles) all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
   }
   return all;
 }

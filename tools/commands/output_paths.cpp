@@ -115,8 +115,7 @@ void check_stats_path(const CommandLine& line) {
 }
 
 void check_output_paths(const CommandLine& line) {
-  if (line.command != Command::check)
-    check_output_path(line.output, FileKind::tet_mesh, line.output_format);
+  if (line.command != Command::check) check_output_path(line.output, FileKind::tet_mesh, line.output_format);
   if (!line.boundary.empty()) check_output_path(line.boundary, FileKind::surface);
   check_sdf_path(line);
   check_report_path(line);

@@ -4,9 +4,10 @@
 
 namespace tetwright {
 
-/// Checks the files that a command will write, before any work: -o, --boundary, --write-sdf and --report have a known
-/// extension, can be written, and replace neither an input nor each other, not even through a link.
-/// `check` writes no mesh. Only `simplify` and `improve` may replace their input, by -o. Throws UsageError and OutputError.
+/// Checks the files that a command will write, before any work: -o, --boundary, --write-sdf and --report have
+/// a known extension, can be written, and replace neither an input nor each other, not even through a link.
+/// `check` writes no mesh. Only `simplify` and `improve` may replace their input, by -o. Throws UsageError
+/// and OutputError.
 void check_output_paths(const CommandLine& line);
 
 /// The same for --stats and --log-file, which then say how the rest went; opens the log.

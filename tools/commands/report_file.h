@@ -12,7 +12,8 @@ namespace tetwright {
 
 // The page of --report. All of these do nothing unless `run.line` asks for it.
 
-/// The boundary and the interfaces of a mesh that is about to be changed, for measure_distances(); else empty.
+/// The boundary and the interfaces of a mesh that is about to be changed, for measure_distances(); else
+/// empty.
 TriangleMesh surface_for_report(const TetMesh& mesh, const CommandRun& run);
 
 /// How far the boundary and the interfaces of the result are from `surface`; not measured where that has no

@@ -123,7 +123,10 @@ void find_deviation(RunReport& report) {
                           ? "the dense mesh is that far there; give a larger --resolution, or a larger "
                             "tolerance"
                           : "the shapes of tets there; give a larger tolerance";
-  report.shortfall.push_back({"tolerance", report.tolerance, worst.upper, limit,
+  report.shortfall.push_back({"tolerance",
+                              report.tolerance,
+                              worst.upper,
+                              limit,
                               "short of --tolerance: " + number(report.tolerance) + " was asked, " +
                                   number(worst.upper) + " reached from the " +
                                   (mesh ? "mesh to the surface" : "surface to the mesh") + ", at " +
@@ -141,7 +144,10 @@ void find_edge_lengths(const TetMesh& mesh, RunReport& report) {
   const auto offend = [&](const char* what, const char* option, double asked,
                           const EdgeLengthReport::Offender& worst, const char* way, const char* limit) {
     if (worst.count == 0) return;
-    report.shortfall.push_back({what, asked, worst.length, limit,
+    report.shortfall.push_back({what,
+                                asked,
+                                worst.length,
+                                limit,
                                 std::string("short of ") + option + ": " + std::to_string(worst.count) +
                                     " of " + std::to_string(e.edges) + " edges are " + way + ", by most " +
                                     number(worst.length) + " instead of " + number(asked) + " at " +
@@ -241,8 +247,7 @@ void find_changed_solids(const CommandLine& line, const TetMesh& mesh, RunReport
   if (line.accept_changes || on_purpose) {
     report.findings.push_back(
         {report.inputs.front(),
-         {"of " + std::to_string(all) + " materials not the solid of the input: " + text,
-          all - same,
+         {"of " + std::to_string(all) + " materials not the solid of the input: " + text, all - same,
           places.empty() ? std::nullopt : std::optional(places.front()),
           line.accept_changes ? "accepted" : "as --min-gap and --min-thickness ask"}});
     return;
@@ -273,9 +278,7 @@ void find_thin_walls(const CommandLine& line, RunReport& report) {
     const std::string what = "'" + g.name + "' " + numbers + place_text(g.place);
     if (g.on_purpose) {
       report.findings.push_back({report.inputs.front(),
-                                 {(g.gap ? "gap of " : "wall of ") + what,
-                                  1,
-                                  g.place,
+                                 {(g.gap ? "gap of " : "wall of ") + what, 1, g.place,
                                   g.gap ? "closed by --min-gap" : "left out by --min-thickness"}});
       continue;
     }
@@ -322,9 +325,7 @@ void find_changed_creases(const CommandLine& line, const TetMesh& mesh, RunRepor
             " corners are lost, the first at " + place_text(c.lost_corner);
   if (line.accept_changes || changed_on_purpose(report)) {
     report.findings.push_back({report.inputs.front(),
-                               {"place where " + text,
-                                1,
-                                c.place,
+                               {"place where " + text, 1, c.place,
                                 line.accept_changes ? "accepted" : "as --min-gap and --min-thickness ask"}});
     return;
   }
@@ -358,9 +359,7 @@ void find_lost_patches(const CommandLine& line, const TetMesh& mesh, RunReport& 
   const std::size_t all = report.patches.size();
   if (line.accept_changes || changed_on_purpose(report)) {
     report.findings.push_back({report.inputs.front(),
-                               {"named patches that are lost: " + text,
-                                lost,
-                                places.front(),
+                               {"named patches that are lost: " + text, lost, places.front(),
                                 line.accept_changes ? "accepted" : "as --min-gap and --min-thickness ask"}});
     return;
   }

@@ -284,10 +284,12 @@ CommandLine parse(std::vector<std::string> arguments) {
   line.in_memory = true;
   if (!parse_command_line(static_cast<int>(argv.size()), argv.data(), line))
     throw UsageError("help and version are not options here; see help(tetwright)");
-  if (line.output.empty() && !(line.boundary.empty() && line.write_sdf.empty() && line.report.empty() && line.stats.empty()) &&
+  if (line.output.empty() &&
+      !(line.boundary.empty() && line.write_sdf.empty() && line.report.empty() && line.stats.empty()) &&
       line.command != Command::check)
     throw UsageError(
-        "boundary, write_sdf, report and stats are written beside an output; give output too, or call write()");
+        "boundary, write_sdf, report and stats are written beside an output; give output too, or call "
+        "write()");
   return line;
 }
 

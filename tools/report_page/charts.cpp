@@ -107,18 +107,19 @@ std::string quality_chart(const ChartMesh& mesh) {
       const double share = static_cast<double>(count) / static_cast<double>(mesh.statistics->tets);
       const double x = plot.x(0) + bin_width * static_cast<double>(a),
                    y = plot.y(0) - bin_height * static_cast<double>(v + 1);
-      paths[static_cast<std::size_t>(shade_of(share) - 1)] +=
-          "M" + length(x) + " " + length(y) + "h" + length(bin_width) + "v" + length(bin_height) + "h-" +
-          length(bin_width) + "z";
+      paths[static_cast<std::size_t>(shade_of(share) - 1)] += "M" + length(x) + " " + length(y) + "h" +
+                                                              length(bin_width) + "v" + length(bin_height) +
+                                                              "h-" + length(bin_width) + "z";
     }
-  std::string out = "<figure class=\"map\">" + plot.begin(mesh.name + ": tets by smallest solid angle and volume");
+  std::string out =
+      "<figure class=\"map\">" + plot.begin(mesh.name + ": tets by smallest solid angle and volume");
   const std::vector<Tick> volumes{{0, "1/256"}, {0.25, "1/16"}, {0.5, "1"}, {0.75, "16"}, {1, "256"}};
   out += y_axis(plot, volumes, "volume / mean volume") + x_axis(plot, solid_ticks(), solid_title);
   for (int s = 0; s < shades; ++s)
     if (const std::string& path = paths[static_cast<std::size_t>(s)]; !path.empty())
       out += "<path class=\"shade" + std::to_string(s + 1) + "\" d=\"" + path + "\"/>";
-  return out + "</svg><figcaption>" + html_text(mesh.name) + ", " +
-         grouped_number(mesh.statistics->tets) + " tets</figcaption></figure>";
+  return out + "</svg><figcaption>" + html_text(mesh.name) + ", " + grouped_number(mesh.statistics->tets) +
+         " tets</figcaption></figure>";
 }
 
 std::string shade_legend() {

@@ -25,7 +25,8 @@ PageEntry entry_of(const InputFinding& f) {
 
 void add_check(const CheckReport& check, PageEntries& entries) {
   for (const MeshFinding& f : check.findings)
-    (is_warning(f.fault) ? entries.found : entries.short_of).push_back({mesh_finding_line(f), "", f.positions});
+    (is_warning(f.fault) ? entries.found : entries.short_of)
+        .push_back({mesh_finding_line(f), "", f.positions});
   if (check.topology_differences)
     for (const std::string& difference : *check.topology_differences)
       entries.short_of.push_back({"topology differs: " + difference, "", {}});
@@ -83,7 +84,8 @@ PageEntries page_entries(const RunReport& run, const TetMesh& mesh, const CheckR
   for (const Shortfall& s : run.shortfall) entries.short_of.push_back({s.message, "", s.places});
   for (const InputFinding& f : run.findings) entries.found.push_back(entry_of(f));
   for (const RunNote& note : further_notes(run))
-    entries.found.push_back({note.text, "", note.place ? std::vector<Vec3>{*note.place} : std::vector<Vec3>{}});
+    entries.found.push_back(
+        {note.text, "", note.place ? std::vector<Vec3>{*note.place} : std::vector<Vec3>{}});
   if (check) add_check(*check, entries);
   if (!mesh.tets.empty()) add_worst(mesh, entries);
   return entries;

@@ -117,8 +117,7 @@ std::string not_shown(const PageMesh& page, const TetMesh& mesh) {
   for (std::size_t a = 0; a < 3; ++a)
     if (!page.layers[a]) missing += (missing.empty() ? "" : ", ") + std::string(axes[a]);
   if (!missing.empty()) out += " (too many along " + missing + ")";
-  return "<p class=\"notice\">" + html_text(out + ". Histograms and figures are those of all tets.") +
-         "</p>";
+  return "<p class=\"notice\">" + html_text(out + ". Histograms and figures are those of all tets.") + "</p>";
 }
 
 std::string section(const char* heading, const std::string& content) {
@@ -148,23 +147,22 @@ std::string report_page(const CommandLine& line, const RunReport& run, const Tet
   const PageMesh page = page_mesh(mesh, distances, limits);
   const PageEntries entries = page_entries(run, mesh, check);
   const std::vector<ChartMesh> meshes = chart_meshes(line, run);
-  return filled_in(
-      embedded::page_html,
-      {{"title", html_text(title_of(line, run))},
-       {"call", html_text("tetwright" + line.arguments)},
-       {"version", TETWRIGHT_VERSION},
-       {"not_shown", not_shown(page, mesh)},
-       {"lists", lists(entries)},
-       {"figures", meshes.empty() ? "" : figures_table(meshes, line.min_solid_angle)},
-       {"materials", run.result ? materials_table(run) : ""},
-       {"quality", quality_charts(meshes)},
-       {"angles", solid_angle_chart(meshes) + dihedral_chart(meshes)},
-       {"style", std::string(embedded::page_css)},
-       {"three", std::string(embedded::three_js)},
-       {"scripts", std::string(embedded::mesh_js) + std::string(embedded::view_js) +
-                       std::string(embedded::page_js)},
-       {"description", description(page, run, entries)},
-       {"arrays", arrays(page)}});
+  return filled_in(embedded::page_html,
+                   {{"title", html_text(title_of(line, run))},
+                    {"call", html_text("tetwright" + line.arguments)},
+                    {"version", TETWRIGHT_VERSION},
+                    {"not_shown", not_shown(page, mesh)},
+                    {"lists", lists(entries)},
+                    {"figures", meshes.empty() ? "" : figures_table(meshes, line.min_solid_angle)},
+                    {"materials", run.result ? materials_table(run) : ""},
+                    {"quality", quality_charts(meshes)},
+                    {"angles", solid_angle_chart(meshes) + dihedral_chart(meshes)},
+                    {"style", std::string(embedded::page_css)},
+                    {"three", std::string(embedded::three_js)},
+                    {"scripts", std::string(embedded::mesh_js) + std::string(embedded::view_js) +
+                                    std::string(embedded::page_js)},
+                    {"description", description(page, run, entries)},
+                    {"arrays", arrays(page)}});
 }
 
 }  // namespace tetwright

@@ -131,8 +131,7 @@ void add_angles(const TetMesh& mesh, const Selection& selected, PageMesh& page) 
       if (orient3d(x[0], x[1], x[2], x[3]) <= 0) continue;  // as mesh_statistics() counts it
       page.solid[i] = share_byte(min_solid_angle(x[0], x[1], x[2], x[3]), regular_solid_angle);
       const std::array<double, 6> dihedrals = dihedral_angles(x);
-      page.dihedral[i] =
-          share_byte(*std::min_element(dihedrals.begin(), dihedrals.end()), regular_dihedral);
+      page.dihedral[i] = share_byte(*std::min_element(dihedrals.begin(), dihedrals.end()), regular_dihedral);
     }
   });
 }
@@ -156,9 +155,9 @@ void add_distances(const SurfaceDistances& distances, const std::vector<Index>& 
   for (std::size_t p = 0; p < number.size(); ++p) {
     if (number[p] == no_index) continue;
     const double d = distances.values[p];
-    const double steps = std::isnan(d)               ? none
+    const double steps = std::isnan(d)           ? none
                          : page.max_distance > 0 ? std::round(largest * (d / page.max_distance))
-                                                     : 0;
+                                                 : 0;
     append_little_endian(page.distance, static_cast<std::uint32_t>(steps), 2);
   }
 }

@@ -22,8 +22,8 @@ QuantisedPoints quantise(std::span<const Vec3> points) {
     for (int axis = 0; axis < 3; ++axis) {
       const double steps = (p[axis] / 2 - out.origin[axis] / 2) / out.step * 2;
       append_little_endian(
-          out.bytes, static_cast<std::uint32_t>(std::lround(std::min(steps, QuantisedPoints::max_coordinate))),
-          2);
+          out.bytes,
+          static_cast<std::uint32_t>(std::lround(std::min(steps, QuantisedPoints::max_coordinate))), 2);
     }
   return out;
 }

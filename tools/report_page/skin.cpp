@@ -19,8 +19,7 @@ std::unordered_map<Index, Index> join_points(const TetMesh& mesh, const Box3& bo
     constexpr int bits = 21;  // of each coordinate: 63 in all
     std::uint64_t cell = 0;
     for (int axis = 0; axis < 3; ++axis)
-      cell =
-          cell << bits | static_cast<std::uint64_t>((mesh.points[p][axis] - box.low[axis]) * scale);
+      cell = cell << bits | static_cast<std::uint64_t>((mesh.points[p][axis] - box.low[axis]) * scale);
     return cell;
   };
   for (const InterfaceTriangle& t : mesh.interfaces)
