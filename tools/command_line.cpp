@@ -77,6 +77,14 @@ void add_time_limit(CLI::App& app, CommandLine& c) {
              "without one. Results then depend on the machine");
 }
 
+void add_report(CLI::App& app, CommandLine& c) {
+  app.add_option(
+         "--report", c.report,
+         "Write a page to look at, .html: the mesh in 3D with a cut, its histograms and figures, what "
+         "was found and what falls short; needs nothing but a browser")
+      ->type_name("FILE");
+}
+
 void add_seed(CLI::App& app, CommandLine& c) {
   add_whole_number(app, "--seed", c.seed, 0, std::numeric_limits<std::uint64_t>::max(),
                    "Seed of the random numbers; the same seed gives the same bytes")
@@ -108,6 +116,7 @@ void add_mesh_output(CLI::App& app, CommandLine& c) {
       "--no-boundary", c.no_boundary,
       "Leave the triangles of the boundary and of interfaces out of the mesh, for programs that take "
       "every element for a tet");
+  add_report(app, c);
 }
 
 /// Options of segmented volumes.
@@ -383,6 +392,7 @@ void add_check(CLI::App& app, CommandLine& c) {
              "Status 1 unless MESH and the surfaces are proven to be within this of each other everywhere, "
              "input units or percent of the surfaces' diagonal");
   app.add_flag("--json", c.json, "Print JSON");
+  add_report(app, c);
   add_material_field(app, c);
   add_common(app, c);
 }
@@ -644,7 +654,8 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
   for (const CommandEntry& entry : commands)
     if (chosen.get_name() == name_of(entry.command)) out.command = entry.command;
   complete(chosen, out);
-  for (int i = 0; i < argc; ++i) out.call += (i > 0 ? " " : "") + std::string(argv[i]);
+  for (int i = 1; i < argc; ++i) out.arguments += " " + std::string(argv[i]);
+  out.call = argv[0] + out.arguments;
   return true;
 }
 

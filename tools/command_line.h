@@ -39,7 +39,8 @@ enum class Command { prepare, mesh, simplify, improve, check, batch, sample };
 /// The parsed command line, with the defaults that --help shows.
 struct CommandLine {
   Command command = Command::prepare;
-  std::string call;  ///< as it was given, for the log
+  std::string call;       ///< as it was given, for the log
+  std::string arguments;  ///< the same without the name of the program, each after a space
   /// The result stays in the memory of a host program, and -o may be left out; set before parsing.
   bool in_memory = false;
   std::vector<std::string> inputs;  ///< of `sample`: the name; standard_input for "-"
@@ -100,6 +101,7 @@ struct CommandLine {
   double memory_limit = 0;  ///< 2^30 bytes; 0: none
   std::uint64_t seed = 1;
   std::string stats;
+  std::string report;  ///< .html file; empty: none
   bool quiet = false;
   ProgressStyle progress = ProgressStyle::automatic;
   bool no_progress = false;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "common/types.h"
 #include "tools/command_line.h"
 #include "tools/run_report.h"
 
@@ -14,6 +16,14 @@ void print_report(const CommandLine& line, const RunReport& run);
 /// The notes, a line each: what was found in the inputs and what was done about it, parts that were too small
 /// for the cells, and each material that is too thin for them. Empty if there is nothing to report.
 std::vector<std::string> notes_of(const RunReport& run);
+
+/// A note, with its place where it is known (input units).
+struct RunNote {
+  std::string text;
+  std::optional<Vec3> place;
+};
+/// Those of notes_of() behind the first, which lists what was found in the inputs.
+std::vector<RunNote> further_notes(const RunReport& run);
 /// Prints them to stderr.
 void print_notes(const std::vector<std::string>& notes);
 

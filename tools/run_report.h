@@ -29,8 +29,9 @@ namespace tetwright {
 struct Shortfall {
   std::string what;  ///< as in --stats: "target_tets", "fidelity" and others
   double asked = 0, reached = 0;
-  std::string limited_by;  ///< the rules that prevented it
-  std::string message;     ///< the line for the user, without its end
+  std::string limited_by;         ///< the rules that prevented it
+  std::string message;            ///< the line for the user, without its end
+  std::vector<Vec3> places = {};  ///< that the message names, input units
 };
 
 /// A segmented volume as it was read: LabelInput without its voxels.

@@ -23,12 +23,18 @@ struct PartStatistics {
   std::size_t below = 0;
   double min_dihedral = std::numeric_limits<double>::infinity();
   double max_dihedral = -std::numeric_limits<double>::infinity();
+  DihedralHistogram dihedrals;
 };
 
 std::uint8_t angle_bin(double angle) {
   static_assert(QualityHistogram::angle_bins <= 256);
   return static_cast<std::uint8_t>(std::min(QualityHistogram::angle_bins - 1,
                                             static_cast<std::size_t>(angle / QualityHistogram::angle_step)));
+}
+
+/// `degrees` is a number from 0 to 180.
+std::size_t dihedral_bin(double degrees) {
+  return std::min(DihedralHistogram::bins - 1, static_cast<std::size_t>(degrees / DihedralHistogram::step));
 }
 
 /// Lower ends of the bins behind the first, as shares of the mean. Half steps are sqrt(2), no logarithm.
@@ -132,6 +138,7 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
         // Not a number where a face is degenerate: both comparisons are false.
         if (dihedral < part.min_dihedral) part.min_dihedral = dihedral;
         if (dihedral > part.max_dihedral) part.max_dihedral = dihedral;
+        if (!std::isnan(dihedral)) ++part.dihedrals.counts[dihedral_bin(dihedral)];
       }
       bin_of_angle[t] = angle_bin(angle);
     }
@@ -148,6 +155,8 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
     all.below += part.below;
     all.min_dihedral = std::min(all.min_dihedral, part.min_dihedral);
     all.max_dihedral = std::max(all.max_dihedral, part.max_dihedral);
+    for (std::size_t b = 0; b < DihedralHistogram::bins; ++b)
+      out.dihedrals.counts[b] += part.dihedrals.counts[b];
   }
   for (auto& [tag, material] : out.materials) {
     out.volume += material.volume;

@@ -24,6 +24,15 @@ struct QualityHistogram {
   std::array<std::array<std::size_t, volume_bins>, angle_bins> counts{};
 };
 
+/// How many dihedral angles there are of each size, six of each tet: linear, 0 to 180 degrees. Those of
+/// degenerate faces, which have none, are left out.
+struct DihedralHistogram {
+  static constexpr std::size_t bins = 36;
+  static constexpr double step = 5;  ///< degrees
+
+  std::array<std::size_t, bins> counts{};
+};
+
 struct MaterialStatistics {
   std::size_t tets = 0;
   double volume = 0;  ///< input units cubed; the sum of signed volumes
@@ -50,6 +59,7 @@ struct MeshStatistics {
   double min_dihedral = std::numeric_limits<double>::quiet_NaN();
   double max_dihedral = std::numeric_limits<double>::quiet_NaN();
   QualityHistogram histogram;
+  DihedralHistogram dihedrals;
   // Of TetMesh::interfaces; none where those are empty.
   std::map<MaterialPair, InterfaceStatistics> interfaces;
   std::size_t junction_edges = 0;  ///< edges at which three or more interface triangles meet

@@ -87,9 +87,6 @@ void carry_out(CommandRun& run, Ended& ended) {
   if (run.line.command == Command::check) {
     const CheckReport check = make_check(run);
     ended.stats = nlohmann::json::parse(check_json(run.line, run.report, check));
-    OutputFiles files;
-    write_stats(run, files);
-    files.commit();
   } else {
     check_output_paths(run.line);
     CommandResult result = make_result(run);

@@ -4,11 +4,14 @@
 #include <vector>
 
 #include "common/error.h"
+#include "common/formats/atomic_file.h"
 #include "common/formats/formats.h"
 #include "common/mesh/interfaces.h"
 #include "common/mesh/topology.h"
 #include "tools/commands/command_run.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/output_paths.h"
+#include "tools/commands/report_file.h"
 #include "tools/commands/scan_input.h"
 #include "tools/commands/simplification.h"
 #include "tools/report.h"
@@ -57,11 +60,22 @@ void read_surfaces(CommandRun& run, std::vector<TriangleMesh>& surfaces, std::ve
   }
 }
 
+TriangleMesh joined(const std::vector<TriangleMesh>& surfaces) {
+  TriangleMesh all;
+  for (const TriangleMesh& s : surfaces) {
+    const auto first = static_cast<Index>(all.points.size());
+    all.points.insert(all.points.end(), s.points.begin(), s.points.end());
+    for (const Triangle& t : s.triangles) all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return all;
+}
+
 void compare_with_surfaces(TetMesh& mesh, CommandRun& run, CheckReport& check) {
   std::vector<TriangleMesh> surfaces;
   std::vector<std::string> names;
   read_surfaces(run, surfaces, names);
   check.surface = compare_with_surfaces(mesh, surfaces, names);
+  measure_distances(mesh, joined(surfaces), "the surfaces", run);
   if (run.line.tolerance.value > 0) check.tolerance = tolerance_of(run.line, check.surface->diagonal);
 }
 
@@ -99,6 +113,7 @@ void print_shortfalls(const CheckReport& check) {
 
 CheckReport make_check(CommandRun& run) {
   const CommandLine& line = run.line;
+  check_output_paths(line);
   bool field_found = false;
   TetMesh mesh = read_checked(line.inputs.front(), run, field_found);
   run.report.input_points = mesh.points.size();
@@ -122,15 +137,16 @@ CheckReport make_check(CommandRun& run) {
   if (!(check.valid() && check.topology_kept() && check.within_tolerance()))
     run.report.status = ExitStatus::short_of_request;
   run.report.seconds_total = run.since_start.seconds();
+  OutputFiles files(&run.progress);
+  if (check.measurable) write_report(mesh, run, files, &check);
+  write_stats(run, files);
+  files.commit();
   return check;
 }
 
 void run_check(CommandRun& run) {
   const CommandLine& line = run.line;
   const CheckReport check = make_check(run);
-  OutputFiles files;
-  write_stats(run, files);
-  files.commit();
   run.progress.finish();
   if (!line.quiet) print_notes(notes_of(run.report));
   if (line.stats == "-") std::printf("%s\n", stats_json(line, run.report).c_str());

@@ -13,6 +13,7 @@
 #include "common/progress.h"
 #include "tools/command_line.h"
 #include "tools/commands/input_objects.h"
+#include "tools/report_page/surface_distances.h"
 #include "tools/run_report.h"
 
 namespace tetwright {
@@ -43,7 +44,8 @@ struct CommandRun {
   Progress& progress;
   InputObjects* objects;
   RunReport report;
-  std::optional<MidsideNodes> midside;  ///< of the result, with --order 2
+  std::optional<MidsideNodes> midside;        ///< of the result, with --order 2
+  std::optional<SurfaceDistances> distances;  ///< of the result, with --report where there is a surface
 };
 
 /// Adds the statistics to the files, unless there are none or they go to standard output.

@@ -33,7 +33,7 @@ CommandResult run_mesh(CommandRun& run);
 CommandResult run_simplify(CommandRun& run);
 CommandResult run_improve(CommandRun& run);
 
-/// `check`, without writing or printing.
+/// `check`, without printing: writes the files that `run.line` asks for. Throws as run_command() does.
 CheckReport make_check(CommandRun& run);
 
 void run_check(CommandRun& run);

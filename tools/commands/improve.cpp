@@ -4,6 +4,7 @@
 
 #include "common/mesh/field_transfer.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/report_file.h"
 #include "tools/commands/second_order.h"
 #include "tools/commands/tet_input.h"
 #include "tools/limiting_rules.h"
@@ -48,8 +49,10 @@ void report_tets_below(const TetMesh& mesh, CommandRun& run) {
 CommandResult run_improve(CommandRun& run) {
   TetInput input = read_tets(run);
   const std::optional<SurfaceToFollow> surface = followed_interfaces(input.mesh, run);
+  const TriangleMesh before = surface_for_report(input.mesh, run);
   TetMesh mesh = improve_shapes(std::move(input.mesh), run);
   report_tets_below(mesh, run);
+  measure_distances(mesh, before, "the mesh before", run);
   if (surface) make_second_order(mesh, *surface, run);
   if (input.with_fields) transfer_fields(*input.with_fields, mesh);
   input.with_fields.reset();

@@ -1,5 +1,6 @@
 #include "simplify/simplify.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/report_file.h"
 #include "tools/commands/scan_input.h"
 #include "tools/commands/second_order.h"
 
@@ -9,6 +10,7 @@ CommandResult run_mesh(CommandRun& run) {
   DenseMesh dense = make_dense_mesh(read_scan(run), run);
   if (run.report.tolerance > 0) run.report.deviation = deviation(dense.mesh, *dense.surface);
   if (dense.reference) make_second_order(dense.mesh, follow(*dense.reference), run);
+  if (dense.surface) measure_distances(dense.mesh, *dense.surface, "the input", run);
   dense.reference.reset();  // memory that writing the mesh needs
   return {std::move(dense.mesh), std::move(dense.field)};
 }

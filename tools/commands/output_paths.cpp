@@ -1,5 +1,6 @@
 #include "tools/commands/output_paths.h"
 
+#include <cctype>
 #include <filesystem>
 
 #include "common/error.h"
@@ -12,6 +13,11 @@
 namespace tetwright {
 
 namespace {
+
+std::string lower_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
 
 /// True if both names lead to the same file, which need not exist if they are spelt alike.
 bool same_file(const std::string& a, const std::string& b) {
@@ -44,6 +50,7 @@ std::vector<Written> files_written(const CommandLine& line) {
       files.push_back({"-o", file});
   for (const Written& more : {Written{"--boundary", line.boundary},
                               {"--write-sdf", line.write_sdf},
+                              {"--report", line.report},
                               {"--stats", line.stats},
                               {"--log-file", line.log_file}})
     if (!more.file.empty() && more.file != "-") files.push_back(more);
@@ -87,6 +94,15 @@ void check_sdf_path(const CommandLine& line) {
   check_output_file(line.write_sdf);
 }
 
+void check_report_path(const CommandLine& line) {
+  if (line.report.empty()) return;
+  const std::string extension = lower_case(std::filesystem::path(line.report).extension().string());
+  if (extension != ".html" && extension != ".htm")
+    throw UsageError("--report " + line.report +
+                     ": the report is a page for browsers; give a name that ends in .html");
+  check_output_file(line.report);
+}
+
 }  // namespace
 
 std::vector<std::string> written_files(const CommandLine& line) {
@@ -114,9 +130,10 @@ void check_stats_path(const CommandLine& line) {
 }
 
 void check_output_paths(const CommandLine& line) {
-  check_output_path(line.output, FileKind::tet_mesh, line.output_format);
+  if (line.command != Command::check) check_output_path(line.output, FileKind::tet_mesh, line.output_format);
   if (!line.boundary.empty()) check_output_path(line.boundary, FileKind::surface);
   check_sdf_path(line);
+  check_report_path(line);
   check_files_are_different(line, Which::all);
 }
 

@@ -7,9 +7,10 @@
 
 namespace tetwright {
 
-/// Checks the files that a command will write, before any work: -o, --boundary and --write-sdf have a known
-/// extension, can be written, and replace neither an input nor each other, not even through a link.
-/// Only `simplify` and `improve` may replace their input, by -o. Throws UsageError and OutputError.
+/// Checks the files that a command will write, before any work: -o, --boundary, --write-sdf and --report have
+/// a known extension, can be written, and replace neither an input nor each other, not even through a link.
+/// `check` writes no mesh. Only `simplify` and `improve` may replace their input, by -o. Throws UsageError
+/// and OutputError.
 void check_output_paths(const CommandLine& line);
 
 /// All files that the call writes.

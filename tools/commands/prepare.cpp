@@ -2,6 +2,7 @@
 
 #include "mesher/mesher.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/report_file.h"
 #include "tools/commands/scan_input.h"
 #include "tools/commands/second_order.h"
 #include "tools/commands/simplification.h"
@@ -10,8 +11,14 @@ namespace tetwright {
 
 CommandResult run_prepare(CommandRun& run) {
   DenseMesh dense = make_dense_mesh(read_scan(run), run);
+  // Of a segmented volume the dense mesh is what shapes are compared with.
+  const TriangleMesh dense_surface = dense.surface ? TriangleMesh() : surface_for_report(dense.mesh, run);
   TetMesh mesh = simplify_to_target(std::move(dense.mesh), dense.reference.get(), dense.surface.get(), run);
   make_second_order(mesh, follow(*dense.reference), run);
+  if (dense.surface)
+    measure_distances(mesh, *dense.surface, "the input", run);
+  else
+    measure_distances(mesh, dense_surface, "the dense mesh", run);
   // Memory that writing the mesh needs.
   dense.reference.reset();
   dense.surface.reset();

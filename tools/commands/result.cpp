@@ -9,6 +9,7 @@
 #include "common/formats/formats.h"
 #include "common/formats/mesh_parts.h"
 #include "common/message_text.h"
+#include "tools/commands/report_file.h"
 #include "tools/held_tets.h"
 #include "tools/limiting_rules.h"
 #include "tools/report.h"
@@ -144,11 +145,15 @@ void find_deviation(RunReport& report) {
                           ? "the dense mesh is that far there; give a larger --resolution, or a larger "
                             "tolerance"
                           : "the shapes of tets there; give a larger tolerance";
-  report.shortfall.push_back({"tolerance", report.tolerance, worst.upper, limit,
+  report.shortfall.push_back({"tolerance",
+                              report.tolerance,
+                              worst.upper,
+                              limit,
                               "short of --tolerance: " + number(report.tolerance) + " was asked, " +
                                   number(worst.upper) + " reached from the " +
                                   (mesh ? "mesh to the surface" : "surface to the mesh") + ", at " +
-                                  place_text(worst.place) + "; held back by: " + limit});
+                                  place_text(worst.place) + "; held back by: " + limit,
+                              {worst.place}});
 }
 
 /// Edges that have not the lengths that are asked for.
@@ -161,11 +166,15 @@ void find_edge_lengths(const TetMesh& mesh, RunReport& report) {
   const auto offend = [&](const char* what, const char* option, double asked,
                           const EdgeLengthReport::Offender& worst, const char* way, const char* limit) {
     if (worst.count == 0) return;
-    report.shortfall.push_back({what, asked, worst.length, limit,
+    report.shortfall.push_back({what,
+                                asked,
+                                worst.length,
+                                limit,
                                 std::string("short of ") + option + ": " + std::to_string(worst.count) +
                                     " of " + std::to_string(e.edges) + " edges are " + way + ", by most " +
                                     number(worst.length) + " instead of " + number(asked) + " at " +
-                                    place_text(worst.place) + "; held back by: " + limit});
+                                    place_text(worst.place) + "; held back by: " + limit,
+                                {worst.place}});
   };
   const char* held = "surfaces, creases and shapes there";
   offend("max_edge", "--max-edge", sizes.limits.max_edge, e.above_max, "longer", held);
@@ -203,18 +212,21 @@ void find_lost_labels(const CommandLine& line, RunReport& report) {
   const std::vector<LostLabel>& lost = report.volume->lost;
   const std::size_t kept = report.volume->labels.size(), all = kept + lost.size();
   std::string names;
+  std::vector<Vec3> places;
   for (std::size_t i = 0; i < std::min(lost.size(), max_lost_named); ++i) {
     names += (i ? ", " : "") + std::to_string(lost[i].tag) + " '" + lost[i].name + "' (" +
              std::to_string(lost[i].voxels) +
              (lost[i].voxels == 1 ? " voxel at " : " voxels, the first at ") + place_text(lost[i].place) +
              ")";
+    places.push_back(lost[i].place);
   }
   if (lost.size() > max_lost_named) names += ", ...";
   const std::string rule = "--min-voxels " + std::to_string(line.min_voxels);
   report.shortfall.push_back(
       {"labels", static_cast<double>(all), static_cast<double>(kept), rule + ": " + names,
        "lost " + std::to_string(lost.size()) + " of " + std::to_string(all) + " labels: " + names +
-           "; all their islands have fewer voxels than " + rule + " keeps; give a smaller number"});
+           "; all their islands have fewer voxels than " + rule + " keeps; give a smaller number",
+       places});
 }
 
 /// Whether --min-gap or --min-thickness have changed something.
@@ -233,6 +245,7 @@ void find_changed_solids(const CommandLine& line, const TetMesh& mesh, RunReport
   else
     report.fidelity = compare_solids(report.mesher->expected, mesh);
   std::string text;
+  std::vector<Vec3> places;
   std::size_t same = 0;
   bool dense_was_same = report.simplify.has_value();  // but for its counts, which simplifying keeps
   for (const MaterialFidelity& f : report.fidelity) {
@@ -248,6 +261,7 @@ void find_changed_solids(const CommandLine& line, const TetMesh& mesh, RunReport
             (f.against == MaterialFidelity::Against::distances
                  ? " (by the distances: the surface is open, intersects itself or meets another)"
                  : "");
+    if (f.place) places.push_back(*f.place);
   }
   if (text.empty()) return;
   const std::size_t all = report.fidelity.size();
@@ -255,9 +269,8 @@ void find_changed_solids(const CommandLine& line, const TetMesh& mesh, RunReport
   if (line.accept_changes || on_purpose) {
     report.findings.push_back(
         {report.inputs.front(),
-         {"of " + std::to_string(all) + " materials not the solid of the input: " + text,
-          all - same,
-          {},
+         {"of " + std::to_string(all) + " materials not the solid of the input: " + text, all - same,
+          places.empty() ? std::nullopt : std::optional(places.front()),
           line.accept_changes ? "accepted" : "as --min-gap and --min-thickness ask"}});
     return;
   }
@@ -271,7 +284,8 @@ void find_changed_solids(const CommandLine& line, const TetMesh& mesh, RunReport
                                              : "what is thin for the cells: " + thin,
                               "not the solid of the input: " + text + "; raise " +
                                   (dense_was_same ? "--target-tets" : "--resolution") +
-                                  ", or take it as it is with --accept-changes"});
+                                  ", or take it as it is with --accept-changes",
+                              places});
 }
 
 /// Walls that are too thick and gaps that are closed because cells are too large: a shortfall, or with
@@ -279,18 +293,19 @@ void find_changed_solids(const CommandLine& line, const TetMesh& mesh, RunReport
 void find_thin_walls(const CommandLine& line, RunReport& report) {
   if (!report.mesher) return;
   std::string text;
+  std::vector<Vec3> places;
   for (const ClosedGapReport& g : report.mesher->closed_gaps) {
     char numbers[120];
     std::snprintf(numbers, sizeof numbers, "%.3g wide, over an area of %.3g, narrowest at ", g.width, g.area);
     const std::string what = "'" + g.name + "' " + numbers + place_text(g.place);
-    if (g.on_purpose)
+    if (g.on_purpose) {
       report.findings.push_back({report.inputs.front(),
-                                 {(g.gap ? "gap of " : "wall of ") + what,
-                                  1,
-                                  {},
+                                 {(g.gap ? "gap of " : "wall of ") + what, 1, g.place,
                                   g.gap ? "closed by --min-gap" : "left out by --min-thickness"}});
-    else
-      text += (text.empty() ? "" : "; ") + std::string("a gap of ") + what + " is closed";
+      continue;
+    }
+    text += (text.empty() ? "" : "; ") + std::string("a gap of ") + what + " is closed";
+    places.push_back(g.place);
   }
   const ThickenedWallsReport& t = report.mesher->thickened;
   if (t.points > 0) {
@@ -299,11 +314,12 @@ void find_thin_walls(const CommandLine& line, RunReport& report) {
                   (t.thickness + 2 * t.offset) / t.thickness, t.thickness + 2 * t.offset, t.thickness);
     text += (text.empty() ? "" : "; ") + std::string(factor) + std::to_string(t.points) +
             " points of the boundary, most at " + place_text(t.place);
+    places.push_back(t.place);
   }
   if (text.empty()) return;
   if (line.accept_changes) {
     report.findings.push_back(
-        {report.inputs.front(), {"thin place, too thin for cells: " + text, 1, {}, "accepted"}});
+        {report.inputs.front(), {"thin place, too thin for cells: " + text, 1, places.front(), "accepted"}});
     return;
   }
   const bool finer = !line.uniform && line.max_refinement.value_or(0) < max_wall_refinement;
@@ -311,7 +327,8 @@ void find_thin_walls(const CommandLine& line, RunReport& report) {
       {"thin_walls", 0, static_cast<double>(report.mesher->closed_gaps.size() + t.points),
        "the size of the cells",
        "too thin for cells: " + text + "; raise --resolution" + (finer ? " or --max-refinement" : "") +
-           ", or take it as it is with --accept-changes"});
+           ", or take it as it is with --accept-changes",
+       places});
 }
 
 /// Creases and corners that are not where they are in the input: a shortfall, or with --accept-changes a
@@ -330,13 +347,13 @@ void find_changed_creases(const CommandLine& line, const TetMesh& mesh, RunRepor
             " corners are lost, the first at " + place_text(c.lost_corner);
   if (line.accept_changes || changed_on_purpose(report)) {
     report.findings.push_back({report.inputs.front(),
-                               {"place where " + text,
-                                1,
-                                {},
+                               {"place where " + text, 1, c.place,
                                 line.accept_changes ? "accepted" : "as --min-gap and --min-thickness ask"}});
     return;
   }
   const bool of_tets = !report.mesher;
+  std::vector<Vec3> places{c.place};
+  if (c.lost_corners > 0) places.push_back(c.lost_corner);
   report.shortfall.push_back({"creases", 0, c.max_distance,
                               report.simplify ? "the number of tets" : "the size of the cells",
                               text + "; " +
@@ -344,7 +361,8 @@ void find_changed_creases(const CommandLine& line, const TetMesh& mesh, RunRepor
                                    : report.simplify                ? "raise --target-tets, or "
                                                                     : "raise --resolution, or ") +
                                   (of_tets ? "leave sharp edges alone with --feature-angle off"
-                                           : "take it as it is with --accept-changes")});
+                                           : "take it as it is with --accept-changes"),
+                              places});
 }
 
 /// Patches of the user of which the mesh has nothing: a shortfall, or with --accept-changes a finding.
@@ -352,17 +370,18 @@ void find_lost_patches(const CommandLine& line, const TetMesh& mesh, RunReport& 
   compare_patches(mesh, report.patches);
   std::string text;
   std::size_t lost = 0;
-  for (const PatchFidelity& p : report.patches)
-    if (p.lost() && lost++ < max_lost_named)
-      text += (text.empty() ? "" : ", ") + ("'" + patch_name(p.group)) + "' at " + place_text(p.place);
+  std::vector<Vec3> places;
+  for (const PatchFidelity& p : report.patches) {
+    if (!p.lost() || lost++ >= max_lost_named) continue;
+    text += (text.empty() ? "" : ", ") + ("'" + patch_name(p.group)) + "' at " + place_text(p.place);
+    places.push_back(p.place);
+  }
   if (lost == 0) return;
   if (lost > max_lost_named) text += ", ...";
   const std::size_t all = report.patches.size();
   if (line.accept_changes || changed_on_purpose(report)) {
     report.findings.push_back({report.inputs.front(),
-                               {"named patches that are lost: " + text,
-                                lost,
-                                {},
+                               {"named patches that are lost: " + text, lost, places.front(),
                                 line.accept_changes ? "accepted" : "as --min-gap and --min-thickness ask"}});
     return;
   }
@@ -370,7 +389,8 @@ void find_lost_patches(const CommandLine& line, const TetMesh& mesh, RunReport& 
       {"patches", static_cast<double>(all), static_cast<double>(all - lost), "the size of the cells",
        "lost " + std::to_string(lost) + " of " + std::to_string(all) + " named patches: " + text +
            "; they are smaller than cells, within the solid, or on triangles that are there twice: raise "
-           "--resolution, or leave them out"});
+           "--resolution, or leave them out",
+       places});
 }
 
 /// With --strict whatever is noted.
@@ -449,6 +469,7 @@ void write_result(CommandResult& result, CommandRun& run) {
   else
     write_mesh(result.mesh, run, files);
   if (!line.boundary.empty()) write_surface(interface_surface(result.mesh), line.boundary, &files);
+  write_report(result.mesh, run, files);
   run.report.seconds_write = watch.seconds();
   run.report.seconds_total = run.since_start.seconds();
   write_stats(run, files);

@@ -63,6 +63,8 @@ TetMesh simplify_to_target(TetMesh mesh, const ReferenceSurface* reference, cons
   options.name = run.report.inputs.front();
   run.report.simplify.emplace();
   TetMesh result = simplify(std::move(mesh), options, &*run.report.simplify, &run.progress);
+  // What follows belongs to this mesh.
+  run.progress.set_deadline(Progress::no_deadline);
   run.report.deviation = run.report.simplify->deviation;
   return result;
 }

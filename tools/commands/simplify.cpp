@@ -2,6 +2,7 @@
 
 #include "common/mesh/field_transfer.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/report_file.h"
 #include "tools/commands/second_order.h"
 #include "tools/commands/simplification.h"
 #include "tools/commands/tet_input.h"
@@ -11,7 +12,9 @@ namespace tetwright {
 CommandResult run_simplify(CommandRun& run) {
   TetInput input = read_tets(run);
   const std::optional<SurfaceToFollow> surface = followed_interfaces(input.mesh, run);
+  const TriangleMesh before = surface_for_report(input.mesh, run);
   TetMesh mesh = simplify_to_target(std::move(input.mesh), nullptr, nullptr, run);
+  measure_distances(mesh, before, "the mesh before", run);
   if (surface) make_second_order(mesh, *surface, run);
   if (input.with_fields) transfer_fields(*input.with_fields, mesh);
   input.with_fields.reset();

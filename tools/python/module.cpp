@@ -284,10 +284,12 @@ CommandLine parse(std::vector<std::string> arguments) {
   line.in_memory = true;
   if (!parse_command_line(static_cast<int>(argv.size()), argv.data(), line))
     throw UsageError("help and version are not options here; see help(tetwright)");
-  if (line.output.empty() && !(line.boundary.empty() && line.write_sdf.empty() && line.stats.empty()) &&
+  if (line.output.empty() &&
+      !(line.boundary.empty() && line.write_sdf.empty() && line.report.empty() && line.stats.empty()) &&
       line.command != Command::check)
     throw UsageError(
-        "boundary, write_sdf and stats are written beside an output; give output too, or call write()");
+        "boundary, write_sdf, report and stats are written beside an output; give output too, or call "
+        "write()");
   return line;
 }
 
@@ -326,6 +328,7 @@ py::tuple check(std::vector<std::string> arguments, InputObjects& inputs, const 
   run_in_background(
       [&] {
         with_threads(line.threads, [&] {
+          check_stats_path(line);
           CommandRun run(line, progress, &inputs);
           const CheckReport found = make_check(run);
           json = check_json(line, run.report, found);
