@@ -26,8 +26,8 @@ PYTHON = "/usr/bin/python3"  # another one on the path may not see Debian's modu
 COUNT_TOLERANCE = 0.02
 MOST_TRIALS = 10
 SECONDS_FOR_A_MESH = 600
-# Times the edge of the regular tet of the mean volume: tets of random shapes and of one size have edges up to about
-# this, and a shorter bound makes more tets than are wanted.
+# Times the edge of the regular tet of the mean volume: tets of good shapes and about one size have edges up to this,
+# and a much shorter bound makes more tets than are wanted.
 LONGEST_EDGE = 1.6
 SCANS = {"bunny": "scans/bunny_pmp.off", "armadillo": "scans/armadillo_libigl.obj", "dragon": "scans/dragon_quartet.obj"}
 SAMPLES = ("knot", "sphere", "torus", "cube")
@@ -263,13 +263,15 @@ def main():
                 own = folder / f"{body}_{target}"
                 mesh, count, volume = prepare(surface, target, options, own)
                 name = f"{body}, {target:,} tets"
-                everything.append({"name": name, "programs": measure(name, surface, fill(name, mesh, count, volume, programs),
-                                                                     options)})
+                meshes = fill(name, mesh, count, volume, programs)
+                everything.append({"name": name, "programs": measure(name, surface, meshes, options)})
+
                 longest = LONGEST_EDGE * regular_edge(volume / count)
-                mesh, count, volume = prepare(surface, target, options, own.with_name(own.name + "_even"), "--max-edge", longest)
+                own = own.with_name(own.name + "_even")
+                mesh, count, volume = prepare(surface, target, options, own, "--max-edge", longest)
                 name += " of one size"
-                everything.append({"name": name, "programs": measure(name, surface, fill(name, mesh, count, volume, programs),
-                                                                     options)})
+                meshes = fill(name, mesh, count, volume, programs)
+                everything.append({"name": name, "programs": measure(name, surface, meshes, options)})
     if options.json:
         options.json.write_text(json.dumps(everything, indent=1) + "\n")
 

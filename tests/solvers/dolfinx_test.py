@@ -90,8 +90,9 @@ def prepare(name, tets, volume, surface, *more):
     """A mesh of tets of about one size, so that errors fall as theirs does."""
     out = surface.with_name(f"{name}_{tets}.xdmf")
     regular_edge = (6 * math.sqrt(2) * volume / tets) ** (1 / 3)
-    answer = subprocess.run([options.tetwright, "prepare", surface, "-o", out, "--target-tets", str(tets), "--max-edge",
-                             repr(LONGEST_EDGE * regular_edge), "--quiet", "--no-progress", *more], check=False, capture_output=True, text=True)
+    call = [options.tetwright, "prepare", surface, "-o", out, "--target-tets", str(tets), "--max-edge",
+            repr(LONGEST_EDGE * regular_edge), "--quiet", "--no-progress", *more]
+    answer = subprocess.run(call, check=False, capture_output=True, text=True)
     # 1: short of something that was asked; what the mesh is worth is seen by its errors.
     if answer.returncode not in (0, 1):
         sys.exit(f"tetwright: {answer.stderr}")
