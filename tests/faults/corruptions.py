@@ -1,8 +1,11 @@
 """Inputs of all formats with bytes flipped, cut off, left out, repeated or put in."""
 import collections
 import random
+import shutil
+from pathlib import Path
 
-SURFACES = ("ply", "obj", "stl", "off", "vtp", "msh")
+SURFACES = ("ply", "obj", "stl", "off", "vtp")
+SEEDS = Path(__file__).parents[1] / "fuzz" / "seeds"
 TETS = ("vtu", "msh", "mesh", "meshb", "vtk", "inp", "bdf", "xdmf", "node")
 VOLUMES = ("nrrd", "nhdr", "mha", "mhd", "nii", "nii.gz", "inr", "inr.gz")
 # Of a header it matters most: each other damage is done near the beginning.
@@ -47,6 +50,9 @@ def inputs(p):
     for ext in SURFACES:
         p.must(["sample", "cube", "-o", folder / f"surface.{ext}"])
         found.append((folder / f"surface.{ext}", ["mesh", "--resolution", "8"]))
+    for seed in ("polydata.vtk", "grid.vtk"):
+        shutil.copy(SEEDS / "vtk_surface" / seed, folder / seed)
+        found.append((folder / seed, ["mesh", "--resolution", "8"]))
     for ext in TETS:
         p.must(["simplify", folder / "small.vtu", "--target-tets", "300", "-o", folder / f"tets.{ext}"])
         found.append((folder / f"tets.{ext}", ["improve"]))

@@ -96,7 +96,7 @@ def run_batch(p, number, delay):
     jobs, results = folder / "jobs.jsonl", folder / "results.jsonl"
     results.unlink(missing_ok=True)
     lines = [{"id": f"job {i}", "args": ["prepare", str(p.folder / "scan.ply"), "--target-tets", str(500 + i),
-                                         "--resolution", "20", "-o", str(folder / f"{i}.vtu")]} for i in range(6)]
+                                         "--resolution", "20", "--accept-changes", "-o", str(folder / f"{i}.vtu")]} for i in range(6)]
     jobs.write_text("".join(json.dumps(line) + "\n" for line in lines))
     call = ["batch", jobs, "--results", results, "--quiet"]
     process = p.start(call)
