@@ -250,16 +250,17 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
   const double allowed = dense_tolerance_share * tolerance;
   const int coarse = std::max({min_tolerance_resolution, counted ? options.resolution : 0,
                                static_cast<int>(std::ceil(longest / (first_cell_of_part * tolerance)))});
+  std::optional<DenseMesh> best;
+  Misfit of_best;
   if (coarse < options.resolution && has_creases(input, options.feature_angle)) {
     MesherOptions large = options;
     large.resolution = coarse;
     DenseMesh dense = mesh_surfaces(input, large, progress);
-    if (misfit_of(dense, allowed, std::max(reach_cells * longest / coarse, reach_tolerances * tolerance))
-            .places.empty())
-      return dense;
+    of_best =
+        misfit_of(dense, allowed, std::max(reach_cells * longest / coarse, reach_tolerances * tolerance));
+    if (of_best.places.empty()) return dense;
+    best = std::move(dense);
   }
-  std::optional<DenseMesh> best;
-  Misfit of_best;
   int worse = 0;                                                 // rounds since the best one
   double level_worst = std::numeric_limits<double>::infinity();  // with all larger cells
   for (int round = 0, attempts = 0; attempts < max_attempts; ++attempts) {

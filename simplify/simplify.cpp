@@ -110,10 +110,6 @@ std::size_t target_for_sizes(const Engine& engine, const SimplifyOptions& option
   return options.target_tets == 0 && !options.sizes ? 0 : static_cast<std::size_t>(std::max(1.0, tets));
 }
 
-}  // namespace
-
-namespace {
-
 void check_options(const SimplifyOptions& options) {
   if (options.target_tets == 0 &&
       !((options.tolerance > 0 || options.sizes) && options.schedule == Schedule::tuned))

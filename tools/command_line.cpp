@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <iostream>
 #include <limits>
 #include <map>
@@ -306,16 +307,16 @@ void add_input_format(CLI::App& app, CommandLine& c) {
       ->type_name("NAME");
 }
 
-constexpr const char* scans =
-    "Surfaces (.ply .obj .stl .off .vtp .msh .mesh) and level sets (.vdb), each a material, of which later "
-    "ones carve "
-    "earlier ones; or one segmented volume (.nrrd .nhdr .mhd .mha .nii .nii.gz .hdr .img .inr .inr.gz, .vdb "
-    "of whole "
-    "numbers)";
-constexpr const char* meshes = "Tet mesh: .vtu .msh .mesh .meshb .vtk .inp .bdf .xdmf .node .ele";
+std::string scans() {
+  return "Surfaces (" + known_extensions(FileKind::surface) +
+         ") and level sets (.vdb), each a material, of which later ones carve earlier ones; or one segmented "
+         "volume (" +
+         known_extensions(FileKind::volume) + ", .vdb of whole numbers)";
+}
+std::string meshes() { return "Tet mesh: " + known_extensions(FileKind::tet_mesh); }
 
 void add_prepare(CLI::App& app, CommandLine& c) {
-  app.add_option("INPUT", c.inputs, scans);
+  app.add_option("INPUT", c.inputs, scans());
   add_input_format(app, c);
   add_mesh_output(app, c);
   add_simplifying(app, c);
@@ -327,7 +328,7 @@ void add_prepare(CLI::App& app, CommandLine& c) {
 }
 
 void add_mesh(CLI::App& app, CommandLine& c) {
-  app.add_option("INPUT", c.inputs, scans);
+  app.add_option("INPUT", c.inputs, scans());
   add_input_format(app, c);
   add_mesh_output(app, c);
   add_meshing(app, c, "128, or with --tolerance what that needs; for segmented volumes one cell to a voxel");
@@ -344,7 +345,7 @@ void add_fix_boundary(CLI::App& app, CommandLine& c) {
 }
 
 void add_simplify(CLI::App& app, CommandLine& c) {
-  app.add_option("MESH", c.inputs, meshes)->required()->expected(1);
+  app.add_option("MESH", c.inputs, meshes())->required()->expected(1);
   add_input_format(app, c);
   add_mesh_output(app, c);
   add_simplifying(app, c);
@@ -358,7 +359,7 @@ void add_simplify(CLI::App& app, CommandLine& c) {
 }
 
 void add_improve(CLI::App& app, CommandLine& c) {
-  app.add_option("MESH", c.inputs, meshes)->required()->expected(1);
+  app.add_option("MESH", c.inputs, meshes())->required()->expected(1);
   add_input_format(app, c);
   add_mesh_output(app, c);
   add_number(
@@ -379,7 +380,7 @@ void add_improve(CLI::App& app, CommandLine& c) {
 }
 
 void add_check(CLI::App& app, CommandLine& c) {
-  app.add_option("MESH", c.inputs, meshes)->required()->expected(1);
+  app.add_option("MESH", c.inputs, meshes())->required()->expected(1);
   add_input_format(app, c);
   app.add_option("--before", c.before, "Another mesh, whose topology MESH must have")->type_name("FILE");
   app.add_option(
@@ -520,8 +521,31 @@ bool parse_arguments(CLI::App& app, int argc, char** argv) {
   return true;
 }
 
+/// Refuses "-" where only files will do.
+void check_no_stream(const CommandLine& out) {
+  const auto check = [](const char* option, const std::string& file) {
+    if (file == "-")
+      throw UsageError(std::string(option) +
+                       " is no stream; give it a file (- is for the input, -o and --stats)");
+  };
+  check("--boundary", out.boundary);
+  check("--write-sdf", out.write_sdf);
+  check("--report", out.report);
+  check("--log-file", out.log_file);
+  check("--results", out.results);
+  check("--label-names", out.label_names);
+  check("--size-field", out.size_field);
+  check("--before", out.before);
+  for (const std::string& file : out.surfaces) check("--surface", file);
+  for (const NamedValue& m : out.materials) check("--material", m.value);
+  if (out.command == Command::batch) check("the file of jobs", out.inputs.front());
+  if (out.command == Command::sample) check("-o of a sample", out.output);
+}
+
 /// The streams among inputs and outputs.
 void complete_streams(CommandLine& out) {
+  check_no_stream(out);
+  for (char& c : out.input_format) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   const auto stream = std::find(out.inputs.begin(), out.inputs.end(), "-");
   const bool given = stream != out.inputs.end();
   if (given && std::count(out.inputs.begin(), out.inputs.end(), "-") > 1)

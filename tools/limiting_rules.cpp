@@ -60,6 +60,7 @@ std::string main_refusals(const OperationCounts& counts, const std::vector<Opera
 }
 
 std::string rules_limiting_count(const SimplifyReport& report, int max_iterations) {
+  if (report.out_of_time) return "--time-limit";
   const auto iterations = std::count_if(report.iterations.begin(), report.iterations.end(),
                                         [](const IterationReport& it) { return it.kind == "simplify"; });
   const std::string rules = last_refusals(report, true, {Operation::collapse});
@@ -69,6 +70,7 @@ std::string rules_limiting_count(const SimplifyReport& report, int max_iteration
 }
 
 std::string rules_limiting_shapes(const SimplifyReport& report) {
+  if (report.out_of_time) return "--time-limit";
   std::string rules = last_refusals(report, false, all_operations());
   if (rules.empty()) rules = last_refusals(report, true, all_operations());
   return rules.empty() ? nothing_left : rules;

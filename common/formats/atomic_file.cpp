@@ -308,6 +308,8 @@ void OutputFiles::commit() {
   pending_.clear();
 }
 
+void sync_folder_of(const std::string& path) { sync_folder(folder_of(path)); }
+
 void write_file_atomically(const std::string& path, std::string_view bytes) {
   OutputFiles files;
   files.write(path, bytes);
@@ -320,6 +322,8 @@ void write_file_atomically(const std::string& path, const std::function<void(con
   files.commit();
 }
 
+std::string read_standard_input() { return read_all(STDIN_FILENO, "standard input", 0); }
+
 bool abandon_output_files() noexcept {
   abandoned = true;
   while (changing > 0) sleep_a_moment();
@@ -329,7 +333,6 @@ bool abandon_output_files() noexcept {
 }
 
 std::string read_whole_file(const std::string& path) {
-  if (path == standard_stream) return read_all(STDIN_FILENO, "standard input", 0);
   int file = -1;
   // Opening a pipe waits for who writes into it; signals that the host handles do not end this.
   do file = open(path.c_str(), O_RDONLY | O_CLOEXEC);

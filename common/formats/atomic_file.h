@@ -68,7 +68,13 @@ void write_file_atomically(const std::string& path, const std::function<void(con
 /// bytes, are not known to this function.
 bool abandon_output_files() noexcept;
 
-/// All bytes of a file or pipe; "-" is standard input. Throws InputError if it can't be read or is neither.
+/// Brings the name of a new file to the disk, as far as its folder allows that.
+void sync_folder_of(const std::string& path);
+
+/// All bytes of a file or pipe. Throws InputError if it can't be read or is neither.
 std::string read_whole_file(const std::string& path);
+
+/// All bytes of standard input. Throws InputError.
+std::string read_standard_input();
 
 }  // namespace tetwright

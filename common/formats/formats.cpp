@@ -1,5 +1,6 @@
 #include "common/formats/formats.h"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <filesystem>
@@ -26,6 +27,7 @@
 #include "common/formats/vtp.h"
 #include "common/formats/vtu.h"
 #include "common/formats/xdmf.h"
+#include "common/lower_case.h"
 
 namespace tetwright {
 
@@ -61,14 +63,9 @@ constexpr std::array<SurfaceFormat, 3> shared_formats{
      {".mesh", read_medit_surface, nullptr, nullptr},
      {".vtk", read_vtk_surface, nullptr, read_vtk_surface_with_fields}}};
 
-std::string in_lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 /// The extension in lower case; .nii.gz and .inr.gz count as one extension.
 std::string extension_of(const std::string& path) {
-  const std::string name = in_lower_case(std::filesystem::path(path).filename().string());
+  const std::string name = lower_case(std::filesystem::path(path).filename().string());
   for (const char* compound : {".nii.gz", ".inr.gz"})
     if (name.ends_with(compound) && name != compound) return compound;
   return std::filesystem::path(name).extension().string();
@@ -86,7 +83,7 @@ ReadTetMesh read_xdmf_files(const std::string& path, const ReadTetMeshOptions& o
   return read_xdmf(read_whole_file(path), path, read_whole_file, options);
 }
 
-/// The .node, .ele and, where there is one, .face file of one name, which any of them gives.
+/// The .node, .ele and, where there is one, .face file of one name, that of .node or .ele.
 ReadTetMesh read_tetgen_files(const std::string& path, const ReadTetMeshOptions& options) {
   const auto name = [&](const char* extension) {
     return extension_of(path) == extension ? path : with_extension(path, extension);
@@ -471,6 +468,19 @@ void write_tet_mesh(const MeshToWrite& mesh, const std::string& path, OutputFile
 void write_label_volume(const LabelVolume& volume, const std::string& path, OutputFiles* files) {
   const VolumeFormat& format = need_format(volume_formats, path, FileKind::volume, FileUse::write);
   write_into(files, path, [&](const ByteSink& sink) { sink(format.write(volume)); });
+}
+
+std::vector<std::string> files_of_input(const std::string& path) {
+  static const std::vector<std::vector<const char*>> families{
+      {".node", ".ele", ".face"}, {".xdmf", ".h5"}, {".hdr", ".img"}};
+  std::vector<std::string> files{path};
+  const std::string extension = extension_of(path);
+  for (const auto& family : families) {
+    if (std::none_of(family.begin(), family.end(), [&](const char* of) { return extension == of; })) continue;
+    for (const char* other : family)
+      if (extension != other) files.push_back(with_extension(path, other));
+  }
+  return files;
 }
 
 void check_output_path(const std::string& path, FileKind kind, const std::string& format) {

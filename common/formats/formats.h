@@ -103,6 +103,10 @@ void write_label_volume(const LabelVolume& volume, const std::string& path, Outp
 /// All files that write_tet_mesh() writes for a path.
 std::vector<std::string> files_of_tet_mesh(const std::string& path, const std::string& format = {});
 
+/// The file, and those that are read with it because of its name: the parts of TetGen's and XDMF meshes and
+/// of .hdr with .img. They need not exist.
+std::vector<std::string> files_of_input(const std::string& path);
+
 /// To be called before any work: throws UsageError if the extension is not one of `kind`, OutputError if the
 /// folder is missing or not writable or what is there is not a regular file.
 void check_output_path(const std::string& path, FileKind kind = FileKind::tet_mesh,

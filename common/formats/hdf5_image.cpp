@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <mutex>
+#include <atomic>
+#include <cstdint>
 #include <utility>
 
 #include "common/error.h"
@@ -31,10 +32,13 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// The library prints a stack of errors unless it is told not to.
-void be_quiet() {
-  static std::once_flag once;
-  std::call_once(once, [] { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); });
+/// The library prints a stack of errors, of which each thread has one, unless it is told not to.
+void be_quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+/// The library shares open files of one name, among threads, too.
+std::string unique_name() {
+  static std::atomic<std::uint64_t> number{0};
+  return "tetwright-" + std::to_string(number++);
 }
 
 /// Access to a file in memory that is never written to the disk.
@@ -79,7 +83,7 @@ Hdf5Writer::Hdf5Writer() {
   be_quiet();
   const Handle access = in_memory();
   file_ = std::make_unique<File>(
-      File{Handle(H5Fcreate("tetwright", H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose)});
+      File{Handle(H5Fcreate(unique_name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose)});
   if (!file_->handle.good()) throw OutputError("the HDF5 library cannot make a file in memory");
 }
 Hdf5Writer::~Hdf5Writer() = default;
@@ -107,7 +111,7 @@ struct Hdf5Reader::File {
   explicit File(std::string of_bytes) : bytes(std::move(of_bytes)) {
     const Handle access = in_memory();
     H5Pset_file_image(access.id(), bytes.data(), bytes.size());
-    id = H5Fopen("tetwright", H5F_ACC_RDONLY, access.id());
+    id = H5Fopen(unique_name().c_str(), H5F_ACC_RDONLY, access.id());
   }
   ~File() {
     if (id >= 0) H5Fclose(id);

@@ -3,6 +3,7 @@
 #include "common/error.h"
 #include "common/formats/text_scanner.h"
 #include "common/formats/vtk_numbers.h"
+#include "common/lower_case.h"
 
 namespace tetwright {
 

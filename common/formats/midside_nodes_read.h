@@ -20,6 +20,9 @@ class MidsideNodesRead {
     nodes_.insert(nodes_.end(), midside.begin(), midside.end());
   }
 
+  /// Whether there are tets of ten nodes.
+  bool any() const { return tets_ > 0; }
+
   /// Takes those that are no tet's corner out of the points and their fields, renumbers tets and `triangles`,
   /// and says so in `read.dropped`. To be called when all of them are there, but before interfaces are.
   void remove_from(ReadTetMesh& read, std::vector<Triangle>& triangles) const;

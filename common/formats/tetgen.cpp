@@ -115,8 +115,8 @@ std::int64_t read_nodes(Lines& in, TetMesh& mesh) {
   return first;
 }
 
-/// `faces` are renumbered where midside nodes go.
-void read_tets(Lines& in, std::int64_t first, std::vector<Triangle>& faces, ReadTetMesh& read) {
+/// Returns the midside nodes, which are points so far.
+MidsideNodesRead read_tets(Lines& in, std::int64_t first, ReadTetMesh& read) {
   TetMesh& mesh = read.mesh;
   const auto promised = in.next<std::int64_t>("number of tets");
   const auto corners = in.next<std::int64_t>("number of points of a tet");
@@ -149,9 +149,9 @@ void read_tets(Lines& in, std::int64_t first, std::vector<Triangle>& faces, Read
     for (MeshField& field : mesh.cell_fields) field.values[t] = in.next<double>("attribute");
     in.end_line();
   }
-  midside.remove_from(read, faces);
   // Attributes are numbers of regions, which the file writes as any other number.
   for (MeshField& field : mesh.cell_fields) field.integer = all_whole(field);
+  return midside;
 }
 
 /// What our own files say at their beginning: lines "# material 3: bone".
@@ -172,8 +172,9 @@ std::map<std::int64_t, std::string> read_name_comments(std::string_view bytes, s
   return names;
 }
 
-/// The faces with a boundary marker other than 0, in groups by it.
-FileTriangles read_faces(Lines& in, std::int64_t first, std::size_t points) {
+/// The faces with a boundary marker other than 0, in groups by it. `midside`: each has three more nodes, as
+/// TetGen writes them beside tets of ten.
+FileTriangles read_faces(Lines& in, std::int64_t first, std::size_t points, bool midside) {
   FileTriangles listed;
   const auto promised = in.next<std::int64_t>("number of faces");
   const std::int64_t markers = in.optional_count("number of boundary markers", 1);
@@ -192,6 +193,7 @@ FileTriangles read_faces(Lines& in, std::int64_t first, std::size_t points) {
                 "; do the files belong together?");
       id = static_cast<Index>(point - first);
     }
+    for (int k = 0; midside && k < 3; ++k) (void)in.next<std::int64_t>("number of a point");
     const std::int64_t marker = markers ? in.next<std::int64_t>("boundary marker") : 0;
     in.end_line();
     // TetGen lists all faces if it is asked to; those without a marker are no patch.
@@ -207,15 +209,16 @@ ReadTetMesh read_tetgen(const NamedBytes& node, const NamedBytes& ele, const std
   ReadTetMesh read;
   Lines nodes(node.bytes, node.name);
   const std::int64_t first = read_nodes(nodes, read.mesh);
+  Lines tets(ele.bytes, ele.name);
+  const MidsideNodesRead midside = read_tets(tets, first, read);
   FileTriangles listed;
   if (face) {
     Lines faces(face->bytes, face->name);
-    listed = read_faces(faces, first, read.mesh.points.size());
+    listed = read_faces(faces, first, read.mesh.points.size(), midside.any());
     listed.names = read_name_comments(face->bytes, "marker");
     listed.name_form = printable_name;
   }
-  Lines tets(ele.bytes, ele.name);
-  read_tets(tets, first, listed.triangles, read);
+  midside.remove_from(read, listed.triangles);
   take_material(read, options, ele.name);
   // Of another field the numbers are not those that the names are for.
   if (read.material_field == material_attribute)

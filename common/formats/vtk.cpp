@@ -11,6 +11,7 @@
 #include "common/formats/vtk_cells.h"
 #include "common/formats/vtk_numbers.h"
 #include "common/formats/vtk_sections.h"
+#include "common/lower_case.h"
 
 namespace tetwright {
 
@@ -40,7 +41,10 @@ class VtkReader final : private VtkSections {
  private:
   void check_dataset(std::string_view word) override {
     if (lower_case(word) == "unstructured_grid") return;
-    in_.fail("a dataset UNSTRUCTURED_GRID is needed, this one is " + in_quotes(word));
+    in_.fail("a dataset UNSTRUCTURED_GRID is needed, this one is " + in_quotes(word) +
+             (lower_case(word) == "polydata"
+                  ? "; it is a surface, which 'tetwright prepare' and 'tetwright mesh' take"
+                  : ""));
   }
 
   bool read_section(const std::string& part) override {

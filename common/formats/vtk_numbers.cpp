@@ -54,12 +54,6 @@ std::vector<Value> read_bits(TextScanner& in, std::size_t n, const std::string& 
 
 }  // namespace
 
-std::string lower_case(std::string_view word) {
-  std::string out(word);
-  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return out;
-}
-
 bool is_integer_type(const std::string& type) { return type != "float" && type != "double"; }
 
 template <class Value>

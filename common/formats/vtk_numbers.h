@@ -8,9 +8,6 @@
 
 namespace tetwright {
 
-/// `word` in lower case. Programs write the keywords of legacy VTK files in either case.
-std::string lower_case(std::string_view word);
-
 /// Whether `type`, in lower case and one that read_vtk_numbers() knows, is an integer type.
 bool is_integer_type(const std::string& type);
 

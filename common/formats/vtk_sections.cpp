@@ -6,6 +6,7 @@
 #include "common/error.h"
 #include "common/formats/mesh_fields.h"
 #include "common/formats/vtk_numbers.h"
+#include "common/lower_case.h"
 
 namespace tetwright {
 

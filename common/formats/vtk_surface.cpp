@@ -16,6 +16,7 @@
 #include "common/formats/vtk_cells.h"
 #include "common/formats/vtk_numbers.h"
 #include "common/formats/vtk_sections.h"
+#include "common/lower_case.h"
 
 namespace tetwright {
 
@@ -70,6 +71,7 @@ class VtkSurfaceReader final : private VtkSections {
     Cells cells;
     TextScanner begin;
     std::int64_t type;
+    std::size_t order;  ///< among the lists of POLYDATA
   };
 
   void check_dataset(std::string_view word) override {
@@ -86,18 +88,25 @@ class VtkSurfaceReader final : private VtkSections {
         {"polygons", polygon_type},
         {"triangle_strips", strip_type}};
     if (grid_ && part == "cell_types") {
+      if (!types_.empty()) in_.fail("a second section CELL_TYPES");
       types_ = read_whole_numbers("number of cell types", "types of cells", types_begin_);
       return true;
     }
     if (grid_ && part == "cells") {
+      if (!lists_.empty()) in_.fail("a second section CELLS");
       Cells cells = read_cells(begin_);
-      lists_.push_back({std::move(cells), begin_, 0});
+      lists_.push_back({std::move(cells), begin_, 0, 0});
       return true;
     }
-    for (const auto& [keyword, type] : of_polydata) {
+    for (std::size_t k = 0; k < of_polydata.size(); ++k) {
+      const auto& [keyword, type] = of_polydata[k];
       if (grid_ || part != keyword) continue;
+      // Data of cells count them in the order of this table, whatever that of the file.
+      const auto place =
+          std::find_if(lists_.begin(), lists_.end(), [&](const List& l) { return l.order >= k; });
+      if (place != lists_.end() && place->order == k) in_.fail("a second section " + std::string(keyword));
       Cells cells = read_cells(begin_);
-      lists_.push_back({std::move(cells), begin_, type});
+      lists_.insert(place, {std::move(cells), begin_, type, k});
       return true;
     }
     return false;
@@ -151,15 +160,26 @@ class VtkSurfaceReader final : private VtkSections {
         surface_.add_polygon(std::array{corners_[k - 2 + turned], corners_[k - 1 - turned], corners_[k]},
                              place);
       }
-    } else if (type == pixel_type && corners_.size() == 4) {
+    } else if (type == pixel_type) {
+      expect_corners(4, place());
       surface_.add_polygon(std::array{corners_[0], corners_[1], corners_[3], corners_[2]}, place);
-    } else if (type == vtk_quadratic_triangle_type && corners_.size() == 6) {
+    } else if (type == vtk_quadratic_triangle_type) {
+      expect_corners(6, place());
       surface_.add_polygon(std::span(corners_).first(3), place);
-    } else if (type == vtk_triangle_type || type == polygon_type || type == quad_type) {
+    } else if (type == vtk_triangle_type || type == quad_type) {
+      expect_corners(type == quad_type ? 4 : 3, place());
+      surface_.add_polygon(corners_, place);
+    } else if (type == polygon_type) {
       surface_.add_polygon(corners_, place);
     } else {
       other_.add(type, number);
     }
+  }
+
+  void expect_corners(std::size_t n, const std::string& place) const {
+    if (corners_.size() != n)
+      in_.fail(place + " has " + std::to_string(corners_.size()) + " points, not the " + std::to_string(n) +
+               " of its type; the file is damaged");
   }
 
   bool grid_ = false;

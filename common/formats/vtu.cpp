@@ -32,7 +32,8 @@ class VtuReader {
     if (result_.mesh.tets.empty())
       data_.fail(pieces[0].parent(), "there are no tets (type 10 or 24) among its " + std::to_string(cells_) +
                                          " cells; a tet mesh is needed");
-    if (pieces.size() > 1) join_pieces(pieces.size());
+    other_cells_.append_flat_to(result_.dropped);
+    if (pieces.size() > 1) join_pieces();
     for (std::size_t t = 0; t < midside_of_tets_.size(); t += midside_per_tet)
       midside_.add_tet(std::span(midside_of_tets_).subspan(t, midside_per_tet));
     read_names(pieces[0].parent());
@@ -45,6 +46,8 @@ class VtuReader {
 
  private:
   static constexpr std::size_t midside_per_tet = 6;
+  /// VTK's name of the array that marks points and cells which another piece has, too.
+  static constexpr const char* ghost_marks = "vtkGhostType";
 
   /// Adds its points, tets and fields to what there is.
   void read_piece(pugi::xml_node piece) {
@@ -58,16 +61,22 @@ class VtuReader {
     mesh.points.insert(mesh.points.end(), of_piece.begin(), of_piece.end());
     const std::vector<std::size_t> tet_to_cell = read_cells(piece, points, cells);
     cells_ += cells;
-    add_fields(mesh.point_fields, data_.fields(piece.child("PointData"), points), first_points_.back());
+    add_fields(mesh.point_fields, data_.fields(piece.child("PointData"), points), first_points_.back(),
+               points);
     add_fields(
         mesh.cell_fields,
         data_.fields(piece.child("CellData"), cells, tet_to_cell.size() < cells ? &tet_to_cell : nullptr),
-        first_tet);
+        first_tet, mesh.tets.size() - first_tet);
   }
 
-  /// Fields that not all pieces have are left out. `before`: items of the pieces before.
-  void add_fields(std::vector<MeshField>& all, std::vector<MeshField> added, std::size_t before) {
-    if (first_points_.size() == 1) {
+  /// Fields that not all pieces have are left out; a piece without items, which parallel writers make, has no
+  /// say. `before` and `items`: points or tets of the pieces before and of this one.
+  void add_fields(std::vector<MeshField>& all, std::vector<MeshField> added, std::size_t before,
+                  std::size_t items) {
+    // What it marks is no longer there.
+    std::erase_if(added, [](const MeshField& field) { return field.name == ghost_marks; });
+    if (items == 0) return;
+    if (before == 0) {
       all = std::move(added);
       return;
     }
@@ -85,14 +94,13 @@ class VtuReader {
       added.erase(same);
     }
     std::erase_if(all, [](const MeshField& field) { return field.components == 0; });
-    for (const MeshField& field : added)
-      if (before > 0) field_names_of_some_pieces_.push_back(field.name);
+    for (const MeshField& field : added) field_names_of_some_pieces_.push_back(field.name);
   }
 
   /// Marks of vtkGhostType: of each cell that a neighbouring piece has, too.
   std::vector<std::int64_t> ghosts(pugi::xml_node piece, std::size_t cells) const {
     const pugi::xml_node node =
-        piece.child("CellData").find_child_by_attribute("DataArray", "Name", "vtkGhostType");
+        piece.child("CellData").find_child_by_attribute("DataArray", "Name", ghost_marks);
     return node ? data_.integers(node, cells) : std::vector<std::int64_t>();
   }
 
@@ -114,7 +122,6 @@ class VtuReader {
     const Index first_point = first_points_.back();
     std::vector<std::size_t> tet_to_cell;
     std::size_t begin = 0;
-    OtherVtkCells other_cells;
     for (std::size_t c = 0; c < cell_count; ++c) {
       const std::size_t end = offsets[c];
       if (end < begin || end > connectivity.size())
@@ -139,19 +146,18 @@ class VtuReader {
         if (nodes > 4) midside_of_tets_.insert(midside_of_tets_.end(), ids.begin() + 4, ids.end());
         tet_to_cell.push_back(c);
       } else {
-        other_cells.add(types[c], c);
+        other_cells_.add(types[c], c);
       }
       begin = end;
     }
-    if (other_cells.has_volumes()) data_.fail(types_node, other_cells.refusal());
-    other_cells.append_flat_to(result_.dropped);
+    if (other_cells_.has_volumes()) data_.fail(types_node, other_cells_.refusal());
     return tet_to_cell;
   }
 
   /// Where pieces meet each has points of its own: those at one place become that of the first piece, with
   /// its values. Several that a piece has at one place are meant, and go with as many of the others, in their
   /// order.
-  void join_pieces(std::size_t pieces) {
+  void join_pieces() {
     TetMesh& mesh = result_.mesh;
     const auto coordinates = [&](Index p) {
       const Vec3& x = mesh.points[p];
@@ -166,7 +172,7 @@ class VtuReader {
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
       while (end < order.size() && coordinates(order[end]) == coordinates(order[begin])) ++end;
       slots.clear();
-      std::size_t piece = pieces, used = 0;
+      std::size_t piece = 0, used = 0;  // pieces count from 1 here
       for (std::size_t i = begin; i < end; ++i) {
         const Index p = order[i];
         const auto own = static_cast<std::size_t>(
@@ -251,6 +257,7 @@ class VtuReader {
   std::vector<Index> first_points_;     ///< of the pieces
   std::vector<Index> midside_of_tets_;  ///< of tets of ten nodes
   std::vector<std::string> field_names_of_some_pieces_;
+  OtherVtkCells other_cells_;
   MidsideNodesRead midside_;
   ReadTetMesh result_;
 };

@@ -18,6 +18,7 @@
 #include "common/formats/text_scanner.h"
 #include "common/formats/text_writer.h"
 #include "common/formats/xml_text.h"
+#include "common/lower_case.h"
 #include "common/message_text.h"
 
 namespace tetwright {
@@ -28,12 +29,6 @@ constexpr const char* material_attribute = "material";
 constexpr const char* facet_attribute = "facet_tags";
 
 constexpr std::size_t tet_nodes = 4, quadratic_tet_nodes = 10;
-
-std::string lower_case(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return text;
-}
 
 class XdmfReader {
  public:

@@ -1,13 +1,14 @@
 """Inputs of all formats with bytes flipped, cut off, left out, repeated or put in."""
 import collections
+import gzip
 import random
 import shutil
+import struct
 from pathlib import Path
 
 SURFACES = ("ply", "obj", "stl", "off", "vtp")
 SEEDS = Path(__file__).parents[1] / "fuzz" / "seeds"
 TETS = ("vtu", "msh", "mesh", "meshb", "vtk", "inp", "bdf", "xdmf", "node")
-VOLUMES = ("nrrd", "nhdr", "mha", "mhd", "nii", "nii.gz", "inr", "inr.gz")
 # Of a header it matters most: each other damage is done near the beginning.
 HEADER = 400
 
@@ -39,6 +40,37 @@ def damaged(data, draw):
     return bytes(data)
 
 
+def volumes(folder):
+    """A ball of labels in all formats; the files that are read by name."""
+    side = 12
+    labels = bytes((2 if x < 6 else 1) if (x - 5.5) ** 2 + (y - 5.5) ** 2 + (z - 5.5) ** 2 < 25 else 0
+                   for z in range(side) for y in range(side) for x in range(side))
+    nrrd = ("NRRD0004\ntype: uchar\ndimension: 3\nspace: left-posterior-superior\nsizes: 12 12 12\n"
+            "space directions: (1,0,0) (0,1,0) (0,0,1.5)\nspace origin: (3,4,5)\nencoding: {}\n{}\n")
+    meta = ("ObjectType = Image\nNDims = 3\nDimSize = 12 12 12\nElementSpacing = 1 1 1.5\nElementType = MET_UCHAR\n"
+            "ElementDataFile = {}\n")
+    inr = "#INRIMAGE-4#{{\nXDIM=12\nYDIM=12\nZDIM=12\nVDIM=1\nTYPE=unsigned fixed\nPIXSIZE=8 bits\nVX=1\nVY=1\nVZ=1.5\n"
+    inr = inr.replace("{{", "{").ljust(252, "\n") + "##}\n"
+    nifti = struct.pack("<i36x8h14x2h2x8f3fh2b", 348, 3, 12, 12, 12, 1, 1, 1, 1, 2, 8, 1, 1, 1, 1.5, 1, 1, 1, 1, 352,
+                        1, 0, 0, 0, 0).ljust(344, b"\0") + b"n+1\0" + bytes(4)
+    contents = {
+        "raw.nrrd": nrrd.format("raw", "").encode() + labels,
+        "gzip.nrrd": nrrd.format("gzip", "").encode() + gzip.compress(labels, mtime=0),
+        "detached.nhdr": nrrd.format("raw", "data file: detached.raw\n").encode(),
+        "detached.raw": labels,
+        "local.mha": meta.format("LOCAL").encode() + labels,
+        "apart.mhd": meta.format("apart.raw").encode(),
+        "apart.raw": labels,
+        "plain.nii": nifti + labels,
+        "packed.nii.gz": gzip.compress(nifti + labels, mtime=0),
+        "plain.inr": inr.encode() + labels,
+        "packed.inr.gz": gzip.compress(inr.encode() + labels, mtime=0),
+    }
+    for name, content in contents.items():
+        (folder / name).write_bytes(content)
+    return [folder / name for name in contents if not name.endswith(".raw")]
+
+
 def inputs(p):
     """Files, each with what it is read by."""
     folder = p.folder / "in"
@@ -60,14 +92,14 @@ def inputs(p):
         main = folder / ("tets.xdmf" if other == "h5" else "tets.node")
         if (folder / f"tets.{other}").exists():
             found.append((folder / f"tets.{other}", ["improve", main]))
-    for ext in ("msh41", "msh22-binary", "msh41-binary"):
+    for ext in ("msh41", "msh41-binary"):
         path = folder / f"{ext}.msh"
-        status, _ = p.run(["improve", folder / "tets.vtu", "-o", path, "--output-format", ext])
-        if status in (0, 1):
-            found.append((path, ["improve"]))
-    for ext in VOLUMES:
-        p.must(["sample", "organs", "-o", folder / f"volume.{ext}"])
-        found.append((folder / f"volume.{ext}", ["mesh", "--voxel-size", "4", "--uniform"]))
+        p.must(["improve", folder / "tets.vtu", "-o", path, "--output-format", ext])
+        found.append((path, ["improve"]))
+    for path in volumes(folder):
+        call = ["mesh", "--uniform", "--accept-changes"]
+        p.must([*call, path, "-o", folder / "volume.vtu"])
+        found.append((path, call))
     p.must(["mesh", folder / "s.ply", "-o", folder / "s.vtu", "--resolution", "12", "--write-sdf",
             folder / "fields.vdb"])
     found.append((folder / "fields.vdb", ["mesh", "--resolution", "8"]))
@@ -82,7 +114,8 @@ def one(p, path, call, draw):
     # A file of two is damaged in place, with the other one as it was.
     path.write_bytes(damaged(original, draw))
     try:
-        arguments = [call[0], *(call[1:] if len(call) == 2 else [path, *call[1:]]), "-o", out, "--quiet",
+        other = [argument for argument in call if isinstance(argument, Path)]
+        arguments = [*call, *([] if other else [path]), "-o", out, "--quiet",
                      "--threads", "1", "--time-limit", "60", "--memory-limit", "2"]
         status, error = p.run(arguments)
         what = f"damaged {name}"

@@ -103,13 +103,59 @@ TEST_F(Batch, RefusesWhatIsNoBatch) {
           {"a.vtu", "give each its own"});
   refused(job("a", "300") + R"({"args": ["improve", ")" + (f / "a.vtu") + R"(", "-o", "b.vtu"]})",
           {"reads", "'a' writes"});
+  refused(job("a", "300") + R"({"args": ["check", "x.vtu", "--before", ")" + (f / "a.vtu") + R"("]})",
+          {"reads", "'a' writes"});
+  put(jobs, R"({"args": ["check", "x.vtu", "--stats", ")" + (f / "r.json") + R"("]})");
+  expect_refused("batch " + jobs + " --results " + (f / "r.json"), 3, {"r.json", "a file of the batch"});
   put(jobs, job("a", "300"));
+  expect_refused("batch - --results " + jobs, 2, {"no stream"});
   expect_refused("batch " + jobs + " --results " + jobs, 2, {"also an input"});
   expect_refused("batch " + jobs + " --stats " + (f / "s.json"), 2, {"--stats"});
   // A file that is something else is not written to.
   put(f / "jobs.results.jsonl", "my notes\n");
   expect_refused("batch " + jobs, 3, {"jobs.results.jsonl", "line 1"});
   EXPECT_EQ(contents(f / "jobs.results.jsonl"), "my notes\n");
+}
+
+TEST_F(Batch, JobsOfOneLibraryDoNotMeet) {
+  // HDF5 shares open files of one name among threads.
+  std::string jobs;
+  for (const int tets : {200, 300, 400, 500, 600, 700}) {
+    const std::string name = std::to_string(tets);
+    ASSERT_EQ(run("prepare " + (f / "c.ply") + " --resolution 8 --target-tets " + name + " -o " +
+                  (f / ("in" + name + ".xdmf")))
+                  .status,
+              0);
+    ASSERT_EQ(run("improve " + (f / ("in" + name + ".xdmf")) + " -o " + (f / (name + "alone.xdmf"))).status,
+              0);
+    jobs +=
+        nlohmann::json{{"id", name},
+                       {"args", {"improve", f / ("in" + name + ".xdmf"), "-o", f / (name + "batch.xdmf")}}}
+            .dump() +
+        "\n";
+  }
+  put(f / "jobs.jsonl", jobs);
+  const Answer a = batch("--jobs 6 --threads 6");
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_EQ(a.err.find("HDF5"), std::string::npos) << a.err;
+  for (const auto& [id, line] : results())
+    EXPECT_EQ(contents(f / (id + "alone.h5")), contents(f / (id + "batch.h5"))) << id;
+}
+
+TEST_F(Batch, LimitsAreThoseOfTheJobs) {
+  const std::string call =
+      nlohmann::json{{"args", {"mesh", f / "c.ply", "-o", f / "o.vtu", "--time-limit", 1e-6}}}.dump();
+  put(f / "jobs.jsonl", call + "\n");
+  EXPECT_EQ(batch().status, 1);
+  EXPECT_EQ(results()["1"]["status"], 5);
+  EXPECT_NE(results()["1"]["messages"][0].get<std::string>().find("in stage '"), std::string::npos);
+  EXPECT_EQ(results()["1"]["messages"][0].get<std::string>().find("in stage ''"), std::string::npos);
+  // Each of several jobs has its share of the memory.
+  put(f / "jobs.jsonl", job("a", "300") + job("b", "300"));
+  EXPECT_EQ(batch("--memory-limit 0.05 --jobs 2 --threads 2").status, 1);
+  const std::map<std::string, nlohmann::json> shares = results();
+  EXPECT_EQ(shares.at("a")["status"], 5) << shares.at("a");
+  EXPECT_NE(shares.at("a")["messages"][0].get<std::string>().find("are available"), std::string::npos);
 }
 
 TEST_F(Batch, HasItsResultsAlone) {

@@ -1,15 +1,27 @@
 #include "tools/batch/jobs.h"
 
+#include <cmath>
+#include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "common/error.h"
 #include "common/formats/atomic_file.h"
+#include "common/formats/mesh_fields.h"
 
 namespace tetwright {
 
 namespace {
+
+/// 1e3 becomes 1000, as options that take whole numbers expect it.
+std::string number_text(const nlohmann::json& number) {
+  if (!number.is_number_float()) return number.dump();
+  const auto value = number.get<double>();
+  return value == std::floor(value) && std::fabs(value) <= max_exact_whole
+             ? std::to_string(static_cast<std::int64_t>(value))
+             : number.dump();
+}
 
 Job parse_job(const std::string& file, std::size_t line, const std::string& text) {
   const auto refuse = [&](const std::string& what) {
@@ -26,11 +38,11 @@ Job parse_job(const std::string& file, std::size_t line, const std::string& text
     if (!json.contains("args") || !json["args"].is_array() || json["args"].empty())
       refuse("\"args\" is not a list of arguments");
     for (const nlohmann::json& argument : json["args"]) {
-      // Numbers are what they look like, so that scripts need not turn them into text.
+      // Scripts need not turn numbers into text.
       if (argument.is_string())
         job.arguments.push_back(argument.get<std::string>());
       else if (argument.is_number())
-        job.arguments.push_back(argument.dump());
+        job.arguments.push_back(number_text(argument));
       else
         refuse("an argument is neither text nor a number: " + argument.dump());
     }

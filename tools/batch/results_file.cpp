@@ -26,6 +26,7 @@ ResultsFile::ResultsFile(const std::string& path) : path_(path) {
   check_output_file(path);
   file_ = open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (file_ < 0) fail(path, std::strerror(errno));
+  sync_folder_of(path);
   try {
     if (flock(file_, LOCK_EX | LOCK_NB) != 0)
       fail(path, errno == EWOULDBLOCK ? "another batch is writing it; give this one --results of its own"

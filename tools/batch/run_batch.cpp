@@ -7,9 +7,11 @@
 #include <mutex>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <system_error>
 #include <thread>
 
 #include "common/error.h"
+#include "common/memory.h"
 #include "common/parallel/parallel.h"
 #include "tools/batch/jobs.h"
 #include "tools/batch/results_file.h"
@@ -17,7 +19,7 @@
 #include "tools/commands/output_paths.h"
 #include "tools/commands/result.h"
 #include "tools/interruption.h"
-#include "tools/log_file.h"
+#include "tools/progress_report.h"
 #include "tools/report.h"
 #include "tools/stats_json.h"
 
@@ -53,11 +55,33 @@ CommandLine parse(const Job& job) {
   return line;
 }
 
-/// Refuses jobs that write one file, or read what another one writes: they have no order.
-void check_jobs_are_independent(const std::string& file, const std::vector<Job>& jobs) {
-  const auto normal = [](const std::string& path) {
-    return std::filesystem::absolute(path).lexically_normal().string();
-  };
+/// The same text for all ways to spell a path, links followed; the file need not exist.
+std::string normal(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::path whole =
+      std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);
+  return (error ? std::filesystem::absolute(path).lexically_normal() : whole).string();
+}
+
+/// Refuses jobs that write one file, or a file of the batch, or read what another one writes: they have no
+/// order.
+void check_jobs_are_independent(const CommandLine& batch, const std::vector<Job>& jobs) {
+  const std::string& file = batch.inputs.front();
+  for (const Job& job : jobs) {
+    CommandLine line;
+    try {
+      line = parse(job);
+    } catch (const UsageError&) {
+      continue;  // its result will say so
+    }
+    for (const std::string& path : written_files(line))
+      for (const std::string& of_batch : {file, results_file_of(batch), batch.log_file})
+        if (!of_batch.empty() && normal(path) == normal(of_batch))
+          throw InputError(file, 0,
+                           "job '" + job.id + "' writes " + path +
+                               ", which is a file of the batch; give it "
+                               "another name");
+  }
   std::map<std::string, std::string> written;  // and by which job
   std::vector<std::pair<std::string, std::string>> read;
   for (const Job& job : jobs) {
@@ -74,7 +98,7 @@ void check_jobs_are_independent(const std::string& file, const std::vector<Job>&
                          "job '" + job.id + "' writes " + path + ", as job '" + first->second +
                              "' does; give each its own");
     }
-    for (const std::string& path : input_files(line)) read.emplace_back(normal(path), job.id);
+    for (const std::string& path : read_files(line)) read.emplace_back(normal(path), job.id);
   }
   for (const auto& [path, id] : read)
     if (const auto writer = written.find(path); writer != written.end() && writer->second != id)
@@ -99,15 +123,17 @@ void carry_out(CommandRun& run, Ended& ended) {
 }
 
 /// All that a job throws becomes its status: another one may do better.
-Ended run_job(const Job& job, unsigned threads) {
+/// `memory`: bytes that it may use.
+Ended run_job(const Job& job, unsigned threads, double memory) {
   const Stopwatch watch;
   Ended ended;
   try {
     CommandLine line = parse(job);
     if (line.threads == 0) line.threads = threads;
     check_stats_path(line);
-    Progress progress;
+    ProgressReport progress(ProgressStyle::none);  // knows its stage, for messages and the log
     with_threads(line.threads, [&] {
+      const MemoryLimit share(memory);
       CommandRun run(line, progress);
       try {
         carry_out(run, ended);
@@ -118,7 +144,7 @@ Ended run_job(const Job& job, unsigned threads) {
     });
   } catch (const std::bad_alloc&) {
     ended.status = ExitStatus::output_failed;
-    ended.messages = {"not enough memory; give fewer --jobs"};
+    ended.messages = {"not enough memory; free some, give fewer --jobs, or ask for larger cells"};
   } catch (const std::exception& e) {
     ended.status = exit_status(e);
     ended.messages = {e.what()};
@@ -128,7 +154,7 @@ Ended run_job(const Job& job, unsigned threads) {
 }
 
 std::string result_line(const Job& job, const Ended& ended) {
-  // The arguments come back as they were, bytes that are not UTF-8 replaced.
+  // Messages may have bytes of names that are not UTF-8; they are replaced.
   return nlohmann::json{{"id", job.id},
                         {"args", job.arguments},
                         {"status", static_cast<int>(ended.status)},
@@ -169,28 +195,38 @@ class Batch {
         static_cast<unsigned>(std::min<std::size_t>(run_.line.jobs > 0 ? run_.line.jobs : all, jobs_.size()));
     if (workers == 0) return;
     run_.progress.begin_stage("jobs");
+    // What each may use of the memory: nobody else tells them of the others.
+    const double memory = available_memory() / workers;
     std::vector<std::thread> threads;
     const unsigned each = std::max(1u, all / workers);
-    for (unsigned w = 0; w < workers; ++w) threads.emplace_back([this, each] { work(each); });
+    try {
+      for (unsigned w = 0; w < workers; ++w)
+        threads.emplace_back([this, each, memory] { work(each, memory); });
+    } catch (const std::system_error& e) {
+      // Those that could be started do all jobs.
+      if (threads.empty())
+        throw OutputError(std::string("cannot start a thread: ") + e.what() +
+                          "; free some memory or processes");
+    }
     for (std::thread& t : threads) t.join();
     run_.progress.finish();
     if (failure_) std::rethrow_exception(failure_);
   }
 
  private:
-  void work(unsigned threads) {
+  void work(unsigned threads, double memory) {
     for (std::size_t i; !stop_ && (i = next_++) < jobs_.size();) {
-      const Ended ended = run_job(*jobs_[i], threads);
+      const Ended ended = run_job(*jobs_[i], threads, memory);
       const std::lock_guard lock(mutex_);
       try {
         results_.append(*jobs_[i], static_cast<int>(ended.status), result_line(*jobs_[i], ended));
+        tell(*jobs_[i], ended);
       } catch (...) {
         // Without results nobody would know what is done.
         if (!failure_) failure_ = std::current_exception();
         stop_ = true;
         return;
       }
-      tell(*jobs_[i], ended);
     }
   }
 
@@ -223,7 +259,7 @@ class Batch {
 void run_batch(CommandRun& run) {
   const CommandLine& line = run.line;
   const std::vector<Job> jobs = read_jobs(line.inputs.front());
-  check_jobs_are_independent(line.inputs.front(), jobs);
+  check_jobs_are_independent(line, jobs);
   ResultsFile results(results_file_of(line));
   say_when_interrupted("tetwright: interrupted; the same call goes on with the jobs that are left\n");
   Batch batch(unfinished_jobs(jobs, results, line.retry), results, run);

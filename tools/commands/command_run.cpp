@@ -55,7 +55,7 @@ std::string typed_name(const CommandLine& line, const std::string& name) {
 TriangleMesh take_surface(CommandRun& run, const std::string& name, std::vector<Dropped>* dropped) {
   return take(&InputObjects::surfaces, run.objects, name, [&] {
     return is_stream(run.line, name)
-               ? read_surface_bytes(read_whole_file("-"), name, run.line.input_format, dropped)
+               ? read_surface_bytes(read_standard_input(), name, run.line.input_format, dropped)
                : read_surface(name, dropped);
   });
 }
@@ -63,7 +63,7 @@ TriangleMesh take_surface(CommandRun& run, const std::string& name, std::vector<
 ReadTetMesh take_tet_mesh(CommandRun& run, const std::string& name, const ReadTetMeshOptions& options) {
   return take(&InputObjects::meshes, run.objects, name, [&] {
     return is_stream(run.line, name)
-               ? read_tet_mesh_bytes(read_whole_file("-"), name, run.line.input_format, options)
+               ? read_tet_mesh_bytes(read_standard_input(), name, run.line.input_format, options)
                : read_tet_mesh(name, options);
   });
 }
@@ -71,7 +71,7 @@ ReadTetMesh take_tet_mesh(CommandRun& run, const std::string& name, const ReadTe
 LabelVolume take_label_volume(CommandRun& run, const std::string& name) {
   return take(&InputObjects::volumes, run.objects, name, [&] {
     return is_stream(run.line, name)
-               ? read_label_volume_bytes(read_whole_file("-"), name, run.line.input_format)
+               ? read_label_volume_bytes(read_standard_input(), name, run.line.input_format)
                : read_label_volume(name);
   });
 }

@@ -50,9 +50,11 @@ CommandResult make_result(CommandRun& run) {
              : run.line.command == Command::simplify ? run_simplify(run)
                                                      : run_improve(run);
   } catch (const OutOfTime&) {
+    const bool cells = run.line.command == Command::prepare || run.line.command == Command::mesh;
     throw OutOfTime("out of time: after the " + short_number(run.line.time_limit) +
                     " s of --time-limit there was no mesh yet (in stage '" + run.progress.stage() +
-                    "'), and nothing was written; give more time, or larger cells by --resolution");
+                    "'), and nothing was written; give more time" +
+                    (cells ? ", or larger cells by --resolution" : ""));
   }
   // What there is, is compared and written.
   run.progress.set_deadline(Progress::no_deadline);

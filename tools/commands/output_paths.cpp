@@ -6,6 +6,7 @@
 #include "common/error.h"
 #include "common/formats/atomic_file.h"
 #include "common/formats/formats.h"
+#include "common/lower_case.h"
 #include "tools/commands/command_run.h"
 #include "tools/commands/scan_input.h"
 #include "tools/log_file.h"
@@ -13,11 +14,6 @@
 namespace tetwright {
 
 namespace {
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 /// True if both names lead to the same file, which need not exist if they are spelt alike.
 bool same_file(const std::string& a, const std::string& b) {
@@ -108,6 +104,15 @@ void check_report_path(const CommandLine& line) {
 std::vector<std::string> written_files(const CommandLine& line) {
   std::vector<std::string> names;
   for (const Written& written : files_written(line)) names.push_back(written.file);
+  return names;
+}
+
+std::vector<std::string> read_files(const CommandLine& line) {
+  std::vector<std::string> names;
+  for (const std::string& file : files_read(line)) {
+    if (file.empty()) continue;
+    for (const std::string& part : files_of_input(file)) names.push_back(part);
+  }
   return names;
 }
 

@@ -13,8 +13,9 @@ namespace tetwright {
 /// and OutputError.
 void check_output_paths(const CommandLine& line);
 
-/// All files that the call writes.
+/// All files that the call writes, and all that it reads, those that belong to one that is named among them.
 std::vector<std::string> written_files(const CommandLine& line);
+std::vector<std::string> read_files(const CommandLine& line);
 
 /// The file of a batch's results.
 std::string results_file_of(const CommandLine& line);

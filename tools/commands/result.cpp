@@ -70,7 +70,6 @@ void report_touching_points(const std::string& file, RunReport& report) {
 
 std::string rules_behind_count(const CommandLine& line, const RunReport& report, double asked,
                                double reached) {
-  if (report.simplify->out_of_time) return "--time-limit";
   if (line.command == Command::improve)
     return "nothing: shapes were worth " + std::string(reached < asked ? "fewer" : "more") + " tets";
   if (reached > asked && report.mesher && static_cast<double>(report.mesher->filling_tets) > asked)

@@ -137,7 +137,8 @@ std::string lists(const PageEntries& entries) {
 }
 
 std::string title_of(const CommandLine& line, const RunReport& run) {
-  const std::string& file = line.output.empty() && !run.inputs.empty() ? run.inputs.front() : line.output;
+  const bool named = !line.output.empty() && line.output != "-";
+  const std::string& file = named || run.inputs.empty() ? line.output : run.inputs.front();
   return file.substr(file.find_last_of('/') + 1);
 }
 

@@ -150,12 +150,13 @@ void add_distances(const SurfaceDistances& distances, const std::vector<Index>& 
   constexpr double none = 65535, largest = none - 1;
   page.distance_from = distances.from;
   for (std::size_t p = 0; p < number.size(); ++p)
-    if (number[p] != no_index && distances.values[p] > page.max_distance)
+    if (number[p] != no_index && std::isfinite(distances.values[p]) &&
+        distances.values[p] > page.max_distance)
       page.max_distance = distances.values[p];
   for (std::size_t p = 0; p < number.size(); ++p) {
     if (number[p] == no_index) continue;
     const double d = distances.values[p];
-    const double steps = std::isnan(d)           ? none
+    const double steps = !std::isfinite(d)       ? none
                          : page.max_distance > 0 ? std::round(largest * (d / page.max_distance))
                                                  : 0;
     append_little_endian(page.distance, static_cast<std::uint32_t>(steps), 2);

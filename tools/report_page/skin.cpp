@@ -1,6 +1,7 @@
 #include "tools/report_page/skin.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <unordered_map>
 
@@ -49,7 +50,8 @@ std::vector<InterfaceTriangle> skin_within(const TetMesh& mesh, std::size_t max_
   if (mesh.interfaces.size() <= max_triangles) return mesh.interfaces;
   Box3 box;
   for (const Vec3& p : mesh.points) box.add(p);
-  if (!((box.high - box.low).maxCoeff() > 0)) return {};
+  const double side = (box.high - box.low).maxCoeff();
+  if (!(side > 0) || !std::isfinite(side)) return {};
   // Finer than this a cell is smaller than a pixel of the page.
   constexpr double finest = 1024, coarser = 0.7;
   for (double cells = finest; cells > 1; cells *= coarser)

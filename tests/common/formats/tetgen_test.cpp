@@ -128,6 +128,17 @@ TEST(TetGen, NamesOfOurOwnFilesComeBack) {
   EXPECT_EQ(back.tets, mesh.tets);
 }
 
+TEST(TetGen, FacesOfQuadraticTetsHaveMoreNodes) {
+  std::string nodes = "10 3\n";
+  for (int i = 0; i < 10; ++i)
+    nodes += std::to_string(i) + " " + std::to_string(i * i) + " " + std::to_string(i % 3) + " " +
+             std::to_string(i % 2) + "\n";
+  const ReadTetMesh r = read_tetgen({nodes, "n"}, {"1 10\n0 4 9 1 2 0 3 5 6 7 8\n", "e"},
+                                    NamedBytes{"2 1\n0 4 9 1 5 6 7 1\n1 4 9 2 5 6 7 2\n", "f"});
+  ASSERT_EQ(r.mesh.patch_groups.size(), 2u);
+  EXPECT_EQ(r.mesh.patch_groups.begin()->second.number, 1);
+}
+
 TEST(TetGen, BadFaces) {
   const auto refused = [](const std::string& face, const std::string& said) {
     const std::string message = error_of<InputError>([&] { (void)read_with_faces(face); });

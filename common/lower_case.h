@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cctype>
+#include <string>
+#include <string_view>
+
+namespace tetwright {
+
+/// ASCII letters in lower case; all other bytes as they are.
+inline std::string lower_case(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
+}  // namespace tetwright
