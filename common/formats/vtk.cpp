@@ -51,7 +51,7 @@ class VtkReader final : private VtkSections {
     if (part == "cells") {
       if (has_cells_) in_.fail("a second section CELLS");
       has_cells_ = true;
-      cells_ = read_cells(cells_begin_);
+      cells_ = read_cells("CELLS", cells_begin_);
     } else if (part == "cell_types") {
       if (has_types_) in_.fail("a second section CELL_TYPES");
       has_types_ = true;

@@ -114,7 +114,7 @@ void VtkSections::read_points() {
   }
 }
 
-VtkSections::Cells VtkSections::read_cells(TextScanner& begin) {
+VtkSections::Cells VtkSections::read_cells(const std::string& keyword, TextScanner& begin) {
   Cells cells;
   const std::size_t n = in_.count("number of cells", 1);
   const std::size_t size = in_.count("size of the cells", 1);
@@ -149,12 +149,12 @@ VtkSections::Cells VtkSections::read_cells(TextScanner& begin) {
     if (at >= size || cells.points_[at] < 0 || static_cast<std::uint64_t>(cells.points_[at]) >= size - at)
       fail_at(begin, at,
               "cell " + std::to_string(c) + " (counted from 0) goes beyond the " + std::to_string(size) +
-                  " numbers of its list; the file is damaged");
+                  " numbers of " + keyword + "; the file is damaged");
     cells.offsets_.push_back(static_cast<std::int64_t>(at + 1));
     at += 1 + static_cast<std::size_t>(cells.points_[at]);
   }
   if (at != size)
-    in_.fail("the cells take " + std::to_string(at) + " numbers, but the list promises " +
+    in_.fail("the cells take " + std::to_string(at) + " numbers, but " + keyword + " promises " +
              std::to_string(size) + "; the file is damaged");
   cells.offsets_.push_back(static_cast<std::int64_t>(at + 1));
   return cells;

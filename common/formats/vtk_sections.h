@@ -52,7 +52,7 @@ class VtkSections {
 
   /// What follows the keyword of a list of cells; `begin` becomes the place of the first number, for
   /// fail_at().
-  Cells read_cells(TextScanner& begin);
+  Cells read_cells(const std::string& keyword, TextScanner& begin);
   /// A count and as many numbers, likewise.
   std::vector<std::int64_t> read_whole_numbers(const char* count_of, const char* what, TextScanner& begin);
   /// The point at a place of a list of cells that began at `begin`, checked.

@@ -94,7 +94,7 @@ class VtkSurfaceReader final : private VtkSections {
     }
     if (grid_ && part == "cells") {
       if (!lists_.empty()) in_.fail("a second section CELLS");
-      Cells cells = read_cells(begin_);
+      Cells cells = read_cells("CELLS", begin_);
       lists_.push_back({std::move(cells), begin_, 0, 0});
       return true;
     }
@@ -105,7 +105,7 @@ class VtkSurfaceReader final : private VtkSections {
       const auto place =
           std::find_if(lists_.begin(), lists_.end(), [&](const List& l) { return l.order >= k; });
       if (place != lists_.end() && place->order == k) in_.fail("a second section " + std::string(keyword));
-      Cells cells = read_cells(begin_);
+      Cells cells = read_cells(keyword, begin_);
       lists_.insert(place, {std::move(cells), begin_, type, k});
       return true;
     }

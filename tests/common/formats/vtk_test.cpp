@@ -298,8 +298,10 @@ TEST(VtkSurface, OfSomethingElse) {
   expect_input_error(surface, replaced(tets, "UNSTRUCTURED_GRID", "RECTILINEAR_GRID"), "POLYDATA");
   const std::string good = surface_file(false, false);
   expect_input_error(surface, replaced(good, "3 0 2 1", "3 0 2 7"), "point 7 of 5");
-  for (std::size_t n = 0; n + 40 < good.size(); n += 3)
-    (void)error_of<InputError>([&] { (void)surface(good.substr(0, n), "f"); });
+  for (std::size_t n = 0; n + 40 < good.size(); n += 3) try {
+      EXPECT_FALSE(surface(good.substr(0, n), "f").triangles.empty());  // what a whole section is may do
+    } catch (const InputError&) {
+    }
 }
 
 }  // namespace
