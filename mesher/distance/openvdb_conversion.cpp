@@ -59,6 +59,7 @@ std::vector<Triangle> split_quads(const std::vector<Vec3>& points,
                                   const std::vector<openvdb::Vec3I>& triangles,
                                   const std::vector<openvdb::Vec4I>& quads) {
   std::vector<Triangle> all;
+  all.reserve(triangles.size() + 2 * quads.size());
   for (const openvdb::Vec3I& t : triangles) all.push_back({t[0], t[1], t[2]});
   for (const openvdb::Vec4I& q : quads) {
     const auto length = [&](int a, int b) { return (points[q[a]] - points[q[b]]).squaredNorm(); };
