@@ -1,0 +1,108 @@
+#include "tools/option_rules.h"
+
+#include <algorithm>
+#include <string>
+
+#include "common/error.h"
+#include "common/formats/formats.h"
+#include "common/lower_case.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Refuses "-" where only files will do.
+void check_no_stream(const CommandLine& out) {
+  const auto check = [](const char* option, const std::string& file) {
+    if (file == "-")
+      throw UsageError(std::string(option) +
+                       " is no stream; give it a file (- is for the input, -o and --stats)");
+  };
+  check("--boundary", out.boundary);
+  check("--write-sdf", out.write_sdf);
+  check("--report", out.report);
+  check("--log-file", out.log_file);
+  check("--results", out.results);
+  check("--label-names", out.label_names);
+  check("--size-field", out.size_field);
+  check("--before", out.before);
+  for (const std::string& file : out.surfaces) check("--surface", file);
+  for (const NamedValue& m : out.materials) check("--material", m.value);
+  if (out.command == Command::batch) check("the file of jobs", out.inputs.front());
+  if (out.command == Command::sample) check("-o of a sample", out.output);
+}
+
+/// The streams among inputs and outputs.
+void complete_streams(CommandLine& out) {
+  check_no_stream(out);
+  out.input_format = lower_case(out.input_format);
+  const auto stream = std::find(out.inputs.begin(), out.inputs.end(), "-");
+  const bool given = stream != out.inputs.end();
+  if (given && std::count(out.inputs.begin(), out.inputs.end(), "-") > 1)
+    throw UsageError("standard input (-) is one input; give the others as files");
+  if (given && out.input_format.empty())
+    throw UsageError("standard input (-) has no extension; give --input-format, one of " +
+                     streamed_extensions());
+  if (!given && !out.input_format.empty())
+    throw UsageError("--input-format is for standard input; give - as the input, or leave it out");
+  if (given) {
+    *stream = standard_input;
+    if (!out.input_format.starts_with('.')) out.input_format.insert(0, ".");
+    if (!streams(out.input_format))
+      throw UsageError("--input-format " + out.input_format.substr(1) +
+                       " is no format of a stream; known are " + streamed_extensions());
+  }
+  if (out.output != "-") return;
+  if (out.output_format.empty())
+    throw UsageError("standard output (-o -) has no extension; give --output-format");
+  if (files_of_tet_mesh(out.output, out.output_format).size() > 1)
+    throw UsageError("--output-format " + out.output_format +
+                     " is several files, which standard output is not; "
+                     "give -o a name, or another format");
+  if (out.stats == "-")
+    throw UsageError("-o - and --stats - both print to standard output; give one of them a file");
+}
+
+}  // namespace
+
+void complete_command_line(const CLI::App& chosen, CommandLine& out) {
+  complete_streams(out);
+  const bool meshes_scans = out.command == Command::prepare || out.command == Command::mesh;
+  if (out.command == Command::prepare || out.command == Command::simplify || out.command == Command::improve)
+    out.min_solid_angle_given = chosen.count("--min-solid-angle") > 0;
+  if (meshes_scans) {
+    if (out.inputs.empty() && out.materials.empty())
+      throw UsageError(
+          "there is no input; name a surface or a segmented volume, or give --material NAME=FILE");
+    out.outside_label_given = chosen.count("--outside-label") > 0;
+    out.min_voxels_given = chosen.count("--min-voxels") > 0;
+  }
+  if ((out.command == Command::prepare || out.command == Command::simplify) && out.target_tets == 0 &&
+      out.tolerance.value == 0 && out.size_field.empty())
+    throw UsageError(
+        "--target-tets is required; give the number of tets to reach, --tolerance, or --size-field");
+  if (out.command == Command::prepare || out.command == Command::simplify) {
+    if (chosen.count("--grading") > 0 && out.size_field.empty())
+      throw UsageError("--grading is for the edge lengths of a size field; give --size-field FILE");
+    if (out.schedule == Schedule::paper &&
+        (!out.size_field.empty() || out.min_edge.value > 0 || out.max_edge.value > 0))
+      throw UsageError(
+          "--schedule paper bounds no edges; leave out --size-field, --min-edge and --max-edge, or "
+          "--schedule");
+  }
+  if (out.tolerance.value > 0 && out.schedule == Schedule::paper)
+    throw UsageError("--schedule paper bounds no distances; leave out --tolerance, or --schedule");
+  if (out.command == Command::check && out.tolerance.value > 0 && out.surfaces.empty())
+    throw UsageError("--tolerance needs the surfaces that the mesh is compared with; give --surface FILE");
+  if (out.order > 1 && !out.output.empty() && !written_tet_format(out.output, out.output_format).second_order)
+    throw UsageError("--order 2: " + out.output +
+                     " would be in a format without ten-node tets; write .vtu .msh .vtk .inp .bdf or .feb");
+  if (out.json && out.stats == "-")
+    throw UsageError(
+        "--json and --stats - both print to standard output; give --stats a file, or leave one out");
+  if (out.command == Command::batch && !out.stats.empty())
+    throw UsageError("--stats is of a single run; the results of a batch have those of each job");
+  if (out.resolution && out.voxel_size > 0) throw UsageError("give --resolution or --voxel-size, not both");
+}
+
+}  // namespace tetwright
