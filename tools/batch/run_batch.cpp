@@ -39,6 +39,7 @@ CommandLine parse(const Job& job) {
   std::vector<std::string> words{"tetwright"};
   words.insert(words.end(), job.arguments.begin(), job.arguments.end());
   std::vector<char*> argv;
+  argv.reserve(words.size());
   for (std::string& word : words) argv.push_back(word.data());
   for (const std::string& word : words)
     if (word == "--help" || word == "-h" || word == "--version")
