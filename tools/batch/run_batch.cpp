@@ -101,11 +101,13 @@ void check_jobs_are_independent(const CommandLine& batch, const std::vector<Job>
     }
     for (const std::string& path : read_files(line)) read.emplace_back(normal(path), job.id);
   }
-  for (const auto& [path, id] : read)
-    if (const auto writer = written.find(path); writer != written.end() && writer->second != id)
-      throw InputError(file, 0,
-                       "job '" + id + "' reads " + path + ", which job '" + writer->second +
-                           "' writes; jobs have no order: give it a batch of its own");
+  for (const auto& [path, id] : read) {
+    const auto writer = written.find(path);
+    if (writer == written.end() || writer->second == id) continue;
+    std::string message = "job '";
+    message.append(id).append("' reads ").append(path).append(", which job '").append(writer->second);
+    throw InputError(file, 0, message + "' writes; jobs have no order: give it a batch of its own");
+  }
 }
 
 void carry_out(CommandRun& run, Ended& ended) {
