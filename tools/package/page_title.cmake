@@ -2,7 +2,7 @@
 file(READ ${FILE} page)
 string(REPLACE " " "-" name "${CALL}")
 string(TOUPPER "${name}" title)
-string(REPLACE "-" "\\-" escaped "${name}")
+string(REPLACE "-" "\\\\-" escaped "${name}")  # for the replacement below, which takes one away
 string(REGEX REPLACE "\n\\.TH [^ ]+ " "\n.TH ${title} " page "${page}")
-string(REGEX REPLACE "\n\\.SH NAME\n[^ ]+ " "\n.SH NAME\n${escaped} " page "${page}")
+string(REGEX REPLACE "\n\\.SH NAME\n[^\n]* \\\\- " "\n.SH NAME\n${escaped} \\\\- " page "${page}")
 file(WRITE ${FILE} "${page}")
