@@ -2,16 +2,17 @@
 _tetwright() {
   local cur=${COMP_WORDS[COMP_CWORD]} command=${COMP_WORDS[1]}
   COMPREPLY=()
+  local IFS=$'\n'  # names of files may have blanks
   if [ "$COMP_CWORD" = 1 ]; then
     local commands
     commands=$(tetwright --help 2>/dev/null | sed -n '/^Subcommands:/,/^$/s/^  \([a-z][a-z]*\) .*/\1/p')
-    mapfile -t COMPREPLY < <(compgen -W "$commands --help --version" -- "$cur")
+    COMPREPLY=($(compgen -W "$commands"$'\n--help\n--version' -- "$cur"))
   elif [[ $cur == -* ]]; then
     local options
     options=$(tetwright "$command" --help 2>/dev/null | sed -n 's/^  \(-[a-z],\)\{0,1\}\(--[a-z-]*\).*/\2/p')
-    mapfile -t COMPREPLY < <(compgen -W "$options" -- "$cur")
+    COMPREPLY=($(compgen -W "$options" -- "$cur"))
   else
-    mapfile -t COMPREPLY < <(compgen -f -- "$cur")
+    COMPREPLY=($(compgen -f -- "$cur"))
   fi
 }
 complete -o filenames -F _tetwright tetwright
