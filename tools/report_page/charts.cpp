@@ -147,6 +147,7 @@ std::vector<double> shares_of(const Counts& counts) {
   double all = 0;
   for (const std::size_t n : counts) all += static_cast<double>(n);
   std::vector<double> out;
+  out.reserve(counts.size());
   for (const std::size_t n : counts) out.push_back(all > 0 ? static_cast<double>(n) / all : 0);
   return out;
 }
