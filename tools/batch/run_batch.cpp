@@ -68,21 +68,6 @@ std::string normal(const std::string& path) {
 /// order.
 void check_jobs_are_independent(const CommandLine& batch, const std::vector<Job>& jobs) {
   const std::string& file = batch.inputs.front();
-  for (const Job& job : jobs) {
-    CommandLine line;
-    try {
-      line = parse(job);
-    } catch (const UsageError&) {
-      continue;  // its result will say so
-    }
-    for (const std::string& path : written_files(line))
-      for (const std::string& of_batch : {file, results_file_of(batch), batch.log_file})
-        if (!of_batch.empty() && normal(path) == normal(of_batch))
-          throw InputError(file, 0,
-                           "job '" + job.id + "' writes " + path +
-                               ", which is a file of the batch; give it "
-                               "another name");
-  }
   std::map<std::string, std::string> written;  // and by which job
   std::vector<std::pair<std::string, std::string>> read;
   for (const Job& job : jobs) {
@@ -93,6 +78,11 @@ void check_jobs_are_independent(const CommandLine& batch, const std::vector<Job>
       continue;  // its result will say so
     }
     for (const std::string& path : written_files(line)) {
+      for (const std::string& of_batch : {file, results_file_of(batch), batch.log_file})
+        if (!of_batch.empty() && normal(path) == normal(of_batch))
+          throw InputError(
+              file, 0,
+              "job '" + job.id + "' writes " + path + ", which is a file of the batch; give it another name");
       const auto [first, added] = written.emplace(normal(path), job.id);
       if (!added)
         throw InputError(file, 0,
