@@ -12,11 +12,11 @@ namespace {
 
 /// Dense tets for each face between voxels (as large as a squared cell) and each side of it that is meshed,
 /// see surface_estimate.cpp; faces of voxels have about one and a half times the area of the interface.
-constexpr double tets_per_face_side = 21.5, half_full_thickness = 0.6;
+constexpr double tets_per_face_side = 21.5, half_full_material = 0.6;
 /// Lattice tets on a side of a face that is not meshed.
 constexpr double outside_tets_per_face = 10;
 /// Dense tets of uniform cells, for each cell and each face to the outside.
-constexpr double tets_per_cell = 12, tets_per_outer_face = 1;
+constexpr double label_tets_per_cell = 12, tets_per_outer_face = 1;
 /// Tets for each cell that is split where labels are thin, by whether its centre is in a label.
 constexpr double dense_per_thin_cell = 96, lattice_per_thin_cell_outside = 30;
 /// For each voxel while the volume is read, bytes: its label in the file and its region.
@@ -53,14 +53,14 @@ MesherEstimate estimate_mesh(const LabelInput& labels, const MesherOptions& opti
   MeshSize size;
   if (options.uniform) {
     size.leaves = voxel * all / (h * h * h);
-    size.dense = tets_per_cell * meshed + tets_per_outer_face * outer;
+    size.dense = label_tets_per_cell * meshed + tets_per_outer_face * outer;
     size.lattice = size.dense + outside_tets_per_face * outer;
   } else {
     // Smoothing takes some area off, which only small cells show.
     constexpr double small_cell = 0.75, smooth_share = 0.87;
     const double cell = h / voxel_size(labels);
     const double share = (cell < small_cell ? smooth_share : 1) * coarse_share(cell, options.adaptivity);
-    size.dense = share * tets_per_face_side * sides / (1 + half_full_thickness * sides / meshed) +
+    size.dense = share * tets_per_face_side * sides / (1 + half_full_material * sides / meshed) +
                  dense_per_thin_cell * thin.inside;
     size.lattice = size.dense;
     if (!options.keep_outside)

@@ -18,11 +18,11 @@ namespace {
 /// Dense tets of an adaptive mesh for each squared finest cell of interface and each side of it that is
 /// meshed: they tend to the first number where the material is thick, and half of it fill one that has as
 /// many finest cells of volume for each squared cell of interface as the second number says.
-constexpr double tets_per_area = 29, half_full_thickness = 1.6;
+constexpr double tets_per_area = 29, half_full_solid = 1.6;
 /// Lattice tets for each squared cell on a side that is not meshed, and on uniform cells.
 constexpr double outside_tets_per_area = 14, outside_tets_per_area_uniform = 15.5;
 /// Dense tets of uniform cells: for each cell, and for each squared cell of interface.
-constexpr double tets_per_cell = 12, cut_tets_per_area = 0.7, kept_outside_tets_per_area = 3;
+constexpr double solid_tets_per_cell = 12, cut_tets_per_area = 0.7, kept_outside_tets_per_area = 3;
 /// Memory for each triangle while signed distances are computed, bytes; open parts take a tree as well.
 constexpr double bytes_per_triangle = 150, bytes_per_open_triangle = 300;
 
@@ -277,10 +277,10 @@ class SurfaceEstimate {
     double area = 0;
     for (const SampledSurface& s : surfaces_) area += s.area();
     const double box = static_cast<double>(frame_.cells[0]) * frame_.cells[1] * frame_.cells[2];
-    double dense = tets_per_cell * volume() + cut_tets_per_area * area;
+    double dense = solid_tets_per_cell * volume() + cut_tets_per_area * area;
     double lattice = dense + outside_tets_per_area_uniform * area;
     if (options_.keep_outside) {
-      lattice = tets_per_cell * box;
+      lattice = solid_tets_per_cell * box;
       dense = lattice + kept_outside_tets_per_area * area;
     }
     return estimate_of({box, lattice, dense}, {surface_bytes_per_lattice_tet, 0, before}, options_);
@@ -307,7 +307,7 @@ class SurfaceEstimate {
 
   /// Sides of interfaces in a volume, less as it gets full of tets.
   static double filling(double sides, double volume) {
-    return volume > 0 ? sides / (1 + half_full_thickness * sides / volume) : 0;
+    return volume > 0 ? sides / (1 + half_full_solid * sides / volume) : 0;
   }
 
   /// Adds the sides of the interfaces between layers; thin layers have smaller cells.

@@ -21,9 +21,9 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t slot_grain = 8192;  ///< tets a parallel loop hands out at a time
+constexpr std::size_t remesh_grain = 8192;  ///< tets a parallel loop hands out at a time
 /// Free slots at first, as a share of what there is: the arrays grow in place beyond them.
-constexpr std::size_t spare_share = 64, min_spare = 4096;
+constexpr std::size_t remesh_spare_share = 64, min_remesh_spare = 4096;
 /// Over min_solid_angle: what is improved, and what may leave the surface a little for it, as in improve().
 constexpr double poor_margin = 1.27, leave_surface_margin = 1;
 /// Of the bound: what coarsening and refining must leave of shapes that were good.
@@ -67,7 +67,7 @@ struct Remesher::Impl {
   /// Compacts, and builds anew what goes with the whole mesh.
   void renumber(Renumbering* numbers) {
     SlotNumbers slots;
-    const std::size_t spare = mesh.live_tets() / spare_share + min_spare;
+    const std::size_t spare = mesh.live_tets() / remesh_spare_share + min_remesh_spare;
     mesh.compact(spare, spare, &slots);
     mesh.reserve_twice();
     if (numbers) *numbers = {std::move(slots.points), std::move(slots.tets)};
@@ -84,7 +84,7 @@ struct Remesher::Impl {
     std::sort(copies.begin(), copies.end());
   }
   void look_at_all() {
-    parallel_for(0, mesh.tet_slots(), slot_grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(0, mesh.tet_slots(), remesh_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) rate(static_cast<Index>(t));
     });
     grid.build(mesh, 0);

@@ -22,7 +22,7 @@ bool stderr_is_terminal = false;
 std::atomic<const char*> line_to_say{nullptr};
 
 void say(const char* text) {
-  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text, std::strlen(text));
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text, std::strlen(text));
 }
 
 /// Async-signal-safe.

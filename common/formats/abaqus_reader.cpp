@@ -15,6 +15,7 @@
 #include "common/formats/mesh_parts.h"
 #include "common/formats/midside_nodes_read.h"
 #include "common/formats/text_scanner.h"
+#include "common/trimmed.h"
 
 namespace tetwright {
 
@@ -25,11 +26,6 @@ std::string in_capitals(std::string_view text) {
   for (char& c : out)
     if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
   return out;
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(" \t\r"), end = text.find_last_not_of(" \t\r");
-  return begin == std::string_view::npos ? std::string_view{} : text.substr(begin, end - begin + 1);
 }
 
 /// A line with an asterisk: "*ELEMENT, TYPE=C3D4, ELSET=bone".

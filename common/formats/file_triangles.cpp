@@ -17,7 +17,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t max_patches = 0xffff;
+constexpr std::size_t max_groups = 0xffff;
 
 Triangle sorted(Triangle ids) {
   std::sort(ids.begin(), ids.end());
@@ -189,9 +189,9 @@ class TriangleTaker {
     for (const auto& [number, group] : groups_)
       if (!derived_.contains(number)) numbers.push_back(number);
     if (numbers.empty()) return;
-    if (numbers.size() > max_patches)
+    if (numbers.size() > max_groups)
       throw InputError(file_ + ": its triangles are in " + std::to_string(numbers.size()) + " " +
-                       group_word_ + "s; at most " + std::to_string(max_patches) +
+                       group_word_ + "s; at most " + std::to_string(max_groups) +
                        " are possible: join some of them");
     TetMesh& mesh = read_.mesh;
     mesh.interfaces = std::move(interfaces_);

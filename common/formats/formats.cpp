@@ -6,9 +6,11 @@
 #include <filesystem>
 
 #include "common/error.h"
+#include "common/formats/3mf.h"
 #include "common/formats/abaqus.h"
 #include "common/formats/atomic_file.h"
 #include "common/formats/febio.h"
+#include "common/formats/glb.h"
 #include "common/formats/inr.h"
 #include "common/formats/medit.h"
 #include "common/formats/medit_binary.h"
@@ -51,12 +53,14 @@ std::optional<SurfaceWithFields> always_surface(std::string_view bytes, const st
   return read(bytes, name);
 }
 
-constexpr std::array<SurfaceFormat, 5> surface_formats{
+constexpr std::array<SurfaceFormat, 7> surface_formats{
     {{".ply", read_ply, write_whole_surface<write_ply>, always_surface<read_ply_with_fields>},
      {".obj", read_obj, write_whole_surface<write_obj>, nullptr},
      {".stl", read_stl, write_whole_surface<write_stl>, nullptr},
      {".off", read_off, write_whole_surface<write_off>, nullptr},
-     {".vtp", read_vtp, write_vtp, always_surface<read_vtp_with_fields>}}};
+     {".vtp", read_vtp, write_vtp, always_surface<read_vtp_with_fields>},
+     {".3mf", read_3mf, nullptr, nullptr},
+     {".glb", read_glb, nullptr, nullptr}}};
 /// Those of tet meshes that may hold a surface instead.
 constexpr std::array<SurfaceFormat, 3> shared_formats{
     {{".msh", read_msh_surface, nullptr, read_msh_surface_with_fields},

@@ -18,7 +18,7 @@ class OutputFiles;
 
 /// Kinds of files, which their extension tells, in upper or lower case.
 enum class FileKind {
-  surface,   ///< .ply .obj .stl .off .vtp
+  surface,   ///< .ply .obj .stl .off .vtp; to be read .3mf .glb too
   tet_mesh,  ///< see tet_format_table()
   volume,    ///< .nrrd; to be read .nhdr .mhd .mha .nii .nii.gz .inr .inr.gz too
   unknown

@@ -4,20 +4,9 @@
 #include "common/formats/text_scanner.h"
 #include "common/formats/vtk_numbers.h"
 #include "common/lower_case.h"
+#include "common/trimmed.h"
 
 namespace tetwright {
-
-namespace {
-
-constexpr std::string_view white_space = " \t\r\n\v\f";
-
-}  // namespace
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(white_space);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(white_space) - begin + 1);
-}
 
 void HeaderFields::add(std::string_view field, std::string_view value, std::size_t line) {
   if (!fields_.try_emplace(lower_case(trimmed(field)), Field{trimmed(value), line}).second)

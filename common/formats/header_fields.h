@@ -9,9 +9,6 @@
 
 namespace tetwright {
 
-/// The text without white space at both ends.
-std::string_view trimmed(std::string_view text);
-
 /// The fields of a volume's text header. They are found by their names in lower case. The functions that read
 /// a value throw an InputError that names file, line, field and value if it is missing or malformed.
 class HeaderFields {

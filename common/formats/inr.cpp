@@ -7,6 +7,7 @@
 #include "common/formats/header_fields.h"
 #include "common/formats/voxel_data.h"
 #include "common/formats/vtk_numbers.h"
+#include "common/trimmed.h"
 
 namespace tetwright {
 

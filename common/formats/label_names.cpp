@@ -6,6 +6,7 @@
 #include "common/error.h"
 #include "common/formats/atomic_file.h"
 #include "common/formats/text_scanner.h"
+#include "common/trimmed.h"
 
 namespace tetwright {
 
@@ -15,12 +16,6 @@ namespace {
 constexpr std::size_t max_label_name_size = 120;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 /// Removes a comment: from a # or // outside of double quotes that begins the line or follows white space.
 std::string_view without_comment(std::string_view line) {

@@ -67,9 +67,9 @@ const char* find_section(const Sections& sections, std::string_view keyword) {
   return nullptr;
 }
 
-class Reader {
+class TextReader {
  public:
-  Reader(std::string_view bytes, const std::string& name) : bytes_(bytes), in_(bytes, name, '#') {}
+  TextReader(std::string_view bytes, const std::string& name) : bytes_(bytes), in_(bytes, name, '#') {}
 
   ReadTetMesh read() {
     read_sections();
@@ -303,7 +303,7 @@ void append_triangles(std::string& out, const TetMesh& mesh) {
 }  // namespace
 
 ReadTetMesh read_medit(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options) {
-  Reader reader(bytes, name);
+  TextReader reader(bytes, name);
   ReadTetMesh read = reader.read();
   take_material(read, options, name);
   reader.finish(read);
@@ -312,7 +312,7 @@ ReadTetMesh read_medit(std::string_view bytes, const std::string& name, const Re
 
 TriangleMesh read_medit_surface(std::string_view bytes, const std::string& name,
                                 std::vector<Dropped>* dropped) {
-  return Reader(bytes, name).read_surface(dropped);
+  return TextReader(bytes, name).read_surface(dropped);
 }
 
 std::string write_medit(const MeshToWrite& written) {

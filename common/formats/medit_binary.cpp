@@ -22,7 +22,7 @@ constexpr std::int32_t dimension_keyword = 3, vertices_keyword = 4, triangles_ke
                        end_keyword = 54;
 
 /// The sections that hold volume cells, and what these are.
-const std::map<std::int32_t, const char*> volume_sections{{9, "prisms"},
+const std::map<std::int32_t, const char*> volume_keywords{{9, "prisms"},
                                                           {10, "hexahedra"},
                                                           {30, "quadratic tets"},
                                                           {33, "quadratic hexahedra"},
@@ -40,7 +40,7 @@ const std::map<std::int32_t, const char*> volume_sections{{9, "prisms"},
                                                           {103, "prisms of higher order"}};
 
 /// Sections that are counted and not read.
-const std::map<std::int32_t, const char*> other_sections{{5, "edges"},
+const std::map<std::int32_t, const char*> other_keywords{{5, "edges"},
                                                          {7, "quads"},
                                                          {13, "corners"},
                                                          {14, "ridges"},
@@ -50,9 +50,9 @@ const std::map<std::int32_t, const char*> other_sections{{5, "edges"},
                                                          {60, "normals"},
                                                          {59, "tangents"}};
 
-class Reader {
+class BinaryReader {
  public:
-  Reader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+  BinaryReader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
   ReadTetMesh read(const ReadTetMeshOptions& options) {
     read_head();
@@ -194,10 +194,10 @@ class Reader {
     const std::int64_t n = integer("number of items");
     if (n <= 0) return;
     const auto items = static_cast<std::size_t>(n);
-    if (const auto volumes = volume_sections.find(keyword); volumes != volume_sections.end()) {
+    if (const auto volumes = volume_keywords.find(keyword); volumes != volume_keywords.end()) {
       if (volume_cells_.empty()) volume_cells_at_ = at;
       volume_cells_.add(volumes->second, items);
-    } else if (const auto others = other_sections.find(keyword); others != other_sections.end()) {
+    } else if (const auto others = other_keywords.find(keyword); others != other_keywords.end()) {
       others_.add(others->second, items);
     } else {
       others_.add("items of section " + std::to_string(keyword), items);
@@ -274,7 +274,7 @@ class Sections {
 
 ReadTetMesh read_medit_binary(std::string_view bytes, const std::string& name,
                               const ReadTetMeshOptions& options) {
-  return Reader(bytes, name).read(options);
+  return BinaryReader(bytes, name).read(options);
 }
 
 void write_medit_binary(const MeshToWrite& written, const ByteSink& sink) {

@@ -13,6 +13,7 @@
 #include "common/formats/voxel_data.h"
 #include "common/formats/vtk_numbers.h"
 #include "common/lower_case.h"
+#include "common/trimmed.h"
 
 namespace tetwright {
 

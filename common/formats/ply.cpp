@@ -327,8 +327,8 @@ void note_dropped(const PlyHeader& header, SurfaceBuilder& surface) {
 }
 
 /// `point_fields` is filled unless it is null.
-TriangleMesh read(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped,
-                  std::vector<MeshField>* point_fields) {
+TriangleMesh read_polygons(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped,
+                           std::vector<MeshField>* point_fields) {
   TextScanner in(bytes, name);
   const PlyHeader header = read_ply_header(in);
   const Element* vertex = nullptr;
@@ -374,12 +374,12 @@ TriangleMesh read(std::string_view bytes, const std::string& name, std::vector<D
 }  // namespace
 
 TriangleMesh read_ply(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped) {
-  return read(bytes, name, dropped, nullptr);
+  return read_polygons(bytes, name, dropped, nullptr);
 }
 
 SurfaceWithFields read_ply_with_fields(std::string_view bytes, const std::string& name) {
   SurfaceWithFields result;
-  result.surface = read(bytes, name, nullptr, &result.point_fields);
+  result.surface = read_polygons(bytes, name, nullptr, &result.point_fields);
   return result;
 }
 

@@ -55,8 +55,8 @@ void read_names(const VtuData& data, pugi::xml_node piece, std::vector<FaceGroup
 }
 
 /// `point_fields` is filled unless it is null.
-TriangleMesh read(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped,
-                  std::vector<MeshField>* point_fields) {
+TriangleMesh read_poly_data(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped,
+                            std::vector<MeshField>* point_fields) {
   const VtuData data(bytes, name);
   const pugi::xml_node piece = data.only_piece("PolyData");
   const auto count = [&](const char* attribute) {
@@ -112,12 +112,12 @@ TriangleMesh read(std::string_view bytes, const std::string& name, std::vector<D
 }  // namespace
 
 TriangleMesh read_vtp(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped) {
-  return read(bytes, name, dropped, nullptr);
+  return read_poly_data(bytes, name, dropped, nullptr);
 }
 
 SurfaceWithFields read_vtp_with_fields(std::string_view bytes, const std::string& name) {
   SurfaceWithFields result;
-  result.surface = read(bytes, name, nullptr, &result.point_fields);
+  result.surface = read_poly_data(bytes, name, nullptr, &result.point_fields);
   return result;
 }
 

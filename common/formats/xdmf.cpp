@@ -25,7 +25,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr const char* material_attribute = "material";
+constexpr const char* xdmf_material = "material";
 constexpr const char* facet_attribute = "facet_tags";
 
 constexpr std::size_t tet_nodes = 4, quadratic_tet_nodes = 10;
@@ -317,7 +317,7 @@ void write_xdmf_numbers(const MeshToWrite& written, const ByteSink& sink) {
       for (const Index m : midside->of_tets[t]) ids.push_back(first_midside + m);
   }
   file.add("tets", std::span<const std::int64_t>(ids), midside ? quadratic_tet_nodes : tet_nodes);
-  file.add(material_attribute, std::span<const std::int32_t>(mesh.materials), 1);
+  file.add(xdmf_material, std::span<const std::int32_t>(mesh.materials), 1);
 
   add_fields(file, written.node_fields(), "point_field");
   add_fields(file, mesh.cell_fields, "cell_field");
@@ -355,10 +355,10 @@ void write_xdmf_mesh(const MeshToWrite& written, const std::string& hdf5, const 
   write_geometry(out, written, hdf5);
   write_names(out, mesh_parts(mesh, {printable_name}).materials, 3, [](const auto& m) { return m.tag; });
   // The first attribute: it is what dolfinx takes for the tags of a grid.
-  out << "<Attribute Name=\"" << material_attribute << "\" AttributeType=\"Scalar\" Center=\"Cell\">\n";
-  write_item(out, hdf5, material_attribute, mesh.tets.size(), 1, true, 4);
+  out << "<Attribute Name=\"" << xdmf_material << "\" AttributeType=\"Scalar\" Center=\"Cell\">\n";
+  write_item(out, hdf5, xdmf_material, mesh.tets.size(), 1, true, 4);
   out << "</Attribute>\n";
-  write_fields(out, mesh.cell_fields, "cell_field", "Cell", mesh.tets.size(), hdf5, {material_attribute});
+  write_fields(out, mesh.cell_fields, "cell_field", "Cell", mesh.tets.size(), hdf5, {xdmf_material});
   write_fields(out, written.node_fields(), "point_field", "Node", written.nodes(), hdf5, {});
   out << "</Grid>\n</Domain>\n</Xdmf>\n";
   out.flush();

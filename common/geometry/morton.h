@@ -16,6 +16,9 @@ namespace tetwright {
 /// 2^21).
 using MortonKey = std::uint64_t;
 
+/// Half the diagonal of a cell over its edge: sqrt(3) / 2.
+inline constexpr double half_cube_diagonal = 0.8660254037844386;
+
 namespace detail {
 
 /// Two zero bits between any two of the lowest 21 bits of v.

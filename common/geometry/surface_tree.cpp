@@ -13,7 +13,7 @@ namespace tetwright {
 namespace {
 
 /// Of 4, 8 and 12 the fastest by a little, in benchmarks/mesher/surface_tree_benchmark.cpp.
-constexpr std::size_t leaf_size = 8;
+constexpr std::size_t triangles_in_leaf = 8;
 
 /// The series is used from this many radii of a node on. 2 leaves errors up to 0.006, 3 up to 0.001 in twice
 /// the time (surfaces of 200,000 triangles, points near them).
@@ -163,8 +163,8 @@ SurfaceTree::SurfaceTree(std::span<const Vec3> points, std::span<const Triangle>
   std::vector<Box3> boxes(n);
   for (std::size_t t = 0; t < n; ++t)
     for (const Vec3& c : corners[t]) boxes[t].add(c);
-  const std::vector<Index> order = median_order(boxes, middles, leaf_size);
-  tree_ = BoxTree(n, leaf_size, [&](std::size_t i) { return boxes[order[i]]; });
+  const std::vector<Index> order = median_order(boxes, middles, triangles_in_leaf);
+  tree_ = BoxTree(n, triangles_in_leaf, [&](std::size_t i) { return boxes[order[i]]; });
   triangles_.resize(n);
   for (std::size_t i = 0; i < n; ++i) triangles_[i] = corners[order[i]];
   make_series();

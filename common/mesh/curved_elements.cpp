@@ -23,8 +23,6 @@ constexpr std::array<double, 4> shares{1, 0.5, 0.25, 0};
 
 using Edge = std::array<Index, 2>;
 
-Edge ascending(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
-
 /// The patches of the triangles at an edge, each with their number.
 using PatchesAtEdge = std::map<InterfacePatch, int>;
 

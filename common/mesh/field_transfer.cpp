@@ -10,7 +10,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t grain = 1024;
+constexpr std::size_t sample_grain = 1024;
 
 /// Fields like `fields`, for another number of points or tets.
 std::vector<MeshField> empty_fields(const std::vector<MeshField>& fields, std::size_t count) {
@@ -57,7 +57,7 @@ void transfer_point_fields(const TetMesh& before, TetMesh& after) {
   PointTable places(before.points, before.points.size());
   for (std::size_t p = 0; p < before.points.size(); ++p) places.add(static_cast<Index>(p));
   const TetTree tree(before, TetTree::Order::place);
-  parallel_for(0, after.points.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, after.points.size(), sample_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       if (const Index same = places.find(after.points[p]); same != no_index) {
         copy_values(before.point_fields, same, after.point_fields, p);
@@ -72,7 +72,7 @@ void transfer_cell_fields(const TetMesh& before, TetMesh& after) {
   after.cell_fields = empty_fields(before.cell_fields, after.tets.size());
   if (before.cell_fields.empty()) return;
   const TetTree tree(before, TetTree::Order::material_place);
-  parallel_for(0, after.tets.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, after.tets.size(), sample_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       Vec3 centroid = Vec3::Zero();
       for (const Index p : after.tets[t]) centroid += after.points[p] / 4;

@@ -5,12 +5,6 @@
 
 namespace tetwright {
 
-namespace {
-
-std::array<Index, 2> ascending(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
-
-}  // namespace
-
 std::vector<MeshField> fields_of_nodes(std::vector<MeshField> point_fields, const MidsideNodes& nodes) {
   for (MeshField& field : point_fields) {
     const auto components = static_cast<std::size_t>(field.components);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -11,6 +12,9 @@ namespace tetwright {
 /// FEBio. Gmsh swaps the last two.
 inline constexpr std::array<std::array<std::size_t, 2>, 6> tet_midside_edges{
     {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+
+/// The ends of an edge, the smaller first.
+inline std::array<Index, 2> ascending(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
 /// The nodes in the middle of edges that make second-order elements of the tets of a mesh.
 struct MidsideNodes {

@@ -10,10 +10,10 @@ namespace tetwright {
 namespace {
 
 /// One side of a triangle: the corners at its ends are 3 * triangle + their place in it.
-struct Side {
+struct ChainSide {
   Index low, high;
   std::uint64_t low_corner, high_corner;
-  bool operator<(const Side& other) const {
+  bool operator<(const ChainSide& other) const {
     return std::tie(low, high, low_corner) < std::tie(other.low, other.high, other.low_corner);
   }
 };
@@ -21,7 +21,7 @@ struct Side {
 }  // namespace
 
 SurfaceChains surface_chains(std::span<const Triangle> triangles) {
-  std::vector<Side> sides;
+  std::vector<ChainSide> sides;
   sides.reserve(3 * triangles.size());
   // A vertex that a broken triangle names twice has its fans at the first of the two.
   const auto corner = [&](std::size_t t, Index v) -> std::uint64_t {
@@ -31,7 +31,7 @@ SurfaceChains surface_chains(std::span<const Triangle> triangles) {
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
       const Index a = triangles[t][k], b = triangles[t][(k + 1) % 3];
-      Side side{a, b, corner(t, a), corner(t, b)};
+      ChainSide side{a, b, corner(t, a), corner(t, b)};
       if (side.low > side.high) {
         std::swap(side.low, side.high);
         std::swap(side.low_corner, side.high_corner);

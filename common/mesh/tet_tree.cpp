@@ -13,7 +13,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t grain = 1024;
+constexpr std::size_t tree_grain = 1024;
 
 /// A box has 48 bytes: with fewer tets to a leaf the boxes outweigh the mesh.
 constexpr std::size_t leaf_tets = 8;
@@ -109,7 +109,7 @@ void TetTree::sort(Order order) {
     Index tet;
   };
   std::vector<Key> keys(tets_.size());
-  parallel_for(0, keys.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, keys.size(), tree_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const Box3 box = box_of(corners(static_cast<Index>(t)));
       keys[t] = {grid.key(box.low + (box.high - box.low) / 2), order == Order::place ? 0 : mesh_.materials[t],

@@ -19,7 +19,7 @@ namespace {
 
 using Kind = FeatureLabel::Kind;
 
-constexpr std::size_t point_grain = 512, tet_grain = 1 << 13;
+constexpr std::size_t fitting_grain = 512, fitted_tet_grain = 1 << 13;
 /// How far a point may be from where it belongs, cells.
 constexpr double target_reach = 4;
 /// What tets must keep in each pass, shares of tangent_of_poor_tet: shapes first, then exact creases.
@@ -79,7 +79,7 @@ class Fitter {
 
   std::vector<PointMove> remaining_moves(double floor) const {
     const std::vector<Index>& points = labels_.points();
-    return parallel_collect<PointMove>(0, points.size(), point_grain,
+    return parallel_collect<PointMove>(0, points.size(), fitting_grain,
                                        [&](std::size_t begin, std::size_t end, std::vector<PointMove>& out) {
                                          for (std::size_t i = begin; i < end; ++i) {
                                            if (must_stay(points[i], floor)) continue;
@@ -101,7 +101,7 @@ class Fitter {
     std::vector<std::uint8_t> role(mesh_.points.size(), 0);  // 1: waits, 2: is beside one that does
     for (const PointMove& m : waiting) role[m.point] = 1;
     const auto tets_with = [&](std::uint8_t wanted) {
-      return parallel_collect<Index>(0, mesh_.tets.size(), tet_grain,
+      return parallel_collect<Index>(0, mesh_.tets.size(), fitted_tet_grain,
                                      [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
                                        for (std::size_t t = begin; t < end; ++t)
                                          if (std::any_of(mesh_.tets[t].begin(), mesh_.tets[t].end(),
@@ -241,7 +241,7 @@ void fit_creases(TetMesh& mesh, const FeatureSurface& surface, const MaterialFie
   faces.reserve(mesh.interfaces.size());
   for (const InterfaceTriangle& t : mesh.interfaces) faces.push_back(t.ids);
   undo_intersections(mesh.points, mesh.tets, faces, before);
-  parallel_for(0, mesh.interfaces.size(), point_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, mesh.interfaces.size(), fitting_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       mesh.interfaces[i].patch = patch_of(mesh, mesh.interfaces[i], labels, surface, cell);
   });

@@ -10,7 +10,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t point_grain = 512, tet_grain = 1 << 13;
+constexpr std::size_t label_grain = 512, label_tet_grain = 1 << 13;
 /// How far a boundary point may be from the surface, cells.
 constexpr double surface_reach = 2;
 /// How far a corner may be from the point that stands for it, cells.
@@ -28,7 +28,7 @@ constexpr double island_reach = 0.35;
 constexpr int crossing_steps = 3;
 /// Creases with patches between them that are narrower than this, cells, become one.
 constexpr double narrow_reach = 0.3;
-constexpr int max_rounds = 4;
+constexpr int max_label_rounds = 4;
 
 }  // namespace
 
@@ -77,7 +77,7 @@ void CreaseLabels::number_boundary() {
 }
 
 void CreaseLabels::label_points() {
-  parallel_for(0, points_.size(), point_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, points_.size(), label_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::vector<Index>& around = triangles_at_[i];
       const InterfaceTriangle& first = mesh_.interfaces[around.front()];
@@ -253,7 +253,7 @@ void CreaseLabels::snap_points() {
   };
   const std::vector<std::array<Index, 2>> edges = crossing_edges();
   std::vector<Snap> snaps = parallel_collect<Snap>(
-      0, edges.size(), point_grain, [&](std::size_t begin, std::size_t end, std::vector<Snap>& out) {
+      0, edges.size(), label_grain, [&](std::size_t begin, std::size_t end, std::vector<Snap>& out) {
         for (std::size_t e = begin; e < end; ++e) {
           const auto [u, v] = edges[e];
           const std::optional<Crossing> c = find_crossing(u, v);
@@ -277,7 +277,7 @@ void CreaseLabels::snap_points() {
 }
 
 void CreaseLabels::resolve_rest() {
-  for (int round = 0; round < max_rounds; ++round) {
+  for (int round = 0; round < max_label_rounds; ++round) {
     const std::vector<std::array<Index, 2>> edges = crossing_edges();
     if (edges.empty()) return;
     for (const auto& [u, v] : edges) {
@@ -357,7 +357,8 @@ void CreaseLabels::track(const std::vector<std::array<Index, 2>>& edges) {
       for_neighbours(number_[p], [&](Index q) { tracked[number_[q]] = 1; });
     }
   const std::vector<Index> tets = parallel_collect<Index>(
-      0, mesh_.tets.size(), tet_grain, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+      0, mesh_.tets.size(), label_tet_grain,
+      [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
         for (std::size_t t = begin; t < end; ++t)
           if (std::any_of(mesh_.tets[t].begin(), mesh_.tets[t].end(),
                           [&](Index p) { return number_[p] != no_index && tracked[number_[p]]; }))

@@ -14,11 +14,11 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t point_grain = 1024;
+constexpr std::size_t wall_point_grain = 1024;
 /// A wall counts as restored within this share of its thickness.
 constexpr double restored_share = 0.1;
 /// What is left after a pass is tried again, since the neighbours have moved, too.
-constexpr int passes = 3;
+constexpr int restoring_passes = 3;
 /// Lattice units: half of what is thickened at most, and as much for a point that was moved on from there.
 constexpr double max_step = 1.25;
 
@@ -27,7 +27,8 @@ std::vector<PointMove> find_moves(const std::vector<Vec3>& points,
                                   const std::vector<std::uint8_t>& is_on_interface,
                                   const MaterialField& field, const MaterialField& as_is) {
   return parallel_collect<PointMove>(
-      0, points.size(), point_grain, [&](std::size_t begin, std::size_t end, std::vector<PointMove>& out) {
+      0, points.size(), wall_point_grain,
+      [&](std::size_t begin, std::size_t end, std::vector<PointMove>& out) {
         const std::unique_ptr<FieldSampler> owned = as_is.sampler();
         for (std::size_t p = begin; p < end; ++p) {
           if (!is_on_interface[p] || !field.changes_walls(points[p])) continue;
@@ -50,7 +51,7 @@ ThickenedWalls what_is_left(const std::vector<PointMove>& moves, const MaterialF
     Vec3 place;
   };
   const std::vector<Off> off = parallel_collect<Off>(
-      0, moves.size(), point_grain, [&](std::size_t begin, std::size_t end, std::vector<Off>& out) {
+      0, moves.size(), wall_point_grain, [&](std::size_t begin, std::size_t end, std::vector<Off>& out) {
         for (std::size_t m = begin; m < end; ++m) {
           const double offset = moves[m].step.norm(), thickness = field.parallel_thickness(moves[m].from);
           if (2 * offset > restored_share * thickness) out.push_back({offset, thickness, moves[m].from});
@@ -79,7 +80,7 @@ ThickenedWalls restore_walls(CutMesh& mesh, const MaterialField& field, const Ma
   std::vector<PointMove> moves = find_moves(mesh.points, mesh.on_interface, field, as_is);
   if (moves.empty()) return {};
   const std::vector<Vec3> before = mesh.points;
-  for (int pass = 0; pass < passes && !moves.empty(); ++pass) {
+  for (int pass = 0; pass < restoring_passes && !moves.empty(); ++pass) {
     move_jointly(mesh.points, mesh.tets, moves, tangent_of_poor_tet);
     keep_remaining(mesh.points, moves);
   }

@@ -13,8 +13,6 @@ constexpr std::size_t sheet_grain = 512;  // voxels to a task, a microsecond or 
 
 /// A sheet of at least so many cells never tears: wherever it runs, a lattice point is inside.
 constexpr double sheet_cells = 1.5;
-/// Half the diagonal of a cube.
-constexpr double half_diagonal = 0.8660254037844386;
 
 /// A cell of 1/2^depth voxels and what became of it.
 struct SheetCell {
@@ -28,7 +26,7 @@ struct SheetCell {
 void descend(FieldSampler& sampler, int depth, const std::array<int, 3>& low, std::vector<SheetCell>& out) {
   const double side = std::ldexp(1, -depth);
   const Vec3 centre = side * (Vec3(low[0], low[1], low[2]) + Vec3::Constant(0.5));
-  const auto sheet = sampler.thinnest_sheet(centre, half_diagonal * side);
+  const auto sheet = sampler.thinnest_sheet(centre, half_cube_diagonal * side);
   if (!sheet || sheet->thickness >= sheet_cells * side) return;
   const bool too_thin = depth == max_refinement || sheet->closed;
   out.push_back({depth, morton_encode(low), sheet->region, too_thin});

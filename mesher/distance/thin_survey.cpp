@@ -14,9 +14,7 @@ namespace {
 using Side = SurfaceDistance::Side;
 using Voxel = std::array<int, 3>;
 
-constexpr std::size_t voxel_grain = 256;
-/// Half the diagonal of a cube.
-constexpr double half_diagonal = 0.8660254037844386;
+constexpr std::size_t survey_grain = 256;
 
 /// Distances come from the triangles where a wall or gap is thinner than this, voxels: interpolation between
 /// grid points is accurate only if each wall has two voxels of its own, in any direction.
@@ -36,7 +34,7 @@ constexpr double tets_per_wall_cell = 8, tets_per_gap_cell = 17;
 /// to 7,000 tets has 0.5 % of them under 0.1 sr, to 8,000 none (areas come out 15 % too large here).
 constexpr double filling_tets_per_area = 0.66;
 /// Cells whose middle is within half a diagonal of a plane, for each squared cell of the plane.
-constexpr double cells_per_area = 2 * half_diagonal;
+constexpr double cells_per_area = 2 * half_cube_diagonal;
 
 std::array<int, 3> sum(const Voxel& a, int dx, int dy, int dz) { return {a[0] + dx, a[1] + dy, a[2] + dz}; }
 
@@ -48,11 +46,11 @@ std::vector<MortonKey> surface_voxels(const LevelSet& level_set) {
         DistanceGridReader reader(level_set.grid());
         for (std::size_t i = begin; i < end; ++i)
           for (int k = 0; k < leaf_points; ++k) {
-            if (!leaves[i].active(k) || std::abs(leaves[i].values[k]) > 3 * half_diagonal) continue;
+            if (!leaves[i].active(k) || std::abs(leaves[i].values[k]) > 3 * half_cube_diagonal) continue;
             const Voxel v = leaves[i].point(k);
             double corners[8];
             reader.corners(v[0], v[1], v[2], corners);
-            if (std::any_of(corners, corners + 8, [](double d) { return std::abs(d) <= half_diagonal; }))
+            if (std::any_of(corners, corners + 8, [](double d) { return std::abs(d) <= half_cube_diagonal; }))
               out.push_back(morton_encode(v));
           }
       });
@@ -67,7 +65,7 @@ bool may_be_thin(LevelSetSampler& sampler, const Vec3& middle, double limit) {
   Vec3 slope;
   const double value = sampler.at(middle, slope);
   const double length = slope.norm();
-  if (std::abs(value) > half_diagonal + trusted) return std::abs(length - 1) > trusted;
+  if (std::abs(value) > half_cube_diagonal + trusted) return std::abs(length - 1) > trusted;
   if (std::abs(length - 1) > trusted) return true;
   const Vec3 normal = slope / length, place = middle - value * normal;
   const double radius = 0.5 * limit;
@@ -96,7 +94,7 @@ struct SideLimits {
 CellWalls measure_nearest(const SurfaceDistance& surface, const Voxel& cell, int depth, double facing,
                           const SideLimits& limits) {
   const std::optional<SurfacePlace> place =
-      surface.nearest(middle_of(cell, depth), half_diagonal * std::ldexp(1, -depth));
+      surface.nearest(middle_of(cell, depth), half_cube_diagonal * std::ldexp(1, -depth));
   if (!place) return {};
   const double wall = surface.thickness(*place, Side::wall, facing, limits.wall),
                gap = surface.thickness(*place, Side::gap, facing, limits.gap);
@@ -137,7 +135,7 @@ void descend(const SurfaceDistance& surface, const Voxel& cell, int depth, int m
 std::vector<MortonKey> dilated(std::vector<MortonKey> voxels, int times, const std::array<int, 3>& cells) {
   for (int i = 0; i < times; ++i) {
     voxels = parallel_collect<MortonKey>(
-        0, voxels.size(), voxel_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+        0, voxels.size(), survey_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
           for (std::size_t v = begin; v < end; ++v) {
             const Voxel at = morton_decode(voxels[v]);
             for (int k = 0; k < 27; ++k) {
@@ -171,12 +169,13 @@ void find_regions(ThinSurvey& survey) {
     Index owner;
     bool operator<(const Claim& o) const { return voxel != o.voxel ? voxel < o.voxel : owner < o.owner; }
   };
-  std::vector<Claim> claims = parallel_collect<Claim>(
-      0, survey.voxels.size(), voxel_grain, [&](std::size_t begin, std::size_t end, std::vector<Claim>& out) {
-        for (std::size_t v = begin; v < end; ++v)
-          for (const MortonKey key : dilated({survey.voxels[v]}, 1, survey.cells))
-            out.push_back({key, static_cast<Index>(v)});
-      });
+  std::vector<Claim> claims =
+      parallel_collect<Claim>(0, survey.voxels.size(), survey_grain,
+                              [&](std::size_t begin, std::size_t end, std::vector<Claim>& out) {
+                                for (std::size_t v = begin; v < end; ++v)
+                                  for (const MortonKey key : dilated({survey.voxels[v]}, 1, survey.cells))
+                                    out.push_back({key, static_cast<Index>(v)});
+                              });
   parallel_sort(claims);
   DisjointSets sets(survey.voxels.size());
   for (std::size_t i = 1; i < claims.size(); ++i)
@@ -200,7 +199,7 @@ void count_cells(ThinSurvey& survey) {
     bool gap;
   };
   const std::vector<Cell> cells = parallel_collect<Cell>(
-      0, survey.voxels.size(), voxel_grain, [&](std::size_t begin, std::size_t end, std::vector<Cell>& out) {
+      0, survey.voxels.size(), survey_grain, [&](std::size_t begin, std::size_t end, std::vector<Cell>& out) {
         for (std::size_t v = begin; v < end; ++v)
           descend(*survey.surface, morton_decode(survey.voxels[v]), 0, counted_depth,
                   [&](const Voxel& cell, int depth, const CellWalls& walls, bool thin) {
@@ -257,7 +256,7 @@ ThinSurvey survey_thin_walls(const RepairedSurface& surface, const LevelSet& lev
   const SideLimits exact{std::max(exact_below, limits.min_thickness), std::max(exact_below, limits.min_gap)};
   const std::vector<MortonKey> all = surface_voxels(level_set);
   const std::vector<MortonKey> suspects = parallel_collect<MortonKey>(
-      0, all.size(), voxel_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+      0, all.size(), survey_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
         LevelSetSampler sampler(level_set);
         for (std::size_t i = begin; i < end; ++i)
           if (may_be_thin(sampler, middle_of(morton_decode(all[i]), 0), std::max(exact.wall, exact.gap)))
@@ -274,7 +273,7 @@ ThinSurvey survey_thin_walls(const RepairedSurface& surface, const LevelSet& lev
   survey.surface = std::make_shared<const SurfaceDistance>(points, surface.triangles, surface.closed,
                                                            level_set.caps(), surface.intersects_itself);
   survey.voxels = parallel_collect<MortonKey>(
-      0, suspects.size(), voxel_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+      0, suspects.size(), survey_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
         for (std::size_t i = begin; i < end; ++i) {
           if (measure(*survey.surface, morton_decode(suspects[i]), 0, facing_to_change, exact).thin)
             out.push_back(suspects[i]);
@@ -360,12 +359,12 @@ ThinWallPlan plan_thin_walls(const ThinSurvey& survey) {
       std::vector<Cell> cells;
       std::vector<Change> changes;
     };
-    const std::size_t tasks = (survey.voxels.size() + voxel_grain - 1) / voxel_grain;
+    const std::size_t tasks = (survey.voxels.size() + survey_grain - 1) / survey_grain;
     std::vector<Found> found(tasks);
     parallel_for(0, tasks, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t task = begin; task < end; ++task)
-        for (std::size_t v = task * voxel_grain; v < std::min(survey.voxels.size(), (task + 1) * voxel_grain);
-             ++v) {
+        for (std::size_t v = task * survey_grain;
+             v < std::min(survey.voxels.size(), (task + 1) * survey_grain); ++v) {
           const std::uint32_t region = survey.region[v];
           const int max_depth = survey.regions[region].depth;
           const double min_shown = std::ldexp(min_shown_cells, -max_depth);
@@ -386,7 +385,7 @@ ThinWallPlan plan_thin_walls(const ThinSurvey& survey) {
                       }
                     const Vec3 middle = middle_of(cell, depth);
                     const std::optional<SurfacePlace> place =
-                        survey.surface->nearest(middle, half_diagonal * side);
+                        survey.surface->nearest(middle, half_cube_diagonal * side);
                     if (!place) return;
                     const double wall =
                         survey.surface->thickness(*place, Side::wall, facing_to_report, exact_below);
@@ -426,13 +425,14 @@ ThinWallPlan plan_thin_walls(const ThinSurvey& survey) {
   // At the rim of a wall or gap the nearest place may be on a face beside it: cells of the surface beside
   // cells that are split are split, too.
   const std::vector<Cell> beside = parallel_collect<Cell>(
-      0, cells.size(), voxel_grain, [&](std::size_t begin, std::size_t end, std::vector<Cell>& out) {
+      0, cells.size(), survey_grain, [&](std::size_t begin, std::size_t end, std::vector<Cell>& out) {
         for (std::size_t i = begin; i < end; ++i)
           for (int k = 0; k < 27; ++k) {
             const Voxel next = sum(morton_decode(cells[i].key), k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
             if (const Cell c{cells[i].depth, morton_encode(next)};
                 !std::binary_search(cells.begin(), cells.end(), c) &&
-                survey.surface->nearest(middle_of(next, c.depth), half_diagonal * std::ldexp(1, -c.depth)))
+                survey.surface->nearest(middle_of(next, c.depth),
+                                        half_cube_diagonal * std::ldexp(1, -c.depth)))
               out.push_back(c);
           }
       });

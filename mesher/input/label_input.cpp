@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t max_labels = 60'000;  // regions have numbers of 16 bits, of which few mean other things
 constexpr std::size_t max_listed = 30;      // labels in a message
 constexpr std::size_t max_named = 20;       // labels with a finding of their own
-constexpr std::size_t voxel_grain = 1 << 18;  // voxels
+constexpr std::size_t label_voxel_grain = 1 << 18;  // voxels
 
 using LabelRange = std::pair<MaterialTag, MaterialTag>;
 using LabelCount = std::pair<MaterialTag, std::size_t>;
@@ -83,7 +83,7 @@ std::vector<LabelCount> count_labels(const std::vector<MaterialTag>& labels, con
                            " labels; choose fewer with --labels, if these are labels and not gray values");
   };
   std::vector<LabelCount> found = parallel_collect<LabelCount>(
-      0, labels.size(), voxel_grain, [&](std::size_t begin, std::size_t end, auto& out) {
+      0, labels.size(), label_voxel_grain, [&](std::size_t begin, std::size_t end, auto& out) {
         std::unordered_map<MaterialTag, std::size_t> counts;
         for_each_run(labels, begin, end, [&](std::size_t i, std::size_t j) {
           if (!chosen(labels[i])) return;
@@ -105,7 +105,7 @@ std::vector<LabelCount> count_labels(const std::vector<MaterialTag>& labels, con
 /// "1, 2, 3" for messages: the labels that are there, without the outside label.
 std::string labels_text(const std::vector<MaterialTag>& labels, MaterialTag outside) {
   std::vector<MaterialTag> found = parallel_collect<MaterialTag>(
-      0, labels.size(), voxel_grain, [&](std::size_t begin, std::size_t end, auto& out) {
+      0, labels.size(), label_voxel_grain, [&](std::size_t begin, std::size_t end, auto& out) {
         std::set<MaterialTag> smallest;
         for_each_run(labels, begin, end, [&](std::size_t i, std::size_t) {
           if (labels[i] == outside) return;
@@ -200,7 +200,7 @@ std::vector<RegionIndex> number_regions(const std::vector<MaterialTag>& labels,
     return at->tag == label ? static_cast<RegionIndex>(at - materials.begin() + 1) : outside_region;
   };
   std::vector<RegionIndex> regions(labels.size());
-  parallel_for(0, labels.size(), voxel_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, labels.size(), label_voxel_grain, [&](std::size_t begin, std::size_t end) {
     for_each_run(labels, begin, end, [&](std::size_t i, std::size_t j) {
       std::fill(regions.begin() + static_cast<std::ptrdiff_t>(i),
                 regions.begin() + static_cast<std::ptrdiff_t>(j), region(labels[i]));
@@ -320,7 +320,7 @@ void Preparation::drop_lost(const std::vector<Loss>& losses) {
   }
   result_.materials = std::move(kept);
   if (result_.lost.empty()) return;
-  parallel_for(0, result_.regions.size(), voxel_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, result_.regions.size(), label_voxel_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) result_.regions[i] = renumbered[result_.regions[i]];
   });
 }

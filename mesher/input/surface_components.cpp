@@ -16,15 +16,15 @@ namespace tetwright {
 namespace {
 
 /// One side of a triangle; sides that join the same two points stand together when sorted.
-struct Side {
+struct EdgeSide {
   std::uint64_t edge;  ///< smaller point << 32 | larger point
   std::uint32_t triangle;
   std::uint32_t forward;  ///< 1 when the triangle runs from the smaller to the larger point
-  auto operator<=>(const Side&) const = default;
+  auto operator<=>(const EdgeSide&) const = default;
 };
 
-std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles) {
-  std::vector<Side> sides(3 * triangles.size());
+std::vector<EdgeSide> sorted_sides(const std::vector<Triangle>& triangles) {
+  std::vector<EdgeSide> sides(3 * triangles.size());
   parallel_for(0, triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
       for (std::size_t k = 0; k < 3; ++k) {
@@ -38,7 +38,7 @@ std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles) {
 
 /// Calls `body` with each group of sides on one edge.
 template <class Body>
-void for_each_edge(const std::vector<Side>& sides, Body&& body) {
+void for_each_edge(const std::vector<EdgeSide>& sides, Body&& body) {
   for (std::size_t i = 0, j; i < sides.size(); i = j) {
     for (j = i + 1; j < sides.size() && sides[j].edge == sides[i].edge;) ++j;
     body(std::span(sides).subspan(i, j - i));
@@ -62,13 +62,13 @@ struct Seam {
   int sides;
 };
 
-enum class Kind : std::uint8_t { core, open, wall };
+enum class PatchKind : std::uint8_t { core, open, wall };
 
 /// The patches of a surface and how they meet.
 class Patches {
  public:
   Patches(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
-          const std::vector<Side>& sides, const std::string& file)
+          const std::vector<EdgeSide>& sides, const std::string& file)
       : points_(points), triangles_(triangles) {
     flood(sides, file);
     find_seams(sides);
@@ -80,23 +80,23 @@ class Patches {
     drop_fins(two_sided);
     drop_walls_of_core();
     // What hangs on the core must not sway it.
-    balance(Kind::core);
-    balance(Kind::open);
+    balance(PatchKind::core);
+    balance(PatchKind::open);
   }
 
   bool turned(Index t) const { return turned_[t] != patch_turned_[patch_[t]]; }
-  bool wall(Index t) const { return kind_[patch_[t]] == Kind::wall; }
+  bool wall(Index t) const { return kind_[patch_[t]] == PatchKind::wall; }
 
   std::vector<SurfaceComponent> components() const;
 
  private:
-  void flood(const std::vector<Side>& sides, const std::string& file);
-  void find_seams(const std::vector<Side>& sides);
+  void flood(const std::vector<EdgeSide>& sides, const std::string& file);
+  void find_seams(const std::vector<EdgeSide>& sides);
   void drop_flaps();
   void peel();
   void drop_fins(const std::vector<char>& two_sided);
   void drop_walls_of_core();
-  void balance(Kind kind);
+  void balance(PatchKind kind);
 
   std::span<const Seam> at_edge(Index edge) const {
     return std::span(seams_).subspan(edge_start_[edge], edge_start_[edge + 1] - edge_start_[edge]);
@@ -106,7 +106,7 @@ class Patches {
     return std::span(patch_seams_)
         .subspan(patch_start_[patch], patch_start_[patch + 1] - patch_start_[patch]);
   }
-  int sides_at(Index edge, Kind kind) const {
+  int sides_at(Index edge, PatchKind kind) const {
     int sum = 0;
     for (const Seam& s : at_edge(edge)) sum += kind_[s.patch] == kind ? s.sides : 0;
     return sum;
@@ -114,9 +114,9 @@ class Patches {
 
   const std::vector<Vec3>& points_;
   const std::vector<Triangle>& triangles_;
-  std::vector<Index> patch_;  ///< of each triangle
-  std::vector<char> turned_;  ///< of each triangle, against the file and for winding its patch alike
-  std::vector<Kind> kind_;    ///< from here on of each patch
+  std::vector<Index> patch_;     ///< of each triangle
+  std::vector<char> turned_;     ///< of each triangle, against the file and for winding its patch alike
+  std::vector<PatchKind> kind_;  ///< from here on of each patch
   std::vector<char> patch_turned_;
   std::vector<Index> patch_size_;  ///< in triangles
   std::vector<double> area_;
@@ -125,7 +125,7 @@ class Patches {
   std::vector<Index> patch_seams_;
 };
 
-void Patches::flood(const std::vector<Side>& sides, const std::string& file) {
+void Patches::flood(const std::vector<EdgeSide>& sides, const std::string& file) {
   struct Beside {
     std::uint32_t triangle, other;
     std::uint32_t same_direction;
@@ -133,7 +133,7 @@ void Patches::flood(const std::vector<Side>& sides, const std::string& file) {
   };
   std::vector<Beside> neighbours;
   neighbours.reserve(sides.size());
-  for_each_edge(sides, [&](std::span<const Side> edge) {
+  for_each_edge(sides, [&](std::span<const EdgeSide> edge) {
     if (edge.size() != 2) return;
     const std::uint32_t same = edge[0].forward == edge[1].forward;
     neighbours.push_back({edge[0].triangle, edge[1].triangle, same});
@@ -173,20 +173,20 @@ void Patches::flood(const std::vector<Side>& sides, const std::string& file) {
     }
     if (2 * against > queue.size())
       for (Index t : queue) turned_[t] = !turned_[t];
-    kind_.push_back(Kind::core);
+    kind_.push_back(PatchKind::core);
     patch_size_.push_back(static_cast<Index>(queue.size()));
     area_.push_back(area);
   }
   patch_turned_.assign(kind_.size(), 0);
 }
 
-void Patches::find_seams(const std::vector<Side>& sides) {
+void Patches::find_seams(const std::vector<EdgeSide>& sides) {
   Index edges = 0;
   std::vector<Seam> here;
-  for_each_edge(sides, [&](std::span<const Side> edge) {
+  for_each_edge(sides, [&](std::span<const EdgeSide> edge) {
     if (edge.size() == 2) return;
     here.clear();
-    for (const Side& s : edge)
+    for (const EdgeSide& s : edge)
       here.push_back({edges, patch_[s.triangle], (s.forward != 0) != (turned_[s.triangle] != 0) ? 1 : -1, 1});
     std::stable_sort(here.begin(), here.end(),
                      [](const Seam& a, const Seam& b) { return a.patch < b.patch; });
@@ -222,7 +222,7 @@ void Patches::drop_flaps() {
       }
       needed |= others == 0;
     }
-    if (ends && !needed) kind_[p] = Kind::wall;
+    if (ends && !needed) kind_[p] = PatchKind::wall;
   }
 }
 
@@ -230,10 +230,10 @@ void Patches::drop_flaps() {
 void Patches::peel() {
   std::vector<Index> queue;
   const auto look_at = [&](Index edge) {
-    if (sides_at(edge, Kind::core) != 1) return;
+    if (sides_at(edge, PatchKind::core) != 1) return;
     for (const Seam& s : at_edge(edge))
-      if (kind_[s.patch] == Kind::core) {
-        kind_[s.patch] = Kind::open;
+      if (kind_[s.patch] == PatchKind::core) {
+        kind_[s.patch] = PatchKind::open;
         queue.push_back(s.patch);
       }
   };
@@ -252,14 +252,14 @@ void Patches::drop_fins(const std::vector<char>& two_sided) {
   std::vector<char> hangs(kind_.size(), 0);
   for (Index p = 0; p < kind_.size(); ++p) hangs[sets.root(p)] |= !fin[p];
   for (Index p = 0; p < kind_.size(); ++p)
-    if (fin[p] && kind_[p] == Kind::open && hangs[sets.root(p)]) kind_[p] = Kind::wall;
+    if (fin[p] && kind_[p] == PatchKind::open && hangs[sets.root(p)]) kind_[p] = PatchKind::wall;
 }
 
 /// Smallest first: of three patches between the same seams the wall is most likely the flat one.
 void Patches::drop_walls_of_core() {
   std::vector<Index> order;
   for (Index p = 0; p < kind_.size(); ++p)
-    if (kind_[p] == Kind::core && !of_patch(p).empty()) order.push_back(p);
+    if (kind_[p] == PatchKind::core && !of_patch(p).empty()) order.push_back(p);
   std::sort(order.begin(), order.end(),
             [&](Index a, Index b) { return area_[a] != area_[b] ? area_[a] < area_[b] : a < b; });
   for (Index p : order) {
@@ -267,16 +267,16 @@ void Patches::drop_walls_of_core() {
     for (Index i : of_patch(p)) {
       if (seams_[i].net == 0) continue;
       ends = true;
-      const int all = sides_at(seams_[i].edge, Kind::core);
+      const int all = sides_at(seams_[i].edge, PatchKind::core);
       needed |= all % 2 == 0 || all == seams_[i].sides;
     }
-    if (ends && !needed) kind_[p] = Kind::wall;
+    if (ends && !needed) kind_[p] = PatchKind::wall;
   }
 }
 
 /// Turns patches of a kind over as long as that makes seams balance better. Ends, as each turn takes at least
 /// one from the sum of all imbalances.
-void Patches::balance(Kind kind) {
+void Patches::balance(PatchKind kind) {
   std::vector<Index> queue;
   for (Index p = 0; p < kind_.size(); ++p)
     if (kind_[p] == kind && !of_patch(p).empty()) queue.push_back(p);
@@ -292,7 +292,7 @@ void Patches::balance(Kind kind) {
     for (Index i : of_patch(p)) {
       int rest = 0;
       for (const Seam& s : at_edge(seams_[i].edge))
-        if (s.patch != p && (kind_[s.patch] == kind || kind_[s.patch] == Kind::core)) rest += s.net;
+        if (s.patch != p && (kind_[s.patch] == kind || kind_[s.patch] == PatchKind::core)) rest += s.net;
       gain += std::abs(rest + seams_[i].net) - std::abs(rest - seams_[i].net);
     }
     if (gain <= 0) continue;
@@ -311,9 +311,9 @@ void Patches::balance(Kind kind) {
 std::vector<SurfaceComponent> Patches::components() const {
   DisjointSets sets(kind_.size());
   std::vector<char> closed(kind_.size());
-  for (Index p = 0; p < kind_.size(); ++p) closed[p] = kind_[p] == Kind::core;
+  for (Index p = 0; p < kind_.size(); ++p) closed[p] = kind_[p] == PatchKind::core;
   for (Index e = 0; e + 1 < edge_start_.size(); ++e)
-    for (const Kind kind : {Kind::core, Kind::open}) {
+    for (const PatchKind kind : {PatchKind::core, PatchKind::open}) {
       Index first = no_index;
       int sum = 0;
       for (const Seam& s : at_edge(e)) {
@@ -351,7 +351,7 @@ std::vector<SurfaceComponent> split_into_components(const std::vector<Vec3>& poi
                                                     const std::vector<char>& two_sided,
                                                     const std::string& file,
                                                     std::vector<SurfaceFinding>& findings) {
-  const std::vector<Side> sides = sorted_sides(triangles);
+  const std::vector<EdgeSide> sides = sorted_sides(triangles);
   Patches patches(points, triangles, sides, file);
   patches.arrange(two_sided);
 
@@ -360,11 +360,11 @@ std::vector<SurfaceComponent> split_into_components(const std::vector<Vec3>& poi
   const auto count = [](std::size_t& n, std::optional<Vec3>& place, const Vec3& p) {
     if (n++ == 0) place = p;
   };
-  for_each_edge(sides, [&](std::span<const Side> edge) {
+  for_each_edge(sides, [&](std::span<const EdgeSide> edge) {
     const Vec3 middle = 0.5 * points[edge[0].edge >> 32] + 0.5 * points[edge[0].edge & 0xffffffffu];
     if (edge.size() > 2) count(crowded, crowded_place, middle);
     const auto kept =
-        std::count_if(edge.begin(), edge.end(), [&](const Side& s) { return !patches.wall(s.triangle); });
+        std::count_if(edge.begin(), edge.end(), [&](const EdgeSide& s) { return !patches.wall(s.triangle); });
     if (kept == 1) count(free, free_place, middle);
   });
   for (Index t = 0; t < triangles.size(); ++t) {

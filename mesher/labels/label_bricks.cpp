@@ -143,7 +143,7 @@ void make_tile(const LabelInput& labels, int t, const std::array<int, 3>& tiles,
 }
 
 /// Number of rounds of growth: growing a label changes its neighbours.
-constexpr int max_rounds = 4;
+constexpr int max_brick_rounds = 4;
 
 /// Determines how far each label is grown so that it keeps its volume.
 ///
@@ -314,7 +314,7 @@ LabelBricks make_label_bricks(const LabelInput& labels, const Progress* progress
                     parts[t]);
       }
     });
-    if (round == max_rounds || !growth.adjust(labels, parts, tiles)) break;
+    if (round == max_brick_rounds || !growth.adjust(labels, parts, tiles)) break;
   }
   std::size_t channel_count = 0;
   for (const TileBricks& p : parts) channel_count += p.channels.size();

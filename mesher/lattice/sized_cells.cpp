@@ -13,9 +13,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t cell_grain = 1024;
-/// Half the diagonal of a cube over its edge: sqrt(3) / 2.
-constexpr double half_diagonal = 0.8660254037844386;
+constexpr std::size_t sizing_grain = 1024;
 
 std::vector<MortonKey> root_cells(const GridFrame& frame) {
   std::vector<MortonKey> cells;
@@ -47,15 +45,15 @@ FinerCells find_sized_cells(const MaterialField& field, const MaxCell& max_cell,
     if (progress) progress->throw_if_stopped();
     const double side = std::ldexp(1, level);  // voxels
     std::vector<MortonKey> split = parallel_collect<MortonKey>(
-        0, cells.size(), cell_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+        0, cells.size(), sizing_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
           const std::unique_ptr<FieldSampler> sampler = field.sampler();
           for (std::size_t i = begin; i < end; ++i) {
             const std::array<int, 3> low = morton_decode(cells[i]);
             const Vec3 centre = side * (Vec3(low[0], low[1], low[2]) + Vec3::Constant(0.5));
             if (!too_large(centre, side)) continue;
             const NearestRegion there = sampler->nearest(centre);
-            const bool whole = there.margin >= std::min(half_diagonal * side, field.band());
-            const bool small = half_diagonal * side <= field.band();
+            const bool whole = there.margin >= std::min(half_cube_diagonal * side, field.band());
+            const bool small = half_cube_diagonal * side <= field.band();
             if (!outside && there.region == outside_region && whole && small) continue;
             if (level <= 0 && !whole) continue;
             out.push_back(cells[i]);

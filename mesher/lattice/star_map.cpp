@@ -14,7 +14,7 @@ constexpr std::size_t star_grain = 1 << 14;  // tets to a task, some nanoseconds
 
 /// The list of tets is gone through once for each of so many parts of the points: their rows are not all
 /// there as plain numbers at a time.
-constexpr std::size_t passes = 4;
+constexpr std::size_t row_passes = 4;
 
 void append_steps(std::span<const Index> ascending, std::vector<std::uint8_t>& out) {
   Index before = 0;
@@ -47,8 +47,8 @@ StarMap::StarMap(std::vector<Index> points, std::size_t point_count, const TetLi
   const std::size_t chunks = (points_.size() + chunk_rows - 1) / chunk_rows;
   chunks_.resize(chunks);
   offsets_.resize(points_.size() + chunks);
-  for (std::size_t pass = 0; pass < passes; ++pass) {
-    const std::size_t first_chunk = chunks * pass / passes, last_chunk = chunks * (pass + 1) / passes;
+  for (std::size_t pass = 0; pass < row_passes; ++pass) {
+    const std::size_t first_chunk = chunks * pass / row_passes, last_chunk = chunks * (pass + 1) / row_passes;
     const std::size_t first = first_chunk * chunk_rows,
                       last = std::min(points_.size(), last_chunk * chunk_rows);
     if (first >= last) continue;

@@ -4,14 +4,6 @@
 
 namespace tetwright {
 
-namespace {
-
-bool has(const Star::StarTet& t, std::size_t point) {
-  return t.link[0] == point || t.link[1] == point || t.link[2] == point;
-}
-
-}  // namespace
-
 bool LinkCondition::holds(const EditableMesh& mesh, const SurfaceGrid& grid, const Star& star,
                           std::size_t b) {
   begin(mesh, grid, star, b);
@@ -59,7 +51,7 @@ bool LinkCondition::walk_star_of_b() {
   // Begins at a tet of the edge ab.
   bool added;
   for (const Star::StarTet& t : star_->tets)
-    if (has(t, b_)) {
+    if (t.links(b_)) {
       tet_numbers_.number(t.tet, added);
       walk_.push_back(t.tet);
       break;
@@ -132,16 +124,16 @@ bool LinkCondition::shares_simplex(const LinkTriangle& triangle) const {
     if (x == no_index || y == no_index) continue;
     bool edge_in_a = false, edge_with_ab = false;
     for (const Star::StarTet& s : star_->tets) {
-      if (!has(s, x) || !has(s, y)) continue;
+      if (!s.links(x) || !s.links(y)) continue;
       edge_in_a = true;
-      edge_with_ab |= has(s, b_);
+      edge_with_ab |= s.links(b_);
     }
     if (edge_in_a && !edge_with_ab) return true;
   }
   return triangle.in_a == 3 &&
          std::any_of(star_->tets.begin(), star_->tets.end(), [&](const Star::StarTet& s) {
            return std::all_of(triangle.points.begin(), triangle.points.end(),
-                              [&](std::uint32_t p) { return has(s, p); });
+                              [&](std::uint32_t p) { return s.links(p); });
          });
 }
 

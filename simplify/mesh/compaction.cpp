@@ -14,7 +14,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t grain = 8192;  ///< tets a parallel loop hands out at a time
+constexpr std::size_t compaction_grain = 8192;  ///< tets a parallel loop hands out at a time
 
 }  // namespace
 
@@ -90,7 +90,7 @@ void MeshCompaction::move_tets(const std::vector<Index>& new_point, const std::v
   const std::size_t slots = mesh_.tets_.size();
   {
     std::vector<TetRecord> tets(live + spare, {dead_tet, {}});
-    parallel_for(0, slots, grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(0, slots, compaction_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         if (new_tet[t] == no_index) continue;
         TetRecord r = mesh_.tets_[t];
@@ -104,7 +104,7 @@ void MeshCompaction::move_tets(const std::vector<Index>& new_point, const std::v
   }
   const auto move = [&](auto& values) {
     std::remove_reference_t<decltype(values)> moved(live + spare, 0);
-    parallel_for(0, slots, grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(0, slots, compaction_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t)
         if (new_tet[t] != no_index) moved[new_tet[t]] = values[t];
     });

@@ -15,7 +15,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t grain = 8192;  ///< tets a parallel loop hands out at a time
+constexpr std::size_t tet_grain = 8192;  ///< tets a parallel loop hands out at a time
 
 }  // namespace
 
@@ -104,7 +104,7 @@ double EditableMesh::dead_share() const {
 
 std::vector<InterfaceFace> EditableMesh::interface_faces() const {
   return parallel_collect<InterfaceFace>(
-      0, tets_.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<InterfaceFace>& out) {
+      0, tets_.size(), tet_grain, [&](std::size_t begin, std::size_t end, std::vector<InterfaceFace>& out) {
         for (std::size_t i = begin; i < end; ++i) {
           const auto t = static_cast<Index>(i);
           const TetRecord& r = tets_[t];
@@ -134,7 +134,7 @@ double EditableMesh::signed_volume(Index t) const {
 }
 
 double EditableMesh::total_volume() const {
-  return parallel_sum(0, tets_.size(), grain, [&](std::size_t begin, std::size_t end) {
+  return parallel_sum(0, tets_.size(), tet_grain, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t t = begin; t < end; ++t)
       if (tets_[t].points[0] != no_index) sum += signed_volume(static_cast<Index>(t));
@@ -151,7 +151,7 @@ double EditableMesh::diagonal() const {
 
 bool EditableMesh::all_positive() const {
   std::atomic<bool> all{true};
-  parallel_for(0, tets_.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, tets_.size(), tet_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const Tet& p = tets_[t].points;
       if (p[0] == no_index) continue;

@@ -14,7 +14,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t grain = 8192;  ///< tets or points a parallel loop hands out at a time
+constexpr std::size_t build_grain = 8192;  ///< tets or points a parallel loop hands out at a time
 
 /// Lowers `smallest` to `value`: the first place in the file is named, whichever thread finds it.
 void lower(std::atomic<Index>& smallest, Index value) {
@@ -71,7 +71,7 @@ void MeshBuilder::take_tets(const TetMesh& input) {
   mesh_.regions_.resize(input.tets.size());
   mesh_.qualities_.resize(input.tets.size(), 0);
   std::atomic<Index> first_bad{no_index};
-  parallel_for(0, input.tets.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, input.tets.size(), build_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Tet& t = input.tets[i];
       const auto region = std::lower_bound(tags.begin(), tags.end(), input.materials[i]) - tags.begin();
@@ -95,7 +95,7 @@ void MeshBuilder::link_faces() {
   using Buckets = FaceBuckets<Index>;
   const Buckets buckets(tets.size(), mesh_.positions_.size(), tet_at);
   std::atomic<Index> bad{no_index};  // 4 * tet + face
-  parallel_for(0, mesh_.positions_.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, mesh_.positions_.size(), build_grain, [&](std::size_t begin, std::size_t end) {
     Buckets::Workspace ws;
     for (std::size_t p = begin; p < end; ++p)
       buckets.visit(static_cast<Index>(p), tet_at, ws,
@@ -153,7 +153,7 @@ std::vector<Index> MeshBuilder::points_with_split_stars() const {
   std::vector<Index> tets_at(mesh_.positions_.size(), 0);
   for (const TetRecord& t : mesh_.tets_)
     for (Index p : t.points) ++tets_at[p];
-  return parallel_collect<Index>(0, mesh_.positions_.size(), grain,
+  return parallel_collect<Index>(0, mesh_.positions_.size(), build_grain,
                                  [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
                                    LocalNumbers seen;
                                    std::vector<Index> part;

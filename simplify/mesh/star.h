@@ -25,6 +25,9 @@ struct Star {
     std::uint8_t slot;                  ///< of the centre in the tet
     RegionId region;
     float quality;
+
+    /// Whether `point`, a local number, is one of the three.
+    bool links(std::size_t point) const { return link[0] == point || link[1] == point || link[2] == point; }
   };
   /// An interface triangle (centre, first, second): a face between different regions, outside being one.
   struct InterfaceTriangle {

@@ -34,10 +34,6 @@ int depth(Outcome o) {
   }
 }
 
-bool has(const Star::StarTet& t, std::size_t point) {
-  return t.link[0] == point || t.link[1] == point || t.link[2] == point;
-}
-
 /// How far the centre lies from what takes the place of its interface triangles.
 double distance_left(const Star& star, std::size_t b) {
   double nearest = std::numeric_limits<double>::infinity();
@@ -109,7 +105,7 @@ void propose(Workspace& ws, std::size_t b) {
   proposal.incidents.clear();
   for (std::size_t i = 0; i < star.tets.size(); ++i) {
     const Star::StarTet& t = star.tets[i];
-    if (has(t, b)) {
+    if (t.links(b)) {
       proposal.removed.push_back(t.tet);
       close_gap(mesh, proposal, t.tet);
     } else {
@@ -128,7 +124,7 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < star.tets.size(); ++k) {
     const Star::StarTet& t = star.tets[k];
-    if (has(t, b)) continue;
+    if (t.links(b)) continue;
     ++left;
     const double det = (star.positions[t.link[0]] - to).dot(star.normals[k]);
     if (!(det > 0)) return Outcome::inverts;
@@ -151,7 +147,7 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
   qualities.resize(star.tets.size());
   for (std::size_t k = 0; k < star.tets.size(); ++k) {
     const Star::StarTet& t = star.tets[k];
-    if (has(t, b)) continue;
+    if (t.links(b)) continue;
     qualities[k] =
         rules.objective(to, star.positions[t.link[0]], star.positions[t.link[1]], star.positions[t.link[2]]);
     if (!(qualities[k] > limit)) return Outcome::quality;

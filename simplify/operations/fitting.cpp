@@ -15,7 +15,7 @@ namespace {
 
 /// How far a point may be moved, in shortest edges.
 constexpr double fit_reach = 1;
-constexpr int step_halvings = 3;  ///< whole, half and quarter step
+constexpr int fitting_steps = 3;  ///< whole, half and quarter step
 /// Share of the sum of the squared weights that is added in all directions.
 constexpr double flat_share = 0.01;
 /// Shorter steps, in ideal edges, are not worth their tests.
@@ -96,7 +96,7 @@ Outcome fit_to_samples(Workspace& ws, const BlockRules& rules, float floor) {
   const double reach = fit_reach * shortest_edge(star);
   if (step.norm() > reach) step *= reach / step.norm();
   Outcome o = Outcome::quality;
-  for (int i = 0; i < step_halvings && o != Outcome::done; ++i, step *= 0.5)
+  for (int i = 0; i < fitting_steps && o != Outcome::done; ++i, step *= 0.5)
     o = move_fitted(ws, rules, c + step, floor);
   return o;
 }

@@ -14,7 +14,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr int step_halvings = 3;  ///< of smooth(): whole, half and quarter step
+constexpr int smoothing_steps = 3;  ///< of smooth(): whole, half and quarter step
 
 // The ascent of find_place().
 constexpr int max_ascents = 8;            ///< steps uphill
@@ -314,7 +314,7 @@ Outcome smooth(Workspace& ws, const BlockRules& rules) {
   const float limit = ws.acceptance_limit(rules, star.worst);
   Outcome refusal = Outcome::quality;
   float worst;
-  for (int i = 0; i < step_halvings; ++i, step *= 0.5) {
+  for (int i = 0; i < smoothing_steps; ++i, step *= 0.5) {
     Vec3 to = star.centre_position + step;
     if (rules.max_crease_distance > 0 && dimension < 3) {
       const Star::InterfaceTriangle& s = star.interface_triangles.front();

@@ -12,7 +12,7 @@ namespace tetwright {
 namespace {
 
 constexpr std::size_t leaf_tets = 4;
-constexpr std::size_t grain = 64;  ///< tets a parallel loop hands out at a time
+constexpr std::size_t transfer_grain = 64;  ///< tets a parallel loop hands out at a time
 /// Passes that correct a sum: the first leaves rounding errors of the values, the second those of the sum.
 constexpr int correction_passes = 2;
 
@@ -88,7 +88,7 @@ void FieldCarrier::for_sources_near(const Box3& box, const Visit& visit) const {
 void FieldCarrier::add_targets() {
   for (const ChangeJournal::OldTet& t : journal_.tets())
     if (!mesh_.dead(t.slot)) targets_.push_back({t.slot, mesh_.region(t.slot), 0, {}});
-  parallel_for(0, targets_.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, targets_.size(), transfer_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Target& target = targets_[i];
       TetCorners corners;

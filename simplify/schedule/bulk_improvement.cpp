@@ -27,8 +27,8 @@ constexpr int max_idle = 2;
 constexpr double cubed_edge_of_unit_volume = 8.48528137423857;
 /// In edges of the regular tet of the volume that the tets around have on average: longer edges of the
 /// surface are split, and a point with a shorter edge is crowded.
-constexpr double long_edge = 1.6;
-constexpr double short_edge = 0.6;
+constexpr double long_edge_factor = 1.6;
+constexpr double short_edge_factor = 0.6;
 /// Share of the worst quality that splits and collapses must leave: halves of a tet are hardly better than
 /// the whole, but flips and better places then make them so.
 constexpr float resize_floor = 0.5f;
@@ -59,7 +59,7 @@ Outcome split_tet(Workspace& ws, const BlockRules& rules, const ListedTet& item,
     if (length2 <= longest2) continue;
     double volume = 0;
     for (Index t : ws.ring.tets) volume += mesh.signed_volume(t);
-    const double local = long_edge * local_edge(volume, ws.ring.tets.size());
+    const double local = long_edge_factor * local_edge(volume, ws.ring.tets.size());
     if (length2 < local * local) continue;
     longest = e;
     longest2 = length2;
@@ -74,7 +74,7 @@ bool crowded(const EditableMesh& mesh, const Star& star) {
   for (const Vec3& p : star.positions)
     shortest2 = std::min(shortest2, (p - star.centre_position).squaredNorm());
   for (const Star::StarTet& t : star.tets) volume += mesh.signed_volume(t.tet);
-  const double local = short_edge * local_edge(volume, star.tets.size());
+  const double local = short_edge_factor * local_edge(volume, star.tets.size());
   return shortest2 < local * local;
 }
 

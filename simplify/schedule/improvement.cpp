@@ -38,7 +38,7 @@ constexpr float perturbed_share = 0.95f;
 constexpr double kept_share = 0.125;
 /// BlockRules::max_deviation grows by so much with each round that is a last resort, up to so many times: the
 /// last slivers of fine detail need room. Grown without end it would double the largest distances.
-constexpr double deviation_growth = 1.25, max_deviation_factor = 3;
+constexpr double round_deviation_growth = 1.25, max_deviation_factor = 3;
 
 /// The rounds of run_improvement().
 class ImprovementLoop {
@@ -110,7 +110,7 @@ class ImprovementLoop {
   void run_round(std::vector<ListedTet> poor) {
     if (last_resort_)
       rules_.max_deviation = surgery_.max_deviation =
-          std::min(max_deviation_, deviation_growth * rules_.max_deviation);
+          std::min(max_deviation_, round_deviation_growth * rules_.max_deviation);
     const double kept = last_resort_ || plan_.target_tets <= plan_.min_tets
                             ? 0
                             : kept_share * static_cast<double>(plan_.target_tets - plan_.min_tets);

@@ -15,16 +15,16 @@ namespace tetwright {
 namespace {
 
 /// Edges are halved twice in three rounds or so: enough for some that are a million times too long.
-constexpr int max_rounds = 60;
+constexpr int max_size_rounds = 60;
 /// Share of the edges, each counted once for each tet, that may be left out of what a size field wants; of
 /// bounds none.
 constexpr double few = 0.002;
 /// A round that leaves more than this share of the excess that the best one before left gains too little; so
 /// many may.
-constexpr double idle_above = 0.97;
-constexpr int max_idle = 2;
+constexpr double size_idle_above = 0.97;
+constexpr int max_idle_size_rounds = 2;
 /// Of the bound of shapes: what collapses and splits must leave. Flips and better places mend it.
-constexpr float resize_floor = 0.3f;
+constexpr float size_rounds_floor = 0.3f;
 constexpr int shape_rounds = 2;  ///< of flips and better places between
 
 class SizeRounds {
@@ -38,18 +38,18 @@ class SizeRounds {
         bound_(static_cast<float>(shape_quality_bound(tools.rules.objective.shape, plan.angle))),
         resizing_(tools.rules) {
     resizing_.max_error = std::numeric_limits<double>::infinity();
-    resizing_.good_enough = resize_floor * bound_;
+    resizing_.good_enough = size_rounds_floor * bound_;
     resizing_.count = {plan.min_tets, plan.max_tets};
   }
 
   void run() {
     double least = std::numeric_limits<double>::infinity();
     int idle = 0;
-    for (int i = 0; i < max_rounds; ++i) {
+    for (int i = 0; i < max_size_rounds; ++i) {
       const OutOfBounds out = out_of_bounds();
       if (out.share == 0 || (sizes_.has_wish() && !sizes_.has_bounds() && out.share <= few)) break;
-      idle = out.excess > idle_above * least ? idle + 1 : 0;
-      if (idle > max_idle) break;
+      idle = out.excess > size_idle_above * least ? idle + 1 : 0;
+      if (idle > max_idle_size_rounds) break;
       least = std::min(least, out.excess);
       {
         RoundRecorder::Round round(tools_.recorder, plan_.kind, 0);

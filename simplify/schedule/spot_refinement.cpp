@@ -11,12 +11,12 @@ namespace tetwright {
 
 namespace {
 
-constexpr int max_rounds = 8;
+constexpr int max_refinements = 8;
 /// More tets with far faces than both, and their share, are not a matter of spots.
 constexpr double max_far_share = 0.02, max_far_tets = 100;
 constexpr int far_fits = 2;  ///< sweeps after each round
 /// Rounds that may gain nothing: each halves edges farther around.
-constexpr int max_idle = 2;
+constexpr int max_idle_refinements = 2;
 /// Of the bound of shapes: what halved tets must be. Flips and better places mend them.
 constexpr float split_floor = 0.3f;
 
@@ -61,7 +61,7 @@ class Gain {
   bool goes_on(std::size_t left) {
     idle_ = left < fewest_ ? 0 : idle_ + 1;
     fewest_ = std::min(fewest_, left);
-    return idle_ <= max_idle;
+    return idle_ <= max_idle_refinements;
   }
 
  private:
@@ -75,7 +75,7 @@ void refine_poor_spots(const ImprovementTools& tools, ImprovementArea& area, Imp
                        double angle) {
   const auto bound = static_cast<float>(shape_quality_bound(tools.rules.objective.shape, angle));
   Gain gain;
-  for (int i = 0; i < max_rounds && plan.max_rounds > 0; ++i) {
+  for (int i = 0; i < max_refinements && plan.max_rounds > 0; ++i) {
     const std::vector<ListedTet> poor = area.poor_tets(bound);
     if (poor.empty() || !gain.goes_on(poor.size())) return;
     halve(tools, area.tets_around(poor), plan, angle, false);
@@ -88,7 +88,7 @@ void refine_far_spots(Engine& engine, ImprovementArea& area, const ImprovementPl
   const ImprovementTools tools{engine.mesh(), engine.runner(), engine.rules, engine.recorder()};
   // Not that of the plan, which leaves a point less room than the tolerance may need.
   const auto floor = static_cast<float>(shape_quality_bound(engine.rules.objective.shape, angle));
-  for (int i = 0; i < max_rounds; ++i) {
+  for (int i = 0; i < max_refinements; ++i) {
     const std::vector<ListedTet> far = engine.find_far_tets(limit);
     if (far.empty() ||
         static_cast<double>(far.size()) >

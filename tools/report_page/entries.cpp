@@ -15,7 +15,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double no_value = std::numeric_limits<double>::infinity();
 
 PageEntry entry_of(const InputFinding& f) {
   PageEntry entry{f.file + ": " + std::to_string(f.finding.count) + " " + f.finding.what, f.finding.done, {}};
@@ -42,7 +42,7 @@ using Worst = std::pair<double, std::size_t>;
 template <class Value>
 Worst worst_tet(const TetMesh& mesh, const Value& value) {
   constexpr std::size_t grain = 1 << 14;
-  std::vector<Worst> parts((mesh.tets.size() + grain - 1) / grain, Worst(infinity, 0));
+  std::vector<Worst> parts((mesh.tets.size() + grain - 1) / grain, Worst(no_value, 0));
   parallel_chunks(parts.size(), [&](std::size_t part, unsigned) {
     const std::size_t last = std::min(mesh.tets.size(), (part + 1) * grain);
     for (std::size_t t = part * grain; t < last; ++t) {
@@ -68,7 +68,7 @@ void add_worst(const TetMesh& mesh, PageEntries& entries) {
   const auto [largest, of_largest] = worst_tet(mesh, [](const std::array<Vec3, 4>& x) {
     const std::array<double, 6> angles = dihedral_angles(x);
     const double angle = *std::max_element(angles.begin(), angles.end());
-    return std::isnan(angle) ? infinity : -angle;
+    return std::isnan(angle) ? no_value : -angle;
   });
   constexpr int angle_decimals = 4;
   entries.worst.push_back({"The smallest solid angle, " + fixed_number(solid, angle_decimals) + " sr",

@@ -19,7 +19,7 @@ namespace {
 // Builds a file of a triangle and a tet in every encoding of VTK.
 struct Encoding {
   std::string format = "binary";  ///< ascii, binary, base64 or raw (the last two appended)
-  std::string compressor;         ///< "ZLib", "LZ4", "LZMA"; empty: none
+  std::string compressor = {};    ///< "ZLib", "LZ4", "LZMA"; empty: none
   bool wide = false;
   bool big = false;
 };
