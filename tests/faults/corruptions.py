@@ -82,9 +82,10 @@ def inputs(p):
     for ext in SURFACES:
         p.must(["sample", "cube", "-o", folder / f"surface.{ext}"])
         found.append((folder / f"surface.{ext}", ["mesh", "--resolution", "8"]))
-    for seed in ("polydata.vtk", "grid.vtk"):
-        shutil.copy(SEEDS / "vtk_surface" / seed, folder / seed)
-        found.append((folder / seed, ["mesh", "--resolution", "8"]))
+    for seed in ("vtk_surface/polydata.vtk", "vtk_surface/grid.vtk", "3mf/stored.3mf", "3mf/deflated.3mf", "glb/cubes.glb"):
+        path = folder / Path(seed).name
+        shutil.copy(SEEDS / seed, path)
+        found.append((path, ["mesh", "--resolution", "8"]))
     for ext in TETS:
         p.must(["simplify", folder / "small.vtu", "--target-tets", "300", "-o", folder / f"tets.{ext}"])
         found.append((folder / f"tets.{ext}", ["improve"]))

@@ -12,8 +12,8 @@ namespace tetwright::concurrency_test {
 namespace {
 
 TetMesh three_materials(std::uint64_t seed) {
-  TetMesh mesh = grid_mesh({12, 12, 12}, [](int x, int y, int z) {
-    return std::optional<MaterialTag>(z < 3 ? 3 : x + y < 12 ? 1 : 2);
+  TetMesh mesh = grid_mesh({10, 10, 10}, [](int x, int y, int z) {
+    return std::optional<MaterialTag>(z < 3 ? 3 : x + y < 10 ? 1 : 2);
   });
   jitter(mesh, seed, 0.3);
   return mesh;
@@ -26,15 +26,15 @@ void expect_kept(const TetMesh& before, const TetMesh& after) {
 
 TEST(Concurrency, EightThreadsLeaveASoundMesh) {
   const ThreadLimit eight(8);
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     const TetMesh mesh = three_materials(seed);
     SimplifyOptions options;
-    options.target_tets = 1500;
+    options.target_tets = 900;
     options.seed = seed;
     options.batch_size = 1024;
     options.schedule = seed == 2 ? Schedule::paper : Schedule::tuned;
     const TetMesh after = simplify(mesh, options);
-    EXPECT_NEAR(static_cast<double>(after.tets.size()), 1500, 15);
+    EXPECT_NEAR(static_cast<double>(after.tets.size()), 900, 9);
     expect_kept(mesh, after);
   }
 }

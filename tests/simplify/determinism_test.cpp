@@ -15,7 +15,7 @@ namespace {
 
 #ifdef TETWRIGHT_INJECT_YIELDS
 // Pauses, and the thread sanitizer, take time.
-constexpr int cells = 6;
+constexpr int cells = 5;
 const std::vector<unsigned> thread_counts{2, 8};
 #else
 constexpr int cells = 10;

@@ -213,7 +213,7 @@ TEST(Check, EqualPointsOfASurfaceAreJoined) {
   }
   put(f / "soup.off", soup + triangles);
   put(f / "box.off", box);
-  ASSERT_EQ(run("mesh " + (f / "box.off") + " -o " + (f / "box.vtu") + " --resolution 16").status, 0);
+  ASSERT_EQ(run("mesh " + (f / "box.off") + " -o " + (f / "box.vtu") + " --resolution 8").status, 0);
   const std::string check = "check " + (f / "box.vtu") + " --surface " + (f / "soup.off");
   const auto surface = nlohmann::json::parse(run(check + " --json").out)["surface"];
   EXPECT_TRUE(surface["solid"]["same"]) << surface;
@@ -245,7 +245,7 @@ TEST(Check, TheOutsideThatIsKeptIsNotCompared) {
   ASSERT_EQ(
       run("mesh " + (f / "box.off") + " -o " + (f / "box.vtu") + " --resolution 16 --keep-outside").status,
       0);
-  const Answer a = run("check " + (f / "box.vtu") + " --tolerance 0.1% --surface " + (f / "box.off"));
+  const Answer a = run("check " + (f / "box.vtu") + " --tolerance 1% --surface " + (f / "box.off"));
   EXPECT_EQ(a.status, 0) << a.out;
   EXPECT_NE(a.out.find("left out of what is compared with the surface: the "), std::string::npos) << a.out;
   EXPECT_NE(a.out.find("of the surface 2; same components, handles and cavities"), std::string::npos)
@@ -256,7 +256,7 @@ TEST(Check, AnInvertedMeshIsNotAnotherSolid) {
   const TemporaryFolder f;
   put(f / "tet.off", tetrahedron_off);
   put(f / "tet.mesh", medit("1 3 2 4"));
-  const Answer a = run("check " + (f / "tet.mesh") + " --tolerance 0.1% --surface " + (f / "tet.off"));
+  const Answer a = run("check " + (f / "tet.mesh") + " --tolerance 1% --surface " + (f / "tet.off"));
   EXPECT_EQ(a.status, 1);
   for (const char* said : {"all tets are inverted; compared with the surface as if they were turned",
                            "same components, handles and cavities", "\nwithin the tolerance"})
@@ -273,14 +273,14 @@ TEST(Check, CapsAreLeftOutAndReported) {
   put(f / "box.off", box);
   put(f / "open.off", open);
   ASSERT_EQ(run("mesh " + (f / "box.off") + " -o " + (f / "box.vtu") + " --resolution 16").status, 0);
-  const std::string check = "check " + (f / "box.vtu") + " --tolerance 0.1% --surface " + (f / "open.off");
+  const std::string check = "check " + (f / "box.vtu") + " --tolerance 1% --surface " + (f / "open.off");
   const Answer a = run(check);
   EXPECT_EQ(a.status, 0) << a.out;
   EXPECT_NE(
       a.out.find("the surface is open: 4 edges with one triangle; caps of the mesh are left out, area "),
       std::string::npos)
       << a.out;
-  EXPECT_NE(a.out.find("\nwithin the tolerance of 0.00244949; caps, 20 % of the mesh's area, are left out\n"),
+  EXPECT_NE(a.out.find("\nwithin the tolerance of 0.0244949; caps, 20 % of the mesh's area, are left out\n"),
             std::string::npos)
       << a.out;
   const auto caps = nlohmann::json::parse(run(check + " --json").out)["surface"]["caps"];

@@ -77,7 +77,7 @@ void write_boxes(const std::string& path, double gap) {
 TEST(Fidelity, TheProgramSaysWhereTheSolidIsAnotherOne) {
   const TemporaryFolder f;
   const std::string mesh =
-      " -o " + (f / "out.vtu") + " --resolution 48 --max-refinement 0 --stats " + (f / "s.json");
+      " -o " + (f / "out.vtu") + " --resolution 32 --max-refinement 0 --stats " + (f / "s.json");
   const auto stats = [&] { return nlohmann::json::parse(contents(f / "s.json")); };
   write_boxes(f / "wide.obj", 0.4);
   Answer a = run("mesh " + (f / "wide.obj") + mesh);
@@ -98,12 +98,12 @@ TEST(Fidelity, TheProgramSaysWhereTheSolidIsAnotherOne) {
   EXPECT_FALSE(stats()["fidelity"].at(0)["same"]);
   EXPECT_EQ(stats()["shortfall"].at(0)["what"], "fidelity");
 
-  a = run("prepare " + (f / "narrow.obj") + mesh + " --target-tets 20000 --accept-changes");
+  a = run("prepare " + (f / "narrow.obj") + mesh + " --target-tets 8000 --accept-changes");
   EXPECT_EQ(a.status, 0) << a.err;
   EXPECT_NE(a.err.find("note: "), std::string::npos) << a.err;
   EXPECT_NE(a.err.find("1 component instead of 2"), std::string::npos) << a.err;
   EXPECT_TRUE(stats()["shortfall"].empty());
-  a = run("prepare " + (f / "narrow.obj") + mesh + " --target-tets 20000 --accept-changes --strict --quiet");
+  a = run("prepare " + (f / "narrow.obj") + mesh + " --target-tets 8000 --accept-changes --strict --quiet");
   EXPECT_EQ(a.status, 1);
   EXPECT_NE(a.err.find("--strict: "), std::string::npos) << a.err;
   EXPECT_EQ(stats()["shortfall"].at(0)["what"], "notes");

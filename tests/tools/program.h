@@ -18,12 +18,19 @@ struct Answer {
   std::string out, err;
 };
 
+/// The program that is tested: TETWRIGHT_PROGRAM of the environment, for one with sanitizers, or else the
+/// build's.
+inline std::string program() {
+  const char* other = std::getenv("TETWRIGHT_PROGRAM");
+  return other ? other : TETWRIGHT_PROGRAM;
+}
+
 /// Runs `tetwright ARGUMENTS` in a shell, after the command `before` (for example a limit) and through the
 /// command `with` (for example timeout).
 inline Answer run(const std::string& arguments, const std::string& before = "",
                   const std::string& with = "") {
   const TemporaryFolder folder;
-  const std::string command = before + " exec " + with + " " TETWRIGHT_PROGRAM " " + arguments + " >" +
+  const std::string command = before + " exec " + with + " " + program() + " " + arguments + " >" +
                               (folder / "out") + " 2>" + (folder / "err") + " </dev/null";
   const int code = std::system(command.c_str());
   return {WIFEXITED(code) ? WEXITSTATUS(code) : 1000 + WTERMSIG(code), contents(folder / "out"),

@@ -187,7 +187,9 @@ TEST(ReportPage, DistancesAreThoseOfThePoints) {
     for (const Index p : t.ids) on_interface[p] = 1;
   for (std::size_t p = 0; p < mesh.points.size(); ++p) {
     EXPECT_EQ(std::isnan(d.values[p]), !on_interface[p]);
-    if (on_interface[p]) EXPECT_NEAR(d.values[p], mesh.points[p].x() - low + apart, 1e-5);
+    if (on_interface[p]) {
+      EXPECT_NEAR(d.values[p], mesh.points[p].x() - low + apart, 1e-5);
+    }
   }
   const PageMesh page = page_mesh(mesh, &d);
   EXPECT_EQ(page.distance.size(), 2 * page.point_count);

@@ -30,7 +30,7 @@ void wait_a_moment() { std::this_thread::sleep_for(std::chrono::milliseconds(1))
 class Process {
  public:
   Process(const std::vector<std::string>& arguments, const std::string& err) {
-    std::vector<std::string> words{TETWRIGHT_PROGRAM};
+    std::vector<std::string> words{program()};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
@@ -40,7 +40,7 @@ class Process {
     posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&files, 1, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_addopen(&files, 2, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    EXPECT_EQ(posix_spawn(&id_, TETWRIGHT_PROGRAM, &files, nullptr, argv.data(), environ), 0);
+    EXPECT_EQ(posix_spawn(&id_, argv[0], &files, nullptr, argv.data(), environ), 0);
     posix_spawn_file_actions_destroy(&files);
   }
   ~Process() {
@@ -174,7 +174,7 @@ TEST_F(Signals, AtManyMoments) {
   const std::string mesh = contents(in("out.msh")), fields = contents(in("out.vdb"));
   ASSERT_FALSE(mesh.empty());
 
-  constexpr int moments = 24;
+  constexpr int moments = 12;
   int ended_early = 0;
   for (int i = 0; i < moments; ++i) {
     for (const char* name : {"out.msh", "out.vdb", "out.json"}) put(in(name), "old");
@@ -208,7 +208,7 @@ TEST_F(Signals, WhileAFileIsWritten) {
       for (int attempt = 0; attempt < 50 && caught == 0; ++attempt) {
         put(out, "old");
         // One thread, so that the test has a processor to watch it from.
-        Process process = start({"mesh", in("s.off"), "-o", out, "--resolution", "60", "--threads", "1"});
+        Process process = start({"mesh", in("s.off"), "-o", out, "--resolution", "48", "--threads", "1"});
         while (temporary_files(in("")) == 0 && !process.ended()) std::this_thread::yield();
         if (process.stop()) {
           const bool writing = temporary_files(in("")) == 1;

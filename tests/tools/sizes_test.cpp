@@ -33,12 +33,12 @@ class Sizes : public testing::Test {
 };
 
 TEST_F(Sizes, DecideTheNumberOfTets) {
-  put(field, tet_with_sizes(0.25, 0.25));
+  put(field, tet_with_sizes(0.4, 0.4));
   const auto coarse = prepare("--size-field " + field, 0);
   EXPECT_EQ(coarse["edge_lengths"]["field"], "size");
   EXPECT_GE(coarse["edge_lengths"]["within_percent"], 95);
   EXPECT_NEAR(coarse["edge_lengths"]["median_ratio"].get<double>(), 1, 0.1);
-  put(field, tet_with_sizes(0.125, 0.125));
+  put(field, tet_with_sizes(0.2, 0.2));
   const auto fine = prepare("--size-field " + field, 0);
   EXPECT_GE(fine["edge_lengths"]["within_percent"], 95);
   const double ratio = fine["result"]["tets"].get<double>() / coarse["result"]["tets"].get<double>();

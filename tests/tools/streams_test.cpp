@@ -10,7 +10,7 @@ namespace {
 Answer shell(const std::string& pipeline) {
   const TemporaryFolder folder;
   const std::string command =
-      "t=" TETWRIGHT_PROGRAM "; { " + pipeline + "; } >" + (folder / "out") + " 2>" + (folder / "err");
+      "t=" + program() + "; { " + pipeline + "; } >" + (folder / "out") + " 2>" + (folder / "err");
   const int code = std::system(command.c_str());
   return {WIFEXITED(code) ? WEXITSTATUS(code) : 1000 + WTERMSIG(code), contents(folder / "out"),
           contents(folder / "err")};

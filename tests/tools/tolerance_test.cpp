@@ -42,7 +42,7 @@ TEST_F(Tolerance, LargerThanTheBodyCostsNoTets) {
 }
 
 TEST_F(Tolerance, OfADenseMeshChoosesItsCells) {
-  const auto j = work("mesh " + surface, "--tolerance 0.35%");
+  const auto j = work("mesh " + surface, "--tolerance 0.4%");
   const double asked = j["tolerance"]["distance"];
   EXPECT_LE(j["tolerance"]["from_mesh"]["upper"], 0.6 * asked);
   EXPECT_LE(j["tolerance"]["from_surface"]["upper"], 0.6 * asked);
@@ -55,7 +55,7 @@ TEST_F(Tolerance, CapsAreComparedApart) {
   put(f / "open.off",
       "OFF\n8 10 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
       "3 0 2 1\n3 0 3 2\n3 0 1 5\n3 0 5 4\n3 1 2 6\n3 1 6 5\n3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7\n");
-  const auto j = work("prepare " + (f / "open.off"), "--tolerance 3% --target-tets 800");
+  const auto j = work("prepare " + (f / "open.off"), "--tolerance 3% --target-tets 800 --resolution 24");
   EXPECT_NEAR(j["tolerance"]["apart_area"].get<double>(), 1, 0.35);
   EXPECT_EQ(j["tolerance"]["hidden_area"], 0);
 }
@@ -73,13 +73,12 @@ TEST_F(Tolerance, BoundsOfEdgesThatBindNothingLeaveTheCount) {
 }
 
 TEST_F(Tolerance, MaxEdgeHoldsBelowASizeField) {
-  ASSERT_EQ(run("sample sphere -o " + (f / "dense.ply")).status, 0);
   put(f / "size.vtk",
       "# vtk DataFile Version 3.0\nsizes\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n"
       "-9 -9 -9\n27 -9 -9\n-9 27 -9\n-9 -9 27\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n"
-      "POINT_DATA 4\nSCALARS size double 1\nLOOKUP_TABLE default\n0.3\n0.3\n0.3\n0.3\n");
-  const auto j = work("prepare " + surface, "--size-field " + (f / "size.vtk") + " --max-edge 0.2");
-  EXPECT_LE(j["edge_lengths"]["longest"], 0.2);
+      "POINT_DATA 4\nSCALARS size double 1\nLOOKUP_TABLE default\n0.5\n0.5\n0.5\n0.5\n");
+  const auto j = work("prepare " + surface, "--size-field " + (f / "size.vtk") + " --max-edge 0.35");
+  EXPECT_LE(j["edge_lengths"]["longest"], 0.35);
 }
 
 TEST_F(Tolerance, AnOutsideThatIsNotShownIsAShortfall) {

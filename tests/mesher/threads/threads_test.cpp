@@ -56,11 +56,11 @@ TEST(MesherThreads, TheSameOnOneAndOnEight) {
 TEST(LabelThreads, TheSameOnOneAndOnEight) {
   // Enough tiles for several tasks, in which labels meet.
   LabelInput labels;
-  labels.size = {90, 60, 60};
+  labels.size = {60, 48, 48};
   labels.materials = {{"a", 1, 1, 1}, {"b", 2, 1, 1}};
-  for (int z = 0; z < 60; ++z)
-    for (int y = 0; y < 60; ++y)
-      for (int x = 0; x < 90; ++x)
+  for (int z = 0; z < 48; ++z)
+    for (int y = 0; y < 48; ++y)
+      for (int x = 0; x < 60; ++x)
         labels.regions.push_back(static_cast<RegionIndex>((x / 7 + y / 5 + z / 6) % 3));
   const auto keys_with = [&](unsigned threads) {
     const ThreadLimit limit(threads);
