@@ -12,7 +12,7 @@ namespace {
 
 /// Dense tets for each face between voxels (as large as a squared cell) and each side of it that is meshed,
 /// see surface_estimate.cpp; faces of voxels have about one and a half times the area of the interface.
-constexpr double tets_per_face_side = 21.5, half_full_material = 0.6;
+constexpr double tets_per_face_side = 21.5, half_full_label_thickness = 0.6;
 /// Lattice tets on a side of a face that is not meshed.
 constexpr double outside_tets_per_face = 10;
 /// Dense tets of uniform cells, for each cell and each face to the outside.
@@ -60,7 +60,7 @@ MesherEstimate estimate_mesh(const LabelInput& labels, const MesherOptions& opti
     constexpr double small_cell = 0.75, smooth_share = 0.87;
     const double cell = h / voxel_size(labels);
     const double share = (cell < small_cell ? smooth_share : 1) * coarse_share(cell, options.adaptivity);
-    size.dense = share * tets_per_face_side * sides / (1 + half_full_material * sides / meshed) +
+    size.dense = share * tets_per_face_side * sides / (1 + half_full_label_thickness * sides / meshed) +
                  dense_per_thin_cell * thin.inside;
     size.lattice = size.dense;
     if (!options.keep_outside)

@@ -18,7 +18,7 @@ namespace {
 /// Dense tets of an adaptive mesh for each squared finest cell of interface and each side of it that is
 /// meshed: they tend to the first number where the material is thick, and half of it fill one that has as
 /// many finest cells of volume for each squared cell of interface as the second number says.
-constexpr double tets_per_area = 29, half_full_solid = 1.6;
+constexpr double tets_per_area = 29, half_full_wall_thickness = 1.6;
 /// Lattice tets for each squared cell on a side that is not meshed, and on uniform cells.
 constexpr double outside_tets_per_area = 14, outside_tets_per_area_uniform = 15.5;
 /// Dense tets of uniform cells: for each cell, and for each squared cell of interface.
@@ -307,7 +307,7 @@ class SurfaceEstimate {
 
   /// Sides of interfaces in a volume, less as it gets full of tets.
   static double filling(double sides, double volume) {
-    return volume > 0 ? sides / (1 + half_full_solid * sides / volume) : 0;
+    return volume > 0 ? sides / (1 + half_full_wall_thickness * sides / volume) : 0;
   }
 
   /// Adds the sides of the interfaces between layers; thin layers have smaller cells.

@@ -425,6 +425,11 @@ void add_sample(CLI::App& app, CommandLine& c) {
               "; tet meshes: " + known_extensions(FileKind::tet_mesh, FileUse::write) +
               "; segmented volumes: " + known_extensions(FileKind::volume, FileUse::write))
                  .c_str());
+  app.add_option(
+         "--output-format", c.output_format,
+         "Format in place of the extension, and of standard output (-o -): as for other commands' meshes, "
+         "or an extension of a surface or volume without its dot")
+      ->type_name("NAME");
   add_common(app, c);
 }
 

@@ -6,6 +6,7 @@
 #include "common/error.h"
 #include "common/formats/formats.h"
 #include "common/lower_case.h"
+#include "tools/commands/output_paths.h"
 
 namespace tetwright {
 
@@ -29,7 +30,6 @@ void check_no_stream(const CommandLine& out) {
   for (const std::string& file : out.surfaces) check("--surface", file);
   for (const NamedValue& m : out.materials) check("--material", m.value);
   if (out.command == Command::batch) check("the file of jobs", out.inputs.front());
-  if (out.command == Command::sample) check("-o of a sample", out.output);
 }
 
 /// The streams among inputs and outputs.
@@ -55,10 +55,7 @@ void complete_streams(CommandLine& out) {
   if (out.output != "-") return;
   if (out.output_format.empty())
     throw UsageError("standard output (-o -) has no extension; give --output-format");
-  if (files_of_tet_mesh(out.output, out.output_format).size() > 1)
-    throw UsageError("--output-format " + out.output_format +
-                     " is several files, which standard output is not; "
-                     "give -o a name, or another format");
+  if (out.command != Command::sample) check_tet_stream(out);  // samples are of several kinds
   if (out.stats == "-")
     throw UsageError("-o - and --stats - both print to standard output; give one of them a file");
 }

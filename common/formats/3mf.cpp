@@ -3,11 +3,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <pugixml.hpp>
 
 #include "common/error.h"
+#include "common/formats/placed_limit.h"
 #include "common/formats/surface_builder.h"
 #include "common/formats/text_scanner.h"
 #include "common/formats/unique_names.h"
@@ -18,8 +20,13 @@ namespace tetwright {
 
 namespace {
 
-/// Objects may consist of objects: a few lines of a file can ask for more than any machine holds.
-constexpr std::size_t max_placed_objects = 100'000;
+/// Objects may consist of objects, also of many times themselves: more than any program writes.
+constexpr std::size_t max_placed_objects = 100'000, max_depth = 1000;
+
+/// Extensions without which a model says all the same where its triangles are, by what their name spaces
+/// hold.
+constexpr std::array<std::string_view, 4> harmless_extensions{"/production/", "/material/", "/beamlattice/",
+                                                              "/trianglesets/"};
 
 /// Of an element or attribute, without the prefix of its name space.
 std::string_view local_name(std::string_view name) {
@@ -97,20 +104,38 @@ struct Model {
   }
 };
 
+/// What tells a name space from others: "booleanoperations/2023/07".
+std::string_view short_name(std::string_view space) {
+  constexpr std::string_view common_part = "/3dmanufacturing/";
+  const std::size_t at = space.find(common_part);
+  return at == std::string_view::npos ? space : space.substr(at + common_part.size());
+}
+
+/// Throws InputError for a model that cannot be understood without an extension which changes the shape.
+void check_extensions(const XmlPart& xml) {
+  const pugi::xml_node root = xml.root();
+  TextScanner prefixes(root.attribute("requiredextensions").value(), "");
+  for (std::string_view prefix; !(prefix = prefixes.word()).empty();) {
+    const std::string space = root.attribute(("xmlns:" + std::string(prefix)).c_str()).value();
+    if (std::none_of(harmless_extensions.begin(), harmless_extensions.end(),
+                     [&](std::string_view known) { return space.find(known) != std::string::npos; }))
+      xml.fail(root, "it needs the extension " + in_quotes(space.empty() ? prefix : short_name(space)) +
+                         ", which is not supported; export it without");
+  }
+}
+
 /// Reads the four rows of three numbers that points, as rows, are multiplied by.
 Eigen::Affine3d transform_of(const XmlPart& xml, pugi::xml_node node) {
   Eigen::Affine3d result = Eigen::Affine3d::Identity();
   const pugi::xml_attribute attribute = node.attribute("transform");
   if (!attribute) return result;
   TextScanner words(attribute.value(), "");
+  bool good = true;
   for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 3; ++column) {
-      const std::string_view word = words.word();
-      double value = 0;
-      if (!parse_number(word, value) || !std::isfinite(value))
-        xml.fail(node, "expected twelve numbers for \"transform\", found " + in_quotes(attribute.value()));
-      result(column, row) = value;
-    }
+    for (int column = 0; column < 3; ++column)
+      good = good && parse_number(words.word(), result(column, row)) && std::isfinite(result(column, row));
+  if (!good || !words.at_end())
+    xml.fail(node, "expected twelve numbers for \"transform\", found " + in_quotes(attribute.value()));
   return result;
 }
 
@@ -136,6 +161,7 @@ class Reader3mf {
   struct Placing {
     pugi::xml_node object;
     const Placing* within;
+    std::size_t depth;
   };
 
   std::string path_of_root() const {
@@ -156,7 +182,14 @@ class Reader3mf {
 
   const Model& model(const std::string& path) {
     std::unique_ptr<Model>& model = models_[path];
-    if (!model) model = std::make_unique<Model>(archive_, name_, path);
+    if (model) return *model;
+    model = std::make_unique<Model>(archive_, name_, path);
+    check_extensions(model->xml);
+    const std::string unit = model->xml.root().attribute("unit").as_string("millimeter");
+    if (unit_.empty()) unit_ = unit;
+    if (unit != unit_)
+      model->xml.fail(model->xml.root(), "its unit is " + in_quotes(unit) + ", but that of another part is " +
+                                             in_quotes(unit_) + "; export it in one unit");
     return *model;
   }
 
@@ -170,34 +203,43 @@ class Reader3mf {
     const std::string_view id = from.xml.attribute(reference, "objectid");
     const auto found = holder->objects.find(id);
     if (found == holder->objects.end())
-      from.xml.fail(reference, "there is no object with the id " + in_quotes(id) + " in " + holder->path);
+      from.xml.fail(reference,
+                    "there is no object with the id " + in_quotes(id) + " in " + in_quotes(holder->path));
     const pugi::xml_node object = found->second;
+    const Placing here{object, within, within ? within->depth + 1 : 0};
     for (const Placing* p = within; p; p = p->within)
       if (p->object == object) holder->xml.fail(object, "object " + in_quotes(id) + " is a part of itself");
+    if (here.depth > max_depth)
+      holder->xml.fail(object, "object " + in_quotes(id) + " is a part of more than " +
+                                   std::to_string(max_depth) + " objects within each other");
     if (++placed_ > max_placed_objects)
       from.xml.fail(reference,
                     "objects are placed more than " + std::to_string(max_placed_objects) + " times");
+    if (object.attribute("pid")) surface_.drop("objects with a colour, material or texture");
+    if (const pugi::xml_node components = child(object, "components")) {
+      for (const pugi::xml_node component : components.children())
+        if (is_called(component, "component")) place(*holder, component, transform, &here);
+      return;
+    }
+    // That of an object with components says nothing.
     const std::string_view type = object.attribute("type").value();
     if (type == "support" || type == "solidsupport") {
       surface_.drop("objects that support others");
-      return;
-    }
-    const Placing here{object, within};
-    for (const pugi::xml_node component : child(object, "components").children())
-      if (is_called(component, "component")) place(*holder, component, transform, &here);
-    if (const pugi::xml_node mesh = child(object, "mesh")) {
+    } else if (const pugi::xml_node mesh = child(object, "mesh")) {
       surface_.begin_group(group_of(here));
       add_mesh(holder->xml, mesh, transform);
+    } else {
+      surface_.drop("objects that are no meshes");
     }
   }
 
-  /// That of an object's name, or else of one that it is a part of.
+  /// That of an object, or else of the innermost object with a name that it is a part of.
   std::uint32_t group_of(const Placing& placing) {
-    const auto [known, added] =
-        group_numbers_.emplace(placing.object.hash_value(), static_cast<std::uint32_t>(groups_.size()));
+    const Placing* named = &placing;
+    while (named && !*named->object.attribute("name").value()) named = named->within;
+    const auto [known, added] = group_numbers_.emplace((named ? named : &placing)->object.hash_value(),
+                                                       static_cast<std::uint32_t>(groups_.size()));
     if (added) {
-      const Placing* named = &placing;
-      while (named && !*named->object.attribute("name").value()) named = named->within;
       if (named)
         groups_.push_back({0, names_.add(named->object.attribute("name").value())});
       else
@@ -209,12 +251,16 @@ class Reader3mf {
   void add_mesh(const XmlPart& xml, pugi::xml_node mesh, const Eigen::Affine3d& transform) {
     const auto first = static_cast<std::int64_t>(surface_.point_count());
     for (const pugi::xml_node v : child(mesh, "vertices").children())
-      surface_.add_point(transform * Vec3(xml.number<double>(v, "x"), xml.number<double>(v, "y"),
-                                          xml.number<double>(v, "z")),
-                         [&] { return xml.place(v); });
+      if (is_called(v, "vertex"))
+        surface_.add_point(transform * Vec3(xml.number<double>(v, "x"), xml.number<double>(v, "y"),
+                                            xml.number<double>(v, "z")),
+                           [&] { return xml.place(v); });
     const auto count = static_cast<std::int64_t>(surface_.point_count()) - first;
+    limit_.add(static_cast<std::size_t>(count), name_);
     const bool mirrored = transform.linear().determinant() < 0;
     for (const pugi::xml_node t : child(mesh, "triangles").children()) {
+      if (!is_called(t, "triangle")) continue;
+      limit_.add(1, name_);
       std::array<std::int64_t, 3> corners{xml.number<std::int64_t>(t, "v1"),
                                           xml.number<std::int64_t>(t, "v2"),
                                           xml.number<std::int64_t>(t, "v3")};
@@ -235,7 +281,9 @@ class Reader3mf {
   ZipArchive archive_;
   SurfaceBuilder surface_;
   std::map<std::string, std::unique_ptr<Model>> models_;
+  std::string unit_;  ///< of all parts
   std::size_t placed_ = 0;
+  PlacedLimit limit_;
   UniqueNames names_{[](const std::string& name) { return name; }};
   std::vector<FaceGroup> groups_;
   std::map<std::size_t, std::uint32_t> group_numbers_;  ///< by the objects' hashes, which tell them apart

@@ -23,7 +23,7 @@ class NodeList {
   bool first_ = true;
 };
 
-void write_material(TextWriter& out, const MeshToWrite& written, const MeshParts::Material& material) {
+void write_elements_of(TextWriter& out, const MeshToWrite& written, const MeshParts::Material& material) {
   const TetMesh& mesh = written.mesh;
   out << "<Elements type=\"" << (written.midside ? "tet10" : "tet4") << "\" name=\""
       << xml_text(material.name) << "\">\n";
@@ -72,7 +72,7 @@ void write_febio(const MeshToWrite& written, const ByteSink& sink) {
     out << "<node id=\"" << i + 1 << "\">" << p.x() << ',' << p.y() << ',' << p.z() << "</node>\n";
   }
   out << "</Nodes>\n";
-  for (const MeshParts::Material& m : parts.materials) write_material(out, written, m);
+  for (const MeshParts::Material& m : parts.materials) write_elements_of(out, written, m);
   for (const MeshParts::Surface& s : parts.surfaces) write_surface(out, written, s);
   out << "</Mesh>\n<MeshDomains>\n";
   for (const MeshParts::Material& m : parts.materials)

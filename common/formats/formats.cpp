@@ -293,6 +293,11 @@ const TetFormat& need_written_format(const std::string& path, const std::string&
   throw UsageError("there is no format " + in_quotes(name) + " for a tet mesh; known are " + known);
 }
 
+/// A path with the extension that a format names, which may begin with its dot.
+std::string formatted(const std::string& path, const std::string& format) {
+  return format.empty() ? path : path + (format.starts_with('.') ? "" : ".") + format;
+}
+
 const SurfaceFormat& need_surface_format(const std::string& path) {
   const SurfaceFormat* shared = find_format(shared_formats, path, FileUse::read);
   return shared ? *shared : need_format(surface_formats, path, FileKind::surface, FileUse::read);
@@ -452,8 +457,10 @@ LabelVolume read_label_volume(const std::string& path) {
   return format.read(read_whole_file(first), first, read_whole_file);
 }
 
-void write_surface(const TriangleMesh& mesh, const std::string& path, OutputFiles* files) {
-  const SurfaceFormat& format = need_format(surface_formats, path, FileKind::surface, FileUse::write);
+void write_surface(const TriangleMesh& mesh, const std::string& path, OutputFiles* files,
+                   const std::string& name) {
+  const SurfaceFormat& format =
+      need_format(surface_formats, formatted(path, name), FileKind::surface, FileUse::write);
   write_into(files, path, [&](const ByteSink& sink) { format.write(mesh, sink); });
 }
 
@@ -469,8 +476,10 @@ void write_tet_mesh(const MeshToWrite& mesh, const std::string& path, OutputFile
   if (own) own->commit();
 }
 
-void write_label_volume(const LabelVolume& volume, const std::string& path, OutputFiles* files) {
-  const VolumeFormat& format = need_format(volume_formats, path, FileKind::volume, FileUse::write);
+void write_label_volume(const LabelVolume& volume, const std::string& path, OutputFiles* files,
+                        const std::string& name) {
+  const VolumeFormat& format =
+      need_format(volume_formats, formatted(path, name), FileKind::volume, FileUse::write);
   write_into(files, path, [&](const ByteSink& sink) { sink(format.write(volume)); });
 }
 
@@ -489,9 +498,9 @@ std::vector<std::string> files_of_input(const std::string& path) {
 
 void check_output_path(const std::string& path, FileKind kind, const std::string& format) {
   if (kind == FileKind::surface)
-    (void)need_format(surface_formats, path, kind, FileUse::write);
+    (void)need_format(surface_formats, formatted(path, format), kind, FileUse::write);
   else if (kind == FileKind::volume)
-    (void)need_format(volume_formats, path, kind, FileUse::write);
+    (void)need_format(volume_formats, formatted(path, format), kind, FileUse::write);
   else
     for (const std::string& file : files_of_tet_mesh(path, format)) check_output_file(file);
   if (kind != FileKind::tet_mesh) check_output_file(path);

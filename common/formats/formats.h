@@ -94,11 +94,14 @@ std::optional<SurfaceWithFields> read_surface_with_fields(const std::string& pat
 /// are committed (see atomic_file.h), and writing can be cancelled; "-" is standard output. Throws UsageError
 /// if the extension is not one of the kind, OutputError if the file can't be written, Interrupted if
 /// cancelled. A tet mesh is written in written_tet_format(), and as several files if that has several: their
-/// names differ in the extension.
-void write_surface(const TriangleMesh& mesh, const std::string& path, OutputFiles* files = nullptr);
+/// names differ in the extension. `format` of the others is an extension, "ply" or ".ply", in place of the
+/// path's.
+void write_surface(const TriangleMesh& mesh, const std::string& path, OutputFiles* files = nullptr,
+                   const std::string& format = {});
 void write_tet_mesh(const MeshToWrite& mesh, const std::string& path, OutputFiles* files = nullptr,
                     const std::string& format = {});
-void write_label_volume(const LabelVolume& volume, const std::string& path, OutputFiles* files = nullptr);
+void write_label_volume(const LabelVolume& volume, const std::string& path, OutputFiles* files = nullptr,
+                        const std::string& format = {});
 
 /// All files that write_tet_mesh() writes for a path.
 std::vector<std::string> files_of_tet_mesh(const std::string& path, const std::string& format = {});
@@ -107,8 +110,8 @@ std::vector<std::string> files_of_tet_mesh(const std::string& path, const std::s
 /// of .hdr with .img. They need not exist.
 std::vector<std::string> files_of_input(const std::string& path);
 
-/// To be called before any work: throws UsageError if the extension is not one of `kind`, OutputError if the
-/// folder is missing or not writable or what is there is not a regular file.
+/// To be called before any work: throws UsageError if the extension or the format is not one of `kind`,
+/// OutputError if the folder is missing or not writable or what is there is not a regular file.
 void check_output_path(const std::string& path, FileKind kind = FileKind::tet_mesh,
                        const std::string& format = {});
 

@@ -15,9 +15,11 @@ class ZipArchive {
   /// archive.
   ZipArchive(std::string_view bytes, std::string name);
 
+  /// Paths are compared without the case of ASCII letters.
   bool has(const std::string& path) const;
 
-  /// The content of a file. Throws InputError if it is missing, encrypted or damaged.
+  /// The content of a file. Throws InputError if it is missing, encrypted or damaged, or so large for what it
+  /// takes in the archive that it can only be meant to fill memory.
   std::string read(const std::string& path) const;
 
  private:

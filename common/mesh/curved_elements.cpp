@@ -29,7 +29,8 @@ using PatchesAtEdge = std::map<InterfacePatch, int>;
 std::map<Edge, PatchesAtEdge> patches_at_edges(const TetMesh& mesh) {
   std::map<Edge, PatchesAtEdge> edges;
   for (const InterfaceTriangle& t : mesh.interfaces)
-    for (std::size_t k = 0; k < 3; ++k) ++edges[ascending(t.ids[k], t.ids[(k + 1) % 3])][{t.pair(), t.patch}];
+    for (std::size_t k = 0; k < 3; ++k)
+      ++edges[ascending_edge(t.ids[k], t.ids[(k + 1) % 3])][{t.pair(), t.patch}];
   return edges;
 }
 

@@ -22,7 +22,7 @@ MidsideNodes straight_midside_nodes(const TetMesh& mesh) {
   MidsideNodes nodes;
   nodes.edges.reserve(6 * mesh.tets.size());
   for (const Tet& tet : mesh.tets)
-    for (const auto& [a, b] : tet_midside_edges) nodes.edges.push_back(ascending(tet[a], tet[b]));
+    for (const auto& [a, b] : tet_midside_edges) nodes.edges.push_back(ascending_edge(tet[a], tet[b]));
   std::sort(nodes.edges.begin(), nodes.edges.end());
   nodes.edges.erase(std::unique(nodes.edges.begin(), nodes.edges.end()), nodes.edges.end());
   nodes.edges.shrink_to_fit();
@@ -31,7 +31,7 @@ MidsideNodes straight_midside_nodes(const TetMesh& mesh) {
   for (const auto& edge : nodes.edges) ++starts[edge[0] + std::size_t{1}];
   for (std::size_t p = 0; p < mesh.points.size(); ++p) starts[p + 1] += starts[p];
   const auto find = [&](Index a, Index b) {
-    const std::array<Index, 2> edge = ascending(a, b);
+    const std::array<Index, 2> edge = ascending_edge(a, b);
     const auto begin = nodes.edges.begin() + starts[edge[0]];
     const auto end = nodes.edges.begin() + starts[edge[0] + std::size_t{1}];
     return static_cast<Index>(std::lower_bound(begin, end, edge) - nodes.edges.begin());

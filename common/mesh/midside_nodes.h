@@ -14,7 +14,7 @@ inline constexpr std::array<std::array<std::size_t, 2>, 6> tet_midside_edges{
     {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
 /// The ends of an edge, the smaller first.
-inline std::array<Index, 2> ascending(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
+inline std::array<Index, 2> ascending_edge(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
 /// The nodes in the middle of edges that make second-order elements of the tets of a mesh.
 struct MidsideNodes {

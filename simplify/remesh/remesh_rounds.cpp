@@ -16,7 +16,7 @@ constexpr double short_edge = 0.8, long_edge = 4.0 / 3;
 /// How far new triangles of a coarser surface may be from the one that the call found, in sizes.
 constexpr double coarsening_distance = 0.1;
 /// Share of the tets below the bound above which improving begins in bulk, as in improve().
-constexpr double bulk_before_remeshed = 0.4;
+constexpr double remesh_bulk_before = 0.4;
 constexpr int max_coarsening_rounds = 12, max_refining_rounds = 12;
 
 }  // namespace
@@ -81,7 +81,7 @@ void RemeshRounds::refine(double size, float floor) {
 }
 
 int RemeshRounds::improve(const ImprovementPlan& plan) {
-  return improve_area(tools_, area_, plan, bulk_before_remeshed);
+  return improve_area(tools_, area_, plan, remesh_bulk_before);
 }
 
 }  // namespace tetwright

@@ -1,9 +1,11 @@
 """Inputs of all formats with bytes flipped, cut off, left out, repeated or put in."""
 import collections
 import gzip
+import io
 import random
 import shutil
 import struct
+import zipfile
 from pathlib import Path
 
 SURFACES = ("ply", "obj", "stl", "off", "vtp")
@@ -71,6 +73,19 @@ def volumes(folder):
     return [folder / name for name in contents if not name.endswith(".raw")]
 
 
+def damaged_file(path, data, draw):
+    """Of a .3mf that stores its model, damaged in there: archives that are damaged end at their checksums."""
+    if path.name != "stored.3mf" or draw.random() < 0.2:
+        return damaged(data, draw)
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    result = io.BytesIO()
+    with zipfile.ZipFile(result, "w") as archive:
+        for name, content in parts.items():
+            archive.writestr(name, damaged(content, draw) if name == "3D/3dmodel.model" else content)
+    return result.getvalue()
+
+
 def inputs(p):
     """Files, each with what it is read by."""
     folder = p.folder / "in"
@@ -113,7 +128,7 @@ def one(p, path, call, draw):
     out = p.folder / "out.vtu"
     out.unlink(missing_ok=True)
     # A file of two is damaged in place, with the other one as it was.
-    path.write_bytes(damaged(original, draw))
+    path.write_bytes(damaged_file(path, original, draw))
     try:
         other = [argument for argument in call if isinstance(argument, Path)]
         arguments = [*call, *([] if other else [path]), "-o", out, "--quiet",

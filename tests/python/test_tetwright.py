@@ -150,6 +150,35 @@ def test_other_libraries_objects(ball_arrays, prepared):
     assert len(tetwright.simplify(mesh, target_tets=400).tets) == pytest.approx(400, rel=0.02)
 
 
+def test_size_fields_are_files_arrays_or_meshes(tmp_path, ball):
+    corners = np.array([[-9, -9, -9], [27, -9, -9], [-9, 27, -9], [-9, -9, 27]], float)
+    tets, lengths = np.array([[0, 1, 2, 3]]), np.array([0.5, 0.9, 0.5, 0.5])
+    grid = meshio.Mesh(corners, {"tetra": tets}, point_data={"size": lengths})
+    grid.write(tmp_path / "sizes.vtu")
+    dense = tetwright.mesh(ball, resolution=12)
+    by_file = tetwright.simplify(dense, size_field=tmp_path / "sizes.vtu")
+    assert by_file.stats["edge_lengths"]["field"] == "size"
+    for field in (corners, tets, lengths), grid:
+        assert np.array_equal(tetwright.simplify(dense, size_field=field).points, by_file.points)
+    # Of the points of a surface, from which lengths grow.
+    surface = meshio.read(ball)
+    assert tetwright.simplify(dense, size_field=(surface.points, surface.cells_dict["triangle"],
+                                                 np.full(len(surface.points), 0.5))).stats["edge_lengths"]["edges"]
+    with pytest.raises(tetwright.InputError, match="one for each of the 4 points"):
+        tetwright.simplify(dense, size_field=(corners, tets, lengths[:3]))
+    with pytest.raises(tetwright.InputError, match="names point 4"):
+        tetwright.simplify(dense, size_field=(corners, tets + 1, lengths))
+    del grid.point_data["size"]
+    with pytest.raises(tetwright.InputError, match="no field size"):
+        tetwright.simplify(dense, size_field=grid)
+
+
+def test_report_is_written(tmp_path, ball):
+    tetwright.prepare(ball, target_tets=800, output=tmp_path / "out.vtu", report=tmp_path / "page.html")
+    page = (tmp_path / "page.html").read_text()
+    assert page.startswith("<!doctype html>") and "solid angle" in page
+
+
 def test_errors_carry_the_programs_message(ball, ball_arrays):
     points, triangles = ball_arrays
     with pytest.raises(tetwright.UsageError, match="there is no option --target-tet of prepare") as caught:

@@ -46,6 +46,24 @@ TEST(Streams, OfVolumes) {
   EXPECT_EQ(contents(f / "file.vtu"), contents(f / "stream.vtu"));
 }
 
+TEST(Streams, OfSamples) {
+  const TemporaryFolder f;
+  for (const auto& [sample, format] :
+       {std::pair{"torus", "ply"}, {"organs", "nrrd"}, {"two_materials", "msh41"}, {"tet_cube", "vtu"}}) {
+    const std::string name = f / (std::string("s.") + format);
+    const std::string written = std::string("sample ") + sample + " --output-format " + format + " -o ";
+    ASSERT_EQ(run(written + name).status, 0);
+    const Answer a = run(written + "-");
+    EXPECT_EQ(a.status, 0) << a.err;
+    EXPECT_EQ(a.out, contents(name)) << sample;
+    EXPECT_FALSE(a.out.empty());
+  }
+  expect_refused("sample torus -o -", 2, {"--output-format"});
+  expect_refused("sample torus -o - --output-format vtu", 2, {"for a surface", ".ply"});
+  expect_refused("sample torus -o - --output-format glb", 2, {"can be read, not written"});
+  expect_refused("sample tet_cube -o - --output-format xdmf", 2, {"xdmf", "several files"});
+}
+
 TEST(Streams, MessagesNameThem) {
   const Answer a = shell("echo nonsense | $t mesh - --input-format off -o /dev/null.vtu");
   EXPECT_NE(a.status, 0);

@@ -134,6 +134,13 @@ void check_stats_path(const CommandLine& line) {
   log_line(line.call);
 }
 
+void check_tet_stream(const CommandLine& line) {
+  if (line.output == "-" && files_of_tet_mesh(line.output, line.output_format).size() > 1)
+    throw UsageError("--output-format " + line.output_format +
+                     " is several files, which standard output is not; "
+                     "give -o a name, or another format");
+}
+
 void check_output_paths(const CommandLine& line) {
   if (line.command != Command::check) check_output_path(line.output, FileKind::tet_mesh, line.output_format);
   if (!line.boundary.empty()) check_output_path(line.boundary, FileKind::surface);

@@ -13,6 +13,9 @@ namespace tetwright {
 /// and OutputError.
 void check_output_paths(const CommandLine& line);
 
+/// Throws UsageError for a tet mesh in a format of several files on standard output.
+void check_tet_stream(const CommandLine& line);
+
 /// All files that the call writes, and all that it reads, those that belong to one that is named among them.
 std::vector<std::string> written_files(const CommandLine& line);
 std::vector<std::string> read_files(const CommandLine& line);

@@ -6,6 +6,7 @@
 #include "common/formats/formats.h"
 #include "tools/commands/command_run.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/output_paths.h"
 #include "tools/stats_json.h"
 
 namespace tetwright {
@@ -16,14 +17,15 @@ FileKind kind_of(const TriangleMesh&) { return FileKind::surface; }
 FileKind kind_of(const TetMesh&) { return FileKind::tet_mesh; }
 FileKind kind_of(const LabelVolume&) { return FileKind::volume; }
 
-void write(const TriangleMesh& surface, const std::string& path, OutputFiles& files) {
-  write_surface(surface, path, &files);
+void write(const TriangleMesh& surface, const CommandLine& line, OutputFiles& files) {
+  write_surface(surface, line.output, &files, line.output_format);
 }
-void write(const TetMesh& mesh, const std::string& path, OutputFiles& files) {
-  write_tet_mesh(mesh, path, &files);
+void write(const TetMesh& mesh, const CommandLine& line, OutputFiles& files) {
+  check_tet_stream(line);
+  write_tet_mesh(mesh, line.output, &files, line.output_format);
 }
-void write(const LabelVolume& volume, const std::string& path, OutputFiles& files) {
-  write_label_volume(volume, path, &files);
+void write(const LabelVolume& volume, const CommandLine& line, OutputFiles& files) {
+  write_label_volume(volume, line.output, &files, line.output_format);
 }
 
 }  // namespace
@@ -31,9 +33,10 @@ void write(const LabelVolume& volume, const std::string& path, OutputFiles& file
 void run_sample(CommandRun& run) {
   const CommandLine& line = run.line;
   const Sample sample = make_sample(line.inputs.front());
-  check_output_path(line.output, std::visit([](const auto& made) { return kind_of(made); }, sample));
+  check_output_path(line.output, std::visit([](const auto& made) { return kind_of(made); }, sample),
+                    line.output_format);
   OutputFiles files;
-  std::visit([&](const auto& made) { write(made, line.output, files); }, sample);
+  std::visit([&](const auto& made) { write(made, line, files); }, sample);
   run.report.seconds_total = run.since_start.seconds();
   write_stats(run, files);
   files.commit();

@@ -1,38 +1,10 @@
 #include "common/formats/3mf.h"
 
-#include <zip.h>
-
 #include "tests/common/formats/expect_error.h"
+#include "tests/common/formats/zip_of.h"
 
 namespace tetwright::three_mf_test {
 namespace {
-
-using Parts = std::vector<std::pair<std::string, std::string>>;
-
-/// A ZIP archive with these files.
-std::string archive(const Parts& parts) {
-  zip_error_t error;
-  zip_error_init(&error);
-  zip_source_t* source = zip_source_buffer_create(nullptr, 0, 0, &error);
-  zip_source_keep(source);
-  zip_t* zip = zip_open_from_source(source, ZIP_TRUNCATE, &error);
-  for (const auto& [name, content] : parts)
-    zip_file_add(zip, name.c_str(), zip_source_buffer(zip, content.data(), content.size(), 0), 0);
-  EXPECT_EQ(zip_close(zip), 0);
-  std::string bytes;
-  zip_source_open(source);
-  char chunk[4096];
-  for (zip_int64_t n; (n = zip_source_read(source, chunk, sizeof chunk)) > 0;)
-    bytes.append(chunk, static_cast<std::size_t>(n));
-  zip_source_close(source);
-  zip_source_free(source);
-  return bytes;
-}
-
-const std::string relationships =
-    "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
-    "<Relationship Target=\"/3D/a.model\" Id=\"rel0\" "
-    "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
 
 /// A tet with its corner at the origin, as the mesh of an object.
 const std::string tet_mesh =
@@ -52,7 +24,7 @@ std::string model(const std::string& objects, const std::string& items) {
 }
 
 std::string file(const std::string& objects, const std::string& items) {
-  return archive({{"_rels/.rels", relationships}, {"3D/a.model", model(objects, items)}});
+  return zip_of({{"_rels/.rels", relationships_of_3mf}, {"3D/a.model", model(objects, items)}});
 }
 
 /// Six times the volume, which is positive if the triangles face outwards.
@@ -101,15 +73,29 @@ TEST(ThreeMf, ObjectsAreGroupsByTheirNamesAlsoAsComponents) {
   EXPECT_EQ(mesh.triangle_groups[15], 3u);
 }
 
+TEST(ThreeMf, AnUnnamedObjectIsOfTheAssemblyThatHasIt) {
+  const auto assembly = [](const std::string& attributes) {
+    return object(attributes, "<components><component objectid=\"1\"/></components>");
+  };
+  // The type of what has components says nothing.
+  const TriangleMesh mesh =
+      read_3mf(file(object("id=\"1\"", tet_mesh) + assembly("id=\"2\" name=\"left\"") +
+                        assembly("id=\"3\" name=\"right\" type=\"support\""),
+                    "<item objectid=\"2\"/><item objectid=\"3\"/><item objectid=\"2\"/>"),
+               "f");
+  EXPECT_EQ(mesh.groups, (std::vector<FaceGroup>{{0, "left"}, {0, "right"}}));
+  EXPECT_EQ(mesh.triangle_groups, (std::vector<std::uint32_t>{0, 0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 0}));
+}
+
 TEST(ThreeMf, ObjectsOfOtherParts) {
   const std::string root =
       model(object("id=\"1\"",
                    "<components><component p:path=\"/3D/Objects/b.model\" objectid=\"1\"/></components>"),
             "<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 3 0 0\"/>");
   const TriangleMesh mesh =
-      read_3mf(archive({{"_rels/.rels", relationships},
-                        {"3D/a.model", root},
-                        {"3D/Objects/b.model", model(object("id=\"1\"", tet_mesh), "")}}),
+      read_3mf(zip_of({{"_rels/.rels", relationships_of_3mf},
+                       {"3D/a.model", root},
+                       {"3D/Objects/b.model", model(object("id=\"1\"", tet_mesh), "")}}),
                "f");
   ASSERT_EQ(mesh.points.size(), 4u);
   EXPECT_EQ(mesh.points[0], Vec3(3, 0, 0));
@@ -120,12 +106,15 @@ TEST(ThreeMf, WhatIsDroppedIsNamed) {
   coloured.replace(coloured.find("v3=\"1\""), 6, "v3=\"1\" pid=\"9\" p1=\"0\"");
   coloured.insert(coloured.find("</mesh>"), "<b:beamlattice/>");
   std::vector<Dropped> dropped;
-  (void)read_3mf(file(object("id=\"1\"", coloured) + object("id=\"2\" type=\"support\"", tet_mesh),
-                      "<item objectid=\"1\"/><item objectid=\"2\"/>"),
+  (void)read_3mf(file(object("id=\"1\" pid=\"9\"", coloured) + object("id=\"2\" type=\"support\"", tet_mesh) +
+                          object("id=\"3\"", "<v:levelset/>"),
+                      "<item objectid=\"1\"/><item objectid=\"2\"/><item objectid=\"3\"/>"),
                  "f", &dropped);
-  EXPECT_EQ(dropped, (std::vector<Dropped>{{"triangles with a colour, material or texture", 1},
+  EXPECT_EQ(dropped, (std::vector<Dropped>{{"objects with a colour, material or texture", 1},
+                                           {"triangles with a colour, material or texture", 1},
                                            {"beam lattices", 1},
-                                           {"objects that support others", 1}}));
+                                           {"objects that support others", 1},
+                                           {"objects that are no meshes", 1}}));
 }
 
 TEST(ThreeMf, BadInput) {
@@ -133,8 +122,8 @@ TEST(ThreeMf, BadInput) {
   expect_input_error(read_3mf, "", "empty");
   expect_input_error(read_3mf, "PK\3\4 and so on", "ZIP", "damaged");
   expect_input_error(read_3mf, file(good, item).substr(0, 300), "ZIP", "cut short");
-  expect_input_error(read_3mf, archive({{"a.txt", "text"}}), "no 3D model", "3MF");
-  expect_input_error(read_3mf, archive({{"_rels/.rels", relationships}}), "\"3D/a.model\"", "damaged");
+  expect_input_error(read_3mf, zip_of({{"a.txt", "text"}}), "no 3D model", "3MF");
+  expect_input_error(read_3mf, zip_of({{"_rels/.rels", relationships_of_3mf}}), "\"3D/a.model\"", "damaged");
   expect_input_error(read_3mf, file(good, ""), "builds no object");
   expect_input_error(read_3mf, file(good, "<item objectid=\"2\"/>"), "3D/a.model: line 6", "the id \"2\"");
   expect_input_error(read_3mf, file(good, "<item/>"), "line 6", "\"objectid\"");
@@ -144,6 +133,28 @@ TEST(ThreeMf, BadInput) {
   expect_input_error(read_3mf,
                      file(object("id=\"1\"", "<components><component objectid=\"1\"/></components>"), item),
                      "line 4", "part of itself");
+  expect_input_error(read_3mf, file(good, "<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 0 0 0 7\"/>"),
+                     "twelve numbers");
+  const auto with_root = [&](const std::string& attributes) {
+    std::string text = model(good, item);
+    text.insert(text.find("unit="), attributes + " ");
+    return text;
+  };
+  const auto alone = [](const std::string& text) {
+    return zip_of({{"_RELS/.rels", relationships_of_3mf}, {"3D/A.model", text}});
+  };
+  const std::string booleans = "xmlns:bo=\"http://schemas.3mf.io/3dmanufacturing/booleanoperations/2023/07\"";
+  EXPECT_EQ(read_3mf(alone(with_root(booleans)), "f").points.size(), 4u);
+  expect_input_error(read_3mf, alone(with_root(booleans + " requiredextensions=\"bo\"")), "booleanoperations",
+                     "not supported");
+  std::string inches = model(object("id=\"1\"", tet_mesh), "");
+  inches.replace(inches.find("millimeter"), 10, "inch");
+  expect_input_error(read_3mf,
+                     zip_of({{"_rels/.rels", relationships_of_3mf},
+                             {"3D/a.model", model(good, "<item objectid=\"1\" p:path=\"/3D/b.model\"/>")},
+                             {"3D/b.model", inches}}),
+                     "b.model", "\"inch\"");
+  expect_input_error(read_3mf, alone(std::string(70'000'000, ' ')), "3D/a.model", "200 times");
   const auto changed = [&](const std::string& from, const std::string& to) {
     std::string mesh = tet_mesh;
     mesh.replace(mesh.find(from), from.size(), to);
@@ -165,6 +176,15 @@ TEST(ThreeMf, ComponentsThatMultiplyAreRefused) {
     objects += object("id=\"" + std::to_string(level) + "\"", "<components>" + components + "</components>");
   }
   expect_input_error(read_3mf, file(objects, "<item objectid=\"6\"/>"), "more than 100000 times");
+}
+
+TEST(ThreeMf, ComponentsInAnyDepthEnd) {
+  std::string objects = object("id=\"0\"", tet_mesh);
+  for (int level = 1; level <= 20000; ++level)
+    objects += object("id=\"" + std::to_string(level) + "\"",
+                      "<components><component objectid=\"" + std::to_string(level - 1) + "\"/></components>");
+  EXPECT_EQ(read_3mf(file(objects, "<item objectid=\"900\"/>"), "f").points.size(), 4u);
+  expect_input_error(read_3mf, file(objects, "<item objectid=\"20000\"/>"), "within each other");
 }
 
 }  // namespace

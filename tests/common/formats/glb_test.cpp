@@ -115,35 +115,107 @@ TEST(Glb, WhatIsDroppedIsNamed) {
                          {"morph targets", 1}, {"sets of lines", 1}, {"sets of points", 1}, {"skins", 1}}));
 }
 
+TEST(Glb, WhatTheSceneDoesNotShowIsNamed) {
+  json scene = tet_scene();
+  scene["meshes"].push_back(scene["meshes"][0]);
+  scene["animations"] = {json::object(), json::object()};
+  std::vector<Dropped> dropped;
+  EXPECT_EQ(read(scene, &dropped).triangles.size(), 4u);
+  EXPECT_EQ(dropped, (std::vector<Dropped>{{"meshes that the scene does not show", 1}, {"animations", 2}}));
+}
+
+TEST(Glb, EqualAndMissingNamesStayApart) {
+  json scene = tet_scene();
+  scene["scenes"] = {{{"nodes", {0, 1, 2, 3}}}};
+  scene["nodes"] = {{{"mesh", 0}}, {{"mesh", 0}}, {{"mesh", 0}, {"name", "a"}}, {{"mesh", 0}, {"name", "a"}}};
+  EXPECT_EQ(read(scene).groups, (std::vector<FaceGroup>{{1, ""}, {2, ""}, {0, "a"}, {0, "a_2"}}));
+}
+
 TEST(Glb, BadInput) {
-  expect_input_error(read_glb, "", "not a binary glTF file");
+  expect_input_error(read_glb, "", "empty");
   expect_input_error(read_glb, "solid", "not a binary glTF file");
   const std::string good = glb(tet_scene(), tet_bytes());
-  expect_input_error(read_glb, good.substr(0, good.size() - 8), "not a binary glTF file");
+  for (std::size_t cut = 20; cut < good.size(); cut += 7)
+    EXPECT_THROW((void)read_glb(good.substr(0, cut), "f"), InputError) << cut;
+  expect_input_error(read_glb, good.substr(0, good.size() - 8), "beyond the end of the file");
+  std::string old = good;
+  old[4] = 1;
+  expect_input_error(read_glb, old, "version 1");
+  std::string broken = good;
+  broken[20] = '?';
+  expect_input_error(read_glb, broken, "not JSON");
   const auto refused = [](const std::vector<std::pair<std::string, json>>& changes, const std::string& first,
                           const std::string& second = "") {
     json scene = tet_scene();
     for (const auto& [where, value] : changes) scene[json::json_pointer(where)] = value;
     expect_input_error(read_glb, glb(scene, tet_bytes()), first, second);
   };
-  refused({{"/scene", 3}}, "no scene 3");
-  refused({{"/scenes/0/nodes/0", 5}}, "no node 5");
-  refused({{"/nodes/0/mesh", 2}}, "no mesh 2");
-  refused({{"/nodes/0/children", {0}}}, "node 0", "child");
-  refused({{"/nodes/0/scale", {1, 1}}}, "2 numbers instead of 3");
-  refused({{"/meshes/0/primitives/0/indices", 9}}, "indices accessor");
-  refused({{"/meshes/0/primitives/0/attributes/POSITION", 1}}, "accessor 1", "another kind");
-  refused({{"/accessors/0/count", 1000000000}}, "accessor 0", "beyond the end");
-  refused({{"/accessors/0/byteOffset", 1000000000}}, "accessor 0", "beyond the end");
-  refused({{"/accessors/1/bufferView", 7}}, "bufferView");
+  refused({{"/scene", 3}}, "number 3", "scenes");
+  refused({{"/scene", -1}}, "number -1", "scenes");
+  refused({{"/nodes", 7}}, "\"nodes\" is no list");
+  refused({{"/scenes/0/nodes/0", 5}}, "number 5", "nodes");
+  refused({{"/nodes/0/mesh", 2}}, "number 2", "meshes");
+  refused({{"/nodes/0/mesh", "a"}}, "nodes 0", "\"mesh\"");
+  refused({{"/nodes/0/children", {0}}}, "nodes 0", "child");
+  refused({{"/nodes/0/children", {1}}, {"/nodes/1", json::object()}, {"/scenes/0/nodes", {0, 1}}}, "nodes 1",
+          "and of the scene");
+  refused({{"/nodes/0/scale", {1, 1}}}, "nodes 0", "not 3 numbers");
+  refused({{"/nodes/0/translation", {1e300, 1e300, "a"}}}, "nodes 0", "not 3 numbers");
+  refused({{"/meshes/0/primitives/0/indices", 9}}, "number 9", "accessors");
+  refused({{"/meshes/0/primitives/0/indices", -2}}, "number -2", "accessors");
+  refused({{"/meshes/0/primitives/0/mode", 7}}, "no mode 7");
+  refused({{"/meshes/0/primitives/0/attributes/POSITION", 0.5}}, "meshes 0", "\"POSITION\"");
+  refused({{"/meshes/0/primitives/0/attributes/POSITION", 1}}, "accessors 1", "another kind");
+  refused({{"/accessors/0/count", 9}}, "accessors 0", "its buffer view");
+  refused({{"/accessors/0/count", 1000000000000}}, "accessors 0", "its buffer view");
+  refused({{"/accessors/0/count", -1}}, "accessors 0", "\"count\" is -1");
+  refused({{"/accessors/0/byteOffset", 1000000000}}, "accessors 0", "its buffer view");
+  refused({{"/bufferViews/0/byteLength", 1000}}, "bufferViews 0", "end of the file");
+  refused({{"/bufferViews/0/byteStride", 4}}, "accessors 0", "its buffer view");
+  refused({{"/accessors/1/bufferView", 7}}, "number 7", "bufferViews");
+  refused({{"/accessors/1/count", 11}}, "11 corners", "multiple of three");
   refused({{"/accessors/0/count", 4}}, "names vertex 4", "there are 4");
-  refused({{"/extensionsRequired", {"KHR_draco_mesh_compression"}}}, "KHR_draco_mesh_compression",
-          "without compression");
-  refused({{"/accessors/0/sparse",
-            {{"count", 1},
-             {"indices", {{"bufferView", 1}, {"componentType", 5123}}},
-             {"values", {{"bufferView", 0}}}}}},
-          "sparse");
+  refused({{"/buffers/0/uri", "a.bin"}}, "another file");
+  refused({{"/accessors/0/sparse", json::object()}}, "sparse");
+  refused({{"/extensionsRequired", {"KHR_materials_unlit", "EXT_mesh_gpu_instancing"}}}, "gpu_instancing");
+  // Draco keeps the numbers elsewhere: the accessors have no buffer views.
+  json draco = tet_scene();
+  draco["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+  for (json& accessor : draco["accessors"]) accessor.erase("bufferView");
+  expect_input_error(read_glb, glb(draco, tet_bytes()), "KHR_draco_mesh_compression", "without compression");
+}
+
+TEST(Glb, NestedInAnyDepthEnds) {
+  constexpr int depth = 100'000;
+  json scene = tet_scene();
+  scene["nodes"] = json::array();
+  for (int i = 0; i < depth; ++i) scene["nodes"].push_back({{"children", {i + 1}}});
+  expect_input_error(read_glb, glb(scene, tet_bytes()), "more than 1000 nodes below the scene");
+  std::string text = tet_scene().dump();
+  text.insert(1, "\"extras\":" + std::string(depth, '[') + std::string(depth, ']') + ",");
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const std::string rest = glb(tet_scene(), tet_bytes());
+  std::string bytes = rest.substr(0, 12);
+  append_bytes(bytes, static_cast<std::uint32_t>(text.size()));
+  bytes += "JSON" + text + rest.substr(rest.size() - 128);
+  EXPECT_EQ(read_glb(bytes, "f").triangles.size(), 4u);
+}
+
+TEST(Glb, ObjectsThatMultiplyAreRefused) {
+  json scene = tet_scene();
+  scene["scenes"][0]["nodes"] = json::array();
+  scene["nodes"] = json::array();
+  std::string bytes = tet_bytes();
+  bytes.resize(bytes.size() + 12 * 1'000'000);
+  scene["buffers"][0]["byteLength"] = bytes.size();
+  scene["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 120}, {"byteLength", bytes.size() - 120}});
+  scene["accessors"][0]["bufferView"] = 2;
+  scene["accessors"][0]["count"] = 1'000'000;
+  for (int i = 0; i < 600; ++i) {
+    scene["scenes"][0]["nodes"].push_back(i);
+    scene["nodes"].push_back({{"mesh", 0}});
+  }
+  expect_input_error(read_glb, glb(scene, bytes), "500000000", "place fewer");
 }
 
 }  // namespace

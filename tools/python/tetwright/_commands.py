@@ -21,6 +21,8 @@ def prepare(scan: Any, *, target_tets: Optional[int] = None, tolerance: Union[fl
     scan -- a surface, a list of them or a dict from names of materials (later ones carve earlier ones), or one array of
         labels of shape (nx, ny, nz), whole numbers of which 0 is outside
     target_tets -- the number of tets to reach; without it `tolerance` or `size_field` is needed
+    size_field -- edge lengths by place: a file, arrays (points (n, 3), tets (m, 4) or triangles (m, 3), lengths (n,)), or
+        a mesh of meshio or pyvista whose points have them as "size"
     tolerance -- how far the surfaces of mesh and scan may be from each other, input units or "0.2%" of the diagonal
     spacing, origin -- of an array of labels: input units from voxel to voxel (one number or three), and the centre of
         voxel (0, 0, 0); or affine, a (4, 4) matrix from indices to positions
@@ -127,6 +129,8 @@ def _arguments(command: str, names: list[str], options: dict[str, Any], inputs: 
             continue
         if value is True:
             arguments.append(option)
+        elif key == "size_field":
+            arguments.append(f"{option}={inputs.add_sizes(value)}")
         elif key == "labels" and not isinstance(value, str):
             arguments.append(f"{option}={_label_ranges(value)}")
         elif isinstance(value, dict):

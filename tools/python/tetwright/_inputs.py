@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from typing import Any, Optional, Sequence
 
 import numpy as np
@@ -13,6 +14,8 @@ from ._mesh import TetMesh
 VTK_TRIANGLE, VTK_TETRA = 5, 10
 # Cell data that tell materials, as the program reads them from files.
 MATERIAL_FIELDS = ("material", "medit:ref", "gmsh:physical", "MaterialID", "attribute")
+# Point data that tell edge lengths.
+SIZE_FIELDS = ("size", "sizing", "edge_length", "h")
 
 
 class Inputs:
@@ -22,6 +25,7 @@ class Inputs:
         self.core = _core.Inputs()
         self._placement = (spacing, origin, affine)
         self._placement_used = False
+        self._folder: Optional[tempfile.TemporaryDirectory[str]] = None
 
     def add(self, value: Any, name: str) -> str:
         """The name that stands for `value` in the call."""
@@ -36,6 +40,28 @@ class Inputs:
         else:
             self._add_cells(name, *_cells_of(value, name))
         return name
+
+    def add_sizes(self, value: Any) -> str:
+        """The name of a file with edge lengths by place: (points, tets, lengths) or (points, triangles, lengths), or a
+        mesh of meshio or pyvista whose points have them."""
+        if isinstance(value, (str, os.PathLike)):
+            return os.fspath(value)
+        if isinstance(value, (tuple, list)) and len(value) == 3:
+            points, cells, lengths = (np.asarray(v) for v in value)
+        else:
+            points, triangles, tets, _, _ = _cells_of(value, "size_field")
+            cells = np.asarray(triangles if tets is None else tets)
+            fields = getattr(value, "point_data", {})
+            name = next((f for f in SIZE_FIELDS if f in fields), None)
+            if name is None:
+                raise _core.InputError(f"size_field: its points have no field {', '.join(SIZE_FIELDS)}; give "
+                                       "(points, tets, lengths)")
+            points, lengths = np.asarray(points), np.asarray(fields[name])
+        if self._folder is None:
+            self._folder = tempfile.TemporaryDirectory(prefix="tetwright-")
+        path = os.path.join(self._folder.name, "size_field.vtk")
+        _write_sizes(path, points, cells, lengths)
+        return path
 
     def finish(self) -> None:
         """Refuses what says where voxels are if there are none."""
@@ -68,6 +94,29 @@ class Inputs:
             labels = labels[..., 0]
         self.core.add_volume(name, _whole_numbers(labels, name, "labels"), matrix[:3, 3].tolist(),
                              matrix[:3, :3].tolist())
+
+
+def _write_sizes(path: str, points: np.ndarray, cells: np.ndarray, lengths: np.ndarray) -> None:
+    """As the field "size" of the points in a binary file of legacy VTK."""
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise _core.InputError(f"size_field: points have the shape {points.shape}; give (n, 3)")
+    if cells.ndim != 2 or cells.shape[1] not in (3, 4):
+        raise _core.InputError(f"size_field: cells have the shape {cells.shape}; give tets (m, 4) or triangles (m, 3)")
+    if lengths.shape != (len(points),):
+        raise _core.InputError(f"size_field: lengths have the shape {lengths.shape}; give one for each of the "
+                               f"{len(points)} points")
+    if cells.size and (cells.min() < 0 or cells.max() >= len(points)):
+        raise _core.InputError(f"size_field: a cell names point {cells.max()}, and there are {len(points)}")
+    corners = cells.shape[1]
+    rows = np.column_stack([np.full(len(cells), corners), cells]).astype(">i4")
+    kind = VTK_TRIANGLE if corners == 3 else VTK_TETRA
+    with open(path, "wb") as file:
+        file.write(b"# vtk DataFile Version 3.0\nedge lengths\nBINARY\nDATASET UNSTRUCTURED_GRID\n")
+        file.write(b"POINTS %d double\n" % len(points) + points.astype(">f8").tobytes())
+        file.write(b"\nCELLS %d %d\n" % (len(cells), rows.size) + rows.tobytes())
+        file.write(b"\nCELL_TYPES %d\n" % len(cells) + np.full(len(cells), kind, ">i4").tobytes())
+        file.write(b"\nPOINT_DATA %d\nSCALARS size double 1\nLOOKUP_TABLE default\n" % len(points))
+        file.write(lengths.astype(">f8").tobytes() + b"\n")
 
 
 def _whole_numbers(values: Any, name: str, what: str) -> np.ndarray:
