@@ -2,7 +2,6 @@
 // and operations on them. After each operation that changed the mesh it must be valid, with the topology it
 // began with.
 #include <array>
-#include <cstdint>
 #include <memory>
 
 #include "common/error.h"
@@ -15,26 +14,26 @@
 #include "simplify/operations/fitting.h"
 #include "simplify/operations/insertion.h"
 #include "simplify/operations/smoothing.h"
+#include "tests/fuzz/targets.h"
 #include "tests/simplify/meshes.h"
 
+namespace tetwright::fuzz {
 namespace {
-
-using namespace tetwright;
 
 /// The bytes of the input, one after the other; 0 at its end.
 class Bytes {
  public:
-  Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
-  bool empty() const { return size_ == 0; }
+  explicit Bytes(std::string_view bytes) : bytes_(bytes) {}
+  bool empty() const { return bytes_.empty(); }
   std::uint32_t below(std::uint32_t n) {
     if (empty()) return 0;
-    --size_;
-    return *data_++ % n;
+    const auto first = static_cast<unsigned char>(bytes_.front());
+    bytes_.remove_prefix(1);
+    return first % n;
   }
 
  private:
-  const std::uint8_t* data_;
-  std::size_t size_;
+  std::string_view bytes_;
 };
 
 TetMesh choose_mesh(Bytes& bytes) {
@@ -99,9 +98,9 @@ Outcome operate(Workspace& ws, BlockRules rules, Bytes& bytes, Index t) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+void run_operations(std::string_view input_bytes) {
   constexpr int max_operations = 100;
-  Bytes bytes(data, size);
+  Bytes bytes(input_bytes);
   TetMesh input = choose_mesh(bytes);
   const Topology before = topology(input);
   EditableMesh mesh(std::move(input), "fuzz");
@@ -132,5 +131,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     TETWRIGHT_CHECK(check_mesh(now).empty());
     TETWRIGHT_CHECK(topology_differences(before, topology(now)).empty());
   }
-  return 0;
 }
+
+}  // namespace tetwright::fuzz

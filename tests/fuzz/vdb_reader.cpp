@@ -1,20 +1,21 @@
 // Fuzzes the reader of .vdb files: OpenVDB, which trusts all sizes, must be given only what take_apart_vdb()
 // has validated. The file is a surface or a volume, or an InputError.
-#include <cstdint>
 #include <stdexcept>
 
 #include "common/error.h"
 #include "mesher/distance/openvdb_grids.h"
 #include "mesher/distance/vdb_structure.h"
+#include "tests/fuzz/targets.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace tetwright;
+namespace tetwright::fuzz {
+
+void run_vdb(std::string_view bytes) {
   constexpr std::size_t max_voxels = 1'000'000;
   std::vector<VdbGrid> grids;
   try {
-    grids = take_apart_vdb({reinterpret_cast<const char*>(data), size});
+    grids = take_apart_vdb(bytes);
   } catch (const std::runtime_error&) {  // for the caller to put the file's name before
-    return 0;
+    return;
   }
   for (VdbGrid& grid : grids) {
     if (grid.alone.empty()) continue;
@@ -31,5 +32,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     } catch (const std::domain_error&) {  // a transform without sense
     }
   }
-  return 0;
 }
+
+}  // namespace tetwright::fuzz

@@ -1,0 +1,53 @@
+// One program for all targets, so that what they share is compiled once: build/asan/bin/fuzz TARGET and then
+// what libFuzzer takes; `fuzz --list` prints the targets.
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+#include "tests/fuzz/targets.h"
+
+namespace tetwright::fuzz {
+namespace {
+
+std::vector<Target> all_targets() {
+  std::vector<Target> all;
+  for (const std::span<const Target> some : {surface_targets(), tet_mesh_targets(), volume_targets()})
+    all.insert(all.end(), some.begin(), some.end());
+#ifdef TETWRIGHT_FUZZ_VDB
+  all.push_back({"vdb", run_vdb});
+#endif
+  all.push_back({"operations", run_operations});
+  return all;
+}
+
+Target chosen;
+
+}  // namespace
+}  // namespace tetwright::fuzz
+
+// Called before libFuzzer reads the arguments: takes the target's name out of them.
+extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
+  using namespace tetwright::fuzz;
+  const std::string_view wanted = *argc > 1 ? (*argv)[1] : "";
+  for (const Target& target : all_targets()) {
+    if (wanted == "--list") std::printf("%.*s\n", static_cast<int>(target.name.size()), target.name.data());
+    if (wanted == target.name) chosen = target;
+  }
+  if (wanted == "--list") std::exit(0);
+  if (!chosen.run) {
+    std::fprintf(stderr, "fuzz: there is no target '%s'; fuzz --list prints them\n",
+                 *argc > 1 ? (*argv)[1] : "");
+    std::exit(2);
+  }
+  std::memmove(*argv + 1, *argv + 2,
+               static_cast<std::size_t>(*argc - 1) * sizeof **argv);  // with the null at the end
+  --*argc;
+  return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  tetwright::fuzz::chosen.run({reinterpret_cast<const char*>(data), size});
+  return 0;
+}

@@ -1,0 +1,115 @@
+// Readers of tet meshes: each must return a mesh whose indices are in range and whose fields have the right
+// sizes, or throw an InputError. The mesh must survive a round trip through a writer, and the functions that
+// work on meshes of other programs must accept it.
+#include "common/error.h"
+#include "common/formats/abaqus.h"
+#include "common/formats/medit.h"
+#include "common/formats/medit_binary.h"
+#include "common/formats/msh.h"
+#include "common/formats/nastran.h"
+#include "common/formats/tetgen.h"
+#include "common/formats/vtk.h"
+#include "common/formats/vtu.h"
+#include "common/formats/xdmf.h"
+#include "common/mesh/field_transfer.h"
+#include "common/mesh/foreign_mesh.h"
+#include "common/mesh/mesh_check.h"
+#include "common/mesh/mesh_statistics.h"
+#include "common/mesh/topology.h"
+#include "tests/fuzz/targets.h"
+
+namespace tetwright::fuzz {
+namespace {
+
+using Read = ReadTetMesh (*)(std::string_view, const std::string&, const ReadTetMeshOptions&);
+using Write = std::string (*)(const MeshToWrite&);
+
+void check_fields(const std::vector<MeshField>& fields, std::size_t items) {
+  for (const MeshField& field : fields) {
+    TETWRIGHT_CHECK(field.components >= 1 && !field.name.empty());
+    TETWRIGHT_CHECK(field.values.size() == items * static_cast<std::size_t>(field.components));
+  }
+}
+
+void check_mesh_read(const TetMesh& mesh) {
+  TETWRIGHT_CHECK(!mesh.tets.empty());
+  TETWRIGHT_CHECK(mesh.materials.size() == mesh.tets.size());
+  for (const Vec3& p : mesh.points) TETWRIGHT_CHECK(p.allFinite());
+  for (const Tet& t : mesh.tets)
+    for (Index v : t) TETWRIGHT_CHECK(v < mesh.points.size());
+  check_fields(mesh.point_fields, mesh.points.size());
+  check_fields(mesh.cell_fields, mesh.tets.size());
+}
+
+void run(std::string_view bytes, Read read, Write write, Read read_back) {
+  try {
+    const ReadTetMesh result = read(bytes, "fuzz", {});
+    for (const Dropped& dropped : result.dropped) TETWRIGHT_CHECK(!dropped.what.empty() && dropped.count > 0);
+    TetMesh mesh = result.mesh;
+    check_mesh_read(mesh);
+    const std::string written = write(mesh);
+    const TetMesh back = read_back(written, "fuzz", {}).mesh;
+    TETWRIGHT_CHECK(back.points == mesh.points);
+    TETWRIGHT_CHECK(back.tets == mesh.tets);
+    TETWRIGHT_CHECK(back.materials == mesh.materials);
+    constexpr std::size_t max_tets = 100;  // of meshes on which all the rest is tried
+    if (mesh.tets.size() >= max_tets) return;
+    // A format may change names and components in the first round trip, but not in the second.
+    const std::string again = write(back);
+    TETWRIGHT_CHECK(write(read_back(again, "fuzz", {}).mesh) == again);
+    (void)check_mesh(mesh);
+    (void)mesh_statistics(mesh);
+    TETWRIGHT_CHECK(topology_differences(topology(mesh), topology(back)).empty());
+    (void)make_coherent(mesh);
+    if (!mesh.tets.empty()) {
+      check_mesh_read(mesh);
+      transfer_fields(back, mesh);
+      check_mesh_read(mesh);
+    }
+  } catch (const InputError&) {
+  }
+}
+
+/// By way of VTU.
+void run(std::string_view bytes, Read read) { run(bytes, read, write_vtu, read_vtu); }
+
+/// The files of points, tets and faces in one text, in which lines of equal signs separate them; faces may be
+/// left out.
+ReadTetMesh read_tetgen_files(std::string_view bytes, const std::string& name, const ReadTetMeshOptions&) {
+  constexpr std::string_view between = "=====\n";
+  const auto next = [&] {
+    const std::size_t at = bytes.find(between);
+    const std::string_view part = bytes.substr(0, at);
+    bytes = at == std::string_view::npos ? "" : bytes.substr(at + between.size());
+    return part;
+  };
+  const std::string_view node = next(), ele = next();
+  const std::optional<NamedBytes> face =
+      bytes.empty() ? std::nullopt : std::optional(NamedBytes{bytes, name});
+  return read_tetgen({node, name}, {ele, name}, face);
+}
+
+/// A file with its numbers in the text: no other file is there.
+ReadTetMesh read_xdmf_alone(std::string_view bytes, const std::string& name, const ReadTetMeshOptions&) {
+  return read_xdmf(bytes, name,
+                   [](const std::string& path) -> std::string { throw InputError(path + ": is not there"); });
+}
+
+using Bytes = std::string_view;
+constexpr Target targets[] = {
+    {"vtu", [](Bytes b) { run(b, read_vtu); }},
+    {"msh", [](Bytes b) { run(b, read_msh, write_msh, read_msh); }},
+    {"medit", [](Bytes b) { run(b, read_medit, write_medit, read_medit); }},
+    {"medit_binary", [](Bytes b) { run(b, read_medit_binary); }},
+    {"vtk", [](Bytes b) { run(b, read_vtk); }},
+    {"tetgen", [](Bytes b) { run(b, read_tetgen_files); }},
+    {"abaqus", [](Bytes b) { run(b, read_abaqus); }},
+    {"nastran", [](Bytes b) { run(b, read_nastran); }},
+    {"xdmf", [](Bytes b) { run(b, read_xdmf_alone); }},
+};
+
+}  // namespace
+
+std::span<const Target> tet_mesh_targets() { return targets; }
+
+}  // namespace tetwright::fuzz
