@@ -72,7 +72,7 @@ TEST(PointMover, SeveralMaterials) {
 }
 
 TEST(PointMover, TheSameForAnyNumberOfThreads) {
-  const auto field = make_field({make_sphere(1), make_sphere(0.8, {0.6, 0, 0})}, 0.04);
+  const auto field = make_field({make_sphere(1), make_sphere(0.8, {0.6, 0, 0})}, 0.06);
   const auto moved = [&](unsigned threads) {
     const ThreadLimit limit(threads);
     LabelledLattice lattice = lattice_of(*field);
