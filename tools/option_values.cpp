@@ -30,6 +30,12 @@ NamedValue split_named(const std::string& text, const char* option, const char* 
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
+std::string comma_separated(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& n : names) out += (out.empty() ? "" : ", ") + n;
+  return out;
+}
+
 std::string short_text(double value) {
   std::array<char, 32> buffer{};
   return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};

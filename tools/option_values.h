@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "tools/command_line.h"
 
@@ -40,6 +41,9 @@ NamedValue split_named(const std::string& text, const char* option, const char* 
 
 /// For defaults in the help, "0.05".
 std::string short_text(double value);
+
+/// For lists in the help and in messages, "a, b".
+std::string comma_separated(const std::vector<std::string>& names);
 
 /// An option whose value `parse` makes of the text.
 template <class Value>

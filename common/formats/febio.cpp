@@ -1,5 +1,7 @@
 #include "common/formats/febio.h"
 
+#include <algorithm>
+
 #include "common/formats/mesh_parts.h"
 #include "common/formats/text_writer.h"
 #include "common/formats/xml_text.h"
@@ -7,6 +9,13 @@
 namespace tetwright {
 
 namespace {
+
+/// FEBio decodes &quot; before it looks for the quotation mark at an attribute's end.
+std::string name_for_febio(const std::string& name) {
+  std::string text = printable_name(name);
+  std::replace(text.begin(), text.end(), '"', '\'');
+  return text;
+}
 
 /// Numbers of nodes, counted from 1, between commas.
 class NodeList {
@@ -62,11 +71,11 @@ void write_surface(TextWriter& out, const MeshToWrite& written, const MeshParts:
 }  // namespace
 
 void write_febio(const MeshToWrite& written, const ByteSink& sink) {
-  const MeshParts parts = mesh_parts(written.mesh, {printable_name});
+  const MeshParts parts = mesh_parts(written.mesh, {name_for_febio});
   TextWriter out(sink);
   out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<febio_spec version=\"4.0\">\n"
          "<!-- Written by tetwright: materials of the names of the domains are to be added -->\n<Mesh>\n"
-         "<Nodes name=\"nodes\">\n";
+         "<Nodes>\n";  // its name would be a node set's, which one of ours may have
   for (std::size_t i = 0; i < written.nodes(); ++i) {
     const Vec3& p = written.node(i);
     out << "<node id=\"" << i + 1 << "\">" << p.x() << ',' << p.y() << ',' << p.z() << "</node>\n";

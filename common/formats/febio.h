@@ -6,9 +6,9 @@ namespace tetwright {
 
 /// The geometry of a model of FEBio, febio_spec 4.0: nodes, an Elements section (tet4 or tet10) for each
 /// material, and a Surface (tri3 or tri6, normals out of the smaller tag) and a NodeSet of the same name for
-/// each surface of the mesh, if it has interfaces. Names are the materials' own. A SolidDomain gives each
-/// Elements section the material of the same name, which is the user's to add; so are steps and loads. The
-/// format has no place for the fields of a mesh.
+/// each surface of the mesh, if it has interfaces. Names are the materials' own, with ' for ". A SolidDomain
+/// gives each Elements section the material of the same name, which is the user's to add; so are steps and
+/// loads. The format has no place for the fields of a mesh.
 void write_febio(const MeshToWrite& written, const ByteSink& sink);
 
 }  // namespace tetwright

@@ -10,6 +10,7 @@
 #include "common/formats/abaqus.h"
 #include "common/formats/atomic_file.h"
 #include "common/formats/febio.h"
+#include "common/formats/file_names.h"
 #include "common/formats/glb.h"
 #include "common/formats/inr.h"
 #include "common/formats/medit.h"
@@ -66,22 +67,6 @@ constexpr std::array<SurfaceFormat, 3> shared_formats{
     {{".msh", read_msh_surface, nullptr, read_msh_surface_with_fields},
      {".mesh", read_medit_surface, nullptr, nullptr},
      {".vtk", read_vtk_surface, nullptr, read_vtk_surface_with_fields}}};
-
-/// The extension in lower case; .nii.gz and .inr.gz count as one extension.
-std::string extension_of(const std::string& path) {
-  const std::string name = lower_case(std::filesystem::path(path).filename().string());
-  for (const char* compound : {".nii.gz", ".inr.gz"})
-    if (name.ends_with(compound) && name != compound) return compound;
-  return std::filesystem::path(name).extension().string();
-}
-
-/// `path` with something else in place of its extension, in upper case if that is.
-std::string with_extension(const std::string& path, std::string extension) {
-  const std::string own = std::filesystem::path(path).extension().string();
-  if (own.size() > 1 && std::isupper(static_cast<unsigned char>(own[1])))
-    for (char& c : extension) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return std::filesystem::path(path).replace_extension().string() + extension;
-}
 
 ReadTetMesh read_xdmf_files(const std::string& path, const ReadTetMeshOptions& options) {
   return read_xdmf(read_whole_file(path), path, read_whole_file, options);

@@ -85,6 +85,21 @@ def test_labels_give_the_bytes_of_the_program(tmp_path):
     assert set(only.materials.tolist()) == {7}
 
 
+def test_images_of_nibabel(tmp_path):
+    nibabel = pytest.importorskip("nibabel")
+    labels = labels_of_two_balls()
+    affine = np.diag([2, 2, 3, 1.0])
+    affine[:3, 3] = 1, 2, 3
+    made = nibabel.Nifti1Image(labels.astype(np.uint8), affine)
+    nibabel.save(made, tmp_path / "v.nii.gz")
+    expected = tetwright.prepare(labels, affine=affine, target_tets=900)
+    # In memory, with its numbers still in the file, and by our own reader.
+    for image in (made, nibabel.load(tmp_path / "v.nii.gz"), tmp_path / "v.nii.gz"):
+        mesh = tetwright.prepare(image, target_tets=900)
+        assert np.array_equal(mesh.points, expected.points) and np.array_equal(mesh.tets, expected.tets)
+        assert np.array_equal(mesh.materials, expected.materials)
+
+
 def test_arrays_are_views_that_keep_the_mesh_alive(ball):
     mesh = tetwright.mesh(ball, resolution=16)
     points, tets = mesh.points, mesh.tets
@@ -292,3 +307,18 @@ def test_pip_installs_it(tmp_path):
                           env={**os.environ, "PYTHONPATH": str(tmp_path / "site")})
     assert done.returncode == 0, done.stderr
     assert str(tmp_path / "site") in done.stdout and tetwright.__version__ in done.stdout
+    check_linkage(next((tmp_path / "site" / "tetwright").glob("*.so")))
+
+
+def check_linkage(module):
+    """As auditwheel would: all of ours is within the module, it looks for libraries in no folder of the build, and
+    the others are those that the README names."""
+    listing = subprocess.run(["readelf", "-d", module], capture_output=True, text=True, check=True).stdout
+    assert "RPATH" not in listing and "RUNPATH" not in listing, listing
+    needed = {line.split("[lib")[1].split(".so")[0] for line in listing.splitlines() if "(NEEDED)" in line and "[lib" in line}
+    of_systems = {"c", "m", "gcc_s", "stdc++"}
+    named = {"openvdb", "tbb", "boost_iostreams", "Imath-3_1", "hdf5_serial", "z", "deflate", "lz4", "lzma", "pugixml",
+             "zip", "spdlog", "fmt"}
+    assert needed <= of_systems | named, needed - of_systems - named
+    found = subprocess.run(["ldd", module], capture_output=True, text=True, check=True).stdout
+    assert "not found" not in found and "tetwright" not in found.replace(str(module), ""), found

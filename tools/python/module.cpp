@@ -21,6 +21,7 @@
 #include "tools/commands/commands.h"
 #include "tools/commands/output_paths.h"
 #include "tools/commands/result.h"
+#include "tools/python/arrays.h"
 #include "tools/report.h"
 #include "tools/stats_json.h"
 
@@ -100,111 +101,6 @@ void run_in_background(const std::function<void()>& work, SharedProgress& progre
   worker.join();
   if (raised) std::rethrow_exception(raised);
   if (failure) std::rethrow_exception(failure);
-}
-
-// From arrays.
-
-using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;
-using Cells = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
-using Tags = py::array_t<MaterialTag, py::array::c_style | py::array::forcecast>;
-using Labels = py::array_t<MaterialTag, py::array::f_style | py::array::forcecast>;
-
-std::string shape_text(const py::array& array) {
-  std::string text;
-  for (py::ssize_t k = 0; k < array.ndim(); ++k) text += (k > 0 ? ", " : "") + std::to_string(array.shape(k));
-  return "(" + text + ")";
-}
-
-void require_columns(const py::array& array, py::ssize_t columns, const std::string& name, const char* what) {
-  if (array.ndim() != 2 || array.shape(1) != columns)
-    throw InputError(name, 0,
-                     std::string(what) + " are an array of shape " + shape_text(array) +
-                         "; give one of shape (n, " + std::to_string(columns) + ")");
-}
-
-std::vector<Vec3> to_points(const Points& array, const std::string& name) {
-  require_columns(array, 3, name, "points");
-  const auto rows = array.unchecked<2>();
-  std::vector<Vec3> points(static_cast<std::size_t>(rows.shape(0)));
-  for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
-    const Vec3 p(rows(i, 0), rows(i, 1), rows(i, 2));
-    if (!p.allFinite())
-      throw InputError(name, 0,
-                       "point " + std::to_string(i) + " has a coordinate that is not finite; remove it");
-    points[static_cast<std::size_t>(i)] = p;
-  }
-  return points;
-}
-
-template <std::size_t N>
-std::vector<std::array<Index, N>> to_cells(const Cells& array, std::size_t points, const std::string& name,
-                                           const char* what) {
-  require_columns(array, static_cast<py::ssize_t>(N), name, what);
-  const auto rows = array.unchecked<2>();
-  std::vector<std::array<Index, N>> cells(static_cast<std::size_t>(rows.shape(0)));
-  for (py::ssize_t i = 0; i < rows.shape(0); ++i)
-    for (std::size_t k = 0; k < N; ++k) {
-      const std::int64_t p = rows(i, static_cast<py::ssize_t>(k));
-      if (p < 0 || static_cast<std::uint64_t>(p) >= points)
-        throw InputError(name, 0,
-                         "row " + std::to_string(i) + " of the " + what + " names point " +
-                             std::to_string(p) + ", but there are " + std::to_string(points) +
-                             ", numbered from 0");
-      cells[static_cast<std::size_t>(i)][k] = static_cast<Index>(p);
-    }
-  return cells;
-}
-
-TriangleMesh to_surface(const std::string& name, const Points& points, const Cells& triangles) {
-  TriangleMesh surface;
-  surface.points = to_points(points, name);
-  surface.triangles = to_cells<3>(triangles, surface.points.size(), name, "triangles");
-  if (surface.triangles.empty()) throw InputError(name, 0, "has no triangles; give a surface");
-  return surface;
-}
-
-TetMesh to_mesh(const std::string& name, const Points& points, const Cells& tets,
-                const std::optional<Tags>& materials, const std::map<MaterialTag, std::string>& names) {
-  TetMesh mesh;
-  mesh.points = to_points(points, name);
-  mesh.tets = to_cells<4>(tets, mesh.points.size(), name, "tets");
-  if (mesh.tets.empty()) throw InputError(name, 0, "has no tets; give a tet mesh");
-  mesh.materials.assign(mesh.tets.size(), 1);
-  if (materials) {
-    if (materials->ndim() != 1 || static_cast<std::size_t>(materials->shape(0)) != mesh.tets.size())
-      throw InputError(name, 0,
-                       "materials are an array of shape " + shape_text(*materials) +
-                           "; give one for each of the " + std::to_string(mesh.tets.size()) + " tets");
-    mesh.materials.assign(materials->data(), materials->data() + mesh.tets.size());
-  }
-  mesh.material_names = names;
-  return mesh;
-}
-
-LabelVolume to_volume(const std::string& name, const Labels& labels, const std::array<double, 3>& origin,
-                      const std::array<std::array<double, 3>, 3>& directions) {
-  if (labels.ndim() != 3 || labels.size() == 0)
-    throw InputError(name, 0,
-                     "labels are an array of shape " + shape_text(labels) + "; give one of three axes");
-  LabelVolume volume;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const py::ssize_t count = labels.shape(static_cast<py::ssize_t>(a));
-    if (count > std::numeric_limits<int>::max())
-      throw InputError(name, 0, "has more than 2147483647 voxels along an axis; give a part of it");
-    volume.size[a] = static_cast<int>(count);
-  }
-  volume.origin = Vec3(origin[0], origin[1], origin[2]);
-  for (Eigen::Index row = 0; row < 3; ++row)
-    for (Eigen::Index column = 0; column < 3; ++column)
-      volume.directions(row, column) =
-          directions[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
-  if (!volume.origin.allFinite() || !volume.directions.allFinite() || volume.directions.determinant() == 0)
-    throw InputError(
-        name, 0,
-        "its origin and steps between voxels are not finite or lie in a plane; give a spacing above 0, "
-        "or an affine that can be inverted");
-  volume.labels.assign(labels.data(), labels.data() + labels.size());
-  return volume;
 }
 
 /// A mesh that belongs to Python, and what the command that made it said.

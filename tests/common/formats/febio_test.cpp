@@ -21,6 +21,15 @@ TEST(Febio, DomainsSurfacesAndNodeSetsByName) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 
+TEST(Febio, NoQuotationMarkIsInANameAndNoNodeSetIsBesideOurs) {
+  TetMesh mesh = mesh_with_surfaces();
+  mesh.material_names[1] = "5\" tube";
+  const std::string text = text_of(write_febio, mesh);
+  EXPECT_NE(text.find("<SolidDomain name=\"5' tube\" mat=\"5' tube\"/>"), std::string::npos) << text;
+  EXPECT_EQ(text.find("&quot;"), std::string::npos);
+  EXPECT_NE(text.find("<Nodes>\n"), std::string::npos);
+}
+
 TEST(Febio, TenNodes) {
   const TetMesh mesh = mesh_with_surfaces();
   const MidsideNodes midside = straight_midside_nodes(mesh);
