@@ -5,6 +5,7 @@
 #include "common/formats/mesh_parts.h"
 #include "common/formats/text_writer.h"
 #include "common/formats/xml_text.h"
+#include "common/utf8.h"
 
 namespace tetwright {
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 
 #include "common/error.h"
@@ -30,7 +29,6 @@
 #include "common/formats/vtp.h"
 #include "common/formats/vtu.h"
 #include "common/formats/xdmf.h"
-#include "common/lower_case.h"
 
 namespace tetwright {
 

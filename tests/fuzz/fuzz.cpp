@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "tests/fuzz/targets.h"
@@ -31,6 +33,11 @@ Target chosen;
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
   using namespace tetwright::fuzz;
   const std::string_view wanted = *argc > 1 ? (*argv)[1] : "";
+  // -merge, -fork and -minimize_crash start the program again without the name that was taken out.
+  constexpr const char* variable = "TETWRIGHT_FUZZ_TARGET";
+  if (const char* before = std::getenv(variable); before && wanted.starts_with('-'))
+    for (const Target& target : all_targets())
+      if (before == target.name) return chosen = target, 0;
   for (const Target& target : all_targets()) {
     if (wanted == "--list") std::printf("%.*s\n", static_cast<int>(target.name.size()), target.name.data());
     if (wanted == target.name) chosen = target;
@@ -41,6 +48,7 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
                  *argc > 1 ? (*argv)[1] : "");
     std::exit(2);
   }
+  ::setenv(variable, (*argv)[1], 1);
   std::memmove(*argv + 1, *argv + 2,
                static_cast<std::size_t>(*argc - 1) * sizeof **argv);  // with the null at the end
   --*argc;

@@ -2,6 +2,7 @@
 // and operations on them. After each operation that changed the mesh it must be valid, with the topology it
 // began with.
 #include <array>
+#include <cstdint>
 #include <memory>
 
 #include "common/error.h"

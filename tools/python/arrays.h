@@ -3,13 +3,16 @@
 #include <pybind11/numpy.h>
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/label_volume.h"
 #include "common/tet_mesh.h"
 #include "common/triangle_mesh.h"
+#include "common/types.h"
 
 // What the Python package makes of arrays of numpy. `name` is what messages call the input; all throw
 // InputError.

@@ -29,8 +29,6 @@ namespace tetwright::python {
 
 namespace {
 
-namespace py = pybind11;
-
 /// How often a running call looks for Ctrl-C and reports its progress.
 constexpr std::chrono::milliseconds poll_interval{50};
 
