@@ -17,4 +17,10 @@ ExitStatus exit_status(const std::exception& error) {
   return ExitStatus::bad_input;
 }
 
+std::string failure_message(const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error))
+    return "not enough memory; free some, or ask for less (of surfaces: a smaller --resolution)";
+  return std::string(error.what()) + (dynamic_cast<const InternalError*>(&error) ? report_this : "");
+}
+
 }  // namespace tetwright

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <exception>
+#include <string>
 
 namespace tetwright {
 
@@ -16,7 +17,12 @@ enum class ExitStatus : int {
   interrupted = 130
 };
 
-/// The status with which the program ends when `error` reaches main().
+/// The status with which the program ends when `error` reaches main(), and what it says then.
 ExitStatus exit_status(const std::exception& error);
+std::string failure_message(const std::exception& error);
+
+/// What follows a message about a bug here.
+inline constexpr const char* report_this =
+    "; this is a bug in tetwright: please report it with this line, the version, the command and its input";
 
 }  // namespace tetwright

@@ -4,7 +4,6 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
-#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -12,7 +11,6 @@
 #include <malloc.h>
 #endif
 
-#include "common/error.h"
 #include "common/formats/atomic_file.h"
 #include "tools/command_line.h"
 #include "tools/commands/commands.h"
@@ -20,13 +18,6 @@
 #include "tools/interruption.h"
 #include "tools/log_file.h"
 #include "tools/report.h"
-
-namespace {
-
-constexpr const char* report_this =
-    "; this is a bug in tetwright: please report it with this line, the version, the command and its input";
-
-}  // namespace
 
 int main(int argc, char** argv) {
   tetwright::handle_interruptions();
@@ -48,7 +39,7 @@ int main(int argc, char** argv) {
     try {
       if (const std::exception_ptr current = std::current_exception()) std::rethrow_exception(current);
     } catch (const std::logic_error& e) {
-      tetwright::print_line(std::string(e.what()) + report_this);
+      tetwright::print_line(std::string(e.what()) + tetwright::report_this);
       _exit(static_cast<int>(ExitStatus::internal_error));
     } catch (...) {
     }
@@ -69,12 +60,7 @@ int main(int argc, char** argv) {
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
       return fail(ExitStatus::output_failed, "cannot write to standard output");
     return static_cast<int>(status);
-  } catch (const std::bad_alloc&) {
-    return fail(ExitStatus::output_failed,
-                "not enough memory; free some, or ask for less (of surfaces: a smaller --resolution)");
-  } catch (const tetwright::InternalError& e) {
-    return fail(ExitStatus::internal_error, std::string(e.what()) + report_this);
   } catch (const std::exception& e) {
-    return fail(tetwright::exit_status(e), e.what());
+    return fail(tetwright::exit_status(e), tetwright::failure_message(e));
   }
 }

@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t max_pieces = std::size_t{1} << 22;
 constexpr int max_levels = 150;  ///< of cuts in two: beyond, the bits of coordinates are used up
 /// Every so many levels pieces are cut in the middle of their longest edge, so that they shrink.
-constexpr int halving_period = 3;
+constexpr int halving_period = 4;
 constexpr int bisections = 40;  ///< to find where another item becomes the nearest
 /// Nearer to an end than this share of an edge, the cut is made in the middle.
 constexpr double min_cut = 0.01;
@@ -70,6 +70,71 @@ std::vector<Measured> measure_all(const ProjectionTree& to, const std::vector<Ve
   return out;
 }
 
+/// The corners that two items have in common, two of them at most.
+struct SharedCorners {
+  int count = 0;
+  std::array<Index, 2> points{};
+
+  SharedCorners(const ProjectionTree::Item& a, const ProjectionTree::Item& b) {
+    for (const Index p : a.corners) {
+      const bool in_both = p == b.corners[0] || p == b.corners[1] || p == b.corners[2];
+      if (in_both && count < 2 && !(count == 1 && points[0] == p)) points[count++] = p;
+    }
+  }
+};
+
+/// How far apart two segments are at places near each other: those that are nearest, up to rounding.
+double distance_between(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1) {
+  const Vec3 a = a1 - a0, b = b1 - b0, ba = a0 - b0;
+  const double aa = a.squaredNorm(), ab = a.dot(b), bb = b.squaredNorm();
+  const auto on_segment = [](double along, double squared) {
+    return squared > 0 ? std::clamp(along / squared, 0.0, 1.0) : 0;
+  };
+  const double across = aa * bb - ab * ab;
+  const double on_a = on_segment(ab * ba.dot(b) - bb * ba.dot(a), across);
+  const double on_b = on_segment((ba + on_a * a).dot(b), bb);
+  return (a0 + on_segment((b0 + on_b * b - a0).dot(a), aa) * a - b0 - on_b * b).norm();
+}
+
+/// How far the edge between two corners is from what their items share; infinite where that is nothing.
+double passing_distance(const ProjectionTree& to, const Measured& a, const Measured& b) {
+  const SharedCorners shared(to.items()[a.item], to.items()[b.item]);
+  if (shared.count == 0) return std::numeric_limits<double>::infinity();
+  return distance_between(a.at, b.at, to.points()[shared.points[0]],
+                          to.points()[shared.points[shared.count - 1]]);
+}
+
+/// What no point of the triangle is farther than from the items that are nearest to its corners; infinite
+/// where two of them do not meet, or three have no corner in common.
+///
+/// The triangle is mapped to the items, linearly in parts: each corner to the point that is nearest to it, of
+/// each edge between different items a point to one that they share, and, of three items, a point within to a
+/// corner of all. Each part has its image in one item, which is convex, and the distance from the image is
+/// largest in a corner of a part.
+double upper_bound_over_joints(const ProjectionTree& to, const std::array<Measured, 3>& corners) {
+  double upper = 0;
+  bool all_differ = true;
+  for (int k = 0; k < 3; ++k) {
+    const Measured &a = corners[k], &b = corners[(k + 1) % 3];
+    upper = std::max(upper, a.distance);
+    if (a.item == b.item)
+      all_differ = false;
+    else
+      upper = std::max(upper, passing_distance(to, a, b));
+  }
+  if (!all_differ || std::isinf(upper)) return upper;
+  double within = std::numeric_limits<double>::infinity();
+  for (const Index p : to.items()[corners[0].item].corners) {
+    const auto has = [p](const ProjectionTree::Item& item) {
+      return item.corners[0] == p || item.corners[1] == p || item.corners[2] == p;
+    };
+    if (has(to.items()[corners[1].item]) && has(to.items()[corners[2].item]))
+      within = std::min(
+          within, std::sqrt(squared_distance(to.points()[p], corners[0].at, corners[1].at, corners[2].at)));
+  }
+  return std::max(upper, within);
+}
+
 double upper_bound(const ProjectionTree& to, const std::array<Measured, 3>& corners) {
   double longest = 0, farthest = 0;
   for (int k = 0; k < 3; ++k) {
@@ -86,7 +151,7 @@ double upper_bound(const ProjectionTree& to, const std::array<Measured, 3>& corn
       of_item = std::max(of_item, c.item == item ? c.distance : distance_to(to, item, c.at));
     upper = std::min(upper, of_item);
   }
-  return upper;
+  return std::min(upper, upper_bound_over_joints(to, corners));
 }
 
 /// Where on the edge between two corners both corners' items are as near.

@@ -38,9 +38,10 @@ struct DeviationReport {
 ///
 /// Branch and bound over triangles (Tang, Lee & Kim 2009, "Interactive Hausdorff distance computation for
 /// general polygonal models"): the distance from one triangle is convex, so that it is largest in a corner;
-/// any distance grows no faster than the way. Triangles that may be farther than what is known are cut in
-/// two, where the nearest triangle of the other surface changes. Infinite where `to` is empty and `from` is
-/// not. Parallel; the result does not depend on the threads.
+/// any distance grows no faster than the way; over triangles of the other surface that meet, a map to them,
+/// linear in parts, bounds it. Triangles that may be farther than what is known are cut in two, where the
+/// nearest triangle of the other surface changes. Infinite where `to` is empty and `from` is not. Parallel;
+/// the result does not depend on the threads.
 SurfaceDeviation surface_deviation(const ProjectionTree& from, const ProjectionTree& to, double accuracy);
 
 /// A triangle with a point that is far from another surface.

@@ -126,7 +126,7 @@ def run(p):
     out.parent.mkdir()
     p.must(["sample", "knot", "-o", scan])
     scan.chmod(0o644)
-    arguments = ["prepare", scan, "--target-tets", "1000", "--resolution", "32", "--accept-changes", "-o", out]
+    arguments = ["prepare", scan, "--target-tets", "500", "--resolution", "20", "--accept-changes", "-o", out]
     start = time.monotonic()
     p.must(arguments)
     seconds = time.monotonic() - start

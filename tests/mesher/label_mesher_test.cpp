@@ -139,16 +139,8 @@ void expect_plane_whole(double a, double b, double thickness, double adaptivity)
                  adaptivity, disc);
   }
 }
-void expect_face_connected_planes_whole(double adaptivity) {
-  for (const auto& [a, b] : {std::pair(0.0, 0.0), {0.2, 0.1}, {0.5, 0.31}, {0.7, 0.7}})
-    expect_plane_whole(a, b, 1 + a + b, adaptivity);
-}
-void expect_edge_connected_planes_whole(double adaptivity) {
-  for (const auto& [a, b] : {std::pair(0.2, 0.1), {0.93, 0.4}, {1.0, 0.0}, {0.5, 0.5}})
-    expect_plane_whole(a, b, 1, adaptivity);
-}
-void expect_shells_whole(double adaptivity) {
-  for (const Sides& s : all_sides) {
+void expect_shells_whole(double adaptivity, const std::vector<Sides>& sides) {
+  for (const Sides& s : sides) {
     SCOPED_TRACE(::testing::Message() << s.below << " within, " << s.above);
     expect_whole(make_labels({9, 10, 8},
                              [&](int x, int y, int z) {
@@ -167,19 +159,24 @@ void expect_shells_whole(double adaptivity) {
 }
 
 TEST(LabelMesher, SheetsOfAVoxelStayWholeInFinestCells) {
-  expect_face_connected_planes_whole(0);
-  expect_edge_connected_planes_whole(0);
-  expect_shells_whole(0);
+  expect_plane_whole(0.5, 0.31, 1.81, 0);
+  expect_plane_whole(0.7, 0.7, 2.4, 0);
+  expect_plane_whole(0.93, 0.4, 1, 0);
+  expect_plane_whole(1.0, 0.0, 1, 0);
+  expect_shells_whole(0, {{1, 3}, {0, 1}});
 }
 
 TEST(LabelMesher, EdgeConnectedPlanesOfAVoxelStayWhole) {
-  expect_edge_connected_planes_whole(MesherOptions().adaptivity);
+  for (const auto& [a, b] : {std::pair(0.2, 0.1), {0.93, 0.4}, {1.0, 0.0}, {0.5, 0.5}})
+    expect_plane_whole(a, b, 1, MesherOptions().adaptivity);
 }
 
 TEST(LabelMesher, FaceConnectedPlanesOfAVoxelStayWhole) {
-  expect_face_connected_planes_whole(MesherOptions().adaptivity);
+  for (const auto& [a, b] : {std::pair(0.0, 0.0), {0.2, 0.1}, {0.5, 0.31}, {0.7, 0.7}})
+    expect_plane_whole(a, b, 1 + a + b, MesherOptions().adaptivity);
 }
-TEST(LabelMesher, ShellsOfAVoxelStayWhole) { expect_shells_whole(MesherOptions().adaptivity); }
+
+TEST(LabelMesher, ShellsOfAVoxelStayWhole) { expect_shells_whole(MesherOptions().adaptivity, all_sides); }
 
 TEST(LabelMesher, VolumesOfSheetsOfAVoxel) {
   for (const Sides& sides : {Sides{1, 1}, {0, 1}}) {

@@ -36,7 +36,7 @@ MesherOptions with_resolution(int resolution) {
 
 TEST(MeshEstimate, IsWithinAQuarterOnSurfaces) {
   for (const char* sample : {"sphere", "torus", "cube", "two_spheres", "knot"})
-    for (const int resolution : {48, 80}) {
+    for (const int resolution : {48, 64}) {
       SCOPED_TRACE(std::string(sample) + " at " + std::to_string(resolution));
       expect_good_estimates(
           mesh_surfaces(make_input({surface(sample)}), with_resolution(resolution), nullptr));
@@ -80,6 +80,7 @@ TEST(MeshEstimate, IsWithinAQuarterOnLabels) {
   });
   for (const LabelInput* labels : {&organs, &ball})
     for (const double cells_per_voxel : {1.0, 2.0}) {
+      if (labels == &organs && cells_per_voxel > 1) continue;  // takes long
       SCOPED_TRACE(labels->file + " with cells per voxel: " + std::to_string(cells_per_voxel));
       MesherOptions options;
       options.voxel_size = default_cell_size(*labels) / cells_per_voxel;

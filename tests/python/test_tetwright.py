@@ -170,7 +170,7 @@ def test_size_fields_are_files_arrays_or_meshes(tmp_path, ball):
     tets, lengths = np.array([[0, 1, 2, 3]]), np.array([0.5, 0.9, 0.5, 0.5])
     grid = meshio.Mesh(corners, {"tetra": tets}, point_data={"size": lengths})
     grid.write(tmp_path / "sizes.vtu")
-    dense = tetwright.mesh(ball, resolution=12)
+    dense = tetwright.mesh(ball, resolution=8)
     by_file = tetwright.simplify(dense, size_field=tmp_path / "sizes.vtu")
     assert by_file.stats["edge_lengths"]["field"] == "size"
     for field in (corners, tets, lengths), grid:
@@ -228,7 +228,7 @@ def test_errors_carry_the_programs_message(ball, ball_arrays):
 
 def test_what_falls_short_is_a_warning(ball):
     with pytest.warns(tetwright.ShortfallWarning, match="tolerance"):
-        mesh = tetwright.prepare(ball, target_tets=200, tolerance="0.4%", resolution=16)
+        mesh = tetwright.prepare(ball, target_tets=200, tolerance="1%", resolution=12)
     assert mesh.shortfall
     with warnings.catch_warnings():
         warnings.simplefilter("error")

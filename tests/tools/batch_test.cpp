@@ -1,12 +1,14 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tests/tools/process.h"
 #include "tests/tools/program.h"
 
 namespace tetwright::batch_test {
@@ -67,12 +69,17 @@ TEST_F(Batch, GoesOnWhereItEnded) {
   const std::string first = contents(f / "jobs.results.jsonl");
   put(f / "a.vtu", "touched");
   // Part of a line, as a kill leaves it.
-  put(f / "jobs.results.jsonl", first + R"({"id": "c", "arg)");
+  put(f / "jobs.results.jsonl", first + R"({"args":["prep)");
   put(f / "jobs.jsonl", job("a", "300") + job("b", "300") + job("c", "400"));
   ASSERT_EQ(batch().status, 0);
   EXPECT_EQ(contents(f / "a.vtu"), "touched");
   EXPECT_EQ(contents(f / "jobs.results.jsonl").rfind(first, 0), 0u);
   EXPECT_EQ(results().size(), 3u);
+  // A whole line counts also without its end, as editors may leave it.
+  const std::string whole = contents(f / "jobs.results.jsonl");
+  put(f / "jobs.results.jsonl", whole.substr(0, whole.size() - 1));
+  ASSERT_EQ(batch().status, 0);
+  EXPECT_EQ(contents(f / "jobs.results.jsonl"), whole);
   // Other arguments make another job of it.
   put(f / "jobs.jsonl", job("a", "500"));
   ASSERT_EQ(batch().status, 0);
@@ -98,6 +105,13 @@ TEST_F(Batch, RefusesWhatIsNoBatch) {
   refused(job("a", "300") + "{\"id\": 3\n", {"line 2", "column"});
   refused("[1]\n", {"line 1", "no JSON object"});
   refused(R"({"id": "a", "arguments": []})", {"line 1", "'arguments'"});
+  refused(R"({"id": [1], "args": ["check", "x.vtu"]})", {"line 1", "\"id\""});
+  refused(R"({"args": ["check", ["x.vtu"]]})", {"line 1", "neither text nor a number"});
+  refused(
+      R"({"id": )" + std::string(200000, '[') + std::string(200000, ']') + R"(, "args": ["check", "x.vtu"]})",
+      {"line 1", "\"id\""});
+  refused(R"({"args": ["check", 1e400]})", {"line 1", "number"});
+  refused(R"({"args": ["check", "x.vtu\u0000.msh"]})", {"line 1", "NUL"});
   refused(job("a", "300") + job("a", "400"), {"line 2", "'a'", "line 1"});
   refused(job("a", "300") + R"({"args": ["improve", "x.vtu", "-o", ")" + (f / ".") + R"(/a.vtu"]})",
           {"a.vtu", "give each its own"});
@@ -115,6 +129,81 @@ TEST_F(Batch, RefusesWhatIsNoBatch) {
   put(f / "jobs.results.jsonl", "my notes\n");
   expect_refused("batch " + jobs, 3, {"jobs.results.jsonl", "line 1"});
   EXPECT_EQ(contents(f / "jobs.results.jsonl"), "my notes\n");
+  for (const std::string text : {"my notes", "{\"id\": 7}", "[]"}) {
+    put(f / "jobs.results.jsonl", text);
+    expect_refused("batch " + jobs, 3, {"jobs.results.jsonl", "line 1"});
+    EXPECT_EQ(contents(f / "jobs.results.jsonl"), text);
+  }
+}
+
+/// Waits until a process reads the pipe, and gives the end to write to.
+int open_when_read(const std::string& pipe, Process& process) {
+  int file = -1;
+  while ((file = open(pipe.c_str(), O_WRONLY | O_NONBLOCK)) < 0 && !process.ended()) wait_a_moment();
+  return file;
+}
+
+TEST_F(Batch, AJobThatCrashesEndsAlone) {
+  for (const int signal : {SIGABRT, SIGKILL}) {
+    const std::string pipe = f / ("pipe" + std::to_string(signal) + ".ply");
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    put(f / "jobs.jsonl",
+        job("a", "300") + job("crash", "300", pipe.substr(pipe.rfind('/') + 1)) + job("b", "300"));
+    std::filesystem::remove(f / "jobs.results.jsonl");
+    Process process({"batch", f / "jobs.jsonl", "--jobs", "1"}, f / "err");
+    const int end = open_when_read(pipe, process);
+    ASSERT_GE(end, 0) << contents(f / "err");
+    kill(process.child(), signal);
+    EXPECT_EQ(process.wait(), 1);
+    close(end);
+    auto lines = results();
+    EXPECT_EQ(lines.size(), 3u);
+    EXPECT_EQ(lines["a"]["status"], 0);
+    EXPECT_EQ(lines["b"]["status"], 0);
+    EXPECT_EQ(lines["crash"]["status"], signal == SIGKILL ? 5 : 70);
+    const std::string said = lines["crash"]["messages"][0];
+    EXPECT_NE(said.find("died of signal " + std::to_string(signal)), std::string::npos) << said;
+    EXPECT_NE(contents(f / "err").find(said), std::string::npos);
+    EXPECT_GT(lines["crash"]["seconds"], 0);
+  }
+}
+
+TEST_F(Batch, WhatRanBesideACrashIsDoneAgain) {
+  const std::vector<std::string> pipes{f / "p.ply", f / "q.ply"};
+  for (const std::string& pipe : pipes) ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  put(f / "jobs.jsonl", job("p", "300", "p.ply") + job("q", "300", "q.ply") + job("a", "300"));
+  Process process({"batch", f / "jobs.jsonl", "--jobs", "2"}, f / "err");
+  std::vector<int> ends;
+  for (const std::string& pipe : pipes) ends.push_back(open_when_read(pipe, process));
+  kill(process.child(), SIGKILL);
+  for (const int end : ends) close(end);
+  // Each alone: the second one is read when the first has ended.
+  for (const std::string& pipe : pipes) close(open_when_read(pipe, process));
+  EXPECT_EQ(process.wait(), 1) << contents(f / "err");
+  auto lines = results();
+  EXPECT_EQ(lines.size(), 3u);
+  for (const char* id : {"p", "q"}) EXPECT_EQ(lines[id]["status"], 3) << lines[id];  // an empty file
+  EXPECT_EQ(lines["a"]["status"], 0);
+}
+
+TEST_F(Batch, EndsWithTheProcessThatWasStarted) {
+  const std::string pipe = f / "p.ply";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  put(f / "jobs.jsonl", job("a", "300") + job("p", "300", "p.ply"));
+  for (const int signal : {SIGTERM, SIGKILL}) {
+    Process process({"batch", f / "jobs.jsonl", "--jobs", "1"}, f / "err");
+    const int end = open_when_read(pipe, process);
+    process.send(signal);
+    EXPECT_EQ(process.wait(), signal == SIGKILL ? 1000 + SIGKILL : 130);
+    close(end);
+    EXPECT_EQ(results().size(), 1u);
+    // Nobody reads any more.
+    int reader = 0;
+    while ((reader = open(pipe.c_str(), O_WRONLY | O_NONBLOCK)) >= 0) {
+      close(reader);
+      wait_a_moment();
+    }
+  }
 }
 
 TEST_F(Batch, JobsOfOneLibraryDoNotMeet) {

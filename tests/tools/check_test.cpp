@@ -272,7 +272,7 @@ TEST(Check, CapsAreLeftOutAndReported) {
   open.erase(open.find(first), first.size());
   put(f / "box.off", box);
   put(f / "open.off", open);
-  ASSERT_EQ(run("mesh " + (f / "box.off") + " -o " + (f / "box.vtu") + " --resolution 16").status, 0);
+  ASSERT_EQ(run("mesh " + (f / "box.off") + " -o " + (f / "box.vtu") + " --resolution 8").status, 0);
   const std::string check = "check " + (f / "box.vtu") + " --tolerance 1% --surface " + (f / "open.off");
   const Answer a = run(check);
   EXPECT_EQ(a.status, 0) << a.out;

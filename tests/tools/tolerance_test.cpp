@@ -25,7 +25,8 @@ class Tolerance : public testing::Test {
 TEST_F(Tolerance, TakesAsFewTetsAsHoldItAllWellShaped) {
   std::size_t last = 0;
   for (const char* share : {"3%", "1%"}) {
-    const auto j = work("prepare " + surface, std::string("--tolerance ") + share);
+    const auto j =
+        work("prepare " + surface, std::string("--resolution 40 --accept-changes --tolerance ") + share);
     EXPECT_TRUE(j["tolerance"]["held"]);
     EXPECT_GE(j["result"]["min_solid_angle"], 0.1);
     EXPECT_GT(j["result"]["tets"], last) << share;
@@ -37,12 +38,15 @@ TEST_F(Tolerance, TakesAsFewTetsAsHoldItAllWellShaped) {
 }
 
 TEST_F(Tolerance, LargerThanTheBodyCostsNoTets) {
-  const std::size_t few = work("prepare " + surface, "--tolerance 10%")["result"]["tets"];
-  EXPECT_LE(work("prepare " + surface, "--tolerance 1e300")["result"]["tets"], few);
+  const std::size_t few =
+      work("prepare " + surface, "--resolution 24 --accept-changes --tolerance 10%")["result"]["tets"];
+  EXPECT_LE(
+      work("prepare " + surface, "--resolution 24 --accept-changes --tolerance 1e300")["result"]["tets"],
+      few);
 }
 
 TEST_F(Tolerance, OfADenseMeshChoosesItsCells) {
-  const auto j = work("mesh " + surface, "--tolerance 0.4%");
+  const auto j = work("mesh " + surface, "--tolerance 0.3%");
   const double asked = j["tolerance"]["distance"];
   EXPECT_LE(j["tolerance"]["from_mesh"]["upper"], 0.6 * asked);
   EXPECT_LE(j["tolerance"]["from_surface"]["upper"], 0.6 * asked);

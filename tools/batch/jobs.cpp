@@ -44,11 +44,17 @@ Job parse_job(const std::string& file, std::size_t line, const std::string& text
       else if (argument.is_number())
         job.arguments.push_back(number_text(argument));
       else
-        refuse("an argument is neither text nor a number: " + argument.dump());
+        refuse("argument " + std::to_string(job.arguments.size() + 1) + " is neither text nor a number");
+      if (job.arguments.back().find('\0') != std::string::npos)
+        refuse("argument " + std::to_string(job.arguments.size()) + " has a NUL in it");
     }
     job.id = std::to_string(line);
-    if (json.contains("id"))
-      job.id = json["id"].is_string() ? json["id"].get<std::string>() : json["id"].dump();
+    if (const auto id = json.find("id"); id != json.end()) {
+      if (!id->is_string() && !id->is_number()) refuse("\"id\" is neither text nor a number");
+      job.id = id->is_string() ? id->get<std::string>() : id->dump();
+    }
+  } catch (const nlohmann::json::out_of_range&) {
+    refuse("a number in it is too large");
   } catch (const nlohmann::json::exception& e) {
     const std::string what = e.what();  // "[json.exception...] parse error at line 1, column 7: ..."
     const std::size_t from = what.find("column");

@@ -4,9 +4,11 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <utility>
 
 #include "common/error.h"
@@ -15,6 +17,13 @@
 namespace tetwright {
 
 namespace {
+
+/// With what each line of results begins: keys are sorted.
+constexpr std::string_view line_beginning = R"({"args":[)";
+
+bool is_beginning_of_line(std::string_view text) {
+  return text.substr(0, line_beginning.size()) == line_beginning.substr(0, text.size());
+}
 
 [[noreturn]] void fail(const std::string& path, const std::string& what) {
   throw OutputError("cannot write " + path + ": " + what);
@@ -31,11 +40,7 @@ ResultsFile::ResultsFile(const std::string& path) : path_(path) {
     if (flock(file_, LOCK_EX | LOCK_NB) != 0)
       fail(path, errno == EWOULDBLOCK ? "another batch is writing it; give this one --results of its own"
                                       : std::strerror(errno));
-    const std::string text = read_whole_file(path);
-    const std::size_t whole = text.rfind('\n') + 1;  // 0 without any
-    read_lines(text.substr(0, whole));
-    if (whole < text.size() && ftruncate(file_, static_cast<off_t>(whole)) != 0)
-      fail(path, std::strerror(errno));
+    reload();
   } catch (...) {
     close(file_);
     throw;
@@ -44,20 +49,43 @@ ResultsFile::ResultsFile(const std::string& path) : path_(path) {
 
 ResultsFile::~ResultsFile() { close(file_); }
 
-void ResultsFile::read_lines(const std::string& text) {
+void ResultsFile::reload() {
+  const std::string text = read_whole_file(path_);
   std::size_t number = 0;
   for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = text.find('\n', begin);
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string line = text.substr(begin, end - begin);
     ++number;
-    try {
-      const nlohmann::json line = nlohmann::json::parse(text.substr(begin, end - begin));
-      statuses_[{line.at("id").get<std::string>(), line.at("args").get<std::vector<std::string>>()}] =
-          line.at("status").get<int>();
-    } catch (const nlohmann::json::exception&) {
-      throw InputError(path_, number,
-                       "it is no result of a batch; give --results another file, or remove this one");
+    if (!read_line(line)) {
+      // The beginning of a line is what a kill has left.
+      if (end < text.size() || !is_beginning_of_line(line))
+        throw InputError(path_, number,
+                         "it is no result of a batch; give --results another file, or remove this one");
+      if (ftruncate(file_, static_cast<off_t>(begin)) != 0) fail(path_, std::strerror(errno));
+    } else if (end == text.size()) {
+      write_whole("\n");
     }
     begin = end + 1;
+  }
+}
+
+bool ResultsFile::read_line(const std::string& text) {
+  try {
+    const nlohmann::json line = nlohmann::json::parse(text);
+    statuses_[{line.at("id").get<std::string>(), line.at("args").get<std::vector<std::string>>()}] =
+        line.at("status").get<int>();
+    return true;
+  } catch (const nlohmann::json::exception&) {
+    return false;
+  }
+}
+
+void ResultsFile::write_whole(const std::string& text) {
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t written = write(file_, text.data() + done, text.size() - done);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(path_, std::strerror(errno));
+    done += static_cast<std::size_t>(written);
   }
 }
 
@@ -68,13 +96,7 @@ int ResultsFile::status_of(const Job& job) const {
 
 void ResultsFile::append(const Job& job, int status, const std::string& line) {
   const std::lock_guard lock(mutex_);
-  const std::string text = line + "\n";
-  for (std::size_t done = 0; done < text.size();) {
-    const ssize_t written = write(file_, text.data() + done, text.size() - done);
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(path_, std::strerror(errno));
-    done += static_cast<std::size_t>(written);
-  }
+  write_whole(line + "\n");
   if (fdatasync(file_) != 0 && errno != EINVAL) fail(path_, std::strerror(errno));
   statuses_[{job.id, job.arguments}] = status;
 }

@@ -13,7 +13,7 @@ namespace tetwright {
 /// The results of a batch, a line of JSON for each job that ended, in the order in which they did:
 /// {"id", "args", "status", "seconds", "messages", "stats"}. A line is appended whole and synced to the disk
 /// once the job's files are in place, so that what it says is there. A kill can leave part of a line at the
-/// end, which is cut off when the file is opened again.
+/// end, which is cut off when the file is read again.
 class ResultsFile {
  public:
   /// Opens or creates the file, which no other process may have open in this way. Throws InputError where a
@@ -23,13 +23,17 @@ class ResultsFile {
   ResultsFile(const ResultsFile&) = delete;
   ResultsFile& operator=(const ResultsFile&) = delete;
 
+  /// Reads what a child process, which shares the file, has appended. Throws as the constructor does.
+  void reload();
   /// The status with which a job of this id and these arguments ended last, or -1.
   int status_of(const Job& job) const;
   /// Appends the line of a job that ended. May be called concurrently. Throws OutputError.
   void append(const Job& job, int status, const std::string& line);
 
  private:
-  void read_lines(const std::string& text);
+  /// False where it is no result.
+  bool read_line(const std::string& text);
+  void write_whole(const std::string& text);
 
   std::string path_;
   int file_ = -1;

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <atomic>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <map>
@@ -13,11 +15,13 @@
 #include "common/error.h"
 #include "common/memory.h"
 #include "common/parallel/parallel.h"
+#include "tools/batch/child_process.h"
 #include "tools/batch/jobs.h"
 #include "tools/batch/results_file.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/output_paths.h"
 #include "tools/commands/result.h"
+#include "tools/exit_status.h"
 #include "tools/interruption.h"
 #include "tools/progress_report.h"
 #include "tools/report.h"
@@ -176,55 +180,43 @@ std::vector<const Job*> unfinished_jobs(const std::vector<Job>& jobs, const Resu
   return left;
 }
 
-/// Jobs that run at the same time, and what they have come to so far.
-class Batch {
- public:
-  Batch(std::vector<const Job*> jobs, ResultsFile& results, CommandRun& run)
-      : jobs_(std::move(jobs)), results_(results), run_(run) {}
+/// "died of signal 11 (Segmentation fault)"
+std::string death_text(int signal) {
+  return "died of signal " + std::to_string(signal) + " (" + strsignal(signal) + ")";
+}
 
-  void carry_out() {
-    const unsigned all = thread_count();
-    const auto workers =
-        static_cast<unsigned>(std::min<std::size_t>(run_.line.jobs > 0 ? run_.line.jobs : all, jobs_.size()));
-    if (workers == 0) return;
-    run_.progress.begin_stage("jobs");
-    // What each may use of the memory: nobody else tells them of the others.
-    const double memory = available_memory() / workers;
-    std::vector<std::thread> threads;
-    const unsigned each = std::max(1u, all / workers);
-    try {
-      for (unsigned w = 0; w < workers; ++w)
-        threads.emplace_back([this, each, memory] { work(each, memory); });
-    } catch (const std::system_error& e) {
-      // Those that could be started do all jobs.
-      if (threads.empty())
-        throw OutputError(std::string("cannot start a thread: ") + e.what() +
-                          "; free some memory or processes");
-    }
-    for (std::thread& t : threads) t.join();
-    run_.progress.finish();
-    if (failure_) std::rethrow_exception(failure_);
+/// What a job comes to in which the process died.
+Ended ended_by(int signal, double seconds) {
+  Ended ended;
+  ended.seconds = seconds;
+  if (signal == SIGKILL) {
+    ended.status = ExitStatus::output_failed;
+    ended.messages = {"its process " + death_text(signal) +
+                      ", as where memory runs out; free some, give fewer --jobs, or ask for larger cells"};
+  } else {
+    ended.status = ExitStatus::internal_error;
+    ended.messages = {"its process " + death_text(signal) + report_this};
+  }
+  return ended;
+}
+
+/// Appends what a job came to, and says it.
+class Recorder {
+ public:
+  Recorder(const std::vector<const Job*>& jobs, JobStates& states, ResultsFile& results, CommandRun& run)
+      : jobs_(jobs), states_(states), results_(results), run_(run) {}
+
+  /// Throws OutputError. May be called concurrently.
+  void record(std::size_t job, const Ended& ended) {
+    const std::lock_guard lock(mutex_);
+    states_.set(job, JobState::recorded);
+    results_.append(*jobs_[job], static_cast<int>(ended.status), result_line(*jobs_[job], ended));
+    states_.set(job, JobState::ended);
+    tell(*jobs_[job], ended);
   }
 
  private:
-  void work(unsigned threads, double memory) {
-    for (std::size_t i; !stop_ && (i = next_++) < jobs_.size();) {
-      const Ended ended = run_job(*jobs_[i], threads, memory);
-      const std::lock_guard lock(mutex_);
-      try {
-        results_.append(*jobs_[i], static_cast<int>(ended.status), result_line(*jobs_[i], ended));
-        tell(*jobs_[i], ended);
-      } catch (...) {
-        // Without results nobody would know what is done.
-        if (!failure_) failure_ = std::current_exception();
-        stop_ = true;
-        return;
-      }
-    }
-  }
-
   void tell(const Job& job, const Ended& ended) {
-    ++ended_;
     run_.progress.finish();  // clears the bar
     char numbers[80];
     std::snprintf(numbers, sizeof numbers, ": status %d, %.2f s", static_cast<int>(ended.status),
@@ -234,18 +226,89 @@ class Batch {
           "job '" + job.id + "'" + numbers +
           (ended.status == ExitStatus::done || ended.messages.empty() ? "" : "; " + ended.messages.back()));
     }
-    run_.progress.update(static_cast<double>(ended_) / static_cast<double>(jobs_.size()));
+    std::size_t all_ended = 0;
+    for (std::size_t j = 0; j < states_.size(); ++j) all_ended += states_[j] == JobState::ended;
+    run_.progress.update(static_cast<double>(all_ended) / static_cast<double>(states_.size()));
   }
 
-  std::vector<const Job*> jobs_;
+  const std::vector<const Job*>& jobs_;
+  JobStates& states_;
   ResultsFile& results_;
   CommandRun& run_;
-  std::atomic<std::size_t> next_{0};
-  std::atomic<bool> stop_{false};
-  std::mutex mutex_;  // of what follows, and of the progress
-  std::exception_ptr failure_;
-  std::size_t ended_ = 0;
+  std::mutex mutex_;  // of all that record() does
 };
+
+/// Jobs that run at the same time.
+class Batch {
+ public:
+  Batch(const std::vector<const Job*>& jobs, JobStates& states, Recorder& recorder)
+      : jobs_(jobs), states_(states), recorder_(recorder) {}
+
+  /// Those of the list, at most `at_once` at a time.
+  void carry_out(const std::vector<std::size_t>& list, std::size_t at_once) {
+    const unsigned all = thread_count();
+    const auto workers = static_cast<unsigned>(std::min(at_once, list.size()));
+    if (workers == 0) return;
+    // What each may use of the memory: nobody else tells them of the others.
+    const double memory = available_memory() / workers;
+    std::atomic<std::size_t> next{0};
+    std::vector<std::thread> threads;
+    const unsigned each = std::max(1u, all / workers);
+    try {
+      for (unsigned w = 0; w < workers; ++w) threads.emplace_back([&] { work(list, next, each, memory); });
+    } catch (const std::system_error& e) {
+      // Those that could be started do all jobs.
+      if (threads.empty())
+        throw OutputError(std::string("cannot start a thread: ") + e.what() +
+                          "; free some memory or processes");
+    }
+    for (std::thread& t : threads) t.join();
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  void work(const std::vector<std::size_t>& list, std::atomic<std::size_t>& next, unsigned threads,
+            double memory) {
+    for (std::size_t i; !stop_ && (i = next++) < list.size();) {
+      states_.begin(list[i]);
+      const Ended ended = run_job(*jobs_[list[i]], threads, memory);
+      try {
+        recorder_.record(list[i], ended);
+      } catch (...) {
+        // Without results nobody would know what is done.
+        const std::lock_guard lock(mutex_);
+        if (!failure_) failure_ = std::current_exception();
+        stop_ = true;
+        return;
+      }
+    }
+  }
+
+  const std::vector<const Job*>& jobs_;
+  JobStates& states_;
+  Recorder& recorder_;
+  std::atomic<bool> stop_{false};
+  std::mutex mutex_;  // of the failure
+  std::exception_ptr failure_;
+};
+
+std::vector<std::size_t> jobs_that_are(JobState state, const JobStates& states) {
+  std::vector<std::size_t> found;
+  for (std::size_t j = 0; j < states.size(); ++j)
+    if (states[j] == state) found.push_back(j);
+  return found;
+}
+
+/// What a child process does: all jobs that wait; first, each alone, those that ran when a child died.
+void carry_out_waiting(const std::vector<const Job*>& jobs, JobStates& states,
+                       const std::vector<std::size_t>& suspects, Recorder& recorder, CommandRun& run) {
+  if (!jobs.empty()) run.progress.begin_stage("jobs");
+  Batch batch(jobs, states, recorder);
+  batch.carry_out(suspects, 1);
+  batch.carry_out(jobs_that_are(JobState::waiting, states),
+                  run.line.jobs > 0 ? run.line.jobs : thread_count());
+  run.progress.finish();
+}
 
 }  // namespace
 
@@ -255,8 +318,39 @@ void run_batch(CommandRun& run) {
   check_jobs_are_independent(line, jobs);
   ResultsFile results(results_file_of(line));
   say_when_interrupted("tetwright: interrupted; the same call goes on with the jobs that are left\n");
-  Batch batch(unfinished_jobs(jobs, results, line.retry), results, run);
-  batch.carry_out();
+  const std::vector<const Job*> left = unfinished_jobs(jobs, results, line.retry);
+  JobStates states(left.size());
+  Recorder recorder(left, states, results, run);
+  std::vector<std::size_t> suspects;
+  for (;;) {
+    const ProcessEnd end = run_in_child_process([&] {
+      try {
+        carry_out_waiting(left, states, suspects, recorder, run);
+        return 0;
+      } catch (const std::exception& e) {
+        run.progress.finish();
+        print_line(failure_message(e));
+        return static_cast<int>(exit_status(e));
+      }
+    });
+    results.reload();
+    if (end.signal == 0) {
+      run.report.status = static_cast<ExitStatus>(end.status);
+      break;
+    }
+    // A crash, or no memory, in one job: it ends that job alone.
+    suspects = jobs_that_are(JobState::running, states);
+    for (const std::size_t job : jobs_that_are(JobState::recorded, states)) suspects.push_back(job);
+    if (suspects.empty())
+      throw OutputError("the process of the batch " + death_text(end.signal) +
+                        " between jobs; the same call goes on with those that are left");
+    if (suspects.size() == 1 && states[suspects[0]] == JobState::running) {
+      recorder.record(suspects[0], ended_by(end.signal, states.seconds(suspects[0])));
+      suspects.clear();
+    }
+    for (const std::size_t job : suspects) states.set(job, JobState::waiting);
+  }
+  if (run.report.status != ExitStatus::done) return;
   const auto done = static_cast<std::size_t>(
       std::count_if(jobs.begin(), jobs.end(), [&](const Job& job) { return results.status_of(job) == 0; }));
   if (done < jobs.size()) {

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "common/geometry/projection_tree.h"
 #include "common/parallel/parallel.h"
@@ -37,6 +39,28 @@ Surface graph(Index n, const Height& height) {
 }
 
 double flat(double, double) { return 0; }
+
+double distance(const Vec3& p, const Surface& to) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const auto& t : to.items)
+    nearest = std::min(nearest, squared_distance(p, to.points[t.corners[0]], to.points[t.corners[1]],
+                                                 to.points[t.corners[2]]));
+  return std::sqrt(nearest);
+}
+
+/// The largest distance of many points of the triangles.
+double farthest_point(const Surface& from, const Surface& to, int steps) {
+  double farthest = 0;
+  for (const auto& item : from.items)
+    for (int i = 0; i <= steps; ++i)
+      for (int j = 0; i + j <= steps; ++j) {
+        const Vec3& a = from.points[item.corners[0]];
+        farthest = std::max(farthest, distance(a + (from.points[item.corners[1]] - a) * i / steps +
+                                                   (from.points[item.corners[2]] - a) * j / steps,
+                                               to));
+      }
+  return farthest;
+}
 
 void expect_between(const SurfaceDeviation& d, double truth) {
   EXPECT_LE(d.lower, truth * (1 + 1e-12) + 1e-15);
@@ -91,28 +115,58 @@ TEST(SurfaceDeviation, IsThatOfASearchOfManyPoints) {
     };
     const Surface from = soup(20, 0.8), to = soup(60, 0.5);
     const SurfaceDeviation d = surface_deviation(from.tree(), to.tree(), 1e-6);
-    double farthest = 0;
-    constexpr int steps = 60;
-    for (const auto& item : from.items)
-      for (int i = 0; i <= steps; ++i)
-        for (int j = 0; i + j <= steps; ++j) {
-          const Vec3& a = from.points[item.corners[0]];
-          const Vec3 p = a + (from.points[item.corners[1]] - a) * i / steps +
-                         (from.points[item.corners[2]] - a) * j / steps;
-          double nearest = std::numeric_limits<double>::infinity();
-          for (const auto& t : to.items)
-            nearest = std::min(nearest, squared_distance(p, to.points[t.corners[0]], to.points[t.corners[1]],
-                                                         to.points[t.corners[2]]));
-          farthest = std::max(farthest, std::sqrt(nearest));
-        }
+    const double farthest = farthest_point(from, to, 60);
     EXPECT_GE(d.upper, farthest);
     EXPECT_GE(d.lower, 0.99 * farthest);  // a lower bound that is attained
     EXPECT_LE(d.upper, 1.01 * d.lower + 1e-12);
-    double at_place = std::numeric_limits<double>::infinity();
-    for (const auto& t : to.items)
-      at_place = std::min(at_place, squared_distance(d.place, to.points[t.corners[0]],
-                                                     to.points[t.corners[1]], to.points[t.corners[2]]));
-    EXPECT_NEAR(std::sqrt(at_place), d.lower, 1e-12);
+    EXPECT_NEAR(distance(d.place, to), d.lower, 1e-12);
+  }
+}
+
+// With an accuracy that is always reached the upper bound is that of the whole triangle.
+TEST(SurfaceDeviation, OfATriangleOverAFanIsBoundedBeforeAnyCut) {
+  Random random(7);
+  const auto number = [&] { return 2 * random.uniform() - 1; };
+  for (int round = 0; round < 200; ++round) {
+    // Around a point at any height, some of them flat; the triangle lies over one to all of the fan's.
+    const Index sides = 3 + static_cast<Index>(4 * random.uniform());
+    const double height = round % 3 == 0 ? 0 : number();
+    Surface fan, triangle;
+    fan.points.emplace_back(0, 0, height);
+    for (Index i = 0; i < sides; ++i) {
+      const double angle = 2 * std::numbers::pi * i / sides;
+      fan.points.emplace_back(std::cos(angle), std::sin(angle), round % 3 == 0 ? 0 : 0.3 * number());
+      fan.items.push_back({{0, 1 + i, 1 + (i + 1) % sides}, {}});
+    }
+    for (int k = 0; k < 3; ++k)
+      triangle.points.emplace_back(0.4 * number(), 0.4 * number(), height + 0.05 * number());
+    triangle.items.push_back({{0, 1, 2}, {}});
+    const SurfaceDeviation d = surface_deviation(triangle.tree(), fan.tree(), 1e3);
+    EXPECT_GE(d.upper, farthest_point(triangle, fan, 20) * (1 - 1e-12)) << round;
+  }
+}
+
+TEST(SurfaceDeviation, OfALidOverAPitIsBoundedBeforeAnyCut) {
+  // The lid's corners are on the pit's walls, each near the next edge between two.
+  Surface pit, lid;
+  for (Index i = 0; i < 3; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 3;
+    pit.points.emplace_back(std::cos(angle), std::sin(angle), 0);
+    pit.items.push_back({{i, (i + 1) % 3, 3}, {}});
+  }
+  pit.points.emplace_back(0, 0, -9);
+  for (Index i = 0; i < 3; ++i) lid.points.push_back(0.98 * pit.points[i] + 0.02 * pit.points[(i + 1) % 3]);
+  lid.items.push_back({{0, 1, 2}, {}});
+  EXPECT_GE(surface_deviation(lid.tree(), pit.tree(), 1e3).upper, farthest_point(lid, pit, 30));
+}
+
+TEST(SurfaceDeviation, OfAFlatPartIsKnownBeforeAnyCut) {
+  // A triangle in three parts; over an edge of two of them, and over all.
+  const Surface floor{{{0, 0, 0}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}},
+                      {{{0, 1, 2}, {}}, {{0, 2, 3}, {}}, {{0, 3, 1}, {}}}};
+  for (const double x : {0.3, 0.1}) {
+    const Surface triangle{{{x, 0.1, 0.01}, {x, -0.1, 0.01}, {x - 0.25, 0.02, 0.01}}, {{{0, 1, 2}, {}}}};
+    EXPECT_NEAR(surface_deviation(triangle.tree(), floor.tree(), 1e3).upper, 0.01, 1e-12) << x;
   }
 }
 

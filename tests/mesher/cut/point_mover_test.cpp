@@ -68,11 +68,11 @@ void expect_moves_well(const std::vector<TriangleMesh>& surfaces, double cell, d
 TEST(PointMover, OneMaterial) { expect_moves_well({make_torus(1, 0.4)}, 0.07, 0.01); }
 
 TEST(PointMover, SeveralMaterials) {
-  expect_moves_well({make_sphere(1.1), make_sphere(0.8), make_sphere(0.7, {0.8, 0.05, 0.1})}, 0.07, 0.04);
+  expect_moves_well({make_sphere(1.1), make_sphere(0.8), make_sphere(0.7, {0.8, 0.05, 0.1})}, 0.09, 0.04);
 }
 
 TEST(PointMover, TheSameForAnyNumberOfThreads) {
-  const auto field = make_field({make_sphere(1), make_sphere(0.8, {0.6, 0, 0})}, 0.06);
+  const auto field = make_field({make_sphere(1), make_sphere(0.8, {0.6, 0, 0})}, 0.09);
   const auto moved = [&](unsigned threads) {
     const ThreadLimit limit(threads);
     LabelledLattice lattice = lattice_of(*field);

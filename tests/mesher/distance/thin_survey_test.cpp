@@ -84,7 +84,7 @@ TEST(ThinWalls, GapsAreKeptOrClosedWhole) {
   for (int turn = 0; turn < 3; ++turn)
     for (const double gap : {0.01, 0.3, 0.9, 1.3, 1.6})
       for (const int refinement : {0, 3}) {
-        if (refinement > 0 && (gap > 0.5 || turn == 2)) continue;  // takes long, and shows what the others do
+        if (refinement > 0 && (gap > 0.5 || turn != 1)) continue;  // takes long, and shows what the others do
         const DenseMesh dense = mesh_of(boxes(gap, turn), 1, refinement);
         const Counts found = counts_of(dense);
         const bool shown = gap * (1 << refinement) > 1.25;

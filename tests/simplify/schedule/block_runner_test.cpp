@@ -319,7 +319,7 @@ TEST(BlockRunner, WorkersDecideSideBySide) {
     seen.insert(&ws);
     another.notify_all();
     if (!std::exchange(waited, true))
-      another.wait_for(lock, std::chrono::seconds(10), [&] { return seen.size() > 1; });
+      another.wait_for(lock, std::chrono::seconds(2), [&] { return seen.size() > 1; });
     return Outcome::no_candidate;
   });
   // oneTBB promises no second thread, whatever is free.
