@@ -65,6 +65,7 @@ void check_command(int argc, char** argv) {
 std::string unknown_option(const CLI::App& app) {
   const CLI::App* chosen = app.get_subcommands().empty() ? &app : app.get_subcommands().front();
   for (const std::string& argument : app.remaining(true)) {
+    if (argument == "--") break;  // what follows are names
     if (!argument.starts_with('-') || argument.size() < 2) continue;
     const std::string typed = argument.substr(0, argument.find('='));
     std::vector<std::string> names;
@@ -109,6 +110,11 @@ bool parse_arguments(CLI::App& app, int argc, char** argv) {
     // An option that is misspelt may be reported as one that is missing.
     const std::string unknown = unknown_option(app);
     if (unknown.empty()) check_one_positional(app);
+    if (const auto* mismatch = dynamic_cast<const CLI::ArgumentMismatch*>(&e); mismatch && unknown.empty()) {
+      const std::string what = e.what();  // "--output: At Most 1 required but received 2"
+      if (const std::size_t at = what.find(": At Most 1 "); at != std::string::npos)
+        throw UsageError(what.substr(0, at) + " was given more than once; give it once");
+    }
     throw UsageError((unknown.empty() ? one_line(e.what()) : unknown) +
                      " (tetwright --help, or --help after a command, lists all options)");
   }

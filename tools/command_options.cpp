@@ -44,6 +44,13 @@ void add_choice(CLI::App& app, const char* option, Value& to, std::initializer_l
       ->default_str(name_of(to));
 }
 
+void add_stats(CLI::App& app, CommandLine& c) {
+  app.add_option("--stats", c.stats,
+                 "Write statistics of the run to this .json file, also of one that fails; -: to standard "
+                 "output, instead of the report")
+      ->type_name("FILE");
+}
+
 void add_common(CLI::App& app, CommandLine& c) {
   add_whole_number(app, "--threads", c.threads, 1, max_threads_option,
                    "Max number of threads, 1 to 1024 (default: all of the machine); more than four for each "
@@ -51,10 +58,6 @@ void add_common(CLI::App& app, CommandLine& c) {
   add_number(app, "--memory-limit", c.memory_limit, positive,
              "Use at most so many GB (2^30 bytes) of memory: cells that would not fit become larger where no "
              "option decides them (status 1), and what still does not fit is refused");
-  app.add_option("--stats", c.stats,
-                 "Write statistics of the run to this .json file, also of one that fails; -: to standard "
-                 "output, instead of the report")
-      ->type_name("FILE");
   app.add_flag("--quiet", c.quiet, "Print only errors and what falls short");
   add_choice(
       app, "--progress", c.progress,
@@ -311,6 +314,7 @@ void add_prepare(CLI::App& app, CommandLine& c) {
   add_simplifying(app, c);
   add_meshing(app, c, "what the target needs");
   add_labels(app, c);
+  add_stats(app, c);
   add_common(app, c);
   add_time_limit(app, c);
   add_seed(app, c);
@@ -323,6 +327,7 @@ void add_mesh(CLI::App& app, CommandLine& c) {
   add_meshing(app, c, "128, or with --tolerance what that needs; for segmented volumes one cell to a voxel");
   add_tolerance(app, c);
   add_labels(app, c);
+  add_stats(app, c);
   add_common(app, c);
   add_time_limit(app, c);
   add_seed(app, c);
@@ -337,6 +342,7 @@ void add_simplify(CLI::App& app, CommandLine& c) {
   add_feature_angle(app, c.feature_angle);
   add_strict(app, c);
   add_material_field(app, c);
+  add_stats(app, c);
   add_common(app, c);
   add_time_limit(app, c);
   add_seed(app, c);
@@ -358,6 +364,7 @@ void add_improve(CLI::App& app, CommandLine& c) {
   add_feature_angle(app, c.feature_angle);
   add_strict(app, c);
   add_material_field(app, c);
+  add_stats(app, c);
   add_common(app, c);
   add_time_limit(app, c);
   add_seed(app, c);
@@ -379,6 +386,7 @@ void add_check(CLI::App& app, CommandLine& c) {
   app.add_flag("--json", c.json, "Print JSON");
   add_report(app, c);
   add_material_field(app, c);
+  add_stats(app, c);
   add_common(app, c);
 }
 
@@ -414,6 +422,7 @@ void add_sample(CLI::App& app, CommandLine& c) {
          "Format in place of the extension, and of standard output (-o -): as for other commands' meshes, "
          "or an extension of a surface or volume without its dot")
       ->type_name("NAME");
+  add_stats(app, c);
   add_common(app, c);
 }
 

@@ -56,9 +56,9 @@ int main(int argc, char** argv) {
     tetwright::CommandLine line;
     if (!tetwright::parse_command_line(argc, argv, line)) return 0;
     const ExitStatus status = tetwright::run_command(line);
-    tetwright::log_line("exit status " + std::to_string(static_cast<int>(status)));
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
       return fail(ExitStatus::output_failed, "cannot write to standard output");
+    tetwright::log_line("exit status " + std::to_string(static_cast<int>(status)));
     return static_cast<int>(status);
   } catch (const std::exception& e) {
     return fail(tetwright::exit_status(e), tetwright::failure_message(e));

@@ -97,8 +97,6 @@ void complete_command_line(const CLI::App& chosen, CommandLine& out) {
   if (out.json && out.stats == "-")
     throw UsageError(
         "--json and --stats - both print to standard output; give --stats a file, or leave one out");
-  if (out.command == Command::batch && !out.stats.empty())
-    throw UsageError("--stats is of a single run; the results of a batch have those of each job");
   if (out.resolution && out.voxel_size > 0) throw UsageError("give --resolution or --voxel-size, not both");
 }
 

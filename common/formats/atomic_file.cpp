@@ -228,6 +228,18 @@ std::string read_all(int file, const std::string& path, std::size_t size) {
 
 }  // namespace
 
+std::string real_path(const std::string& path) {
+  std::error_code error;
+  fs::path target = fs::absolute(path, error);
+  try {
+    target = link_target(target.string());  // also to a file that is not there, unlike weakly_canonical()
+  } catch (const OutputError&) {
+    return target.string();  // a circle of links
+  }
+  const fs::path whole = fs::weakly_canonical(target, error);
+  return (error ? target.lexically_normal() : whole).string();
+}
+
 void check_output_file(const std::string& path) {
   if (path == standard_stream) return;
   const std::string target = link_target(path);

@@ -15,6 +15,10 @@ class Progress;
 /// Changes nothing. To be called before any work.
 void check_output_file(const std::string& path);
 
+/// The absolute path of what `path` leads to, links followed: equal for all ways to name a file, whether or
+/// not it exists. Not for hard links.
+std::string real_path(const std::string& path);
+
 /// Takes the bytes of a file piece by piece.
 using ByteSink = std::function<void(std::string_view)>;
 

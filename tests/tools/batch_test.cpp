@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -119,6 +120,11 @@ TEST_F(Batch, RefusesWhatIsNoBatch) {
           {"reads", "'a' writes"});
   refused(job("a", "300") + R"({"args": ["check", "x.vtu", "--before", ")" + (f / "a.vtu") + R"("]})",
           {"reads", "'a' writes"});
+  // Of one file that is not there yet by two links.
+  std::filesystem::create_symlink("real.vtu", f / "link.vtu");
+  refused(R"({"args": ["improve", "x.vtu", "-o", ")" + (f / "link.vtu") + R"("]})" + "\n" +
+              R"({"args": ["improve", "x.vtu", "-o", ")" + (f / "real.vtu") + R"("]})",
+          {"real.vtu", "give each its own"});
   put(jobs, R"({"args": ["check", "x.vtu", "--stats", ")" + (f / "r.json") + R"("]})");
   expect_refused("batch " + jobs + " --results " + (f / "r.json"), 3, {"r.json", "a file of the batch"});
   put(jobs, job("a", "300"));
@@ -175,8 +181,11 @@ TEST_F(Batch, WhatRanBesideACrashIsDoneAgain) {
   Process process({"batch", f / "jobs.jsonl", "--jobs", "2"}, f / "err");
   std::vector<int> ends;
   for (const std::string& pipe : pipes) ends.push_back(open_when_read(pipe, process));
-  kill(process.child(), SIGKILL);
+  const pid_t first = process.child();
+  kill(first, SIGKILL);
   for (const int end : ends) close(end);
+  // Until it has gone it may still read.
+  while ((process.child() == first || process.child() == 0) && !process.ended()) wait_a_moment();
   // Each alone: the second one is read when the first has ended.
   for (const std::string& pipe : pipes) close(open_when_read(pipe, process));
   EXPECT_EQ(process.wait(), 1) << contents(f / "err");

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <new>
+#include <stdexcept>
+#include <string>
+#include <system_error>
 
 #include "common/error.h"
 
@@ -16,6 +19,17 @@ TEST(ExitStatus, FollowsTheKindOfError) {
   EXPECT_EQ(exit_status(OutputError("")), ExitStatus::output_failed);
   EXPECT_EQ(exit_status(std::bad_alloc()), ExitStatus::output_failed);
   EXPECT_EQ(exit_status(Interrupted()), ExitStatus::interrupted);
+  EXPECT_EQ(exit_status(std::runtime_error("pthread_create has failed")), ExitStatus::output_failed);
+  EXPECT_EQ(exit_status(std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again))),
+            ExitStatus::output_failed);
+  EXPECT_EQ(exit_status(std::out_of_range("")), ExitStatus::internal_error);
+}
+
+TEST(ExitStatus, MessagesSayWhatToDo) {
+  EXPECT_NE(failure_message(std::runtime_error("no thread")).find("--threads"), std::string::npos);
+  EXPECT_NE(failure_message(std::bad_alloc()).find("--resolution"), std::string::npos);
+  EXPECT_NE(failure_message(InternalError("odd")).find("please report"), std::string::npos);
+  EXPECT_EQ(failure_message(InputError("a.ply: no points")), "a.ply: no points");
 }
 
 TEST(ExitStatus, ABrokenInvariantIsOurBug) {

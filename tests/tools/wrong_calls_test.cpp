@@ -1,6 +1,8 @@
 // Calls that are wrong: the status and what the message says.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "tests/tools/program.h"
 
 namespace tetwright::wrong_calls_test {
@@ -34,6 +36,11 @@ TEST(WrongCalls, AreStatusTwo) {
   for (const char* number : {" 5", "5 ", "5 %", "0x5", "+5", "1e-400", "1e400", "inf"})
     expect_refused("prepare " + in + " -o " + out + " --tolerance '" + number + "'", 2,
                    {"--tolerance: '" + std::string(number) + "' is not a "});
+  // Two outputs through links to one file that is not there yet.
+  for (const char* link : {"link.vtu", "link.json"}) std::filesystem::create_symlink("real", f / link);
+  expect_refused("mesh " + in + " -o " + (f / "link.vtu") + " --stats " + (f / "link.json"), 2,
+                 {"link.json is also the file of -o"});
+  for (const char* link : {"link.vtu", "link.json"}) std::filesystem::remove(f / link);
   expect_refused("sample dodo -o " + out, 2, {"dodo", "sphere"});
   expect_refused("sample sphere -o " + out, 2, {"t.vtu", ".ply"});
   expect_refused("sample organs -o " + out, 2, {"t.vtu", "volume of labels", ".nrrd"});
@@ -49,6 +56,9 @@ TEST(WrongCalls, NameTheNearestCommandAndOption) {
   expect_refused("mesh a.off -o b.vtu --resolutoin=5", 2,
                  {"--resolutoin of mesh", "nearest is --resolution"});
   expect_refused("simplify a.vtu b.vtu -o c.vtu --target-tets 5", 2, {"simplify takes one MESH; 'b.vtu'"});
+  // What follows -- are names, and what is wrong is the value before it.
+  expect_refused("check --threads=0 -- a.vtu", 2, {"--threads", "'0'"});
+  expect_refused("mesh a.off -o b.vtu -o c.vtu", 2, {"--output was given more than once"});
   expect_refused("--verson", 2, {"no option --verson;", "nearest is --version"});
 }
 

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
-#include <filesystem>
 #include <map>
 #include <mutex>
 #include <new>
@@ -13,6 +12,7 @@
 #include <thread>
 
 #include "common/error.h"
+#include "common/formats/atomic_file.h"
 #include "common/memory.h"
 #include "common/parallel/parallel.h"
 #include "tools/batch/child_process.h"
@@ -45,9 +45,12 @@ CommandLine parse(const Job& job) {
   std::vector<char*> argv;
   argv.reserve(words.size());
   for (std::string& word : words) argv.push_back(word.data());
-  for (const std::string& word : words)
-    if (word == "--help" || word == "-h" || word == "--version")
-      throw UsageError(word + " is no job; leave the line out");
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (words[i] == "--help" || words[i] == "-h" || words[i] == "--version")
+      throw UsageError(words[i] + " is no job; leave the line out");
+    if (words[i] == "-" && words[i - 1] != "--stats")
+      throw UsageError("a job has no standard input and output; give it files");
+  }
   CommandLine line;
   (void)parse_command_line(static_cast<int>(argv.size()), argv.data(), line);
   if (line.command == Command::batch || line.command == Command::sample)
@@ -58,14 +61,6 @@ CommandLine parse(const Job& job) {
     throw UsageError("a job has no standard input and output; give it files");
   if (line.stats == "-") throw UsageError("--stats - is of a single run; the results have the statistics");
   return line;
-}
-
-/// The same text for all ways to spell a path, links followed; the file need not exist.
-std::string normal(const std::string& path) {
-  std::error_code error;
-  const std::filesystem::path whole =
-      std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);
-  return (error ? std::filesystem::absolute(path).lexically_normal() : whole).string();
 }
 
 /// Refuses jobs that write one file, or a file of the batch, or read what another one writes: they have no
@@ -83,17 +78,17 @@ void check_jobs_are_independent(const CommandLine& batch, const std::vector<Job>
     }
     for (const std::string& path : written_files(line)) {
       for (const std::string& of_batch : {file, results_file_of(batch), batch.log_file})
-        if (!of_batch.empty() && normal(path) == normal(of_batch))
+        if (!of_batch.empty() && real_path(path) == real_path(of_batch))
           throw InputError(
               file, 0,
               "job '" + job.id + "' writes " + path + ", which is a file of the batch; give it another name");
-      const auto [first, added] = written.emplace(normal(path), job.id);
+      const auto [first, added] = written.emplace(real_path(path), job.id);
       if (!added)
         throw InputError(file, 0,
                          "job '" + job.id + "' writes " + path + ", as job '" + first->second +
                              "' does; give each its own");
     }
-    for (const std::string& path : read_files(line)) read.emplace_back(normal(path), job.id);
+    for (const std::string& path : read_files(line)) read.emplace_back(real_path(path), job.id);
   }
   for (const auto& [path, id] : read) {
     const auto writer = written.find(path);
@@ -144,7 +139,7 @@ Ended run_job(const Job& job, unsigned threads, double memory) {
     ended.messages = {"not enough memory; free some, give fewer --jobs, or ask for larger cells"};
   } catch (const std::exception& e) {
     ended.status = exit_status(e);
-    ended.messages = {e.what()};
+    ended.messages = {failure_message(e)};
   }
   ended.seconds = watch.seconds();
   return ended;

@@ -6,6 +6,7 @@
 #include "common/error.h"
 #include "common/formats/atomic_file.h"
 #include "common/formats/formats.h"
+#include "common/memory.h"
 #include "common/mesh/interfaces.h"
 #include "common/mesh/topology.h"
 #include "tools/commands/command_run.h"
@@ -20,6 +21,10 @@
 namespace tetwright {
 
 namespace {
+
+/// Peak memory of the process, about: its libraries, and the mesh with its topology, for each tet.
+constexpr double program_bytes = 40e6;
+constexpr double bytes_per_tet = 180;
 
 /// Reads a mesh to be checked or compared with; `field_found` becomes true if it has --material-field.
 TetMesh read_checked(const std::string& file, CommandRun& run, bool& field_found) {
@@ -115,7 +120,12 @@ CheckReport make_check(CommandRun& run) {
   const CommandLine& line = run.line;
   check_output_paths(line);
   bool field_found = false;
+  run.progress.begin_stage("read");
   TetMesh mesh = read_checked(line.inputs.front(), run, field_found);
+  require_memory(program_bytes + bytes_per_tet * static_cast<double>(mesh.tets.size()),
+                 line.inputs.front() + ": checking its " + std::to_string(mesh.tets.size()) + " tets",
+                 "free some, or give a larger --memory-limit");
+  run.progress.begin_stage("check");
   run.report.input_points = mesh.points.size();
   run.report.seconds_read = run.since_start.seconds();
   CheckReport check = examine(mesh, run);
@@ -127,7 +137,10 @@ CheckReport make_check(CommandRun& run) {
       check.topology_differences = topology_differences(*check.topology_before, *check.topology);
     }
   }
-  if (check.measurable && !line.surfaces.empty()) compare_with_surfaces(mesh, run, check);
+  if (check.measurable && !line.surfaces.empty()) {
+    run.progress.begin_stage("compare");
+    compare_with_surfaces(mesh, run, check);
+  }
   // The error of the reader lists the fields that there are. A stream cannot be read twice.
   if (!line.material_field.empty() && !field_found && !line.input_format.empty())
     throw InputError(line.inputs.front(), 0,

@@ -15,11 +15,11 @@ namespace tetwright {
 
 namespace {
 
-/// True if both names lead to the same file, which need not exist if they are spelt alike.
+/// True if both names lead to the same file, which need not exist.
 bool same_file(const std::string& a, const std::string& b) {
   if (a.empty() || b.empty()) return false;
   std::error_code not_there;
-  return a == b || std::filesystem::equivalent(a, b, not_there);
+  return real_path(a) == real_path(b) || std::filesystem::equivalent(a, b, not_there);
 }
 
 /// All files that the call reads.
