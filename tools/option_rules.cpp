@@ -62,6 +62,15 @@ void complete_streams(CommandLine& out) {
 
 }  // namespace
 
+void check_holds_second_order(const std::string& output, const std::string& format) {
+  if (written_tet_format(output, format).second_order) return;
+  std::string extensions;
+  for (const TetFormatInfo& known : written_tet_formats())
+    if (known.second_order && !extensions.ends_with(known.extension)) extensions += " " + known.extension;
+  throw UsageError("--order 2: " + output + " would be in a format without ten-node tets; write one of" +
+                   extensions);
+}
+
 void complete_command_line(const CLI::App& chosen, CommandLine& out) {
   complete_streams(out);
   const bool meshes_scans = out.command == Command::prepare || out.command == Command::mesh;
@@ -91,9 +100,7 @@ void complete_command_line(const CLI::App& chosen, CommandLine& out) {
     throw UsageError("--schedule paper bounds no distances; leave out --tolerance, or --schedule");
   if (out.command == Command::check && out.tolerance.value > 0 && out.surfaces.empty())
     throw UsageError("--tolerance needs the surfaces that the mesh is compared with; give --surface FILE");
-  if (out.order > 1 && !out.output.empty() && !written_tet_format(out.output, out.output_format).second_order)
-    throw UsageError("--order 2: " + out.output +
-                     " would be in a format without ten-node tets; write .vtu .msh .vtk .inp .bdf or .feb");
+  if (out.order > 1 && !out.output.empty()) check_holds_second_order(out.output, out.output_format);
   if (out.json && out.stats == "-")
     throw UsageError(
         "--json and --stats - both print to standard output; give --stats a file, or leave one out");

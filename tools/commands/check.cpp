@@ -51,7 +51,7 @@ CheckReport examine(TetMesh& mesh, CommandRun& run) {
 /// The surfaces of --surface, by file.
 void read_surfaces(CommandRun& run, std::vector<TriangleMesh>& surfaces, std::vector<std::string>& names) {
   for (const std::string& file : run.line.surfaces) {
-    if (is_vdb(file)) {
+    if (!is_object(run, file) && is_vdb(file)) {
       for (NamedSurface& s : read_level_sets(file)) {
         surfaces.push_back(std::move(s.surface));
         names.push_back(file);
@@ -141,8 +141,9 @@ CheckReport make_check(CommandRun& run) {
     run.progress.begin_stage("compare");
     compare_with_surfaces(mesh, run, check);
   }
-  // The error of the reader lists the fields that there are. A stream cannot be read twice.
-  if (!line.material_field.empty() && !field_found && !line.input_format.empty())
+  // The error of the reader lists the fields that there are. Streams and objects cannot be read twice.
+  const bool read_once = !line.input_format.empty() || is_object(run, line.inputs.front());
+  if (!line.material_field.empty() && !field_found && read_once)
     throw InputError(line.inputs.front(), 0,
                      "it has no whole-number cell field '" + line.material_field + "'");
   if (!line.material_field.empty() && !field_found)

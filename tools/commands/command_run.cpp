@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/formats/mesh_fields.h"
 #include "tools/stats_json.h"
 
 namespace tetwright {
@@ -39,6 +40,15 @@ CommandRun::CommandRun(const CommandLine& call, Progress& shown, InputObjects* i
   report.inputs = input_files(call);
 }
 
+bool is_object(const CommandRun& run, const std::string& name) {
+  return run.objects && (run.objects->surfaces.contains(name) || run.objects->meshes.contains(name) ||
+                         run.objects->volumes.contains(name));
+}
+
+std::string material_name_of(const CommandRun& run, const std::string& name) {
+  return is_object(run, name) ? name : file_stem(name);
+}
+
 FileKind input_kind(const CommandRun& run, const std::string& name) {
   if (run.objects) {
     if (run.objects->surfaces.contains(name)) return FileKind::surface;
@@ -53,6 +63,9 @@ std::string typed_name(const CommandLine& line, const std::string& name) {
 }
 
 TriangleMesh take_surface(CommandRun& run, const std::string& name, std::vector<Dropped>* dropped) {
+  if (run.objects && dropped)
+    if (const auto of_object = run.objects->dropped.find(name); of_object != run.objects->dropped.end())
+      dropped->insert(dropped->end(), of_object->second.begin(), of_object->second.end());
   return take(&InputObjects::surfaces, run.objects, name, [&] {
     return is_stream(run.line, name)
                ? read_surface_bytes(read_standard_input(), name, run.line.input_format, dropped)
@@ -61,11 +74,17 @@ TriangleMesh take_surface(CommandRun& run, const std::string& name, std::vector<
 }
 
 ReadTetMesh take_tet_mesh(CommandRun& run, const std::string& name, const ReadTetMeshOptions& options) {
-  return take(&InputObjects::meshes, run.objects, name, [&] {
-    return is_stream(run.line, name)
-               ? read_tet_mesh_bytes(read_standard_input(), name, run.line.input_format, options)
-               : read_tet_mesh(name, options);
-  });
+  if (run.objects) {
+    auto& meshes = run.objects->meshes;
+    if (const auto object = meshes.find(name); object != meshes.end()) {
+      ReadTetMesh read = std::move(object->second);
+      take_material(read, options, name);
+      return read;
+    }
+  }
+  return is_stream(run.line, name)
+             ? read_tet_mesh_bytes(read_standard_input(), name, run.line.input_format, options)
+             : read_tet_mesh(name, options);
 }
 
 LabelVolume take_label_volume(CommandRun& run, const std::string& name) {

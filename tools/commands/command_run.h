@@ -57,8 +57,15 @@ std::vector<std::string> input_files(const CommandLine& line);
 /// The name, with the extension of --input-format if it is standard input.
 std::string typed_name(const CommandLine& line, const std::string& name);
 
+/// Whether the name is that of an object, whatever it looks like.
+bool is_object(const CommandRun& run, const std::string& name);
+
 /// Of a file by its extension, of an object by what it is.
 FileKind input_kind(const CommandRun& run, const std::string& name);
+
+/// What a material is called that is the whole input: an object's name, a file's without folders and
+/// extension.
+std::string material_name_of(const CommandRun& run, const std::string& name);
 
 /// The readers of formats.h, which take what is among `run.objects` from there.
 TriangleMesh take_surface(CommandRun& run, const std::string& name, std::vector<Dropped>* dropped);

@@ -1,12 +1,36 @@
 #include "tools/commands/edge_sizes_input.h"
 
 #include <cmath>
+#include <memory>
+#include <utility>
+#include <variant>
 
 #include "common/error.h"
 #include "common/message_text.h"
+#include "common/sizes/mesh_sizes.h"
 #include "mesher/distance/vdb_sizes.h"
 
 namespace tetwright {
+
+namespace {
+
+std::unique_ptr<const SizeSource> sizes_of(SizesObject object) {
+  const std::string field = "size";
+  if (auto* tets = std::get_if<TetMesh>(&object.elements))
+    return tet_mesh_sizes(std::move(*tets), std::move(object.lengths), field);
+  return surface_sizes(std::move(std::get<TriangleMesh>(object.elements)), std::move(object.lengths), field);
+}
+
+/// Of the object of that name, or the file.
+std::unique_ptr<const SizeSource> take_size_field(CommandRun& run) {
+  const std::string& name = run.line.size_field;
+  if (run.objects)
+    if (const auto object = run.objects->sizes.find(name); object != run.objects->sizes.end())
+      return sizes_of(std::move(object->second));
+  return read_size_field(name);
+}
+
+}  // namespace
 
 void read_sizes(CommandRun& run, const Box3& box) {
   const CommandLine& line = run.line;
@@ -19,7 +43,7 @@ void read_sizes(CommandRun& run, const Box3& box) {
     throw UsageError("--max-edge " + short_number(sizes.limits.max_edge) + " is not above --min-edge " +
                      short_number(sizes.limits.min_edge) + "; give a larger one, or leave one of them out");
   if (line.size_field.empty()) return;
-  sizes.source = read_size_field(line.size_field);
+  sizes.source = take_size_field(run);
   if (!(diagonal > 0)) return;  // nothing to mesh, which is said elsewhere
   sizes.wish =
       std::make_shared<const SizeField>(*sizes.source, box.low, box.high, wanted_within(sizes.limits));

@@ -53,7 +53,7 @@ bool is_volume(const CommandRun& run, std::optional<LabelVolume>& vdb_labels) {
   bool volume = std::any_of(inputs.begin(), inputs.end(),
                             [&](auto& f) { return input_kind(run, f) == FileKind::volume; });
   for (const std::string& file : line.inputs) {
-    if (!is_vdb(file)) continue;
+    if (is_object(run, file) || !is_vdb(file)) continue;
     vdb_labels = read_label_grid(file);
     volume |= vdb_labels.has_value();
   }
@@ -146,16 +146,16 @@ std::vector<MaterialSurface> read_material_surfaces(CommandRun& run) {
   };
   bool split = false;
   for (const std::string& file : line.inputs) {
-    if (is_vdb(file)) {
+    if (!is_object(run, file) && is_vdb(file)) {
       for (NamedSurface& s : read_level_sets(file))
         add(s.name.empty() ? file_stem(file) : s.name, file, count(std::move(s.surface)));
     } else if (line.split_solids) {
-      std::vector<NamedSurface> solids = split_solids(read(file), file_stem(file));
+      std::vector<NamedSurface> solids = split_solids(read(file), material_name_of(run, file));
       split |= solids.size() > 1;
       for (NamedSurface& s : solids)
         add(s.name, solids.size() > 1 ? file + ", '" + s.name + "'" : file, std::move(s.surface));
     } else {
-      add(file_stem(file), file, read(file));
+      add(material_name_of(run, file), file, read(file));
     }
   }
   if (line.split_solids && !split)
@@ -163,7 +163,8 @@ std::vector<MaterialSurface> read_material_surfaces(CommandRun& run) {
                      "--split-solids finds no solids, groups or labels that tell its parts apart; leave the "
                      "option out (it does not split what --material names)");
   for (const NamedValue& m : line.materials)
-    add(m.name, m.value, is_vdb(m.value) ? count(read_one_level_set(m)) : read(m.value));
+    add(m.name, m.value,
+        !is_object(run, m.value) && is_vdb(m.value) ? count(read_one_level_set(m)) : read(m.value));
   return surfaces;
 }
 

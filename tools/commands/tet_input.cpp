@@ -61,7 +61,7 @@ TetInput read_tets(CommandRun& run) {
   run.report.patches = patches_of_input(input.mesh);
   if (run.line.feature_angle.rule != FeatureAngle::Rule::off) {
     run.report.features.push_back(
-        {file_stem(file), find_mesh_patches(input.mesh, run.line.feature_angle, file)});
+        {material_name_of(run, file), find_mesh_patches(input.mesh, run.line.feature_angle, file)});
     run.report.features.back().found.patches = {};
   }
   run.report.creases = mesh_creases(input.mesh);

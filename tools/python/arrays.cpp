@@ -1,8 +1,13 @@
 #include "tools/python/arrays.h"
 
+#include <cmath>
 #include <limits>
+#include <utility>
+#include <variant>
 
 #include "common/error.h"
+#include "common/formats/mesh_fields.h"
+#include "common/message_text.h"
 
 namespace tetwright::python {
 
@@ -40,6 +45,20 @@ std::vector<std::array<Index, N>> to_cells(const Cells& array, std::size_t point
   return cells;
 }
 
+std::vector<MeshField> to_fields(const Fields& fields, std::size_t rows, const std::string& name,
+                                 const char* of) {
+  std::vector<MeshField> all;
+  for (const auto& [field, whole, values] : fields) {
+    if (values.ndim() != 2 || static_cast<std::size_t>(values.shape(0)) != rows)
+      throw InputError(name, 0,
+                       "the field " + in_quotes(field) + " is an array of shape " + shape_text(values) +
+                           "; give one row for each of the " + std::to_string(rows) + " " + of);
+    all.push_back({field_name(field), static_cast<int>(values.shape(1)), whole,
+                   std::vector<double>(values.data(), values.data() + values.size())});
+  }
+  return all;
+}
+
 }  // namespace
 
 std::vector<Vec3> to_points(const Points& array, const std::string& name) {
@@ -64,9 +83,11 @@ TriangleMesh to_surface(const std::string& name, const Points& points, const Cel
   return surface;
 }
 
-TetMesh to_mesh(const std::string& name, const Points& points, const Cells& tets,
-                const std::optional<Tags>& materials, const std::map<MaterialTag, std::string>& names) {
-  TetMesh mesh;
+ReadTetMesh to_mesh(const std::string& name, const Points& points, const Cells& tets,
+                    const std::optional<Tags>& materials, const std::map<MaterialTag, std::string>& names,
+                    const Fields& point_fields, const Fields& cell_fields, const DroppedItems& dropped) {
+  ReadTetMesh read;
+  TetMesh& mesh = read.mesh;
   mesh.points = to_points(points, name);
   mesh.tets = to_cells<4>(tets, mesh.points.size(), name, "tets");
   if (mesh.tets.empty()) throw InputError(name, 0, "has no tets; give a tet mesh");
@@ -77,9 +98,53 @@ TetMesh to_mesh(const std::string& name, const Points& points, const Cells& tets
                        "materials are an array of shape " + shape_text(*materials) +
                            "; give one for each of the " + std::to_string(mesh.tets.size()) + " tets");
     mesh.materials.assign(materials->data(), materials->data() + mesh.tets.size());
+    read.material_field = "material";
   }
   mesh.material_names = names;
-  return mesh;
+  mesh.point_fields = to_fields(point_fields, mesh.points.size(), name, "points");
+  mesh.cell_fields = to_fields(cell_fields, mesh.tets.size(), name, "tets");
+  read.dropped = to_dropped(dropped);
+  return read;
+}
+
+std::vector<Dropped> to_dropped(const DroppedItems& items) {
+  std::vector<Dropped> dropped;
+  for (const auto& [what, count, restored] : items) dropped.push_back({what, count, restored});
+  return dropped;
+}
+
+SizesObject to_sizes(const std::string& name, const Points& points, const Cells& cells,
+                     const Values& lengths) {
+  constexpr py::ssize_t corners = 4;
+  SizesObject sizes;
+  std::size_t count = 0;
+  const auto check = [&](const auto& elements) {
+    for (const auto& element : elements)
+      for (const Index p : element)
+        if (const double value = sizes.lengths[p]; !(std::isfinite(value) && value > 0))
+          throw InputError(name, 0,
+                           "the length of point " + std::to_string(p) + " is " + short_number(value) +
+                               "; an edge length must be a number above 0");
+  };
+  sizes.lengths.assign(lengths.data(), lengths.data() + lengths.size());
+  if (cells.ndim() == 2 && cells.shape(1) == corners) {
+    TetMesh mesh = to_mesh(name, points, cells, {}, {}, {}, {}, {}).mesh;
+    count = mesh.points.size();
+    sizes.elements = std::move(mesh);
+  } else {
+    TriangleMesh surface = to_surface(name, points, cells);
+    count = surface.points.size();
+    sizes.elements = std::move(surface);
+  }
+  if (lengths.ndim() != 1 || sizes.lengths.size() != count)
+    throw InputError(name, 0,
+                     "lengths are an array of shape " + shape_text(lengths) + "; give one for each of the " +
+                         std::to_string(count) + " points");
+  if (const auto* mesh = std::get_if<TetMesh>(&sizes.elements))
+    check(mesh->tets);
+  else
+    check(std::get<TriangleMesh>(sizes.elements).triangles);
+  return sizes;
 }
 
 LabelVolume to_volume(const std::string& name, const Labels& labels, const std::array<double, 3>& origin,

@@ -21,7 +21,9 @@
 #include "tools/commands/commands.h"
 #include "tools/commands/output_paths.h"
 #include "tools/commands/result.h"
+#include "tools/option_rules.h"
 #include "tools/python/arrays.h"
+#include "tools/python/option_types.h"
 #include "tools/report.h"
 #include "tools/stats_json.h"
 
@@ -44,6 +46,7 @@ class SharedProgress : public Progress {
     const std::lock_guard lock(mutex_);
     fraction_ = fraction;
   }
+  std::string stage() const override { return latest().first; }
   std::pair<std::string, double> latest() const {
     const std::lock_guard lock(mutex_);
     return {stage_, fraction_};
@@ -101,6 +104,19 @@ void run_in_background(const std::function<void()>& work, SharedProgress& progre
   if (failure) std::rethrow_exception(failure);
 }
 
+/// Names of files need not be UTF-8, as Python's text is.
+py::str to_text(const std::string& text) {
+  PyObject* made = PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "replace");
+  if (!made) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(made);
+}
+
+py::list to_texts(const std::vector<std::string>& all) {
+  py::list texts;
+  for (const std::string& text : all) texts.append(to_text(text));
+  return texts;
+}
+
 /// A mesh that belongs to Python, and what the command that made it said.
 struct Mesh {
   TetMesh mesh;
@@ -132,7 +148,7 @@ py::dict fields_of(const std::vector<MeshField>& fields, const py::object& owner
     if (components > 1) shape.push_back(components);
     py::array_t<double> array(shape, f.values.data(), owner);
     array.attr("setflags")(py::arg("write") = false);
-    all[py::str(f.name)] = array;
+    all[to_text(f.name)] = array;
   }
   return all;
 }
@@ -153,8 +169,14 @@ py::tuple other_sides(const TetMesh& mesh) {
 void write_mesh_files(const Mesh& mesh, const std::string& path, const std::string& format,
                       const std::string& boundary, bool no_boundary) {
   const py::gil_scoped_release release;
-  check_output_path(path, FileKind::tet_mesh, format);
-  if (!boundary.empty()) check_output_path(boundary, FileKind::surface);
+  CommandLine line;  // for the program's rules
+  line.command = Command::improve;
+  line.output = path;
+  line.output_format = format;
+  line.boundary = boundary;
+  if (boundary == "-") throw UsageError("boundary is no stream; give it a file");
+  check_output_paths(line);
+  if (mesh.midside) check_holds_second_order(path, format);
   OutputFiles files;
   const MidsideNodes* midside = mesh.midside ? &*mesh.midside : nullptr;
   if (no_boundary) {
@@ -184,7 +206,20 @@ CommandLine parse(std::vector<std::string> arguments) {
     throw UsageError(
         "boundary, write_sdf, report and stats are written beside an output; give output too, or call "
         "write()");
+  if (!line.log_file.empty())
+    throw UsageError(
+        "log_file is the program's; leave it out: notes, shortfall, stats and progress say what it would");
   return line;
+}
+
+/// Calls `work`; if that fails, writes the statistics that were asked for all the same.
+void with_stats_of_failure(CommandRun& run, const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const std::exception& e) {
+    report_failure(e, run);
+    throw;
+  }
 }
 
 std::shared_ptr<Mesh> run(std::vector<std::string> arguments, InputObjects& inputs,
@@ -195,13 +230,14 @@ std::shared_ptr<Mesh> run(std::vector<std::string> arguments, InputObjects& inpu
   run_in_background(
       [&] {
         with_threads(line.threads, [&] {
+          if (!line.output.empty()) check_stats_path(line);
           CommandRun run(line, progress, &inputs);
-          if (!line.output.empty()) {
-            check_stats_path(line);
-            check_output_paths(line);
-          }
-          CommandResult result = make_result(run);
-          if (!line.output.empty()) write_result(result, run);
+          CommandResult result;
+          with_stats_of_failure(run, [&] {
+            if (!line.output.empty()) check_output_paths(line);
+            result = make_result(run);
+            if (!line.output.empty()) write_result(result, run);
+          });
           made->stats = stats_json(line, run.report);
           made->notes = notes_of(run.report);
           for (const Shortfall& s : run.report.shortfall) made->shortfall.push_back(s.message);
@@ -224,14 +260,15 @@ py::tuple check(std::vector<std::string> arguments, InputObjects& inputs, const 
         with_threads(line.threads, [&] {
           check_stats_path(line);
           CommandRun run(line, progress, &inputs);
-          const CheckReport found = make_check(run);
+          CheckReport found;
+          with_stats_of_failure(run, [&] { found = make_check(run); });
           json = check_json(line, run.report, found);
           notes = notes_of(run.report);
           passed = found.valid() && found.topology_kept() && found.within_tolerance();
         });
       },
       progress, callback);
-  return py::make_tuple(json, notes, passed);
+  return py::make_tuple(to_text(json), to_texts(notes), passed);
 }
 
 // Exceptions.
@@ -243,6 +280,8 @@ struct ErrorClasses {
   PyObject *base = nullptr, *usage = nullptr, *input = nullptr, *nothing = nullptr, *output = nullptr,
            *internal = nullptr;
 } classes;
+
+void set_error(PyObject* of_class, const char* message) { PyErr_SetObject(of_class, to_text(message).ptr()); }
 
 PyObject* error_class(ExitStatus status) {
   switch (status) {
@@ -304,25 +343,37 @@ PYBIND11_MODULE(_core, module) {
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const Error& e) {
-      PyErr_SetString(error_class(exit_status(e)), e.what());
+      set_error(error_class(exit_status(e)), e.what());
     } catch (const InternalError& e) {
-      PyErr_SetString(classes.internal, e.what());
+      set_error(classes.internal, e.what());
     }
   });
 
   py::class_<InputObjects>(module, "Inputs")
       .def(py::init<>())
       .def("add_surface",
-           [](InputObjects& to, const std::string& name, const Points& points, const Cells& triangles) {
+           [](InputObjects& to, const std::string& name, const Points& points, const Cells& triangles,
+              const DroppedItems& dropped) {
              to.surfaces[name] = to_surface(name, points, triangles);
+             to.dropped[name] = to_dropped(dropped);
            })
       .def("add_mesh",
            [](InputObjects& to, const std::string& name, const Points& points, const Cells& tets,
-              const std::optional<Tags>& materials, const std::map<MaterialTag, std::string>& names) {
-             to.meshes[name] = to_mesh(name, points, tets, materials, names);
+              const std::optional<Tags>& materials, const std::map<MaterialTag, std::string>& names,
+              const Fields& point_fields, const Fields& cell_fields, const DroppedItems& dropped) {
+             to.meshes[name] =
+                 to_mesh(name, points, tets, materials, names, point_fields, cell_fields, dropped);
            })
       .def("add_own_mesh",
-           [](InputObjects& to, const std::string& name, const Mesh& mesh) { to.meshes[name] = mesh.mesh; })
+           [](InputObjects& to, const std::string& name, const Mesh& mesh) {
+             ReadTetMesh& read = to.meshes[name] = {mesh.mesh, "material", {}};
+             if (mesh.midside)
+               read.dropped.push_back({"midside nodes; tets of ten nodes are taken by their corners",
+                                       mesh.midside->points.size()});
+           })
+      .def("add_sizes",
+           [](InputObjects& to, const std::string& name, const Points& points, const Cells& cells,
+              const Values& lengths) { to.sizes[name] = to_sizes(name, points, cells, lengths); })
       .def("add_volume",
            [](InputObjects& to, const std::string& name, const Labels& labels,
               const std::array<double, 3>& origin, const std::array<std::array<double, 3>, 3>& directions) {
@@ -345,7 +396,13 @@ PYBIND11_MODULE(_core, module) {
                                const auto& materials = self.cast<const Mesh&>().mesh.materials;
                                return view<MaterialTag>(materials, materials.data(), 0, self);
                              })
-      .def_property_readonly("material_names", [](const Mesh& m) { return m.mesh.material_names; })
+      .def_property_readonly("material_names",
+                             [](const Mesh& m) {
+                               py::dict names;
+                               for (const auto& [tag, name] : m.mesh.material_names)
+                                 names[py::int_(tag)] = to_text(name);
+                               return names;
+                             })
       .def_property_readonly("interface_triangles",
                              [](const py::object& self) {
                                const auto& faces = self.cast<const Mesh&>().mesh.interfaces;
@@ -380,11 +437,12 @@ PYBIND11_MODULE(_core, module) {
            [](const py::object& self) { return fields_of(self.cast<const Mesh&>().mesh.point_fields, self); })
       .def("cell_fields",
            [](const py::object& self) { return fields_of(self.cast<const Mesh&>().mesh.cell_fields, self); })
-      .def_readonly("stats", &Mesh::stats)
-      .def_readonly("notes", &Mesh::notes)
-      .def_readonly("shortfall", &Mesh::shortfall)
+      .def_property_readonly("stats", [](const Mesh& m) { return to_text(m.stats); })
+      .def_property_readonly("notes", [](const Mesh& m) { return to_texts(m.notes); })
+      .def_property_readonly("shortfall", [](const Mesh& m) { return to_texts(m.shortfall); })
       .def("write", &write_mesh_files);
 
+  module.def("option_types", &option_types);
   module.def("run", &run);
   module.def("check", &check);
   module.def("read", [](const std::string& path, const std::string& material_field) {

@@ -11,7 +11,9 @@ options both give the same bytes.
 
 Inputs are file names; `(points, triangles)` and `(points, tets)` arrays; label arrays of three axes with `spacing`,
 `origin` or `affine`; meshes of meshio, pyvista or trimesh and images of nibabel, or what looks like them; a `TetMesh`.
-Several surfaces are a list, or a dict from the names of their materials.
+Several surfaces are a list, or a dict from the names of their materials. Cells of meshes are read as those of files
+are: polygons become triangles, curved cells are taken by their corners, numbers of points and tets are fields of which
+one may be the material, other volumes than tets are refused, and what is left out is in `TetMesh.notes`.
 
 What ends a call early is an exception, a subclass of `tetwright.Error` with the program's message. What falls short of
 what was asked is a `ShortfallWarning` and in `TetMesh.shortfall`. Calls release the interpreter's lock, and Ctrl-C

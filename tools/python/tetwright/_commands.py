@@ -2,13 +2,16 @@
 from __future__ import annotations
 
 import os
+import pathlib
 import sys
 import warnings
 from typing import Any, Callable, Optional, Union
 
 from . import _core
-from ._inputs import Inputs
+from ._inputs import Inputs, is_file
 from ._mesh import CheckResult, ShortfallWarning, TetMesh
+from ._options import arguments_of, materials_of
+from ._text import file_name, plain_text
 
 Progress = Union[bool, Callable[[str, float], None], None]
 
@@ -18,8 +21,8 @@ def prepare(scan: Any, *, target_tets: Optional[int] = None, tolerance: Union[fl
             **options: Any) -> TetMesh:
     """Turns scans or a segmented volume into a simulation mesh, in one go.
 
-    scan -- a surface, a list of them or a dict from names of materials (later ones carve earlier ones), or one array of
-        labels of shape (nx, ny, nz), whole numbers of which 0 is outside
+    scan -- a surface, a list of them or a dict from names of materials, which stay whole (later ones carve earlier
+        ones), or one array of labels of shape (nx, ny, nz), whole numbers of which 0 is outside
     target_tets -- the number of tets to reach; without it `tolerance` or `size_field` is needed
     size_field -- edge lengths by place: a file, arrays (points (n, 3), tets (m, 4) or triangles (m, 3), lengths (n,)), or
         a mesh of meshio or pyvista whose points have them as "size"
@@ -75,24 +78,27 @@ def check(tets: Any, *, surface: Any = None, before: Any = None, tolerance: Unio
     The result is what `tetwright check --json` prints; bool(result) is its verdict.
     """
     inputs = Inputs()
+    if isinstance(surface, dict):
+        inputs.reserve(map(str, surface))
     names = [inputs.add(tets, "mesh")]
     if before is not None:
         options["before"] = inputs.add(before, "mesh before")
     if surface is not None:
         options["surface"] = _several(surface, inputs)
     options["tolerance"] = tolerance
+    arguments = arguments_of("check", names, options, inputs)
     inputs.finish()
     with _shown(progress) as callback:
-        return CheckResult(*_core.check(_arguments("check", names, options, inputs), inputs.core, callback))
+        return CheckResult(*_core.check(arguments, inputs.core, callback))
 
 
 def read(path: Union[str, os.PathLike], *, material_field: str = "") -> TetMesh:
     """Reads a tet mesh from a file of any format that the program reads."""
-    return TetMesh(_core.read(os.fspath(path), material_field))
+    return TetMesh(_core.read(file_name(path, "path"), plain_text(material_field, "material_field")))
 
 
-def _run(command: str, inputs: Inputs, names: list[str], options: dict[str, Any], progress: Progress) -> TetMesh:
-    arguments = _arguments(command, names, options, inputs)
+def _run(command: str, inputs: Inputs, names: list[bytes], options: dict[str, Any], progress: Progress) -> TetMesh:
+    arguments = arguments_of(command, names, options, inputs)
     inputs.finish()
     with _shown(progress) as callback:
         result = TetMesh(_core.run(arguments, inputs.core, callback))
@@ -101,62 +107,29 @@ def _run(command: str, inputs: Inputs, names: list[str], options: dict[str, Any]
     return result
 
 
-def _several(value: Any, inputs: Inputs) -> list[str]:
+def _several(value: Any, inputs: Inputs) -> list[bytes]:
     """The names of one or several surfaces; two arrays in a tuple are one."""
     if isinstance(value, dict):
-        return [inputs.add(v, str(k)) for k, v in value.items()]
+        return [inputs.add(v, str(k), made_up=False) for k, v in value.items()]
     if isinstance(value, list):
+        inputs.reserve(pathlib.PurePath(os.fsdecode(v)).stem for v in value if is_file(v))
         return [inputs.add(v, f"surface_{i + 1}") for i, v in enumerate(value)]
     return [inputs.add(value, "surface")]
 
 
-def _scans(value: Any, inputs: Inputs, options: dict[str, Any]) -> list[str]:
+def _scans(value: Any, inputs: Inputs, options: dict[str, Any]) -> list[bytes]:
     """The positional inputs; files that a dict names become materials of that name."""
-    if not isinstance(value, dict):
-        return _several(value, inputs)
-    if any(isinstance(v, (str, os.PathLike)) for v in value.values()):
-        options["material"] = {**value, **options.get("material", {})}
-        return []
-    return _several(value, inputs)
-
-
-def _arguments(command: str, names: list[str], options: dict[str, Any], inputs: Inputs) -> list[str]:
-    """What the program's parser reads."""
-    arguments = [command]
-    for key, value in options.items():
-        option = "--" + key.replace("_", "-")
-        if value is None or value is False:
-            continue
-        if value is True:
-            arguments.append(option)
-        elif key == "size_field":
-            arguments.append(f"{option}={inputs.add_sizes(value)}")
-        elif key == "labels" and not isinstance(value, str):
-            arguments.append(f"{option}={_label_ranges(value)}")
-        elif isinstance(value, dict):
-            for name, item in value.items():
-                text = inputs.add(item, str(name)) if key == "material" else _text(item)
-                arguments.append(f"{option}={name}={text}")
-        elif isinstance(value, (list, tuple)):
-            arguments.extend(f"{option}={_text(item)}" for item in value)
-        else:
-            arguments.append(f"{option}={_text(value)}")
-    return arguments + ["--", *names]
-
-
-def _text(value: Any) -> str:
-    if isinstance(value, (str, os.PathLike)):
-        return os.fspath(value)
-    if hasattr(value, "item"):  # a number of numpy
-        value = value.item()
-    if not isinstance(value, (int, float)):
-        raise _core.UsageError(f"an option is a {type(value).__name__}; give a number, text, True or a file name")
-    return repr(value)
-
-
-def _label_ranges(value: Any) -> str:
-    items = value if isinstance(value, (list, tuple, set, range)) else [value]
-    return ",".join(f"{i[0]}-{i[1]}" if isinstance(i, tuple) else str(i) for i in items)
+    materials = materials_of(options.pop("material", None))
+    layers = options.get("layer")
+    named = [name for name, _ in materials] + [str(k) for k in (layers if isinstance(layers, dict) else ())]
+    inputs.reserve(named)
+    of_options = isinstance(value, dict) and any(is_file(v) for v in value.values())
+    names = [] if of_options else _several(value, inputs)
+    if of_options:
+        materials = materials_of(value) + materials
+    if materials:
+        options["material"] = materials
+    return names
 
 
 class _shown:

@@ -8,6 +8,7 @@ from typing import Any, Mapping, Optional
 import numpy as np
 
 from . import _core
+from ._text import file_name, plain_text
 
 
 class ShortfallWarning(UserWarning):
@@ -130,8 +131,9 @@ class TetMesh:
               no_boundary: bool = False) -> None:
         """Writes the mesh, whole or not at all, as the program does: the extension or `output_format` names the
         format; `boundary` is a file for the boundary and interfaces as a surface; `no_boundary` leaves triangles out
-        of the mesh. With order=2 tets have ten nodes."""
-        self._core.write(os.fspath(path), output_format, os.fspath(boundary), no_boundary)
+        of the mesh. With order=2 tets have ten nodes, which a format must hold."""
+        self._core.write(file_name(path, "path"), plain_text(output_format, "output_format"),
+                         file_name(boundary, "boundary"), no_boundary)
 
     def to_meshio(self):
         """A meshio.Mesh: tets (ten-node ones with order=2) with the cell data `material`, and triangles with those of

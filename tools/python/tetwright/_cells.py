@@ -1,0 +1,285 @@
+"""Takes meshes of other libraries apart, by their attributes: as the program reads files with the same cells."""
+from __future__ import annotations
+
+import dataclasses
+import os
+from typing import Any, Iterable, Optional
+
+import numpy as np
+
+from . import _core
+from ._arrays import MAX_EXACT_WHOLE, check_range, indices, numbers
+from ._text import plain_text
+
+# VTK's numbers of cell types, by the names of meshio.
+VTK_NAMES = {1: "vertex", 2: "vertex", 3: "line", 4: "line", 5: "triangle", 7: "polygon", 8: "pixel", 9: "quad",
+             10: "tetra", 11: "voxel", 12: "hexahedron", 13: "wedge", 14: "pyramid", 21: "line3", 22: "triangle6",
+             23: "quad8", 24: "tetra10", 25: "hexahedron20", 26: "wedge15", 27: "pyramid13", 28: "quad9",
+             29: "hexahedron27", 34: "triangle7", 36: "polygon", 42: "polyhedron"}
+# Corners of faces by the kind, without the number of its nodes; of polygons all points are corners.
+FACE_CORNERS = {"triangle": 3, "quad": 4, "pixel": 4, "polygon": None, "VTK_LAGRANGE_TRIANGLE": 3,
+                "VTK_LAGRANGE_QUADRILATERAL": 4}
+FLAT_KINDS = {"vertex", "line", "VTK_LAGRANGE_CURVE"}
+PLURALS = {"vertex": "vertex cells", "hexahedron": "hexahedra", "polyhedron": "polyhedra", "tetra": "tets"}
+TET_KINDS = ("tetra", "tetra10")
+# What TetMesh.to_meshio() tells of its triangles, which follow from the tets.
+OTHER_MATERIAL = "other_material"
+
+
+@dataclasses.dataclass
+class Cells:
+    """A surface, or a tet mesh where there are tets."""
+    points: Any
+    triangles: Any = None
+    tets: Any = None
+    materials: Any = None
+    names: dict[int, bytes] = dataclasses.field(default_factory=dict)
+    point_fields: dict[str, np.ndarray] = dataclasses.field(default_factory=dict)  # each (points, components)
+    cell_fields: dict[str, np.ndarray] = dataclasses.field(default_factory=dict)  # each (tets, components)
+    dropped: list[tuple[bytes, int, bool]] = dataclasses.field(default_factory=list)
+
+    def drop(self, what: str, count: int, restored: bool = False) -> None:
+        """Notes what the object has and this has not: `what` is a plural."""
+        if count > 0:
+            self.dropped.append((what.encode(errors="replace"), count, restored))
+
+    def drop_names(self, what: str, names: Iterable[Any]) -> None:
+        """The same, by their names."""
+        shown = [f'"{n}"' for n in names]
+        more = f" and {len(shown) - 6} more" if len(shown) > 6 else ""
+        self.drop(f"{what} ({', '.join(shown[:6])}{more})", len(shown))
+
+
+def cells_of(value: Any, name: str) -> Cells:
+    """Of arrays, or of a mesh of meshio, pyvista or trimesh or what looks like one; messages call it `name`."""
+    if isinstance(value, (tuple, list)) and 2 <= len(value) <= 3:
+        if any(isinstance(v, (str, bytes, os.PathLike)) for v in value):
+            raise _core.InputError(f"{name} is a {type(value).__name__} with names of files; give several surfaces as "
+                                   "a list")
+        return _of_arrays(value, name)
+    if hasattr(value, "vertices") and hasattr(value, "faces"):  # trimesh
+        return Cells(numbers(value.vertices, name, "vertices"), indices(value.faces, name, "faces"))
+    points = getattr(value, "points", None)
+    if points is not None and hasattr(value, "cells_dict"):  # meshio, and pyvista's unstructured grids
+        return _of_blocks(value, name)
+    if points is not None and hasattr(value, "faces"):  # pyvista's surfaces
+        return _of_poly_data(value, name)
+    raise _core.InputError(f"{name} is a {type(value).__name__}; give a file name, (points, triangles), "
+                           "(points, tets), an array of labels, or a mesh of meshio, pyvista or trimesh")
+
+
+def _of_arrays(value: Any, name: str) -> Cells:
+    points, cells = numbers(value[0], name, "points"), numbers(value[1], name, "cells")
+    if cells.ndim == 2 and cells.shape[1] == 4:
+        return Cells(points, tets=indices(value[1], name, "tets"), materials=value[2] if len(value) == 3 else None)
+    if len(value) == 3:
+        raise _core.InputError(f"{name}: the second of three arrays has the shape {cells.shape}; with materials "
+                               "give (points, tets, materials)")
+    return Cells(points, indices(value[1], name, "triangles"))
+
+
+def _of_poly_data(value: Any, name: str) -> Cells:
+    if getattr(value, "n_strips", 0):
+        raise _core.InputError(f"{name}: it has {value.n_strips} triangle strips; make them triangles by triangulate()")
+    made = Cells(numbers(value.points, name, "points"), _triangles_of_faces(indices(value.faces, name, "faces"), name))
+    made.drop("lines", getattr(value, "n_lines", 0))
+    made.drop_names("fields of cells", getattr(value, "cell_data", ()))
+    made.point_fields, left = _fields(getattr(value, "point_data", {}), len(made.points))
+    made.drop_names("fields of points", left)
+    return made
+
+
+def _triangles_of_faces(faces: np.ndarray, name: str) -> np.ndarray:
+    """Of VTK's list: each face's number of points, then these. Polygons become fans, as from files."""
+    if faces.ndim == 2:
+        return faces
+    if faces.size % 4 == 0 and (faces[::4] == 3).all():
+        return faces.reshape(-1, 4)[:, 1:]
+    triangles: list[tuple[int, int, int]] = []
+    at = 0
+    while at < faces.size:
+        count = int(faces[at])
+        corners = faces[at + 1:at + 1 + count]
+        if count < 3 or len(corners) < count:
+            raise _core.InputError(f"{name}: a face at {at} has {count} points; give polygons of 3 or more")
+        triangles.extend((corners[0], corners[k], corners[k + 1]) for k in range(1, count - 1))
+        at += 1 + count
+    return np.asarray(triangles, np.int64).reshape(-1, 3)
+
+
+# One kind of cell, its cells, and the numbers that they have, by name.
+Block = tuple[str, Any, dict[str, Any]]
+
+
+def _blocks(value: Any, name: str) -> list[Block]:
+    blocks = getattr(value, "cells", None)
+    if isinstance(blocks, list) and all(hasattr(b, "type") and hasattr(b, "data") for b in blocks):  # meshio
+        data = getattr(value, "cell_data", None) or {}
+        return [(str(b.type), b.data, {f: v[i] for f, v in data.items()}) for i, b in enumerate(blocks)]
+    try:
+        by_kind = dict(value.cells_dict)
+    except Exception as error:  # of the other library, such as for cells of different sizes
+        raise _core.InputError(f"{name}: its cells cannot be told apart ({error}); give triangles or tets") from None
+    by_type = getattr(value, "cell_data_dict", None)
+    of_all = getattr(value, "cell_data", None) or {}
+    types = getattr(value, "celltypes", None)
+    made = []
+    for kind, cells in by_kind.items():
+        text = kind if isinstance(kind, str) else VTK_NAMES.get(int(kind), f"type {kind}")
+        if by_type is not None:
+            data = {f: v[kind] for f, v in by_type.items() if kind in v}
+        elif types is not None:  # pyvista
+            data = {f: np.asarray(of_all[f])[np.asarray(types) == kind] for f in of_all.keys()}
+        else:
+            data = {f: of_all[f] for f in of_all.keys()} if len(by_kind) == 1 else {}
+        made.append((text, cells, data))
+    return made
+
+
+def _base(kind: str) -> str:
+    return kind.rstrip("0123456789")
+
+
+def _plural(kind: str) -> str:
+    base = _base(kind)
+    plural = PLURALS.get(base, base + "s" if base != "type " else f"cells of {kind}")
+    return f"{plural} of {kind[len(base):]} points" if base not in (kind, "type ") else plural
+
+
+def _of_blocks(value: Any, name: str) -> Cells:
+    tets, faces, flat, others = [], [], [], []
+    for block in _blocks(value, name):
+        base = _base(block[0])
+        (tets if block[0] in TET_KINDS else faces if base in FACE_CORNERS else flat if base in FLAT_KINDS else
+         others).append(block)
+    others = [b for b in others if len(b[1]) > 0]
+    if others:
+        counts = ", ".join(f"{len(cells)} {_plural(kind)}" for kind, cells, _ in others)
+        raise _core.InputError(f"{name}: {counts}; only triangles, polygons and tets of 4 or 10 points can be read: "
+                               "convert other cells to tets")
+    if not tets and not faces:
+        raise _core.InputError(f"{name} has cells of {', '.join(b[0] for b in flat) or 'no kind'}; give triangles or "
+                               "tets")
+    made = Cells(numbers(value.points, name, "points"))
+    made.point_fields, left = _fields(getattr(value, "point_data", None) or {}, len(made.points))
+    made.drop_names("fields of points", left)
+    if tets:
+        _take_tets(made, tets, name)
+        own = any(OTHER_MATERIAL in data for _, _, data in faces)
+        if own:
+            made.cell_fields.pop(OTHER_MATERIAL, None)
+        for kind, cells, _ in faces:
+            made.drop(_plural(kind), len(cells), restored=own)
+    else:
+        _take_faces(made, faces, name)
+    for kind, cells, _ in flat:
+        made.drop(_plural(kind), len(cells))
+    _take_names(made, value)
+    return made
+
+
+def _take_tets(made: Cells, blocks: list[Block], name: str) -> None:
+    nodes = []
+    for kind, cells, _ in blocks:
+        array = indices(cells, name, "tets")
+        count = 10 if kind == "tetra10" else 4
+        if array.ndim != 2 or array.shape[1] != count:
+            raise _core.InputError(f"{name}: cells of kind {kind} have the shape {array.shape}; give (m, {count})")
+        nodes.append(array)
+    made.tets = np.concatenate([n[:, :4] for n in nodes])
+    common = [f for f in blocks[0][2] if all(f in data for _, _, data in blocks)]
+    joined = {}
+    for field in common:
+        try:
+            joined[field] = np.ma.concatenate([np.ma.asarray(data[field]) for _, _, data in blocks])
+        except (ValueError, TypeError):
+            joined[field] = None
+    made.cell_fields, left = _fields(joined, len(made.tets))
+    made.drop_names("fields of cells", left)
+    _remove_midside_nodes(made, [n[:, 4:] for n in nodes if n.shape[1] > 4], name)
+
+
+def _remove_midside_nodes(made: Cells, midside: list[np.ndarray], name: str) -> None:
+    if not midside:
+        return
+    count = len(made.points)
+    for cells in (made.tets, *midside):
+        check_range(cells, count, name, "tets")
+    keep = np.ones(count, bool)
+    for cells in midside:
+        keep[cells] = False
+    keep[made.tets] = True
+    new_index = np.cumsum(keep) - 1
+    made.tets = new_index[made.tets]
+    made.points = made.points[keep]
+    made.point_fields = {f: v[keep] for f, v in made.point_fields.items()}
+    made.drop("midside nodes; tets of ten nodes are taken by their corners", int(count - keep.sum()))
+
+
+def _take_faces(made: Cells, blocks: list[Block], name: str) -> None:
+    fans = []
+    fields: dict[str, None] = {}  # a set that keeps the order
+    for kind, cells, data in blocks:
+        fields.update(dict.fromkeys(data))
+        array = indices(cells, name, _plural(_base(kind)))
+        corners = FACE_CORNERS[_base(kind)] or (array.shape[1] if array.ndim == 2 else 3)
+        if array.ndim != 2 or array.shape[1] < corners:
+            raise _core.InputError(f"{name}: cells of kind {kind} have the shape {array.shape}; give (m, {corners})")
+        if corners < 3:
+            made.drop("faces of fewer than three vertices", len(array))
+            continue
+        if array.shape[1] > corners:
+            made.drop(f"midside nodes; {_plural(kind)} are taken by their corners",
+                      len(np.unique(array[:, corners:])))
+        array = array[:, [0, 1, 3, 2]] if kind == "pixel" else array[:, :corners]
+        fans.append(np.stack([array[:, [0, k, k + 1]] for k in range(1, corners - 1)], axis=1).reshape(-1, 3))
+    made.triangles = np.concatenate(fans) if fans else np.empty((0, 3), np.int64)
+    made.drop_names("fields of cells", fields)
+
+
+def _take_names(made: Cells, value: Any) -> None:
+    """Names of materials, which are Gmsh's physical volumes in meshio; other names are noted."""
+    groups, arrays = [], []
+    of_gmsh = not hasattr(value, "celltypes")
+    for group, data in (getattr(value, "field_data", None) or {}).items():
+        array = np.asarray(data)
+        if not of_gmsh or array.dtype.kind not in "iu" or array.size != 2:
+            arrays.append(group)
+        elif made.tets is not None and array.flat[1] == 3 and abs(int(array.flat[0])) < 2**31:
+            made.names[int(array.flat[0])] = plain_text(str(group), "the name of a physical group")
+        else:
+            groups.append(group)
+    made.drop_names("names of physical groups of faces, lines or points" if made.tets is not None else
+                    "names of physical groups", groups)
+    made.drop_names("arrays of the whole dataset", arrays)
+    # Those of Gmsh itself say what bounds what; those with the names of physical groups say the same as these.
+    known = set(getattr(value, "field_data", None) or {}) if of_gmsh else set()
+    sets = [s for s in getattr(value, "cell_sets", None) or {} if s not in known and not str(s).startswith("gmsh:")]
+    made.drop_names("sets of cells", sets)
+    made.drop_names("sets of points", getattr(value, "point_sets", None) or {})
+
+
+def _fields(data: Any, rows: int) -> tuple[dict[str, np.ndarray], list[str]]:
+    """Those with real numbers, as (rows, components), and the names of the others."""
+    fields, left = {}, []
+    for field in data.keys():
+        array = None if data[field] is None or np.ma.is_masked(data[field]) else np.asarray(data[field])
+        if array is None or array.dtype.kind not in "biuf" or array.ndim < 1 or len(array) != rows or array.size == 0:
+            left.append(field)
+        else:
+            fields[str(field)] = array.reshape(rows, -1)
+    return fields, left
+
+
+def field_items(fields: dict[str, np.ndarray]) -> list[tuple[bytes, bool, np.ndarray]]:
+    """As the compiled part takes them: name, whether it holds whole numbers, numbers."""
+    def whole(values: np.ndarray) -> bool:
+        return values.dtype.kind in "biu" and bool((np.abs(values.astype(np.float64)) <= MAX_EXACT_WHOLE).all())
+
+    return [(f.encode(errors="replace"), whole(v), v.astype(np.float64)) for f, v in fields.items()]
+
+
+def size_field(cells: Cells, names: Iterable[str]) -> Optional[np.ndarray]:
+    """The first of these point fields that has one number for each point."""
+    found = next((f for f in names if f in cells.point_fields and cells.point_fields[f].shape[1] == 1), None)
+    return None if found is None else cells.point_fields[found][:, 0]

@@ -1,0 +1,117 @@
+"""Turns keyword arguments into what the program's parser reads."""
+from __future__ import annotations
+
+import numbers
+from typing import Any, Iterable
+
+import numpy as np
+
+from . import _core
+from ._inputs import Inputs
+from ._text import file_name, plain_text
+
+
+def arguments_of(command: str, names: list[bytes], options: dict[str, Any], inputs: Inputs) -> list[bytes]:
+    """The call of a command on these positional inputs; inputs among the options are added to `inputs`."""
+    types = _core.option_types(command)
+    arguments = [command.encode()]
+    for key, value in options.items():
+        if key in ("help", "version"):
+            raise _core.UsageError("help and version are not options here; see help(tetwright)")
+        option = plain_text("--" + key.replace("_", "-"), "an option")
+        kind = types.get(option.decode())
+        if kind is None:
+            arguments.append(option)  # the parser says which is the nearest
+        elif kind == "" and value is not None:
+            arguments += [option] if _flag(key, value) else []
+        elif value is not None:
+            arguments += [option + b"=" + text for text in _texts(key, kind, value, inputs)]
+    return arguments + [b"--", *names]
+
+
+def materials_of(value: Any) -> list[tuple[str, Any]]:
+    """Names and inputs of the option `material`: a dict, pairs of them, or lines NAME=FILE."""
+    if value is None:
+        return []
+    if isinstance(value, list) and all(isinstance(v, tuple) and len(v) == 2 and isinstance(v[0], str) for v in value):
+        return value
+    if isinstance(value, dict):
+        return [(str(k), v) for k, v in value.items()]
+    if isinstance(value, str):
+        value = [value]
+    if not isinstance(value, list) or not all(isinstance(v, str) and "=" in v for v in value):
+        raise _core.UsageError(f"material is a {type(value).__name__}; give a dict from names of materials to surfaces")
+    return [tuple(v.split("=", 1)) for v in value]  # type: ignore[misc]
+
+
+def _flag(key: str, value: Any) -> bool:
+    if isinstance(value, (bool, np.bool_)) or (isinstance(value, (int, np.integer)) and value in (0, 1)):
+        return bool(value)
+    raise _core.UsageError(f"{key} is {value!r}; give True or False")
+
+
+def _texts(key: str, kind: str, value: Any, inputs: Inputs) -> Iterable[bytes]:
+    """The values of an option: several of those that may be given more than once."""
+    if key == "size_field":
+        return [inputs.add_sizes(value)]
+    if key == "material":
+        return [_name(key, name) + b"=" + inputs.add(item, name, made_up=False) for name, item in materials_of(value)]
+    if key == "layer" and isinstance(value, dict):
+        return [_name(key, str(name)) + b"=" + _number(key, item) for name, item in value.items()]
+    if key == "labels" and not isinstance(value, str):
+        return [_label_ranges(value)]
+    if key == "layer" and not isinstance(value, (str, list)):
+        raise _core.UsageError(f"layer is a {type(value).__name__}; give a dict from names to thicknesses")
+    if key in ("layer", "surface") and isinstance(value, list):
+        return [_text(key, kind if key == "layer" else "FILE", item) for item in value]
+    return [_text(key, kind, value)]
+
+
+def _text(key: str, kind: str, value: Any) -> bytes:
+    """Of one value of the kind that the program's help names."""
+    if kind == "FILE":
+        return file_name(value, key)
+    if isinstance(value, str):
+        return plain_text(value, key)
+    if kind in ("N", "LABEL"):
+        return _whole_number(key, value)
+    if kind in ("NUMBER", "LENGTH") or "DEGREES" in kind:
+        return _number(key, value)
+    return plain_text(value, key)
+
+
+def _name(key: str, name: str) -> bytes:
+    if "=" in name or not name:
+        raise _core.UsageError(f"{key}: a material cannot be called '{name}'; give it a name without =")
+    return plain_text(name, key)
+
+
+def _real(key: str, value: Any, what: str) -> Any:
+    """A number that Python knows, of what may be numpy's."""
+    if isinstance(value, (np.generic, np.ndarray)) and np.ndim(value) == 0:
+        value = value.item()
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        raise _core.UsageError(f"{key} is {value!r}; give {what}")
+    return value
+
+
+def _whole_number(key: str, value: Any) -> bytes:
+    """Floats that are whole are whole numbers, too; of others the parser says what is allowed."""
+    real = _real(key, value, "a whole number")
+    whole = isinstance(real, numbers.Integral) or float(real).is_integer()
+    return (str(int(real)) if whole else repr(float(real))).encode()
+
+
+def _number(key: str, value: Any) -> bytes:
+    if isinstance(value, str):
+        return plain_text(value, key)
+    real = _real(key, value, "a number")
+    return (str(int(real)) if isinstance(real, numbers.Integral) else repr(float(real))).encode()
+
+
+def _label_ranges(value: Any) -> bytes:
+    items = value if isinstance(value, (list, tuple, set, range, np.ndarray)) else [value]
+    if any(isinstance(i, tuple) and len(i) != 2 for i in items):
+        raise _core.UsageError(f"labels is {value!r}; give labels, and pairs of the first and last of several")
+    return b",".join(b"-".join(_whole_number("labels", end) for end in i) if isinstance(i, tuple) else
+                     _whole_number("labels", i) for i in items)
