@@ -41,8 +41,8 @@ std::string volume_line(const VolumeReport& v) {
 std::string feature_line(const FeatureReport& f) {
   using Verdict = SurfacePatches::Verdict;
   const auto loose = [&] {
-    return text("%.2g %% of the edges over 15 degrees and ", 100 * f.found.loose_ends_low) +
-           text("%.2g %% of those over 35 are loose ends", 100 * f.found.loose_ends_high);
+    return text("%.3g %% of the edges over 15 degrees and ", 100 * f.found.loose_ends_low) +
+           text("%.3g %% of those over 35 are loose ends", 100 * f.found.loose_ends_high);
   };
   std::string line = "features of '" + f.name + "': ";
   switch (f.found.verdict) {
@@ -114,7 +114,7 @@ void print_report(const CommandLine& line, const RunReport& run) {
   if (!run.patches.empty()) std::printf("%s\n", patches_line(run.patches).c_str());
   if (run.crease_fidelity) {
     const CreaseFidelity& c = *run.crease_fidelity;
-    std::printf("creases within %.2g %% of the diagonal, 99 %% of them within %.2g %%; %zu of %zu corners\n",
+    std::printf("creases within %.3g %% of the diagonal, 99 %% of them within %.3g %%; %zu of %zu corners\n",
                 100 * c.max_distance / c.diagonal, 100 * c.p99_distance / c.diagonal,
                 c.corners - c.lost_corners, c.corners);
   }

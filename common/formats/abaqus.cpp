@@ -39,9 +39,15 @@ void write_elements(TextWriter& out, const MeshToWrite& written, const MeshParts
 
 }  // namespace
 
+NameRules abaqus_names() {
+  return {.form = [](const std::string& name) { return plain_name(name); },
+          .ignore_case = true,
+          .surface_numbers = false};
+}
+
 void write_abaqus(const MeshToWrite& written, const ByteSink& sink) {
   const TetMesh& mesh = written.mesh;
-  const MeshParts parts = mesh_parts(mesh, {[](const std::string& name) { return plain_name(name); }, true});
+  const MeshParts parts = mesh_parts(mesh, abaqus_names());
   TextWriter out(sink);
   out << "** Written by tetwright, to be taken in by *INCLUDE\n";
   for (const MeshParts::Material& m : parts.materials)

@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/formats/mesh_parts.h"
 #include "common/formats/mesh_to_write.h"
 #include "common/formats/read_tet_mesh_result.h"
 
@@ -10,6 +11,9 @@ namespace tetwright {
 
 /// Begins a comment of write_abaqus() that gives a material's tag: "TAG: NAME" follows.
 inline constexpr const char* abaqus_material_comment = "** material ";
+
+/// What write_abaqus() makes of names.
+NameRules abaqus_names();
 
 /// Reads the mesh of an input file of Abaqus or CalculiX: *NODE, and *ELEMENT of tets with 4 or 10 nodes
 /// (C3D4, C3D10 and their variants, also DC3D4 and such), these by their corners. The element sets of *SOLID

@@ -142,6 +142,16 @@ std::uint64_t ByteSource::skip(std::uint64_t n) {
   return taken_ - before;
 }
 
+void ByteSource::check_end() {
+  if (!packed()) return;
+  while (!take(skip_size).empty()) {
+  }
+  if (!state_->inflated && !state_->member_ended)
+    throw InputError(name_ +
+                     ": the compressed data end early, without their checksum; the file is cut short: " +
+                     "copy or export it again");
+}
+
 std::uint64_t ByteSource::max_left() const {
   if (!packed()) return bytes_.size();
   // One more: what was read but not yet handed out.

@@ -10,9 +10,9 @@ namespace tetwright {
 /// The bytes of a part of a file, as they are or inflated (zlib, or gzip of one or more members).
 ///
 /// What inflates to more than 64 MB is inflated as it is asked for, so that a few bytes that would inflate to
-/// terabytes cost no more than the caller takes. A gzip file of one member that ends with a smaller size is
-/// inflated at once: libdeflate, which can do nothing else, takes a quarter to a thirtieth of zlib's time on
-/// segmented volumes.
+/// terabytes cost no more memory than the caller takes. A gzip file of one member that ends with a smaller
+/// size is inflated at once: libdeflate, which can do nothing else, takes a quarter to a thirtieth of zlib's
+/// time on segmented volumes.
 class ByteSource {
  public:
   enum class Packing { none, deflate };
@@ -27,8 +27,9 @@ class ByteSource {
   std::string_view take(std::size_t n);
   /// Skips the next `n` bytes, or fewer at the end, and returns their number.
   std::uint64_t skip(std::uint64_t n);
-  /// To be called when all bytes were taken. Throws InputError if the checksum of compressed data is wrong.
-  void check_end() { (void)take(1); }
+  /// To be called when all bytes were taken: reads compressed data to their end. Throws InputError if they
+  /// end early, or their checksum is wrong.
+  void check_end();
 
   std::uint64_t taken() const { return taken_; }
   /// An upper bound of the number of bytes that are left.

@@ -11,6 +11,12 @@ namespace tetwright {
 /// Returns all bytes of a file. It is read_whole_file() except in tests and fuzzers, which have no files.
 using FileReader = std::function<std::string(const std::string& path)>;
 
+/// The content of a file, and its name in messages.
+struct NamedBytes {
+  std::string_view bytes;
+  std::string name;
+};
+
 /// A file that holds the voxels of a separate header.
 struct DataFile {
   std::string path;

@@ -71,8 +71,10 @@ void write_surface(TextWriter& out, const MeshToWrite& written, const MeshParts:
 
 }  // namespace
 
+NameRules febio_names() { return {.form = name_for_febio, .surface_numbers = false}; }
+
 void write_febio(const MeshToWrite& written, const ByteSink& sink) {
-  const MeshParts parts = mesh_parts(written.mesh, {name_for_febio});
+  const MeshParts parts = mesh_parts(written.mesh, febio_names());
   TextWriter out(sink);
   out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<febio_spec version=\"4.0\">\n"
          "<!-- Written by tetwright: materials of the names of the domains are to be added -->\n<Mesh>\n"

@@ -1,8 +1,12 @@
 #pragma once
 
+#include "common/formats/mesh_parts.h"
 #include "common/formats/mesh_to_write.h"
 
 namespace tetwright {
+
+/// What write_febio() makes of names.
+NameRules febio_names();
 
 /// The geometry of a model of FEBio, febio_spec 4.0: nodes, an Elements section (tet4 or tet10) for each
 /// material, and a Surface (tri3 or tri6, normals out of the smaller tag) and a NodeSet of the same name for

@@ -148,8 +148,10 @@ class TriangleTaker {
     if (pair.second) bases.push_back(form(pair_name({*pair.second, pair.first}, materials)));
     for (const std::int64_t number : faces.groups) {
       if (!is_of(number, pair)) continue;
-      if (const auto comment = listed_.comments.find(number); comment != listed_.comments.end())
+      if (const auto comment = listed_.comments.find(number); comment != listed_.comments.end()) {
         if (comment->second == pair_name(pair)) found = number;
+        continue;
+      }
       const auto name = listed_.names.find(number);
       if (name == listed_.names.end()) continue;
       for (const std::string& base : bases) {

@@ -37,7 +37,7 @@ struct FileTriangles {
 /// is in it; and it is known by
 /// - its name: pair_name()'s, or with the suffix that write_msh() gives it where the user has groups of this
 ///   name;
-/// - or the comment of write_medit();
+/// - or, if the group has one, the comment of write_medit();
 /// - or, where it has neither, its number, if that is the one that BoundaryGroups gives the pair and no group
 ///   of the file is the user's.
 /// Where there is no other, both stay empty.

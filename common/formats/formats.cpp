@@ -16,6 +16,7 @@
 #include "common/formats/medit_binary.h"
 #include "common/formats/metaimage.h"
 #include "common/formats/msh.h"
+#include "common/formats/msh_groups.h"
 #include "common/formats/nastran.h"
 #include "common/formats/nifti.h"
 #include "common/formats/nrrd.h"
@@ -29,6 +30,8 @@
 #include "common/formats/vtp.h"
 #include "common/formats/vtu.h"
 #include "common/formats/xdmf.h"
+#include "common/geometry/box_tree.h"
+#include "common/measurable.h"
 
 namespace tetwright {
 
@@ -67,7 +70,12 @@ constexpr std::array<SurfaceFormat, 3> shared_formats{
      {".vtk", read_vtk_surface, nullptr, read_vtk_surface_with_fields}}};
 
 ReadTetMesh read_xdmf_files(const std::string& path, const ReadTetMeshOptions& options) {
-  return read_xdmf(read_whole_file(path), path, read_whole_file, options);
+  const std::string file = with_extension(path, "_facets.xdmf");
+  std::string bytes;
+  std::optional<NamedBytes> facets;
+  if (std::error_code error; std::filesystem::exists(file, error))
+    facets = NamedBytes{bytes = read_whole_file(file), file};
+  return read_xdmf(read_whole_file(path), path, read_whole_file, options, facets);
 }
 
 /// The .node, .ele and, where there is one, .face file of one name, that of .node or .ele.
@@ -101,6 +109,12 @@ void write_as_one(const MeshToWrite& mesh, const std::string& /*first*/, const B
   sink(write(mesh));
 }
 
+template <NameRules (*rules)()>
+MeshParts parts_by(const TetMesh& mesh) {
+  return names_of_parts(mesh, rules());
+}
+constexpr auto printable_parts = parts_by<printable_names>;
+
 struct TetFormat {
   const char* extension;
   const char* name;
@@ -108,9 +122,12 @@ struct TetFormat {
   ReadTetMesh (*read)(std::string_view bytes, const std::string& name,
                       const ReadTetMeshOptions& options) = nullptr;
   ReadTetMesh (*read_files)(const std::string& path, const ReadTetMeshOptions& options) = nullptr;
-  std::vector<WrittenFile> write;                                           ///< empty: only read
-  bool point_fields = true;                                                 ///< when it is read
-  bool names = true, surfaces = true, fields = true, second_order = false;  ///< as in TetFormatInfo
+  std::vector<WrittenFile> write;  ///< empty: only read
+  /// What the writer calls the parts of a mesh.
+  MeshParts (*parts)(const TetMesh& mesh) = printable_parts;
+  bool point_fields = true;  ///< when it is read
+  // As in TetFormatInfo.
+  bool names = true, surfaces = true, patch_names = true, fields = true, second_order = false;
 };
 
 const std::vector<TetFormat>& tet_formats() {
@@ -125,27 +142,32 @@ const std::vector<TetFormat>& tet_formats() {
                                                .name = "vtu",
                                                .read = read_vtu,
                                                .write = {{".vtu", write_alone<write_vtu>}},
+                                               .parts = vtu_parts,
                                                .surfaces = false,
                                                .second_order = true},
                                               {.extension = ".msh",
                                                .name = "msh22",
                                                .read = read_msh,
                                                .write = {{".msh", write_as_one<write_msh>}},
+                                               .parts = msh_parts,
                                                .second_order = true},
                                               {.extension = ".msh",
                                                .name = "msh41",
                                                .read = read_msh,
                                                .write = {{".msh", write_alone<write_msh41>}},
+                                               .parts = msh_parts,
                                                .second_order = true},
                                               {.extension = ".msh",
                                                .name = "msh41-binary",
                                                .read = read_msh,
                                                .write = {{".msh", write_alone<write_msh41_binary>}},
+                                               .parts = msh_parts,
                                                .second_order = true},
                                               {.extension = ".mesh",
                                                .name = "medit",
                                                .read = read_medit,
                                                .write = {{".mesh", write_as_one<write_medit>}},
+                                               .parts = medit_parts,
                                                .point_fields = false,
                                                .names = false,
                                                .fields = false},
@@ -153,8 +175,10 @@ const std::vector<TetFormat>& tet_formats() {
                                                .name = "medit-binary",
                                                .read = read_medit_binary,
                                                .write = {{".meshb", write_alone<write_medit_binary>}},
+                                               .parts = medit_parts,
                                                .point_fields = false,
                                                .names = false,
+                                               .patch_names = false,
                                                .fields = false},
                                               {.extension = ".vtk",
                                                .name = "vtk",
@@ -165,6 +189,7 @@ const std::vector<TetFormat>& tet_formats() {
                                                .name = "abaqus",
                                                .read = read_abaqus,
                                                .write = {{".inp", write_alone<write_abaqus>}},
+                                               .parts = parts_by<abaqus_names>,
                                                .point_fields = false,
                                                .fields = false,
                                                .second_order = true},
@@ -172,12 +197,14 @@ const std::vector<TetFormat>& tet_formats() {
                                                .name = "nastran",
                                                .read = read_nastran,
                                                .write = {{".bdf", write_alone<write_nastran>}},
+                                               .parts = parts_by<nastran_names>,
                                                .point_fields = false,
                                                .fields = false,
                                                .second_order = true},
                                               {.extension = ".feb",
                                                .name = "febio",
                                                .write = {{".feb", write_alone<write_febio>}},
+                                               .parts = parts_by<febio_names>,
                                                .fields = false,
                                                .second_order = true},
                                               {.extension = ".xdmf",
@@ -261,7 +288,26 @@ const typename Formats::value_type& need_format(const Formats& formats, const st
 }
 
 TetFormatInfo info_of(const TetFormat& format) {
-  return {format.name, format.extension, format.names, format.surfaces, format.fields, format.second_order};
+  return {format.name,        format.extension, format.names,       format.surfaces,
+          format.patch_names, format.fields,    format.second_order};
+}
+
+/// The files of a format of several have its extensions, in place of the path's: that of another format would
+/// promise a file that is not written.
+void check_names_format(const std::string& path, const std::string& name) {
+  const std::string extension = extension_of(path);
+  bool several = false;
+  std::string own;
+  for (const TetFormat& format : tet_formats()) {
+    if (name != format.name) continue;
+    several = format.write.size() > 1;
+    if (extension == format.extension) return;
+    own.append(own.empty() ? "" : " or ").append(format.extension);
+  }
+  if (several && !extension.empty())
+    throw UsageError(path + ": " + name +
+                     " is several files, which have extensions of their own; give a name that ends in " +
+                     own + ", or in no extension");
 }
 
 /// The format of this name, or of the path's extension if there is none.
@@ -270,15 +316,26 @@ const TetFormat& need_written_format(const std::string& path, const std::string&
   std::string known;
   for (const TetFormat& format : tet_formats()) {
     if (!is_for(format, FileUse::write)) continue;
-    if (name == format.name) return format;
+    if (name == format.name) {
+      check_names_format(path, format.name);
+      return format;
+    }
     if (!known.ends_with(format.name)) known.append(known.empty() ? "" : " ").append(format.name);
   }
   throw UsageError("there is no format " + in_quotes(name) + " for a tet mesh; known are " + known);
 }
 
-/// A path with the extension that a format names, which may begin with its dot.
-std::string formatted(const std::string& path, const std::string& format) {
-  return format.empty() ? path : path + (format.starts_with('.') ? "" : ".") + format;
+/// The format of this name, an extension that may lack its dot, or of the path's extension if there is none.
+template <class Formats>
+const typename Formats::value_type& need_written_format(const Formats& formats, const std::string& path,
+                                                        FileKind kind, const std::string& name) {
+  if (name.empty()) return need_format(formats, path, kind, FileUse::write);
+  const std::string path_of_name = (name.starts_with('.') ? "x" : "x.") + name;
+  if (const auto* format = find_format(formats, path_of_name, FileUse::write)) return *format;
+  const bool only_read = find_format(formats, path_of_name, FileUse::read) != nullptr;
+  throw UsageError((only_read ? "the format " + in_quotes(name) + " can be read, not written,"
+                              : "there is no format " + in_quotes(name)) +
+                   " for a " + kind_name(kind) + "; known are " + known_extensions(kind, FileUse::write));
 }
 
 const SurfaceFormat& need_surface_format(const std::string& path) {
@@ -293,6 +350,18 @@ const Format& streamed(const Format& format, const std::string& name) {
   throw UsageError(name + ": " + format.extension +
                    " is several files, which no stream is; give their name, or " + "one of " +
                    streamed_extensions());
+}
+
+/// The mesh, whose sizes must be such that something can be computed.
+ReadTetMesh measurable(ReadTetMesh read, const std::string& name) {
+  const TetMesh& mesh = read.mesh;
+  Box3 box;
+  for (const Tet& tet : mesh.tets)
+    for (const Index p : tet) box.add(mesh.points[p]);
+  double largest = 0;
+  for (const Vec3& p : mesh.points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  require_measurable((box.high - box.low).maxCoeff(), largest, "mesh", name);
+  return read;
 }
 
 /// Among `files`, or alone if that is null.
@@ -347,6 +416,14 @@ TetFormatInfo written_tet_format(const std::string& path, const std::string& nam
   return info_of(need_written_format(path, name));
 }
 
+NameChanges written_name_changes(const TetMesh& mesh, const std::string& path, const std::string& name) {
+  const TetFormat& format = need_written_format(path, name);
+  NameChanges changes = name_changes(mesh, format.parts(mesh));
+  if (!format.names) changes.material_names.clear();
+  if (!format.patch_names) changes.patch_names.clear();
+  return changes;
+}
+
 std::vector<std::string> files_of_tet_mesh(const std::string& path, const std::string& name) {
   std::vector<std::string> files;
   const TetFormat& format = need_written_format(path, name);
@@ -384,7 +461,9 @@ TriangleMesh read_surface(const std::string& path, std::vector<Dropped>* dropped
 
 ReadTetMesh read_tet_mesh(const std::string& path, const ReadTetMeshOptions& options) {
   const TetFormat& format = need_format(tet_formats(), path, FileKind::tet_mesh, FileUse::read);
-  return format.read ? format.read(read_whole_file(path), path, options) : format.read_files(path, options);
+  return measurable(
+      format.read ? format.read(read_whole_file(path), path, options) : format.read_files(path, options),
+      path);
 }
 
 TriangleMesh read_surface_bytes(std::string_view bytes, const std::string& name, const std::string& extension,
@@ -394,8 +473,8 @@ TriangleMesh read_surface_bytes(std::string_view bytes, const std::string& name,
 
 ReadTetMesh read_tet_mesh_bytes(std::string_view bytes, const std::string& name, const std::string& extension,
                                 const ReadTetMeshOptions& options) {
-  return streamed(need_format(tet_formats(), name + extension, FileKind::tet_mesh, FileUse::read), name)
-      .read(bytes, name, options);
+  const TetFormat& format = need_format(tet_formats(), name + extension, FileKind::tet_mesh, FileUse::read);
+  return measurable(streamed(format, name).read(bytes, name, options), name);
 }
 
 LabelVolume read_label_volume_bytes(std::string_view bytes, const std::string& name,
@@ -442,8 +521,7 @@ LabelVolume read_label_volume(const std::string& path) {
 
 void write_surface(const TriangleMesh& mesh, const std::string& path, OutputFiles* files,
                    const std::string& name) {
-  const SurfaceFormat& format =
-      need_format(surface_formats, formatted(path, name), FileKind::surface, FileUse::write);
+  const SurfaceFormat& format = need_written_format(surface_formats, path, FileKind::surface, name);
   write_into(files, path, [&](const ByteSink& sink) { format.write(mesh, sink); });
 }
 
@@ -461,14 +539,13 @@ void write_tet_mesh(const MeshToWrite& mesh, const std::string& path, OutputFile
 
 void write_label_volume(const LabelVolume& volume, const std::string& path, OutputFiles* files,
                         const std::string& name) {
-  const VolumeFormat& format =
-      need_format(volume_formats, formatted(path, name), FileKind::volume, FileUse::write);
+  const VolumeFormat& format = need_written_format(volume_formats, path, FileKind::volume, name);
   write_into(files, path, [&](const ByteSink& sink) { sink(format.write(volume)); });
 }
 
 std::vector<std::string> files_of_input(const std::string& path) {
   static const std::vector<std::vector<const char*>> families{
-      {".node", ".ele", ".face"}, {".xdmf", ".h5"}, {".hdr", ".img"}};
+      {".node", ".ele", ".face"}, {".xdmf", ".h5", "_facets.xdmf", "_facets.h5"}, {".hdr", ".img"}};
   std::vector<std::string> files{path};
   const std::string extension = extension_of(path);
   for (const auto& family : families) {
@@ -481,9 +558,9 @@ std::vector<std::string> files_of_input(const std::string& path) {
 
 void check_output_path(const std::string& path, FileKind kind, const std::string& format) {
   if (kind == FileKind::surface)
-    (void)need_format(surface_formats, formatted(path, format), kind, FileUse::write);
+    (void)need_written_format(surface_formats, path, kind, format);
   else if (kind == FileKind::volume)
-    (void)need_format(volume_formats, formatted(path, format), kind, FileUse::write);
+    (void)need_written_format(volume_formats, path, kind, format);
   else
     for (const std::string& file : files_of_tet_mesh(path, format)) check_output_file(file);
   if (kind != FileKind::tet_mesh) check_output_file(path);

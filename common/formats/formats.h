@@ -7,6 +7,7 @@
 
 #include "common/formats/dropped.h"
 #include "common/formats/mesh_to_write.h"
+#include "common/formats/name_changes.h"
 #include "common/formats/read_tet_mesh_result.h"
 #include "common/formats/surface_with_fields.h"
 #include "common/label_volume.h"
@@ -40,8 +41,9 @@ bool may_hold_surface(const std::string& path);
 struct TetFormatInfo {
   std::string name;       ///< as write_tet_mesh() takes it: "msh41-binary"
   std::string extension;  ///< ".msh"
-  bool names;             ///< of materials and surfaces
+  bool names;             ///< of materials
   bool surfaces;          ///< boundary and interface triangles, by groups
+  bool patch_names;       ///< of these groups
   bool fields;            ///< of points and tets
   bool second_order;      ///< tets of ten nodes
 };
@@ -52,6 +54,10 @@ std::vector<TetFormatInfo> written_tet_formats();
 /// The one that a tet mesh of this path is written in: `name`'s, or where that is empty its extension's.
 /// Throws UsageError if there is none.
 TetFormatInfo written_tet_format(const std::string& path, const std::string& name = {});
+
+/// What it makes of tags, numbers and names of the mesh that it cannot hold as they are; of what it has no
+/// place for there is nothing here.
+NameChanges written_name_changes(const TetMesh& mesh, const std::string& path, const std::string& name = {});
 
 /// Whether files with this extension may give numbers to points, which then are the fields of
 /// read_surface_with_fields() or of read_tet_mesh().
@@ -64,10 +70,10 @@ std::string point_field_extensions();
 std::string file_stem(const std::string& path);
 
 /// Reads a file. Throws UsageError if the extension is not one of the kind asked for, InputError if the file
-/// is missing, unreadable or malformed. A .node and an .ele file of one name in one folder are a pair, which
-/// either of them names. A header of a volume may name another file with the voxels.
-/// What a surface file holds beside points and faces is appended to `dropped`, unless that is null; a tet
-/// mesh comes with its own list.
+/// is missing, unreadable or malformed, or a tet mesh is too large or too small (require_measurable()). A
+/// .node and an .ele file of one name in one folder are a pair, which either of them names. A header of a
+/// volume may name another file with the voxels. What a surface file holds beside points and faces is
+/// appended to `dropped`, unless that is null; a tet mesh comes with its own list.
 TriangleMesh read_surface(const std::string& path, std::vector<Dropped>* dropped = nullptr);
 ReadTetMesh read_tet_mesh(const std::string& path, const ReadTetMeshOptions& options = {});
 LabelVolume read_label_volume(const std::string& path);

@@ -54,6 +54,10 @@ class SceneReader {
     } else {
       for (std::size_t i = 0; i < scenes; ++i) add_scene(static_cast<std::int64_t>(i));
     }
+    if (shown_.empty())
+      fail(list("meshes").empty() ? "there is no mesh in it; export it with its meshes"
+           : scenes == 0          ? "it has meshes, but no scene that shows them; export it with a scene"
+                                  : "its scene shows none of its meshes; export it with them in the scene");
     surface_.drop("meshes that the scene does not show", list("meshes").size() - shown_.size());
     surface_.drop("skins", list("skins").size());
     surface_.drop("animations", list("animations").size());

@@ -67,6 +67,13 @@ const char* find_section(const Sections& sections, std::string_view keyword) {
   return nullptr;
 }
 
+/// A name as one word that can stand in quotes.
+std::string medit_name(const std::string& name) {
+  std::string out;
+  for (const char c : valid_utf8(name)) out += static_cast<unsigned char>(c) <= ' ' || c == '"' ? '_' : c;
+  return out;
+}
+
 class TextReader {
  public:
   TextReader(std::string_view bytes, const std::string& name) : bytes_(bytes), in_(bytes, name, '#') {}
@@ -89,7 +96,8 @@ class TextReader {
   }
 
   /// To be called when the materials are known.
-  void finish(ReadTetMesh& read) const {
+  void finish(ReadTetMesh& read) {
+    triangles_.name_form = medit_name;
     take_triangles(triangles_, "reference", in_.name(), read);
     note_others(read.dropped);
   }
@@ -195,8 +203,11 @@ class TextReader {
       const std::string_view line = bytes_.substr(at, bytes_.substr(at).find_first_of("\r\n"));
       const std::size_t colon = line.find(": ");
       std::int64_t number = 0;
-      if (colon != std::string_view::npos && parse_number(line.substr(0, colon), number))
-        triangles_.comments.emplace(number, line.substr(colon + 2));
+      if (colon == std::string_view::npos || !parse_number(line.substr(0, colon), number)) continue;
+      const std::string_view said = line.substr(colon + 2);
+      triangles_.comments.emplace(number, said);
+      if (said.size() > 2 && said.starts_with('"') && said.ends_with('"'))
+        triangles_.names.emplace(number, said.substr(1, said.size() - 2));
     }
   }
 
@@ -264,13 +275,6 @@ class TextReader {
   bool surface_ = false;  ///< a surface is wanted, and no tets
 };
 
-/// A name as one word in quotes.
-std::string quoted_word(const std::string& name) {
-  std::string out = "\"";
-  for (const char c : valid_utf8(name)) out += static_cast<unsigned char>(c) <= ' ' || c == '"' ? '_' : c;
-  return out + '"';
-}
-
 void append_triangles(std::string& out, const TetMesh& mesh) {
   const std::vector<InterfaceTriangle>& triangles = mesh.interfaces;
   const BoundaryGroups groups(mesh);
@@ -284,7 +288,8 @@ void append_triangles(std::string& out, const TetMesh& mesh) {
     if (g.pair)
       out += pair_name(*g.pair);
     else
-      out += g.face_group.name.empty() ? std::to_string(g.face_group.number) : quoted_word(g.face_group.name);
+      out += g.face_group.name.empty() ? std::to_string(g.face_group.number)
+                                       : '"' + medit_name(g.face_group.name) + '"';
     out += '\n';
   }
   out += "Triangles\n";
@@ -313,6 +318,16 @@ ReadTetMesh read_medit(std::string_view bytes, const std::string& name, const Re
 TriangleMesh read_medit_surface(std::string_view bytes, const std::string& name,
                                 std::vector<Dropped>* dropped) {
   return TextReader(bytes, name).read_surface(dropped);
+}
+
+MeshParts medit_parts(const TetMesh& mesh) {
+  MeshParts parts;
+  for (const std::int64_t tag : tags_of(mesh.materials))
+    parts.materials.push_back({static_cast<MaterialTag>(tag), tag, {}, {}});
+  const BoundaryGroups groups(mesh);
+  for (const BoundaryGroups::Group& g : groups.all())
+    parts.surfaces.push_back({g.face_group, g.number, medit_name(g.face_group.name), {}});
+  return parts;
 }
 
 std::string write_medit(const MeshToWrite& written) {

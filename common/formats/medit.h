@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/formats/mesh_parts.h"
 #include "common/formats/mesh_to_write.h"
 #include "common/formats/read_tet_mesh_result.h"
 #include "common/triangle_mesh.h"
@@ -12,9 +13,10 @@ namespace tetwright {
 
 /// Reads the sections Vertices and Tetrahedra of a Medit ASCII mesh (.mesh). The reference of a tet is its
 /// material ("medit:ref"), those of triangles are groups of faces (see take_triangles()), of which
-/// write_medit()'s comments tell those of a pair of materials; the format has no place for fields. Sections
-/// of other volume cells are refused, what other sections hold is counted in ReadTetMesh::dropped. `name` is
-/// used in messages. Throws InputError with the line for anything that is malformed.
+/// write_medit()'s comments give the names and tell those of a pair of materials; the format has no place for
+/// fields. Sections of other volume cells are refused, what other sections hold is counted in
+/// ReadTetMesh::dropped. `name` is used in messages. Throws InputError with the line for anything that is
+/// malformed.
 ///
 /// Our own: libMeshb reports that a file can't be read without saying where and why.
 ReadTetMesh read_medit(std::string_view bytes, const std::string& name,
@@ -31,5 +33,8 @@ TriangleMesh read_medit_surface(std::string_view bytes, const std::string& name,
 /// their reference is the number of their group (see BoundaryGroups), and a comment gives its name, or the
 /// tags of a pair of materials, or the number that the user's group had.
 std::string write_medit(const MeshToWrite& written);
+
+/// What it calls the groups of the user; materials have no names.
+MeshParts medit_parts(const TetMesh& mesh);
 
 }  // namespace tetwright

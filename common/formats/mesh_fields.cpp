@@ -103,6 +103,14 @@ bool all_whole(const MeshField& field) {
   return std::all_of(field.values.begin(), field.values.end(), is_whole);
 }
 
+void take_integers(MeshField& field, KindCounts& rounded) {
+  const auto exact =
+      static_cast<std::size_t>(std::count_if(field.values.begin(), field.values.end(), is_whole));
+  field.integer = exact == field.values.size();
+  rounded.add("last digits of integers beyond 2^53 in the field " + in_quotes(field.name),
+              field.values.size() - exact);
+}
+
 void take_material(ReadTetMesh& read, const ReadTetMeshOptions& options, const std::string& file,
                    const std::vector<std::string>& also) {
   TetMesh& mesh = read.mesh;

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/formats/dropped.h"
 #include "common/formats/read_tet_mesh_result.h"
 
 namespace tetwright {
@@ -22,6 +23,10 @@ std::vector<std::string> field_names_to_write(const std::vector<MeshField>& fiel
 
 /// Whether every value is whole and exactly represented (at most 2^53 in absolute value).
 bool all_whole(const MeshField& field);
+
+/// Marks a field that the file has as integers as such, unless doubles are too short for one of them: then it
+/// is none, and `rounded` gets the number of these under its name.
+void take_integers(MeshField& field, KindCounts& rounded);
 
 /// Chooses the material of the tets as ReadTetMesh::material_field describes: fills mesh.materials from a
 /// cell field, removes that field, and sets material_field. The reader has filled in the tets and, if the

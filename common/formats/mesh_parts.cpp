@@ -1,7 +1,6 @@
 #include "common/formats/mesh_parts.h"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -23,36 +22,55 @@ std::string name_of_tag(MaterialTag tag, const std::map<MaterialTag, std::string
 
 }  // namespace
 
-MeshParts mesh_parts(const TetMesh& mesh, const NameRules& rules) {
+NameRules printable_names() { return {.form = printable_name}; }
+
+MeshParts names_of_parts(const TetMesh& mesh, const NameRules& rules) {
+  const auto numbers_of = [&](const std::set<std::int64_t>& own) {
+    if (rules.max_number > 0) return positive_numbers(own, rules.max_number);
+    std::map<std::int64_t, std::int64_t> same;
+    for (const std::int64_t number : own) same[number] = number;
+    return same;
+  };
   MeshParts parts;
-  std::map<MaterialTag, std::vector<Index>> tets;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) tets[mesh.materials[t]].push_back(static_cast<Index>(t));
   UniqueNames of_materials(rules.form, rules.ignore_case);
   std::map<MaterialTag, std::string> written;
-  for (auto& [tag, of_tag] : tets) {
-    const std::string name = of_materials.add(name_of_tag(tag, mesh.material_names));
-    written[tag] = name;
-    parts.materials.push_back({tag, name, std::move(of_tag)});
+  for (const auto& [own, number] : numbers_of(tags_of(mesh.materials))) {
+    const auto tag = static_cast<MaterialTag>(own);
+    written[tag] = of_materials.add(name_of_tag(tag, mesh.material_names));
+    parts.materials.push_back({tag, number, written[tag], {}});
   }
 
   const BoundaryGroups groups(mesh);
   UniqueNames of_surfaces(rules.form, rules.ignore_case);
-  std::map<std::int64_t, std::size_t> surface_of;
-  for (const BoundaryGroups::Group& g : groups.all()) {
-    surface_of[g.number] = parts.surfaces.size();
-    parts.surfaces.push_back({g.number, {}, {}});
-  }
+  std::set<std::int64_t> own;
+  for (const BoundaryGroups::Group& g : groups.all()) own.insert(g.number);
+  const std::map<std::int64_t, std::int64_t> numbers = numbers_of(own);
+  for (const BoundaryGroups::Group& g : groups.all())
+    parts.surfaces.push_back({g.face_group, rules.surface_numbers ? numbers.at(g.number) : 0, {}, {}});
   // The user's names come first.
   for (const bool of_user : {true, false})
-    for (const BoundaryGroups::Group& g : groups.all()) {
+    for (std::size_t i = 0; i < groups.all().size(); ++i) {
+      const BoundaryGroups::Group& g = groups.all()[i];
       if (g.pair.has_value() == of_user) continue;
-      std::string& name = parts.surfaces[surface_of.at(g.number)].name;
+      std::string& name = parts.surfaces[i].name;
       if (g.pair)
         name = of_surfaces.add_pair(pair_name(*g.pair, written));
       else
         name = of_surfaces.add(g.face_group.name.empty() ? "surface_" + std::to_string(g.face_group.number)
                                                          : g.face_group.name);
     }
+  return parts;
+}
+
+MeshParts mesh_parts(const TetMesh& mesh, const NameRules& rules) {
+  MeshParts parts = names_of_parts(mesh, rules);
+  std::map<MaterialTag, std::size_t> material_of;
+  for (const MeshParts::Material& m : parts.materials) material_of.emplace(m.tag, material_of.size());
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    parts.materials[material_of.at(mesh.materials[t])].tets.push_back(static_cast<Index>(t));
+  const BoundaryGroups groups(mesh);
+  std::map<std::int64_t, std::size_t> surface_of;
+  for (const BoundaryGroups::Group& g : groups.all()) surface_of.emplace(g.number, surface_of.size());
   for (std::size_t i = 0; i < mesh.interfaces.size(); ++i)
     parts.surfaces[surface_of.at(groups.number_of(mesh.interfaces[i]))].faces.push_back(i);
   return parts;
@@ -66,22 +84,26 @@ std::string plain_name(const std::string& name, std::size_t longest) {
   return out.substr(0, longest);
 }
 
-std::map<MaterialTag, std::int64_t> positive_numbers(const std::vector<MaterialTag>& materials,
-                                                     std::int64_t max) {
-  const std::set<MaterialTag> tags(materials.begin(), materials.end());
-  const auto fits = [&](MaterialTag tag) { return tag >= 1 && tag <= max; };
-  std::map<MaterialTag, std::int64_t> numbers;
+std::map<std::int64_t, std::int64_t> positive_numbers(const std::set<std::int64_t>& numbers,
+                                                      std::int64_t max) {
+  std::map<std::int64_t, std::int64_t> written;
   std::int64_t next = 1;
-  for (const MaterialTag tag : tags) {
-    if (fits(tag)) {
-      numbers[tag] = tag;
+  for (const std::int64_t number : numbers) {
+    if (number >= 1 && number <= max) {
+      written[number] = number;
       continue;
     }
-    while (next <= std::numeric_limits<MaterialTag>::max() && tags.contains(static_cast<MaterialTag>(next)))
-      ++next;
-    numbers[tag] = next++;
+    while (numbers.contains(next)) ++next;
+    written[number] = next++;
   }
-  return numbers;
+  return written;
+}
+
+std::set<std::int64_t> tags_of(const std::vector<MaterialTag>& materials) {
+  std::set<std::int64_t> tags;
+  for (std::size_t t = 0; t < materials.size(); ++t)
+    if (t == 0 || materials[t] != materials[t - 1]) tags.insert(materials[t]);
+  return tags;
 }
 
 std::vector<TetFace> faces_of_tets(const TetMesh& mesh) {
@@ -121,7 +143,7 @@ TriangleMesh interface_surface(const TetMesh& mesh) {
     new_index[p] = static_cast<Index>(surface.points.size());
     surface.points.push_back(mesh.points[p]);
   }
-  for (const MeshParts::Surface& s : mesh_parts(mesh, {printable_name}).surfaces) {
+  for (const MeshParts::Surface& s : mesh_parts(mesh, printable_names()).surfaces) {
     for (const std::size_t f : s.faces) {
       const Triangle& ids = mesh.interfaces[f].ids;
       surface.triangles.push_back({new_index[ids[0]], new_index[ids[1]], new_index[ids[2]]});

@@ -76,7 +76,7 @@ class Msh4Writer {
         out_(sink),
         numbers_(out_, binary),
         binary_(binary),
-        physical_(positive_numbers(mesh_.materials, max_number)) {
+        physical_(positive_numbers(tags_of(mesh_.materials), max_number)) {
     collect_entities();
     classify_nodes();
   }
@@ -251,8 +251,8 @@ class Msh4Writer {
   TextWriter out_;
   Numbers numbers_;
   bool binary_;
-  std::map<MaterialTag, std::int64_t> physical_;  ///< groups of the materials
-  std::vector<Entity> entities_;                  ///< surfaces, then volumes
+  std::map<std::int64_t, std::int64_t> physical_;  ///< groups of the materials
+  std::vector<Entity> entities_;                   ///< surfaces, then volumes
   std::size_t surfaces_ = 0;
 };
 

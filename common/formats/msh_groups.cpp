@@ -49,4 +49,20 @@ MshGroups::MshGroups(const TetMesh& mesh)
       material_names(material_names_to_write(mesh.material_names)),
       face_names(group_names_to_write(faces, material_names)) {}
 
+MeshParts msh_parts(const TetMesh& mesh) {
+  const MshGroups groups(mesh);
+  const auto name_in = [](const auto& names, auto key) {
+    const auto known = names.find(key);
+    return known == names.end() ? std::string() : known->second;
+  };
+  MeshParts parts;
+  for (const std::int64_t tag : tags_of(mesh.materials)) {
+    const auto own = static_cast<MaterialTag>(tag);
+    parts.materials.push_back({own, tag, name_in(groups.material_names, own), {}});
+  }
+  for (const BoundaryGroups::Group& g : groups.faces.all())
+    parts.surfaces.push_back({g.face_group, g.number, name_in(groups.face_names, g.number), {}});
+  return parts;
+}
+
 }  // namespace tetwright

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "common/formats/mesh_parts.h"
 #include "common/mesh/boundary_groups.h"
 #include "common/tet_mesh.h"
 
@@ -19,5 +20,8 @@ struct MshGroups {
   /// By the groups' numbers; without those that have no name, and no two are equal.
   std::map<std::int64_t, std::string> face_names;
 };
+
+/// The same for name_changes(): tags of materials are kept, by comments where the format cannot hold one.
+MeshParts msh_parts(const TetMesh& mesh);
 
 }  // namespace tetwright

@@ -1,7 +1,6 @@
 #include "common/formats/nastran.h"
 
 #include <algorithm>
-#include <map>
 #include <vector>
 
 #include "common/error.h"
@@ -49,11 +48,10 @@ void write_points(TextWriter& out, const MeshToWrite& written) {
   }
 }
 
-void write_tets(TextWriter& out, const MeshToWrite& written, const MeshParts& parts,
-                const std::map<MaterialTag, std::int64_t>& properties) {
+void write_tets(TextWriter& out, const MeshToWrite& written, const MeshParts& parts) {
   const TetMesh& mesh = written.mesh;
   for (const MeshParts::Material& m : parts.materials) {
-    const auto property = static_cast<std::size_t>(properties.at(m.tag));
+    const auto property = static_cast<std::size_t>(m.number);
     out << nastran_material_comment << property << ": " << m.name << '\n';
     write_entry(out, "PSOLID", {property, property});
     for (const Index t : m.tets) {
@@ -88,18 +86,21 @@ void write_surfaces(TextWriter& out, const MeshToWrite& written, const MeshParts
 
 }  // namespace
 
+NameRules nastran_names() {
+  // Names stand in comments, which end with the line.
+  return {.form = printable_name, .max_number = max_number};
+}
+
 void write_nastran(const MeshToWrite& written, const ByteSink& sink) {
   if (static_cast<std::int64_t>(std::max(written.nodes(), written.mesh.tets.size())) > max_number)
     throw OutputError("a Nastran file has no room for numbers of more than eight digits, and there are " +
                       std::to_string(std::max(written.nodes(), written.mesh.tets.size())) +
                       " nodes or tets; write another format");
-  // Names stand in comments, which end with the line.
-  const MeshParts parts = mesh_parts(written.mesh, {printable_name});
-  const std::map<MaterialTag, std::int64_t> properties = positive_numbers(written.mesh.materials, max_number);
+  const MeshParts parts = mesh_parts(written.mesh, nastran_names());
   TextWriter out(sink);
   out << "$ Written by tetwright: a MAT1 with the number of each PSOLID is to be added\nBEGIN BULK\n";
   write_points(out, written);
-  write_tets(out, written, parts, properties);
+  write_tets(out, written, parts);
   write_surfaces(out, written, parts);
   out << "ENDDATA\n";
   out.flush();

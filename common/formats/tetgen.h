@@ -4,16 +4,11 @@
 #include <string>
 #include <string_view>
 
+#include "common/formats/data_file.h"
 #include "common/formats/mesh_to_write.h"
 #include "common/formats/read_tet_mesh_result.h"
 
 namespace tetwright {
-
-/// The content of a file, and its name in messages.
-struct NamedBytes {
-  std::string_view bytes;
-  std::string name;
-};
 
 /// Reads the files that TetGen writes: `node` (.node), `ele` (.ele) and, where there is one, `face` (.face).
 /// Numbers begin at 0 or 1. Attributes of points become the fields "attribute1", "attribute2", ..., boundary

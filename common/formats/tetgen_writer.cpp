@@ -17,7 +17,7 @@ void write_tetgen_node(const MeshToWrite& written, const ByteSink& sink) {
 void write_tetgen_ele(const MeshToWrite& written, const ByteSink& sink) {
   TextWriter out(sink);
   const TetMesh& mesh = written.mesh;
-  for (const MeshParts::Material& m : mesh_parts(mesh, {printable_name}).materials)
+  for (const MeshParts::Material& m : mesh_parts(mesh, printable_names()).materials)
     out << "# material " << m.tag << ": " << m.name << '\n';
   out << mesh.tets.size() << " 4 1\n";
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
@@ -31,7 +31,7 @@ void write_tetgen_ele(const MeshToWrite& written, const ByteSink& sink) {
 void write_tetgen_face(const MeshToWrite& written, const ByteSink& sink) {
   TextWriter out(sink);
   const TetMesh& mesh = written.mesh;
-  const MeshParts parts = mesh_parts(mesh, {printable_name});
+  const MeshParts parts = mesh_parts(mesh, printable_names());
   std::vector<std::int64_t> marker(mesh.interfaces.size());
   for (const MeshParts::Surface& s : parts.surfaces) {
     out << "# marker " << s.number << ": " << s.name << '\n';

@@ -43,6 +43,7 @@ void VtkSections::read_sections(std::vector<Dropped>& dropped) {
   append_dropped_names(dropped, "arrays of the whole dataset", dataset_arrays_);
   append_dropped_names(dropped, "arrays of text", text_arrays_);
   append_dropped_names(dropped, "arrays of colours", colours_);
+  rounded_.append_to(dropped);
 }
 
 void VtkSections::read_head() {
@@ -204,7 +205,7 @@ void VtkSections::add_field(const std::string& name, std::size_t components, con
   MeshField field{name, static_cast<int>(components), false, {}};
   field.values =
       read_vtk_numbers<double>(in_, binary_, type, components * items_, "values of " + in_quotes(name));
-  field.integer = is_integer_type(type) && all_whole(field);
+  if (is_integer_type(type)) take_integers(field, rounded_);
   take_field(data_, std::move(field));
 }
 

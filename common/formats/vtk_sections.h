@@ -85,6 +85,7 @@ class VtkSections {
   Data data_ = Data::none;
   std::size_t items_ = 0;                                            ///< points or cells that data is for
   std::vector<std::string> dataset_arrays_, text_arrays_, colours_;  ///< names of what is not taken
+  KindCounts rounded_;                                               ///< integers of fields
 };
 
 }  // namespace tetwright

@@ -72,7 +72,7 @@ std::vector<MeshField> fields_of_cells(std::vector<MeshField> fields, std::size_
 void write_vtk(const MeshToWrite& written, const ByteSink& sink) {
   const TetMesh& mesh = written.mesh;
   const MidsideNodes* midside = written.midside;
-  const MeshParts parts = mesh_parts(mesh, {printable_name});
+  const MeshParts parts = mesh_parts(mesh, printable_names());
   const std::size_t tets = mesh.tets.size(), triangles = mesh.interfaces.size();
   TextWriter out(sink);
   out << "# vtk DataFile Version 3.0\nwritten by tetwright\nASCII\nDATASET UNSTRUCTURED_GRID\n";

@@ -41,6 +41,7 @@ class VtuReader {
     midside_.remove_from(result_, no_triangles);
     take_material(result_, options_, name_);
     note_dropped_arrays(pieces[0].parent(), pieces);
+    rounded_.append_to(result_.dropped);
     return std::move(result_);
   }
 
@@ -61,12 +62,12 @@ class VtuReader {
     mesh.points.insert(mesh.points.end(), of_piece.begin(), of_piece.end());
     const std::vector<std::size_t> tet_to_cell = read_cells(piece, points, cells);
     cells_ += cells;
-    add_fields(mesh.point_fields, data_.fields(piece.child("PointData"), points), first_points_.back(),
-               points);
-    add_fields(
-        mesh.cell_fields,
-        data_.fields(piece.child("CellData"), cells, tet_to_cell.size() < cells ? &tet_to_cell : nullptr),
-        first_tet, mesh.tets.size() - first_tet);
+    add_fields(mesh.point_fields, data_.fields(piece.child("PointData"), points, nullptr, &rounded_),
+               first_points_.back(), points);
+    add_fields(mesh.cell_fields,
+               data_.fields(piece.child("CellData"), cells,
+                            tet_to_cell.size() < cells ? &tet_to_cell : nullptr, &rounded_),
+               first_tet, mesh.tets.size() - first_tet);
   }
 
   /// Fields that not all pieces have are left out; a piece without items, which parallel writers make, has no
@@ -258,6 +259,7 @@ class VtuReader {
   std::vector<Index> midside_of_tets_;  ///< of tets of ten nodes
   std::vector<std::string> field_names_of_some_pieces_;
   OtherVtkCells other_cells_;
+  KindCounts rounded_;  ///< integers of fields
   MidsideNodesRead midside_;
   ReadTetMesh result_;
 };
@@ -287,6 +289,13 @@ std::string write_vtu(const MeshToWrite& written) {
   std::string out;
   write_vtu(written, [&](std::string_view bytes) { out += bytes; });
   return out;
+}
+
+MeshParts vtu_parts(const TetMesh& mesh) {
+  MeshParts parts;
+  for (const auto& [tag, name] : mesh.material_names)
+    parts.materials.push_back({tag, tag, printable_name(name), {}});
+  return parts;
 }
 
 void write_vtu(const MeshToWrite& written, const ByteSink& sink) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/formats/mesh_parts.h"
 #include "common/formats/mesh_to_write.h"
 #include "common/formats/read_tet_mesh_result.h"
 
@@ -27,5 +28,8 @@ ReadTetMesh read_vtu(std::string_view bytes, const std::string& name, const Read
 std::string write_vtu(const MeshToWrite& written);
 /// The same in pieces: needs memory for some MB and for the compressed numbers of one array at a time.
 void write_vtu(const MeshToWrite& written, const ByteSink& sink);
+
+/// What it calls the materials; it has no surfaces.
+MeshParts vtu_parts(const TetMesh& mesh);
 
 }  // namespace tetwright

@@ -94,7 +94,9 @@ VtuData::VtuData(std::string_view bytes, std::string name)
 std::vector<pugi::xml_node> VtuData::pieces(const char* grid) const {
   const std::string_view type = root_.attribute("type").as_string();
   const pugi::xml_node node = root_.child(grid);
-  if (type != grid || !node)
+  if (type == grid && !node)
+    fail(root_, "there is no element " + std::string(grid) + " in it; the file is empty or damaged");
+  if (type != grid)
     fail(root_, "a file of type " + std::string(grid) + " is needed, this one is " + in_quotes(type));
   std::vector<pugi::xml_node> pieces;
   for (const pugi::xml_node piece : node.children("Piece")) pieces.push_back(piece);
@@ -144,7 +146,8 @@ void VtuData::expect_size(pugi::xml_node array, std::size_t size, std::size_t ex
 }
 
 std::vector<MeshField> VtuData::fields(pugi::xml_node data, std::size_t n,
-                                       const std::vector<std::size_t>* chosen) const {
+                                       const std::vector<std::size_t>* chosen, KindCounts* rounded) const {
+  KindCounts not_asked;
   std::vector<MeshField> fields;
   for (const pugi::xml_node node : data.children("DataArray")) {
     if (!holds_numbers(node)) continue;
@@ -166,7 +169,7 @@ std::vector<MeshField> VtuData::fields(pugi::xml_node data, std::size_t n,
           field.values[i * per_item + k] = field.values[(*chosen)[i] * per_item + k];
       field.values.resize(chosen->size() * per_item);
     }
-    field.integer = integer && all_whole(field);
+    if (integer) take_integers(field, rounded ? *rounded : not_asked);
     fields.push_back(std::move(field));
   }
   return fields;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/formats/atomic_file.h"
+#include "common/formats/dropped.h"
 #include "common/tet_mesh.h"
 #include "common/types.h"
 
@@ -50,9 +51,11 @@ class VtuData {
   /// Whole numbers from 0 to 2^32 - 1, in half the memory.
   std::vector<std::uint32_t> counts(pugi::xml_node array, std::size_t max_count) const;
   /// The arrays of numbers of PointData or CellData, which have a tuple for each of `n` items; of `chosen`
-  /// items alone, unless it is null. Throws InputError for an array of another size.
+  /// items alone, unless it is null. Integers that are rounded are counted in `rounded`, unless that is null.
+  /// Throws InputError for an array of another size.
   std::vector<MeshField> fields(pugi::xml_node data, std::size_t n,
-                                const std::vector<std::size_t>* chosen = nullptr) const;
+                                const std::vector<std::size_t>* chosen = nullptr,
+                                KindCounts* rounded = nullptr) const;
 
   /// Throws InputError with the byte offset of `node`.
   [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const;

@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <pugixml.hpp>
 #include <span>
 #include <vector>
 
 #include "common/error.h"
+#include "common/formats/file_triangles.h"
 #include "common/formats/hdf5_image.h"
 #include "common/formats/mesh_fields.h"
 #include "common/formats/mesh_parts.h"
@@ -40,15 +41,19 @@ class XdmfReader {
     if (!document_.child("Xdmf")) throw InputError(name + ": there is no element Xdmf in it");
   }
 
-  ReadTetMesh read(const ReadTetMeshOptions& options) {
+  ReadTetMesh read(const ReadTetMeshOptions& options, const std::optional<NamedBytes>& facets) {
     const pugi::xml_node grid = choose_grid();
     read_points(grid);
     read_tets(grid);
     for (const pugi::xml_node attribute : grid.children("Attribute")) read_attribute(attribute);
-    read_names(grid);
-    std::vector<Triangle> no_triangles;
-    midside_.remove_from(result_, no_triangles);
+    for (const auto& [tag, name] : names_of(grid, "3"))
+      result_.mesh.material_names[checked_material(tag, name_, 0)] = name;
+    FileTriangles listed;
+    if (facets) read_facets(*facets, listed);
+    midside_.remove_from(result_, listed.triangles);
     take_material(result_, options, name_);
+    if (facets) take_triangles(listed, "facet tag", facets->name, result_);
+    rounded_.append_to(result_.dropped);
     return std::move(result_);
   }
 
@@ -158,6 +163,14 @@ class XdmfReader {
     }
   }
 
+  Index index_of(pugi::xml_node topology, const char* what, std::size_t number, double value,
+                 std::size_t points) const {
+    if (!(value >= 0 && value < static_cast<double>(points)) || value != std::floor(value))
+      fail(topology, std::string(what) + " " + std::to_string(number) + " names point " +
+                         short_number(value) + " of " + std::to_string(points) + "; export the file again");
+    return static_cast<Index>(value);
+  }
+
   void read_tets(pugi::xml_node grid) {
     const pugi::xml_node topology = grid.child("Topology");
     const std::size_t nodes = nodes_of(topology_of(grid));
@@ -168,12 +181,7 @@ class XdmfReader {
     std::vector<Index> ids(nodes);
     for (std::size_t t = 0; t < rows; ++t) {
       for (std::size_t k = 0; k < nodes; ++k) {
-        const double value = values[nodes * t + k];
-        if (value < 0 || value >= static_cast<double>(result_.mesh.points.size()) ||
-            value != std::floor(value))
-          fail(topology, "tet " + std::to_string(t) + " names point " + short_number(value) + " of " +
-                             std::to_string(result_.mesh.points.size()) + "; export the file again");
-        ids[k] = static_cast<Index>(value);
+        ids[k] = index_of(topology, "tet", t, values[nodes * t + k], result_.mesh.points.size());
       }
       result_.mesh.tets.push_back({ids[0], ids[1], ids[2], ids[3]});
       if (nodes > tet_nodes) midside_.add_tet(std::span(ids).subspan(tet_nodes));
@@ -200,23 +208,62 @@ class XdmfReader {
     const char* type = attribute.child("DataItem").attribute("NumberType").as_string();
     const std::string number_type =
         lower_case(*type ? type : attribute.child("DataItem").attribute("DataType").as_string("Float"));
-    field.integer = number_type != "float" && all_whole(field);
+    if (number_type != "float") take_integers(field, rounded_);
     (of_cells ? mesh.cell_fields : mesh.point_fields).push_back(std::move(field));
   }
 
-  /// "<main><map key=NAME dim=3>NUMBER</map></main>", as text.
-  void read_names(pugi::xml_node grid) {
+  /// "<main><map key=NAME dim=3>NUMBER</map></main>", as text: those of this dimension.
+  static std::map<std::int64_t, std::string> names_of(pugi::xml_node grid, std::string_view dimension) {
+    std::map<std::int64_t, std::string> found;
     for (const pugi::xml_node information : grid.children("Information")) {
       const std::string text = information.child_value();
       pugi::xml_document names;
       if (!names.load_buffer(text.data(), text.size())) continue;
       for (const pugi::xml_node map : names.child("main").children("map")) {
         std::int64_t number = 0;
-        if (std::strcmp(map.attribute("dim").as_string(), "3") == 0 &&
-            parse_number(map.child_value(), number))
-          result_.mesh.material_names[checked_material(number, name_, 0)] = map.attribute("key").as_string();
+        if (map.attribute("dim").as_string() == dimension && parse_number(map.child_value(), number))
+          found[number] = map.attribute("key").as_string();
       }
     }
+    return found;
+  }
+
+  /// Those of write_xdmf_facets(). A file of this name that has others may be of another program, and of
+  /// other points.
+  void read_facets(const NamedBytes& file, FileTriangles& listed) {
+    XdmfReader reader(file.bytes, file.name, read_file_);
+    if (!reader.list_facets(result_.mesh.points.size(), listed))
+      result_.dropped.push_back({"facet files of other points (" +
+                                     in_quotes(std::filesystem::path(file.name).filename().string()) + ")",
+                                 1});
+  }
+
+  /// The triangles of this file by their tags. False if they are not those of a mesh of so many points.
+  bool list_facets(std::size_t points, FileTriangles& listed) {
+    const pugi::xml_node grid = document_.select_node("//Grid[Topology]").node();
+    const pugi::xml_node topology = grid.child("Topology"),
+                         tags = grid.find_child_by_attribute("Attribute", "Name", facet_attribute);
+    const std::string kind = topology_of(grid);
+    const std::size_t nodes = kind == "triangle" ? 3 : kind == "triangle_6" ? 6 : 0;
+    if (nodes == 0 || !tags || rows_of(grid.child("Geometry")) != points) return false;
+    const std::size_t rows = rows_of(topology);
+    if (rows == 0) return true;
+    const std::vector<double> ids = numbers(topology, nodes * rows), numbers_of = numbers(tags, rows);
+    if (ids.size() != nodes * rows || numbers_of.size() != rows)
+      fail(topology, "there are fewer triangles, or tags of them, than its Dimensions say");
+    for (std::size_t i = 0; i < rows; ++i) {
+      Triangle triangle;
+      for (std::size_t k = 0; k < 3; ++k)
+        triangle[k] = index_of(topology, "triangle", i, ids[nodes * i + k], points);
+      const double tag = numbers_of[i];
+      if (tag != std::floor(tag) || std::fabs(tag) > max_exact_whole)
+        fail(tags, "the tag of triangle " + std::to_string(i) + " is " + short_number(tag) +
+                       ", which is no whole number");
+      listed.add(triangle, static_cast<std::int64_t>(tag));
+    }
+    listed.names = names_of(grid, "2");
+    listed.name_form = printable_name;
+    return true;
   }
 
   std::string name_;
@@ -225,14 +272,17 @@ class XdmfReader {
   std::map<std::string, std::unique_ptr<Hdf5Reader>> hdf5_;
   ReadTetMesh result_;
   MidsideNodesRead midside_;
+  KindCounts rounded_;  ///< integers of fields
 };
 
 /// An element with its numbers in the HDF5 file.
 void write_item(TextWriter& out, const std::string& hdf5, const std::string& dataset, std::size_t rows,
                 std::size_t columns, bool integer, int bytes) {
+  // Blanks before a name are not part of it.
+  const char* folder = hdf5.starts_with(' ') ? "./" : "";
   out << "<DataItem Dimensions=\"" << rows << ' ' << columns << "\" NumberType=\""
-      << (integer ? "Int" : "Float") << "\" Precision=\"" << bytes << "\" Format=\"HDF\">" << xml_text(hdf5)
-      << ":/" << dataset << "</DataItem>\n";
+      << (integer ? "Int" : "Float") << "\" Precision=\"" << bytes << "\" Format=\"HDF\">" << folder
+      << xml_text(hdf5) << ":/" << dataset << "</DataItem>\n";
 }
 
 void begin_grid(TextWriter& out, const char* name) {
@@ -295,8 +345,8 @@ void add_fields(Hdf5Writer& file, const std::vector<MeshField>& fields, const ch
 }  // namespace
 
 ReadTetMesh read_xdmf(std::string_view bytes, const std::string& name, const FileReader& read_file,
-                      const ReadTetMeshOptions& options) {
-  return XdmfReader(bytes, name, read_file).read(options);
+                      const ReadTetMeshOptions& options, const std::optional<NamedBytes>& facets) {
+  return XdmfReader(bytes, name, read_file).read(options, facets);
 }
 
 void write_xdmf_numbers(const MeshToWrite& written, const ByteSink& sink) {
@@ -335,7 +385,7 @@ void write_xdmf_facet_numbers(const MeshToWrite& written, const ByteSink& sink) 
     if (midside)
       for (const Index m : midside->of_faces[i]) ids.push_back(first_midside + m);
   }
-  for (const MeshParts::Surface& s : mesh_parts(mesh, {printable_name}).surfaces)
+  for (const MeshParts::Surface& s : mesh_parts(mesh, printable_names()).surfaces)
     for (const std::size_t f : s.faces) numbers[f] = static_cast<std::int32_t>(s.number);
   Hdf5Writer file;
   file.add("triangles", std::span<const std::int64_t>(ids), midside ? 6 : 3);
@@ -353,7 +403,7 @@ void write_xdmf_mesh(const MeshToWrite& written, const std::string& hdf5, const 
   write_item(out, hdf5, "tets", mesh.tets.size(), nodes, true, 8);
   out << "</Topology>\n";
   write_geometry(out, written, hdf5);
-  write_names(out, mesh_parts(mesh, {printable_name}).materials, 3, [](const auto& m) { return m.tag; });
+  write_names(out, mesh_parts(mesh, printable_names()).materials, 3, [](const auto& m) { return m.tag; });
   // The first attribute: it is what dolfinx takes for the tags of a grid.
   out << "<Attribute Name=\"" << xdmf_material << "\" AttributeType=\"Scalar\" Center=\"Cell\">\n";
   write_item(out, hdf5, xdmf_material, mesh.tets.size(), 1, true, 4);
@@ -374,7 +424,7 @@ void write_xdmf_facets(const MeshToWrite& written, const std::string& hdf5, cons
   write_item(out, facet_file(hdf5), "triangles", mesh.interfaces.size(), nodes, true, 8);
   out << "</Topology>\n";
   write_geometry(out, written, hdf5);
-  write_names(out, mesh_parts(mesh, {printable_name}).surfaces, 2, [](const auto& s) { return s.number; });
+  write_names(out, mesh_parts(mesh, printable_names()).surfaces, 2, [](const auto& s) { return s.number; });
   out << "<Attribute Name=\"" << facet_attribute << "\" AttributeType=\"Scalar\" Center=\"Cell\">\n";
   write_item(out, facet_file(hdf5), facet_attribute, mesh.interfaces.size(), 1, true, 4);
   out << "</Attribute>\n</Grid>\n</Domain>\n</Xdmf>\n";

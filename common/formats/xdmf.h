@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -14,10 +15,11 @@ namespace tetwright {
 /// first uniform grid that has some, with numbers in the text or in an HDF5 file beside it, which `read_file`
 /// reads. Attributes of nodes and cells become fields, of which ReadTetMesh describes the material; names of
 /// materials are those that write_xdmf() writes. Mixed topologies and other cells of three dimensions are
-/// refused, other grids are counted in ReadTetMesh::dropped. Throws InputError for anything that is
-/// malformed.
+/// refused, other grids are counted in ReadTetMesh::dropped. `facets` is the file that write_xdmf_facets()
+/// writes, if there is one: its triangles are groups of faces, see take_triangles(); one that is of other
+/// points is counted in ReadTetMesh::dropped. Throws InputError for anything that is malformed.
 ReadTetMesh read_xdmf(std::string_view bytes, const std::string& name, const FileReader& read_file,
-                      const ReadTetMeshOptions& options = {});
+                      const ReadTetMeshOptions& options = {}, const std::optional<NamedBytes>& facets = {});
 
 /// The four files of a mesh: the grids "mesh", with the cell attribute "material" and the mesh's fields, and
 /// "facet_tags", the triangles of the interfaces, if the mesh has any, with the numbers of their groups (see

@@ -7,15 +7,13 @@
 #include <utility>
 
 #include "common/error.h"
+#include "common/measurable.h"
 #include "common/message_text.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Areas and volumes take squares and cubes of input coordinates, which must neither overflow nor vanish;
-/// single precision fields hold 1e38.
-constexpr double max_coordinate = 1e50;
 /// A region's number has 16 bits, and a few are reserved.
 constexpr std::size_t max_materials = 60000;
 
@@ -130,17 +128,6 @@ void validate_materials(const MesherInput& input) {
     }
 }
 
-/// Throws InputError where areas and volumes would overflow or vanish.
-void validate_size(const MesherInput& input) {
-  const double largest = largest_coordinate(input);
-  if (largest > max_coordinate || longest_side(input) < 1 / max_coordinate)
-    throw InputError(
-        input.bodies[0].file, 0,
-        "a size of " + short_number(longest_side(input)) + " with coordinates up to " +
-            short_number(largest) +
-            " is too large or too small to be measured; scale the surface to between 1e-50 and 1e50");
-}
-
 }  // namespace
 
 double longest_side(const MesherInput& input) { return (input.high - input.low).maxCoeff(); }
@@ -160,7 +147,7 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
   input.layers = std::move(layers);
   find_bounding_box(input);
   validate_materials(input);
-  validate_size(input);
+  require_measurable(longest_side(input), largest_coordinate(input), "surface", input.bodies[0].file);
   return input;
 }
 

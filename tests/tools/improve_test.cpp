@@ -34,6 +34,15 @@ TEST(Improve, MakesShapesBetterAtAboutTheSameCount) {
   EXPECT_LE(j["result"]["percent_below_threshold"], j["dense"]["percent_below_threshold"]);
 }
 
+TEST(Improve, SaysThatAllTetsArePoor) {
+  const TemporaryFolder f;
+  write_tet_mesh(TetMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.3, 0.3, 0.01}}, {{0, 1, 2, 3}}, {1}, {}},
+                 f / "flat.mesh");
+  const Answer a = run("improve " + (f / "flat.mesh") + " -o " + (f / "out.mesh"));
+  EXPECT_EQ(a.status, 0);
+  EXPECT_NE(a.err.find("1 tets below 0.1 sr, 100 % of all"), std::string::npos) << a.err;
+}
+
 TEST(Improve, TakesWhatSteersItAndMayReplaceItsInput) {
   const TemporaryFolder f;
   ASSERT_EQ(run("sample two_materials -o " + (f / "m.msh")).status, 0);

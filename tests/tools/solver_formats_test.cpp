@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/formats/formats.h"
+#include "common/mesh/interfaces.h"
 #include "tests/tools/program.h"
 
 namespace tetwright::solver_formats_test {
@@ -72,12 +73,53 @@ TEST_F(SolverFormats, TheBoundaryAsASurfaceAndAMeshWithoutIt) {
   EXPECT_EQ(names, (std::vector<std::string>{"left|outside", "left|right", "right|outside"}));
 }
 
+TEST_F(SolverFormats, WhatAFormatChangesIsSaid) {
+  TetMesh mesh = read_tet_mesh(f / "in.vtu").mesh;
+  for (MaterialTag& tag : mesh.materials) tag = tag == 1 ? -5 : tag;
+  mesh.material_names = {{-5, "same"}, {2, "same"}};
+  mesh.interfaces = find_interfaces(mesh);
+  for (InterfaceTriangle& t : mesh.interfaces) {
+    if (t.pair() != MaterialPair{-5, std::nullopt}) continue;
+    t.patch = 1;
+    mesh.patch_groups[{t.pair(), 1}] = {7, "in let"};
+  }
+  write_tet_mesh(mesh, f / "odd.msh");
+  const auto said = [&](const std::string& out, const std::string& more = "") {
+    const Answer a = run("simplify " + (f / "odd.msh") + " --target-tets 200 -o " + (f / out) + " " + more);
+    EXPECT_LE(a.status, 1) << a.err;
+    return a.err;
+  };
+  const auto expect_said = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text << "lacks: " << part;
+  };
+  const std::string bdf = said("out.bdf");
+  expect_said(bdf, "1 tags of materials (changed, as .bdf cannot hold it: -5 -> 1)");
+  expect_said(bdf, "1 names of materials (changed, as .bdf cannot hold it: \"same\" -> \"same_2\")");
+  expect_said(said("out.mesh"),
+              "1 names of patches (changed, as .mesh cannot hold it: \"in let\" -> \"in_let\")");
+  expect_said(said("out.meshb"), "1 names of patches (not written; .meshb has no place for them");
+  EXPECT_EQ(said("out.meshb", "--boundary " + (f / "b.vtp")).find("names of patches"), std::string::npos);
+  EXPECT_EQ(said("out.msh").find("changed, as"), std::string::npos);
+  EXPECT_EQ(read_tet_mesh(f / "out.mesh").mesh.patch_groups.begin()->second, (FaceGroup{7, "in_let"}));
+}
+
+TEST_F(SolverFormats, SizesThatNothingCanBeComputedForAreRefused) {
+  TetMesh mesh = read_tet_mesh(f / "in.vtu").mesh;
+  for (Vec3& p : mesh.points) p *= 1e150;
+  write_tet_mesh(mesh, f / "huge.vtu");
+  for (const std::string& call :
+       {"check " + (f / "huge.vtu"), "improve " + (f / "huge.vtu") + " -o " + (f / "x.vtu")})
+    expect_refused(call, 3, {"huge.vtu: ", "scale the mesh to between 1e-50 and 1e50"});
+}
+
 TEST_F(SolverFormats, NoFileReplacesAnother) {
   const std::string call = "simplify " + (f / "in.vtu") + " --target-tets 100 -o ";
   expect_refused(call + (f / "m.vtu") + " --boundary " + (f / "m.vtu"), 2, {"for a surface"});
   expect_refused(call + (f / "m.vtu") + " --boundary " + (f / "m.xyz"), 2, {".xyz", ".vtp"});
   expect_refused(call + (f / "m.vtu") + " --output-format inp", 2, {"\"inp\"", "abaqus"});
   expect_refused(call + (f / "no") + "/m.node", 5, {"no"});
+  expect_refused(call + (f / "m.vtk") + " --output-format xdmf", 2,
+                 {"m.vtk: xdmf is several files", ".xdmf"});
   // The files beside an output count, too.
   expect_status("sample two_materials -o " + (f / "x.ele"), 0);
   expect_refused("prepare " + (f / "x.ele") + " --target-tets 9 -o " + (f / "x.node"), 2, {"x.ele"});

@@ -60,6 +60,7 @@ TEST(Streams, OfSamples) {
   }
   expect_refused("sample torus -o -", 2, {"--output-format"});
   expect_refused("sample torus -o - --output-format vtu", 2, {"for a surface", ".ply"});
+  expect_refused("sample organs -o - --output-format ply", 2, {"no format \"ply\" for a volume", ".nrrd"});
   expect_refused("sample torus -o - --output-format glb", 2, {"can be read, not written"});
   expect_refused("sample tet_cube -o - --output-format xdmf", 2, {"xdmf", "several files"});
 }

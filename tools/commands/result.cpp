@@ -10,6 +10,7 @@
 #include "common/formats/mesh_parts.h"
 #include "common/message_text.h"
 #include "tools/commands/report_file.h"
+#include "tools/commands/unwritten.h"
 #include "tools/held_tets.h"
 #include "tools/limiting_rules.h"
 #include "tools/report.h"
@@ -194,7 +195,7 @@ void report_poor_shapes(const CommandLine& line, RunReport& report) {
   // --only-below has its own report.
   if (line.min_solid_angle_given || line.only_below > 0 || result.below_percent <= poor_note_percent) return;
   char what[100];
-  std::snprintf(what, sizeof what, "tets below %.6g sr, %.2g %% of all, the smallest at %.3g sr",
+  std::snprintf(what, sizeof what, "tets below %.6g sr, %.3g %% of all, the smallest at %.3g sr",
                 line.min_solid_angle, result.below_percent, result.min_solid_angle);
   const std::string held =
       report.held_by_input == 0
@@ -338,7 +339,7 @@ void find_changed_creases(const CommandLine& line, const TetMesh& mesh, RunRepor
   const CreaseFidelity& c = *report.crease_fidelity;
   if (c.same()) return;
   char distance[80];
-  std::snprintf(distance, sizeof distance, "%.3g (%.2g %% of the diagonal)", c.max_distance,
+  std::snprintf(distance, sizeof distance, "%.3g (%.3g %% of the diagonal)", c.max_distance,
                 100 * c.max_distance / c.diagonal);
   std::string text = std::string("creases are off by up to ") + distance + " at " + place_text(c.place);
   if (c.lost_corners > 0)
@@ -398,21 +399,6 @@ void find_notes(const CommandLine& line, const std::vector<std::string>& notes, 
   report.shortfall.push_back({"notes", 0, static_cast<double>(notes.size()), "--strict",
                               "--strict: " + std::to_string(notes.size()) +
                                   (notes.size() == 1 ? " note: " : " notes, the first: ") + notes.front()});
-}
-
-/// What the format of the output has no place for, and no other file that is written.
-void find_unwritten(const CommandLine& line, const TetMesh& mesh, RunReport& report) {
-  const TetFormatInfo format = written_tet_format(line.output, line.output_format);
-  const std::string no_place = "not written; " + format.extension + " has no place for them";
-  const auto note = [&](const std::string& what, std::size_t count, const std::string& why) {
-    if (count > 0) report.findings.push_back({line.output, {what, count, {}, why}});
-  };
-  if (line.boundary.empty() && line.no_boundary)
-    note("named patches", report.patches.size(), "not written, as --no-boundary asks");
-  else if (line.boundary.empty() && !format.surfaces)
-    note("named patches", report.patches.size(), no_place + ", but --boundary FILE has, and .msh");
-  if (!format.names) note("names of materials", mesh.material_names.size(), no_place);
-  if (!format.fields) note("fields", mesh.point_fields.size() + mesh.cell_fields.size(), no_place);
 }
 
 /// The mesh without the triangles of its interfaces.

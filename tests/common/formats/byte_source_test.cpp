@@ -57,6 +57,24 @@ TEST(ByteSource, MaxLeftHoldsForTheBestCompression) {
   EXPECT_EQ(source.skip(bytes.size()), bytes.size());
 }
 
+TEST(ByteSource, WhatEndsBeforeItsChecksumIsRefused) {
+  const std::string bytes(3000, 'a');
+  for (const int wrapper : {31, 15})
+    for (const std::size_t lost : {1u, 4u}) {
+      const std::string packed = deflated(bytes, wrapper), cut = packed.substr(0, packed.size() - lost);
+      ByteSource source(cut, Packing::deflate, "f");
+      EXPECT_TRUE(source.take(bytes.size()) == bytes);
+      const std::string message = error_of<InputError>([&] { source.check_end(); });
+      EXPECT_EQ(message.find("f: the compressed data end early"), 0u) << message;
+    }
+  // What follows what was taken is looked at, too.
+  std::string packed = deflated(bytes + std::string(100000, 'b'));
+  packed.pop_back();
+  ByteSource source(packed, Packing::deflate, "f");
+  (void)source.take(bytes.size());
+  EXPECT_NE(error_of<InputError>([&] { source.check_end(); }), "");
+}
+
 TEST(ByteSource, DamagedData) {
   for (const std::size_t at : {12u, 22u, 27u}) {  // in the data, the checksum and the size
     std::string packed = deflated("some bytes or other, many of them");

@@ -67,11 +67,11 @@ TEST_F(Formats, VolumesThroughFiles) {
 
 TEST_F(Formats, RoundTripThroughFiles) {
   for (const char* name : {"a.vtu", "a.msh", "a.mesh"}) {
-    write_tet_mesh(tricky_tets(), path(name));
+    write_tet_mesh(tricky_measurable_tets(), path(name));
     const TetMesh back = read_tet_mesh(path(name)).mesh;
-    EXPECT_TRUE(same_bits(back.points, tricky_tets().points)) << name;
-    EXPECT_EQ(back.tets, tricky_tets().tets);
-    EXPECT_EQ(back.materials, tricky_tets().materials);
+    EXPECT_TRUE(same_bits(back.points, tricky_measurable_tets().points)) << name;
+    EXPECT_EQ(back.tets, tricky_measurable_tets().tets);
+    EXPECT_EQ(back.materials, tricky_measurable_tets().materials);
   }
   for (const char* name : {"a.off", "a.obj", "a.ply"}) {
     write_surface(tricky_surface(), path(name));
@@ -83,10 +83,10 @@ TEST_F(Formats, RoundTripThroughFiles) {
 TEST_F(Formats, EveryFormatOfTetMeshesIsWritten) {
   for (const TetFormatInfo& format : written_tet_formats()) {
     const std::string file = path("m" + format.extension);
-    write_tet_mesh(tricky_tets(), file, nullptr, format.name);
+    write_tet_mesh(tricky_measurable_tets(), file, nullptr, format.name);
     EXPECT_EQ(written_tet_format(file, format.name).name, format.name);
     if (file_kind(file) == FileKind::unknown) continue;  // only written
-    EXPECT_EQ(read_tet_mesh(file).mesh.tets.size(), tricky_tets().tets.size()) << format.name;
+    EXPECT_EQ(read_tet_mesh(file).mesh.tets.size(), tricky_measurable_tets().tets.size()) << format.name;
   }
   EXPECT_EQ(files_of_tet_mesh("a/b.ELE"), (std::vector<std::string>{"a/b.NODE", "a/b.ELE", "a/b.FACE"}));
   EXPECT_EQ(files_of_tet_mesh("a/b.x", "vtu"), (std::vector<std::string>{"a/b.x"}));
@@ -95,6 +95,44 @@ TEST_F(Formats, EveryFormatOfTetMeshesIsWritten) {
   const std::string message = error_of<UsageError>([] { (void)written_tet_format("a.msh", "msh5"); });
   EXPECT_NE(message.find("no format \"msh5\""), std::string::npos) << message;
   EXPECT_NE(message.find("vtu msh22 msh41 msh41-binary"), std::string::npos) << message;
+}
+
+TEST_F(Formats, SeveralFilesHaveExtensionsOfTheirOwn) {
+  for (const auto& [name, format] : {std::pair{"m.vtk", "xdmf"}, {"m.h5", "xdmf"}, {"m.xdmf", "tetgen"}}) {
+    const std::string message =
+        error_of<UsageError>([&, n = name, f = format] { write_tet_mesh(one_tet(), path(n), nullptr, f); });
+    EXPECT_NE(message.find(std::string(name) + ": " + format + " is several files"), std::string::npos)
+        << message;
+  }
+  EXPECT_EQ(files(), 0u);
+  write_tet_mesh(one_tet(), path("m"), nullptr, "tetgen");
+  EXPECT_EQ(files(), 3u);
+}
+
+TEST_F(Formats, MeshesThatNothingCanBeComputedForAreRefused) {
+  TetMesh mesh = one_tet();
+  for (const double scale : {1e300, 1e150, 1e-60, 1e-300, 1e49, 1e-49}) {
+    for (std::size_t i = 0; i < 4; ++i) mesh.points[i] = one_tet().points[i] * scale;
+    write_tet_mesh(mesh, path("m.vtu"));
+    if (scale == 1e49 || scale == 1e-49) {
+      EXPECT_EQ(read_tet_mesh(path("m.vtu")).mesh.points, mesh.points);
+      continue;
+    }
+    const std::string message = error_of<InputError>([&] { (void)read_tet_mesh(path("m.vtu")); });
+    EXPECT_NE(message.find("m.vtu: a size of "), std::string::npos) << message;
+    EXPECT_NE(message.find("scale the mesh to between 1e-50 and 1e50"), std::string::npos) << message;
+  }
+}
+
+TEST_F(Formats, AFormatThatAnotherKindHas) {
+  const auto refusal = [&](FileKind kind, const char* format) {
+    return error_of<UsageError>([&] { check_output_path("-", kind, format); });
+  };
+  EXPECT_EQ(refusal(FileKind::volume, "ply"),
+            "there is no format \"ply\" for a volume of labels; known are .nrrd");
+  EXPECT_EQ(
+      refusal(FileKind::surface, ".glb"),
+      "the format \".glb\" can be read, not written, for a surface; known are .ply .obj .stl .off .vtp");
 }
 
 TEST_F(Formats, GroupsOfSurfaces) {
@@ -123,7 +161,7 @@ TEST_F(Formats, UnknownExtensions) {
   // Formats of surfaces can't hold a tet mesh.
   (void)error_of<UsageError>([&] { check_output_path(path("x.ply")); });
   (void)error_of<UsageError>([&] { check_output_path(path("x.vtu"), FileKind::surface); });
-  (void)error_of<UsageError>([&] { write_tet_mesh(tricky_tets(), path("x.ply")); });
+  (void)error_of<UsageError>([&] { write_tet_mesh(tricky_measurable_tets(), path("x.ply")); });
   (void)error_of<UsageError>([&] { (void)read_tet_mesh(path("x.ply")); });
   EXPECT_EQ(files(), 0u);
 }
@@ -152,7 +190,7 @@ TEST_F(Formats, EitherNameOfAPairWillDo) {
 }
 
 TEST_F(Formats, OptionsReachTheReader) {
-  TetMesh mesh = tricky_tets();
+  TetMesh mesh = tricky_measurable_tets();
   mesh.cell_fields = {{"region", 1, true, {4, 5, 6}}};
   write_tet_mesh(mesh, path("a.vtu"));
   const ReadTetMesh read = read_tet_mesh(path("a.vtu"), {.material_field = "region"});

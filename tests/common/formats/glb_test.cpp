@@ -88,6 +88,19 @@ TEST(Glb, NodesAndMaterialsAreGroups) {
   EXPECT_EQ(mesh.triangle_groups, (std::vector<std::uint32_t>{0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2}));
 }
 
+TEST(Glb, WithoutAMeshInASceneIsNoPointCloud) {
+  const auto refusal = [](const json& scene) { return error_of<InputError>([&] { (void)read(scene); }); };
+  json scene = tet_scene();
+  scene.erase("scenes");
+  scene.erase("scene");
+  EXPECT_EQ(refusal(scene).find("f: it has meshes, but no scene"), 0u) << refusal(scene);
+  scene.erase("meshes");
+  EXPECT_EQ(refusal(scene).find("f: there is no mesh in it"), 0u) << refusal(scene);
+  scene = tet_scene();
+  scene["scenes"][0]["nodes"] = json::array();
+  EXPECT_EQ(refusal(scene).find("f: its scene shows none of its meshes"), 0u) << refusal(scene);
+}
+
 TEST(Glb, StripsAndFans) {
   json scene = tet_scene();
   json& primitive = scene["meshes"][0]["primitives"][0];

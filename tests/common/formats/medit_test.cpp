@@ -112,6 +112,9 @@ TEST(Medit, NamesAndNumbersThatCannotBeKeptAreComments) {
       text.find("# reference 1: 1|outside\n# reference 2: -5\n# reference 9: \"K\xef\xbf\xbdrper_A\"\n"),
       std::string::npos)
       << text;
+  EXPECT_EQ(
+      read_medit(text, "f").mesh.patch_groups,
+      (std::map<InterfacePatch, FaceGroup>{{{pair, 1}, {2, ""}}, {{pair, 2}, {9, "K\xef\xbf\xbdrper_A"}}}));
 }
 
 TEST(Medit, Surfaces) {

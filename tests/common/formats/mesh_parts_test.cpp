@@ -76,10 +76,10 @@ TEST(MeshParts, FacesOfTetsAreThoseOfTheInterfaces) {
 }
 
 TEST(MeshParts, NumbersAbove0) {
-  EXPECT_EQ(positive_numbers({5, -1, 0, 2, 2}, 100),
-            (std::map<MaterialTag, std::int64_t>{{-1, 1}, {0, 3}, {2, 2}, {5, 5}}));
+  EXPECT_EQ(positive_numbers(tags_of({5, -1, 0, 2, 2}), 100),
+            (std::map<std::int64_t, std::int64_t>{{-1, 1}, {0, 3}, {2, 2}, {5, 5}}));
   EXPECT_EQ(positive_numbers({2147483647}, 99'999'999),
-            (std::map<MaterialTag, std::int64_t>{{2147483647, 1}}));
+            (std::map<std::int64_t, std::int64_t>{{2147483647, 1}}));
 }
 
 TEST(MeshParts, TheInterfacesAsASurface) {

@@ -22,6 +22,22 @@ TEST(Nastran, WhatIsWrittenIsReadWithItsNames) {
   EXPECT_EQ(back.material_field, "PID");
 }
 
+TEST(Nastran, NumbersOfSurfacesFitTheirFields) {
+  TetMesh mesh = mesh_with_surfaces();
+  std::uint16_t patch = 0;
+  for (InterfaceTriangle& t : mesh.interfaces)
+    if (t.material == 1 && !t.other && patch < 2) {
+      t.patch = ++patch;
+      mesh.patch_groups[{t.pair(), patch}] = {123456780 + patch, patch == 1 ? "inlet" : "outlet"};
+    }
+  ASSERT_EQ(patch, 2);
+  const std::string text = text_of(write_nastran, mesh);
+  EXPECT_EQ(text.find("12345678"), std::string::npos) << text;
+  std::vector<std::string> names;
+  for (const auto& [of, group] : read_nastran(text, "f").mesh.patch_groups) names.push_back(group.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"inlet", "outlet"}));
+}
+
 TEST(Nastran, LinesAreOfFixedFields) {
   TetMesh mesh = tricky_tets();
   const MidsideNodes midside = straight_midside_nodes(mesh);

@@ -25,6 +25,13 @@ inline TetMesh tricky_tets() {
   return mesh;
 }
 
+/// Without coordinates that are too large for read_tet_mesh().
+inline TetMesh tricky_measurable_tets() {
+  TetMesh mesh = tricky_tets();
+  mesh.points[1] = {-1e49, 1.7976931348623157e49, 123456789012345678.0};
+  return mesh;
+}
+
 inline TriangleMesh tricky_surface() { return {tricky_points(), {{0, 1, 2}, {4, 3, 2}, {1, 0, 4}}}; }
 
 inline bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {

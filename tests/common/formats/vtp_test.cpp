@@ -76,6 +76,7 @@ TEST(Vtp, ArraysOfPointsAreFields) {
 
 TEST(Vtp, BadInput) {
   expect_input_error(read_vtp, "", "");
+  expect_input_error(read_vtp, "<VTKFile type=\"PolyData\"></VTKFile>", "no element PolyData");
   expect_input_error(read_vtp, "<VTKFile type=\"UnstructuredGrid\"/>", "PolyData", "UnstructuredGrid");
   expect_input_error(read_vtp, file("", "0 1 2 9 0 1 4"), "polygon 0", "point 9");
   expect_input_error(read_vtp, file("", "0 1 2 3 0 1"), "polygon 1", "damaged");

@@ -290,6 +290,22 @@ TEST(Vtu, FieldsOfTetsAmongOtherCells) {
   EXPECT_EQ(mesh.cell_fields, (std::vector<MeshField>{{"stress", 3, false, {4, 5, 6}}}));
 }
 
+TEST(Vtu, IntegersThatDoublesCannotHoldAreSaid) {
+  const auto dropped = [](std::int64_t value) {
+    return read_vtu(
+               ascii_file({field("material", 3), array<std::int64_t>("Int64", "id", {value, value}, false)}),
+               "f")
+        .dropped;
+  };
+  const auto said = [&](std::int64_t value) {
+    const std::vector<Dropped> all = dropped(value);
+    return std::find(all.begin(), all.end(),
+                     Dropped{"last digits of integers beyond 2^53 in the field \"id\"", 1}) != all.end();
+  };
+  EXPECT_TRUE(said((1LL << 60) + 1));
+  EXPECT_FALSE(said(1LL << 53));
+}
+
 TEST(Vtu, FieldsThatDoNotFit) {
   const auto stress = [](const std::vector<double>& values, const std::string& more = "") {
     return ascii_file({field("material", 3), array<double>("Float64", "stress", values, false, more)});
@@ -307,6 +323,8 @@ TEST(Vtu, BadInput) {
   expect_input_error(read_vtu, "no xml", "not XML");
   expect_input_error(read_vtu, "<html></html>", "VTKFile");
   expect_input_error(read_vtu, "<VTKFile", "byte", "not XML");
+  expect_input_error(read_vtu, "<VTKFile type=\"UnstructuredGrid\"></VTKFile>",
+                     "no element UnstructuredGrid");
   expect_input_error(read_vtu, replaced(good, "\"UnstructuredGrid\"", "\"PolyData\""), "\"PolyData\"",
                      "UnstructuredGrid");
   expect_input_error(read_vtu,

@@ -35,7 +35,7 @@ ReadTetMesh read(const std::string& text) {
 }
 
 TEST_F(Xdmf, RoundTripKeepsEveryBit) {
-  TetMesh mesh = tricky_tets();
+  TetMesh mesh = tricky_measurable_tets();
   mesh.point_fields = {{"a <b>", 3, false, std::vector<double>(15, 0.1)}, {"n", 1, true, {1, 2, 3, 4, 5e9}}};
   mesh.cell_fields = {{"id", 1, true, {1, 2, 3}}};
   write_tet_mesh(mesh, path("m.xdmf"));
@@ -67,6 +67,32 @@ TEST_F(Xdmf, FacetsHaveAFileOfTheirOwn) {
   EXPECT_EQ(get(path("M_FACETS.H5")), get(path("m_facets.h5")));
 }
 
+TEST_F(Xdmf, PatchesAreReadFromTheFacetsBesideIt) {
+  const TetMesh mesh = mesh_with_surfaces();
+  const MidsideNodes midside = straight_midside_nodes(mesh);
+  for (const char* name : {"m.xdmf", "M.XDMF", " y.xdmf"})
+    for (const bool curved : {false, true}) {
+      SCOPED_TRACE(name);
+      write_tet_mesh({mesh, curved ? &midside : nullptr}, path(name));
+      const ReadTetMesh back = read_tet_mesh(path(name));
+      EXPECT_EQ(back.mesh.patch_groups, mesh.patch_groups);
+      ASSERT_FALSE(back.dropped.empty());
+      EXPECT_EQ(back.dropped.back(), (Dropped{"boundary and interface triangles of 3 groups", 6, true}));
+    }
+}
+
+TEST_F(Xdmf, FacetsOfOtherPointsAreSaid) {
+  write_tet_mesh(one_tet(), path("m.xdmf"));
+  EXPECT_TRUE(read_tet_mesh(path("m.xdmf")).dropped.empty());  // there are none in the file
+  write_tet_mesh(mesh_with_surfaces(), path("a.xdmf"));
+  put(path("m_facets.xdmf"), get(path("a_facets.xdmf")));
+  EXPECT_EQ(read_tet_mesh(path("m.xdmf")).dropped,
+            (std::vector<Dropped>{{"facet files of other points (\"m_facets.xdmf\")", 1}}));
+  put(path("m_facets.xdmf"), "cut");
+  EXPECT_NE(error_of<InputError>([&] { (void)read_tet_mesh(path("m.xdmf")); }).find("m_facets.xdmf"),
+            std::string::npos);
+}
+
 TEST_F(Xdmf, TenNodesByTheirCorners) {
   const TetMesh mesh = mesh_with_surfaces();
   const MidsideNodes midside = straight_midside_nodes(mesh);
@@ -74,7 +100,7 @@ TEST_F(Xdmf, TenNodesByTheirCorners) {
   const ReadTetMesh back = read_tet_mesh(path("m.xdmf"));
   EXPECT_EQ(back.mesh.points, mesh.points);
   EXPECT_EQ(back.mesh.tets, mesh.tets);
-  ASSERT_EQ(back.dropped.size(), 1u);
+  ASSERT_EQ(back.dropped.size(), 2u);
   EXPECT_EQ(back.dropped[0].count, 9u);
 }
 

@@ -1,0 +1,26 @@
+#include "common/measurable.h"
+
+#include "common/error.h"
+#include "common/message_text.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Its cube is far from what a double holds, and so is what is made of that. Single precision fields hold
+/// 1e38.
+constexpr double max_coordinate = 1e50;
+
+}  // namespace
+
+void require_measurable(double longest_side, double largest_coordinate, const char* what,
+                        const std::string& file) {
+  if (largest_coordinate <= max_coordinate && longest_side >= 1 / max_coordinate) return;
+  throw InputError(file, 0,
+                   "a size of " + short_number(longest_side) + " with coordinates up to " +
+                       short_number(largest_coordinate) +
+                       " is too large or too small to be measured; scale the " + what +
+                       " to between 1e-50 and 1e50");
+}
+
+}  // namespace tetwright

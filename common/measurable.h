@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+namespace tetwright {
+
+/// Throws InputError for `what` ("surface", "mesh") of `file` if areas and volumes, which take squares and
+/// cubes of coordinates, would overflow or vanish. Both in input units: the longest side of its box, and the
+/// largest absolute value of a coordinate.
+void require_measurable(double longest_side, double largest_coordinate, const char* what,
+                        const std::string& file);
+
+}  // namespace tetwright
