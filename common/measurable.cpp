@@ -1,6 +1,9 @@
 #include "common/measurable.h"
 
+#include <algorithm>
+
 #include "common/error.h"
+#include "common/geometry/box_tree.h"
 #include "common/message_text.h"
 
 namespace tetwright {
@@ -21,6 +24,15 @@ void require_measurable(double longest_side, double largest_coordinate, const ch
                        short_number(largest_coordinate) +
                        " is too large or too small to be measured; scale the " + what +
                        " to between 1e-50 and 1e50");
+}
+
+void require_measurable(const TetMesh& mesh, const std::string& file) {
+  Box3 box;
+  for (const Tet& tet : mesh.tets)
+    for (const Index p : tet) box.add(mesh.points[p]);
+  double largest = 0;
+  for (const Vec3& p : mesh.points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  require_measurable((box.high - box.low).maxCoeff(), largest, "mesh", file);
 }
 
 }  // namespace tetwright

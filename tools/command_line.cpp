@@ -38,9 +38,8 @@ constexpr std::array<CommandEntry, 7> commands{{
      "is not valid (a warning, such as an unused point, leaves it valid)",
      add_check},
     {Command::batch,
-     "Carries out many jobs in one process, several at a time, and goes on where a call before ended; status "
-     "1 "
-     "unless all ended with 0",
+     "Carries out many jobs, several at a time, and goes on where a call before ended; status 1 unless all "
+     "ended with 0",
      add_batch},
     {Command::sample, "Writes a built-in sample", add_sample},
 }};

@@ -122,6 +122,10 @@ class FolderChange {
   sigset_t before_;
 };
 
+constexpr const char* temporary_ending = ".tmp";
+
+std::string temporary_beginning(int process) { return ".tetwright-" + std::to_string(process) + "-"; }
+
 /// A file that is removed again unless it is renamed.
 class TemporaryFile {
  public:
@@ -129,7 +133,7 @@ class TemporaryFile {
     static std::atomic<unsigned> number{0};
     // Other processes may write into the same folder; one that crashed may have had our number.
     for (int attempt = 0; attempt < 100 && file_ < 0; ++attempt) {
-      path_ = folder + "/.tetwright-" + std::to_string(getpid()) + "-" + std::to_string(number++) + ".tmp";
+      path_ = folder + "/" + temporary_beginning(getpid()) + std::to_string(number++) + temporary_ending;
       const FolderChange change;
       file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
       if (file_ >= 0) {
@@ -335,6 +339,17 @@ void write_file_atomically(const std::string& path, const std::function<void(con
 }
 
 std::string read_standard_input() { return read_all(STDIN_FILENO, "standard input", 0); }
+
+void remove_temporary_files(const std::string& path, int process) noexcept try {
+  const std::string beginning = temporary_beginning(process);
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_of(real_path(path)), error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(beginning) && name.ends_with(temporary_ending)) fs::remove(entry.path(), error);
+  }
+} catch (...) {
+  // They take room and harm nobody.
+}
 
 bool abandon_output_files() noexcept {
   abandoned = true;

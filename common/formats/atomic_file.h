@@ -63,6 +63,9 @@ class OutputFiles {
 void write_file_atomically(const std::string& path, std::string_view bytes);
 void write_file_atomically(const std::string& path, const std::function<void(const ByteSink&)>& content);
 
+/// Removes what a process that has ended without its own clean-up has left beside the file `path`.
+void remove_temporary_files(const std::string& path, int process) noexcept;
+
 /// For handlers of signals and of std::terminate that end the process: removes the files that were written
 /// but not committed. From then on no other thread creates or renames one, so that the process must end.
 /// Returns whether any file was committed in the life of the process. Async-signal-safe.

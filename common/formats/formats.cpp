@@ -6,31 +6,24 @@
 
 #include "common/error.h"
 #include "common/formats/3mf.h"
-#include "common/formats/abaqus.h"
 #include "common/formats/atomic_file.h"
-#include "common/formats/febio.h"
 #include "common/formats/file_names.h"
 #include "common/formats/glb.h"
 #include "common/formats/inr.h"
 #include "common/formats/medit.h"
-#include "common/formats/medit_binary.h"
 #include "common/formats/metaimage.h"
 #include "common/formats/msh.h"
-#include "common/formats/msh_groups.h"
-#include "common/formats/nastran.h"
 #include "common/formats/nifti.h"
 #include "common/formats/nrrd.h"
 #include "common/formats/obj.h"
 #include "common/formats/off.h"
 #include "common/formats/ply.h"
 #include "common/formats/stl.h"
-#include "common/formats/tetgen.h"
+#include "common/formats/tet_formats.h"
 #include "common/formats/text_scanner.h"
 #include "common/formats/vtk.h"
 #include "common/formats/vtp.h"
 #include "common/formats/vtu.h"
-#include "common/formats/xdmf.h"
-#include "common/geometry/box_tree.h"
 #include "common/measurable.h"
 
 namespace tetwright {
@@ -68,162 +61,6 @@ constexpr std::array<SurfaceFormat, 3> shared_formats{
     {{".msh", read_msh_surface, nullptr, read_msh_surface_with_fields},
      {".mesh", read_medit_surface, nullptr, nullptr},
      {".vtk", read_vtk_surface, nullptr, read_vtk_surface_with_fields}}};
-
-ReadTetMesh read_xdmf_files(const std::string& path, const ReadTetMeshOptions& options) {
-  const std::string file = with_extension(path, "_facets.xdmf");
-  std::string bytes;
-  std::optional<NamedBytes> facets;
-  if (std::error_code error; std::filesystem::exists(file, error))
-    facets = NamedBytes{bytes = read_whole_file(file), file};
-  return read_xdmf(read_whole_file(path), path, read_whole_file, options, facets);
-}
-
-/// The .node, .ele and, where there is one, .face file of one name, that of .node or .ele.
-ReadTetMesh read_tetgen_files(const std::string& path, const ReadTetMeshOptions& options) {
-  const auto name = [&](const char* extension) {
-    return extension_of(path) == extension ? path : with_extension(path, extension);
-  };
-  const std::string node = name(".node"), ele = name(".ele"), face = name(".face");
-  const std::string node_bytes = read_whole_file(node), ele_bytes = read_whole_file(ele);
-  std::string face_bytes;
-  std::optional<NamedBytes> faces;
-  if (std::error_code error; std::filesystem::exists(face, error))
-    faces = NamedBytes{face_bytes = read_whole_file(face), face};
-  return read_tetgen({node_bytes, node}, {ele_bytes, ele}, faces, options);
-}
-
-/// A file that a tet mesh is written as.
-struct WrittenFile {
-  const char* extension;
-  /// `first` is the name, without folders, of the first file that the mesh is written as.
-  void (*write)(const MeshToWrite& mesh, const std::string& first, const ByteSink& sink);
-};
-
-template <void (*write)(const MeshToWrite&, const ByteSink&)>
-void write_alone(const MeshToWrite& mesh, const std::string& /*first*/, const ByteSink& sink) {
-  write(mesh, sink);
-}
-
-template <std::string (*write)(const MeshToWrite&)>
-void write_as_one(const MeshToWrite& mesh, const std::string& /*first*/, const ByteSink& sink) {
-  sink(write(mesh));
-}
-
-template <NameRules (*rules)()>
-MeshParts parts_by(const TetMesh& mesh) {
-  return names_of_parts(mesh, rules());
-}
-constexpr auto printable_parts = parts_by<printable_names>;
-
-struct TetFormat {
-  const char* extension;
-  const char* name;
-  /// Of a format of one file, and of one of several; both null: only written.
-  ReadTetMesh (*read)(std::string_view bytes, const std::string& name,
-                      const ReadTetMeshOptions& options) = nullptr;
-  ReadTetMesh (*read_files)(const std::string& path, const ReadTetMeshOptions& options) = nullptr;
-  std::vector<WrittenFile> write;  ///< empty: only read
-  /// What the writer calls the parts of a mesh.
-  MeshParts (*parts)(const TetMesh& mesh) = printable_parts;
-  bool point_fields = true;  ///< when it is read
-  // As in TetFormatInfo.
-  bool names = true, surfaces = true, patch_names = true, fields = true, second_order = false;
-};
-
-const std::vector<TetFormat>& tet_formats() {
-  static const std::vector<WrittenFile> tetgen{{".node", write_alone<write_tetgen_node>},
-                                               {".ele", write_alone<write_tetgen_ele>},
-                                               {".face", write_alone<write_tetgen_face>}};
-  static const std::vector<WrittenFile> xdmf{{".h5", write_alone<write_xdmf_numbers>},
-                                             {".xdmf", write_xdmf_mesh},
-                                             {"_facets.h5", write_alone<write_xdmf_facet_numbers>},
-                                             {"_facets.xdmf", write_xdmf_facets}};
-  static const std::vector<TetFormat> formats{{.extension = ".vtu",
-                                               .name = "vtu",
-                                               .read = read_vtu,
-                                               .write = {{".vtu", write_alone<write_vtu>}},
-                                               .parts = vtu_parts,
-                                               .surfaces = false,
-                                               .second_order = true},
-                                              {.extension = ".msh",
-                                               .name = "msh22",
-                                               .read = read_msh,
-                                               .write = {{".msh", write_as_one<write_msh>}},
-                                               .parts = msh_parts,
-                                               .second_order = true},
-                                              {.extension = ".msh",
-                                               .name = "msh41",
-                                               .read = read_msh,
-                                               .write = {{".msh", write_alone<write_msh41>}},
-                                               .parts = msh_parts,
-                                               .second_order = true},
-                                              {.extension = ".msh",
-                                               .name = "msh41-binary",
-                                               .read = read_msh,
-                                               .write = {{".msh", write_alone<write_msh41_binary>}},
-                                               .parts = msh_parts,
-                                               .second_order = true},
-                                              {.extension = ".mesh",
-                                               .name = "medit",
-                                               .read = read_medit,
-                                               .write = {{".mesh", write_as_one<write_medit>}},
-                                               .parts = medit_parts,
-                                               .point_fields = false,
-                                               .names = false,
-                                               .fields = false},
-                                              {.extension = ".meshb",
-                                               .name = "medit-binary",
-                                               .read = read_medit_binary,
-                                               .write = {{".meshb", write_alone<write_medit_binary>}},
-                                               .parts = medit_parts,
-                                               .point_fields = false,
-                                               .names = false,
-                                               .patch_names = false,
-                                               .fields = false},
-                                              {.extension = ".vtk",
-                                               .name = "vtk",
-                                               .read = read_vtk,
-                                               .write = {{".vtk", write_alone<write_vtk>}},
-                                               .second_order = true},
-                                              {.extension = ".inp",
-                                               .name = "abaqus",
-                                               .read = read_abaqus,
-                                               .write = {{".inp", write_alone<write_abaqus>}},
-                                               .parts = parts_by<abaqus_names>,
-                                               .point_fields = false,
-                                               .fields = false,
-                                               .second_order = true},
-                                              {.extension = ".bdf",
-                                               .name = "nastran",
-                                               .read = read_nastran,
-                                               .write = {{".bdf", write_alone<write_nastran>}},
-                                               .parts = parts_by<nastran_names>,
-                                               .point_fields = false,
-                                               .fields = false,
-                                               .second_order = true},
-                                              {.extension = ".feb",
-                                               .name = "febio",
-                                               .write = {{".feb", write_alone<write_febio>}},
-                                               .parts = parts_by<febio_names>,
-                                               .fields = false,
-                                               .second_order = true},
-                                              {.extension = ".xdmf",
-                                               .name = "xdmf",
-                                               .read_files = read_xdmf_files,
-                                               .write = xdmf,
-                                               .second_order = true},
-                                              {.extension = ".node",
-                                               .name = "tetgen",
-                                               .read_files = read_tetgen_files,
-                                               .write = tetgen,
-                                               .fields = false},
-                                              {.extension = ".ele",
-                                               .name = "tetgen",
-                                               .read_files = read_tetgen_files,
-                                               .write = tetgen,
-                                               .fields = false}};
-  return formats;
-}
 
 template <LabelVolume (*read)(std::string_view, const std::string&)>
 LabelVolume read_alone(std::string_view bytes, const std::string& name, const FileReader& /*others*/) {
@@ -354,13 +191,7 @@ const Format& streamed(const Format& format, const std::string& name) {
 
 /// The mesh, whose sizes must be such that something can be computed.
 ReadTetMesh measurable(ReadTetMesh read, const std::string& name) {
-  const TetMesh& mesh = read.mesh;
-  Box3 box;
-  for (const Tet& tet : mesh.tets)
-    for (const Index p : tet) box.add(mesh.points[p]);
-  double largest = 0;
-  for (const Vec3& p : mesh.points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
-  require_measurable((box.high - box.low).maxCoeff(), largest, "mesh", name);
+  require_measurable(read.mesh, name);
   return read;
 }
 

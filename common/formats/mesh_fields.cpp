@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t max_name_size = 200;  // bytes
 
-bool is_whole(double value) { return value == std::floor(value) && std::fabs(value) <= max_exact_whole; }
+bool is_whole(double value) { return value == std::floor(value) && std::fabs(value) < max_exact_whole; }
 
 /// The field's values as materials of `file`.
 std::vector<MaterialTag> materials_of(const MeshField& field, const std::string& file) {
@@ -107,7 +107,7 @@ void take_integers(MeshField& field, KindCounts& rounded) {
   const auto exact =
       static_cast<std::size_t>(std::count_if(field.values.begin(), field.values.end(), is_whole));
   field.integer = exact == field.values.size();
-  rounded.add("last digits of integers beyond 2^53 in the field " + in_quotes(field.name),
+  rounded.add("exact values of integers from 2^53 on in the field " + in_quotes(field.name),
               field.values.size() - exact);
 }
 

@@ -9,7 +9,7 @@
 
 namespace tetwright {
 
-/// Doubles represent every whole number up to this one.
+/// Doubles represent every whole number up to this one. From it on they may stand for another one.
 inline constexpr double max_exact_whole = 0x1p53;
 
 /// The name in a form that every format can hold: valid UTF-8 of at most 200 bytes, with underscores for
@@ -21,7 +21,7 @@ std::string field_name(std::string_view name);
 std::vector<std::string> field_names_to_write(const std::vector<MeshField>& fields,
                                               std::vector<std::string> taken);
 
-/// Whether every value is whole and exactly represented (at most 2^53 in absolute value).
+/// Whether every value is whole and exactly represented (below 2^53 in absolute value).
 bool all_whole(const MeshField& field);
 
 /// Marks a field that the file has as integers as such, unless doubles are too short for one of them: then it

@@ -1,5 +1,6 @@
 #include "common/formats/name_changes.h"
 
+#include "common/formats/mesh_parts.h"
 #include "common/message_text.h"
 
 namespace tetwright {

@@ -3,10 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "common/formats/mesh_parts.h"
 #include "common/tet_mesh.h"
 
 namespace tetwright {
+
+struct MeshParts;
 
 /// What a file has in place of a number or name of the user's, as texts; names are in quotes.
 struct NameChange {

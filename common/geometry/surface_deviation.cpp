@@ -19,7 +19,8 @@ namespace tetwright {
 namespace {
 
 constexpr std::size_t max_pieces = std::size_t{1} << 22;
-constexpr int max_levels = 150;  ///< of cuts in two: beyond, the bits of coordinates are used up
+/// Of cuts in two. Ties between items that do not meet, as duplicates of each other, have no end.
+constexpr int max_levels = 150;
 /// Every so many levels pieces are cut in the middle of their longest edge, so that they shrink.
 constexpr int halving_period = 4;
 constexpr int bisections = 40;  ///< to find where another item becomes the nearest

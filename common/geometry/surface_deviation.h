@@ -34,7 +34,7 @@ struct DeviationReport {
 
 /// The deviation of `from` from `to`. The bounds are within relative_deviation_accuracy of each other, or
 /// `accuracy` if that is more (above 0; input units); wider only where that would take more than four million
-/// triangles, which is not to be expected.
+/// triangles, or 150 cuts of one, which is not to be expected.
 ///
 /// Branch and bound over triangles (Tang, Lee & Kim 2009, "Interactive Hausdorff distance computation for
 /// general polygonal models"): the distance from one triangle is convex, so that it is largest in a corner;

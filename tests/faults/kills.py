@@ -28,7 +28,7 @@ def commands(p):
     return [
         ("prepare", ["prepare", folder / "scan.ply", "--target-tets", "3000", "-o", out / "a.vtu", "--boundary",
                      out / "a.ply", "--stats", out / "a.json"], outputs("a.vtu", "a.ply", "a.json")),
-        ("mesh", ["mesh", folder / "organs.nrrd", "--voxel-size", "2", "-o", out / "b.msh", "--stats", out / "b.json", "--write-sdf",
+        ("mesh", ["mesh", folder / "organs.nrrd", "--labels", "1-3", "-o", out / "b.msh", "--stats", out / "b.json", "--write-sdf",
                   out / "b.vdb"], outputs("b.msh", "b.json", "b.vdb")),
         ("simplify", ["simplify", folder / "dense.vtu", "--target-tets", "3000", "-o", out / "c.xdmf", "--stats",
                       out / "c.json"], outputs("c.xdmf", "c.h5", "c.json")),

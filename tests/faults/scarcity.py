@@ -124,9 +124,9 @@ def few_files(p, arguments, out, new):
 def run(p):
     scan, out = p.folder / "scan.ply", p.folder / "out" / "mesh.vtu"
     out.parent.mkdir()
-    p.must(["sample", "knot", "-o", scan])
+    p.must(["sample", "torus", "-o", scan])
     scan.chmod(0o644)
-    arguments = ["prepare", scan, "--target-tets", "500", "--resolution", "20", "--accept-changes", "-o", out]
+    arguments = ["prepare", scan, "--target-tets", "1000", "--resolution", "24", "--accept-changes", "-o", out]
     start = time.monotonic()
     p.must(arguments)
     seconds = time.monotonic() - start

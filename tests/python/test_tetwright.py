@@ -189,6 +189,17 @@ def test_size_fields_are_files_arrays_or_meshes(tmp_path, ball):
         tetwright.simplify(dense, size_field=grid)
 
 
+def test_sizes_that_cannot_be_measured_and_large_integers():
+    points, tets = np.vstack([np.zeros(3), np.eye(3)]), np.array([[0, 1, 2, 3]])
+    for scale in 1e150, 1e-150:
+        with pytest.raises(tetwright.InputError, match="too large or too small"):
+            tetwright.check((points * scale, tets))
+    mesh = meshio.Mesh(points, {"tetra": tets}, point_data={"id": np.array([1, 2, 3, 2**53 + 1])})
+    assert any("2^53" in note for note in tetwright.improve(mesh).notes)
+    mesh.point_data["id"][3] = 2**53 - 1
+    assert not any("2^53" in note for note in tetwright.improve(mesh).notes)
+
+
 def test_report_is_written(tmp_path, ball):
     tetwright.prepare(ball, target_tets=800, output=tmp_path / "out.vtu", report=tmp_path / "page.html")
     page = (tmp_path / "page.html").read_text()

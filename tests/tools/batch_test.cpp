@@ -159,9 +159,14 @@ TEST_F(Batch, AJobThatCrashesEndsAlone) {
     Process process({"batch", f / "jobs.jsonl", "--jobs", "1"}, f / "err");
     const int end = open_when_read(pipe, process);
     ASSERT_GE(end, 0) << contents(f / "err");
+    ASSERT_GT(process.child(), 0);
+    // What it would leave of a file that is being written.
+    const std::string left = f / (".tetwright-" + std::to_string(process.child()) + "-7.tmp");
+    put(left, "part of a mesh");
     kill(process.child(), signal);
     EXPECT_EQ(process.wait(), 1);
     close(end);
+    EXPECT_FALSE(std::filesystem::exists(left));
     auto lines = results();
     EXPECT_EQ(lines.size(), 3u);
     EXPECT_EQ(lines["a"]["status"], 0);
@@ -182,6 +187,7 @@ TEST_F(Batch, WhatRanBesideACrashIsDoneAgain) {
   std::vector<int> ends;
   for (const std::string& pipe : pipes) ends.push_back(open_when_read(pipe, process));
   const pid_t first = process.child();
+  ASSERT_GT(first, 0);
   kill(first, SIGKILL);
   for (const int end : ends) close(end);
   // Until it has gone it may still read.
@@ -195,6 +201,40 @@ TEST_F(Batch, WhatRanBesideACrashIsDoneAgain) {
   EXPECT_EQ(lines["a"]["status"], 0);
 }
 
+TEST_F(Batch, ASecondCrashLeavesTheOthersTheirTurn) {
+  std::vector<std::string> pipes;
+  std::string jobs;
+  for (const std::string id : {"p", "q", "r"}) {
+    pipes.push_back(f / (id + ".ply"));
+    ASSERT_EQ(mkfifo(pipes.back().c_str(), 0600), 0);
+    jobs += job(id, "300", id + ".ply");
+  }
+  put(f / "jobs.jsonl", jobs);
+  Process process({"batch", f / "jobs.jsonl", "--jobs", "3", "--threads", "3"}, f / "err");
+  const auto kill_child = [&](const std::vector<int>& ends) {
+    const pid_t child = process.child();
+    ASSERT_GT(child, 0);
+    kill(child, SIGKILL);
+    for (const int end : ends) close(end);
+    while ((process.child() == child || process.child() == 0) && !process.ended()) wait_a_moment();
+  };
+  std::vector<int> ends;
+  for (const std::string& pipe : pipes) ends.push_back(open_when_read(pipe, process));
+  kill_child(ends);
+  kill_child({open_when_read(pipes[0], process)});
+  // Not the two that are left at once.
+  const int q = open_when_read(pipes[1], process);
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_LT(open(pipes[2].c_str(), O_WRONLY | O_NONBLOCK), 0);
+  close(q);
+  close(open_when_read(pipes[2], process));
+  EXPECT_EQ(process.wait(), 1);
+  auto lines = results();
+  EXPECT_EQ(lines.size(), 3u);
+  EXPECT_EQ(lines["p"]["status"], 5);
+  for (const char* id : {"q", "r"}) EXPECT_EQ(lines[id]["status"], 3) << lines[id];
+}
+
 TEST_F(Batch, EndsWithTheProcessThatWasStarted) {
   const std::string pipe = f / "p.ply";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
@@ -204,14 +244,16 @@ TEST_F(Batch, EndsWithTheProcessThatWasStarted) {
     const int end = open_when_read(pipe, process);
     process.send(signal);
     EXPECT_EQ(process.wait(), signal == SIGKILL ? 1000 + SIGKILL : 130);
-    close(end);
-    EXPECT_EQ(results().size(), 1u);
-    // Nobody reads any more.
+    // Nobody reads any more, though there is one who writes.
     int reader = 0;
-    while ((reader = open(pipe.c_str(), O_WRONLY | O_NONBLOCK)) >= 0) {
+    for (int moments = 0; moments < 20000 && (reader = open(pipe.c_str(), O_WRONLY | O_NONBLOCK)) >= 0;
+         ++moments) {
       close(reader);
       wait_a_moment();
     }
+    EXPECT_LT(reader, 0);
+    close(end);
+    EXPECT_EQ(results().size(), 1u);
   }
 }
 

@@ -25,9 +25,11 @@ namespace {
 constexpr std::array<int, 3> handed_on{SIGHUP, SIGINT, SIGTERM};
 
 std::atomic<pid_t> child{0};
+std::atomic<int> last_signal{0};
 
 /// Async-signal-safe.
 void hand_on(int signal) {
+  last_signal = signal;
   if (const pid_t id = child) kill(id, signal);
 }
 
@@ -91,9 +93,12 @@ double JobStates::seconds(std::size_t job) const {
       .count();
 }
 
-ProcessEnd run_in_child_process(const std::function<int()>& work) {
-  std::fflush(nullptr);  // what is not written yet would be written by both
+namespace {
+
+ProcessEnd run_and_wait(const std::function<int()>& work) {
   SignalsOfChild signals;
+  // Where the parent process ignores it the system tells nobody how a child ended.
+  std::signal(SIGCHLD, SIG_DFL);
   [[maybe_unused]] const pid_t parent = getpid();
   const pid_t id = fork();
   if (id < 0)
@@ -111,10 +116,22 @@ ProcessEnd run_in_child_process(const std::function<int()>& work) {
   }
   signals.hand_on_to(id);
   int code = 0;
-  while (waitpid(id, &code, 0) < 0 && errno == EINTR) {
-  }
-  if (WIFSIGNALED(code)) return {0, WTERMSIG(code)};
-  return {WEXITSTATUS(code), 0};
+  while (waitpid(id, &code, 0) < 0)
+    if (errno != EINTR)
+      throw OutputError(std::string("cannot wait for the process of the jobs: ") + std::strerror(errno));
+  if (WIFSIGNALED(code)) return {id, 0, WTERMSIG(code)};
+  return {id, WEXITSTATUS(code), 0};
+}
+
+}  // namespace
+
+ProcessEnd run_in_child_process(const std::function<int()>& work) {
+  std::fflush(nullptr);  // what is not written yet would be written by both
+  last_signal = 0;
+  const ProcessEnd end = run_and_wait(work);
+  if (const int signal = last_signal; signal != 0 && end.signal != 0 && end.signal != signal)
+    std::raise(signal);
+  return end;
 }
 
 }  // namespace tetwright

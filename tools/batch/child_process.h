@@ -43,15 +43,17 @@ class JobStates {
 
 /// How a process ended: with a status of its own, or by a signal, which is 0 in the first case.
 struct ProcessEnd {
+  int id = 0;
   int status = 0;
   int signal = 0;
 };
 
 /// Lets a child process do the work, and waits until it has ended. The child is a copy of this process, and
 /// ends with the status that `work` returns (which must not throw) without the destructors of global objects:
-/// libraries may have started threads, which a child does not have. It ends with this process; SIGHUP, SIGINT
-/// and SIGTERM are handed on to it, and ignored here while it lives. Call it before there are threads that
-/// matter to the work. Throws OutputError where no process can be started.
+/// libraries may have started threads, which a child does not have. Under Linux it is killed when this
+/// process ends. SIGHUP, SIGINT and SIGTERM are handed on to it; one that finds it dying of something else
+/// takes effect here when it has gone. Call it before there are threads that matter to the work. Throws
+/// OutputError where no process can be started or waited for.
 ProcessEnd run_in_child_process(const std::function<int()>& work);
 
 }  // namespace tetwright

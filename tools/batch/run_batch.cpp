@@ -176,21 +176,28 @@ std::vector<const Job*> unfinished_jobs(const std::vector<Job>& jobs, const Resu
 }
 
 /// "died of signal 11 (Segmentation fault)"
-std::string death_text(int signal) {
-  return "died of signal " + std::to_string(signal) + " (" + strsignal(signal) + ")";
+std::string death_text(const ProcessEnd& end) {
+  if (end.signal == 0) return "ended with status " + std::to_string(end.status);
+  return "died of signal " + std::to_string(end.signal) + " (" + strsignal(end.signal) + ")";
 }
 
 /// What a job comes to in which the process died.
-Ended ended_by(int signal, double seconds) {
+Ended ended_by(const ProcessEnd& end, double seconds) {
   Ended ended;
   ended.seconds = seconds;
-  if (signal == SIGKILL) {
+  const std::string what = "its process " + death_text(end);
+  if (end.signal == 0) {
+    ended.status = static_cast<ExitStatus>(end.status);
+    ended.messages = {what + ", and has said why on stderr"};
+  } else if (end.signal == SIGKILL || end.signal == SIGXCPU) {
     ended.status = ExitStatus::output_failed;
-    ended.messages = {"its process " + death_text(signal) +
-                      ", as where memory runs out; free some, give fewer --jobs, or ask for larger cells"};
+    ended.messages = {what +
+                      (end.signal == SIGKILL ? ", as where memory runs out; free some, give fewer --jobs, or "
+                                             : ", its limit of processor time; raise that, or ") +
+                      "ask for larger cells"};
   } else {
     ended.status = ExitStatus::internal_error;
-    ended.messages = {"its process " + death_text(signal) + report_this};
+    ended.messages = {what + report_this};
   }
   return ended;
 }
@@ -249,9 +256,10 @@ class Batch {
     std::atomic<std::size_t> next{0};
     std::vector<std::thread> threads;
     const unsigned each = std::max(1u, all / workers);
+    threads.reserve(workers);
     try {
       for (unsigned w = 0; w < workers; ++w) threads.emplace_back([&] { work(list, next, each, memory); });
-    } catch (const std::system_error& e) {
+    } catch (const std::exception& e) {
       // Those that could be started do all jobs.
       if (threads.empty())
         throw OutputError(std::string("cannot start a thread: ") + e.what() +
@@ -287,6 +295,15 @@ class Batch {
   std::exception_ptr failure_;
 };
 
+/// What a process that died has left of a job's outputs.
+void remove_temporary_files_of(const Job& job, int process) {
+  try {
+    for (const std::string& path : written_files(parse(job))) remove_temporary_files(path, process);
+  } catch (const UsageError&) {
+    // It has written nothing.
+  }
+}
+
 std::vector<std::size_t> jobs_that_are(JobState state, const JobStates& states) {
   std::vector<std::size_t> found;
   for (std::size_t j = 0; j < states.size(); ++j)
@@ -294,10 +311,10 @@ std::vector<std::size_t> jobs_that_are(JobState state, const JobStates& states) 
   return found;
 }
 
-/// What a child process does: all jobs that wait; first, each alone, those that ran when a child died.
+/// What a child process does: all jobs that wait; first, each alone, the suspects, which ran when a child
+/// died.
 void carry_out_waiting(const std::vector<const Job*>& jobs, JobStates& states,
                        const std::vector<std::size_t>& suspects, Recorder& recorder, CommandRun& run) {
-  if (!jobs.empty()) run.progress.begin_stage("jobs");
   Batch batch(jobs, states, recorder);
   batch.carry_out(suspects, 1);
   batch.carry_out(jobs_that_are(JobState::waiting, states),
@@ -317,6 +334,7 @@ void run_batch(CommandRun& run) {
   JobStates states(left.size());
   Recorder recorder(left, states, results, run);
   std::vector<std::size_t> suspects;
+  if (!left.empty()) run.progress.begin_stage("jobs");
   for (;;) {
     const ProcessEnd end = run_in_child_process([&] {
       try {
@@ -329,21 +347,32 @@ void run_batch(CommandRun& run) {
       }
     });
     results.reload();
-    if (end.signal == 0) {
+    const std::vector<std::size_t> running = jobs_that_are(JobState::running, states),
+                                   recorded = jobs_that_are(JobState::recorded, states);
+    // A process that ends itself within a job, as where no thread can be started, has died of it, too.
+    const bool interrupted = end.status == static_cast<int>(ExitStatus::interrupted);
+    if (end.signal == 0 && (running.empty() || interrupted)) {
       run.report.status = static_cast<ExitStatus>(end.status);
       break;
     }
-    // A crash, or no memory, in one job: it ends that job alone.
-    suspects = jobs_that_are(JobState::running, states);
-    for (const std::size_t job : jobs_that_are(JobState::recorded, states)) suspects.push_back(job);
-    if (suspects.empty())
-      throw OutputError("the process of the batch " + death_text(end.signal) +
+    for (const std::vector<std::size_t>& jobs_then : {running, recorded})
+      for (const std::size_t job : jobs_then) remove_temporary_files_of(*left[job], end.id);
+    if (running.empty() && recorded.empty())
+      throw OutputError("the process of the batch " + death_text(end) +
                         " between jobs; the same call goes on with those that are left");
-    if (suspects.size() == 1 && states[suspects[0]] == JobState::running) {
-      recorder.record(suspects[0], ended_by(end.signal, states.seconds(suspects[0])));
-      suspects.clear();
+    std::vector<std::size_t> next;
+    if (running.size() == 1 && recorded.empty()) {
+      recorder.record(running[0], ended_by(end, states.seconds(running[0])));
+    } else {
+      next = running;
+      next.insert(next.end(), recorded.begin(), recorded.end());
     }
-    for (const std::size_t job : suspects) states.set(job, JobState::waiting);
+    for (const std::size_t job : next) states.set(job, JobState::waiting);
+    // Those before them whose turn has not come.
+    for (const std::size_t job : suspects)
+      if (states[job] == JobState::waiting && std::find(next.begin(), next.end(), job) == next.end())
+        next.push_back(job);
+    suspects = std::move(next);
   }
   if (run.report.status != ExitStatus::done) return;
   const auto done = static_cast<std::size_t>(

@@ -22,7 +22,8 @@ namespace tetwright {
 
 namespace {
 
-/// Peak memory of the process, about: its libraries, and the mesh with its topology, for each tet.
+/// Peak memory of the process: its libraries, and the mesh with its topology for each tet, of which a knot of
+/// 116,000 takes 20 MB.
 constexpr double program_bytes = 40e6;
 constexpr double bytes_per_tet = 180;
 

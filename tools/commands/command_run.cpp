@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/formats/mesh_fields.h"
+#include "common/measurable.h"
 #include "tools/stats_json.h"
 
 namespace tetwright {
@@ -78,6 +79,7 @@ ReadTetMesh take_tet_mesh(CommandRun& run, const std::string& name, const ReadTe
     auto& meshes = run.objects->meshes;
     if (const auto object = meshes.find(name); object != meshes.end()) {
       ReadTetMesh read = std::move(object->second);
+      require_measurable(read.mesh, name);
       take_material(read, options, name);
       return read;
     }

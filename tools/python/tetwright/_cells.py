@@ -273,10 +273,20 @@ def _fields(data: Any, rows: int) -> tuple[dict[str, np.ndarray], list[str]]:
 
 def field_items(fields: dict[str, np.ndarray]) -> list[tuple[bytes, bool, np.ndarray]]:
     """As the compiled part takes them: name, whether it holds whole numbers, numbers."""
-    def whole(values: np.ndarray) -> bool:
-        return values.dtype.kind in "biu" and bool((np.abs(values.astype(np.float64)) <= MAX_EXACT_WHOLE).all())
+    return [(f.encode(errors="replace"), v.dtype.kind in "biu" and not _large(v).any(), v.astype(np.float64))
+            for f, v in fields.items()]
 
-    return [(f.encode(errors="replace"), whole(v), v.astype(np.float64)) for f, v in fields.items()]
+
+def _large(values: np.ndarray) -> np.ndarray:
+    """Where integers may be others as doubles."""
+    return np.abs(values.astype(np.float64)) >= MAX_EXACT_WHOLE
+
+
+def note_large_integers(cells: Cells) -> None:
+    for fields in (cells.point_fields, cells.cell_fields):
+        for name, values in fields.items():
+            if values.dtype.kind in "iu":
+                cells.drop(f'exact values of integers from 2^53 on in the field "{name}"', int(_large(values).sum()))
 
 
 def size_field(cells: Cells, names: Iterable[str]) -> Optional[np.ndarray]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from . import _core
 from ._arrays import indices, numbers, whole_numbers
-from ._cells import Cells, cells_of, field_items, size_field
+from ._cells import Cells, cells_of, field_items, note_large_integers, size_field
 from ._mesh import TetMesh
 from ._text import file_name, plain_text
 
@@ -105,6 +105,7 @@ class Inputs:
             cells.drop_names("fields of points", cells.point_fields)
             self.core.add_surface(key, cells.points, cells.triangles, cells.dropped)
             return
+        note_large_integers(cells)
         tags = None if cells.materials is None else whole_numbers(cells.materials, name, "materials")
         self.core.add_mesh(key, cells.points, cells.tets, tags, cells.names, field_items(cells.point_fields),
                            field_items(cells.cell_fields), cells.dropped)
