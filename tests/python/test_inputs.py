@@ -1,0 +1,237 @@
+"""What the Python package takes as input and what it refuses: cells, names, options, files, on cubes."""
+import json
+import os
+import types
+
+import meshio
+import numpy as np
+import pytest
+import tetwright
+
+CUBE_POINTS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+CUBE_QUADS = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
+CUBE_TRIANGLES = np.concatenate([CUBE_QUADS[:, [0, 1, 2]], CUBE_QUADS[:, [0, 2, 3]]])
+CUBE = CUBE_POINTS, CUBE_TRIANGLES
+FAR_CUBE = CUBE_POINTS + 3, CUBE_TRIANGLES
+TWO_TETS = np.array([[0, 4, 2, 1], [7, 6, 5, 3]])
+
+
+@pytest.fixture(scope="module")
+def cube_mesh():
+    return tetwright.mesh(CUBE, resolution=8)
+
+
+def tets_of_two_kinds(**data):
+    """Two tets of a cube's corners, as meshio's mesh."""
+    return meshio.Mesh(CUBE_POINTS, [("tetra", TWO_TETS)], **data)
+
+
+def test_one_file_cannot_be_two(tmp_path, cube_mesh):
+    (tmp_path / "other.ply").symlink_to(tmp_path / "same.ply")
+    (tmp_path / "same.ply").write_bytes(b"")
+    for boundary in "same.ply", "other.ply":
+        with pytest.raises(tetwright.UsageError, match="is also the file of -o"):
+            cube_mesh.write(tmp_path / "same.ply", boundary=tmp_path / boundary, output_format="vtu")
+    assert (tmp_path / "same.ply").read_bytes() == b""
+    cube_mesh.write(tmp_path / "a.vtu", boundary=tmp_path / "a.ply")
+    assert (tmp_path / "a.vtu").exists() and (tmp_path / "a.ply").exists()
+
+
+def test_second_order_needs_a_format_that_holds_it(tmp_path):
+    mesh = tetwright.prepare(CUBE, target_tets=300, order=2)
+    with pytest.raises(tetwright.UsageError, match=r"without ten-node tets; write one of .*\.xdmf"):
+        mesh.write(tmp_path / "four.mesh")
+    assert not list(tmp_path.iterdir())
+    mesh.write(tmp_path / "ten.xdmf")
+
+
+def test_cells_that_cannot_be_read_are_refused():
+    wedge = np.array([[0, 1, 2, 4, 5, 6]])
+    for cells in [("tetra", TWO_TETS), ("hexahedron", [range(8)])], [("triangle", CUBE_TRIANGLES), ("wedge", wedge)]:
+        with pytest.raises(tetwright.InputError, match="1 (hexahedra|wedges); only triangles, polygons and tets"):
+            tetwright.simplify(meshio.Mesh(CUBE_POINTS, cells), target_tets=1)
+    pyvista = types.SimpleNamespace(points=CUBE_POINTS, cells_dict={10: TWO_TETS, 12: np.array([range(8)])},
+                                    celltypes=np.array([10, 10, 12]), cell_data={})
+    with pytest.raises(tetwright.InputError, match="1 hexahedra"):
+        tetwright.improve(pyvista)
+
+
+def test_polygons_are_triangles():
+    some = [("triangle", CUBE_TRIANGLES[[0, 6]]), ("quad", CUBE_QUADS[1:4]), ("polygon", CUBE_QUADS[4:])]
+    expected = tetwright.mesh({"cube": CUBE}, resolution=8)
+    made = tetwright.mesh({"cube": meshio.Mesh(CUBE_POINTS, some)}, resolution=8)
+    assert made.notes == [] and len(made.tets) == len(expected.tets)
+    pixels = types.SimpleNamespace(points=CUBE_POINTS, cells_dict={8: CUBE_QUADS[:, [0, 1, 3, 2]]},
+                                   celltypes=np.full(6, 8), cell_data={})
+    assert len(tetwright.mesh(pixels, resolution=8).tets) == len(expected.tets)
+
+
+def test_curved_cells_are_taken_by_their_corners(cube_mesh):
+    middles = np.arange(6) + 8
+    points = np.vstack([CUBE_POINTS, np.random.default_rng(1).random((6, 3))])
+    ten = np.hstack([TWO_TETS, np.stack([middles, middles])])
+    made = tetwright.improve(meshio.Mesh(points, [("tetra10", ten)], point_data={"heat": np.arange(14.0)}))
+    assert made.stats["input"]["points"] == 8
+    assert "6 midside nodes; tets of ten nodes are taken by their corners (dropped)" in made.notes[0]
+    six = np.hstack([CUBE_TRIANGLES, CUBE_TRIANGLES[:, [1, 2, 0]]])
+    made = tetwright.mesh(meshio.Mesh(CUBE_POINTS, [("triangle6", six)]), resolution=8)
+    assert "triangles of 6 points are taken by their corners" in made.notes[0]
+    assert len(made.tets) == len(cube_mesh.tets)
+    second = tetwright.mesh(CUBE, resolution=8, order=2)
+    assert "midside nodes" in tetwright.improve(second, free_count=True).notes[0]
+
+
+def test_fields_and_groups_of_objects_are_kept_or_noted():
+    data = {"domain": [np.array([4, 9])], "heat": [np.array([0.5, 1.5])], "text": [np.array(["a", "b"])]}
+    mesh = tets_of_two_kinds(cell_data=data, point_data={"depth": np.arange(8.0)},
+                             cell_sets={"hard": [np.array([0])]})
+    made = tetwright.improve(mesh, fix_boundary=True)
+    # As from a file, the only field of whole numbers is the material.
+    assert set(made.materials.tolist()) == {4, 9} and made.stats["input"]["material_field"] == "domain"
+    assert set(made.fields) == {"heat"} and set(made.point_fields) == {"depth"}
+    assert '1 fields of cells ("text") (dropped)' in made.notes[0] and '1 sets of cells ("hard")' in made.notes[0]
+    mesh.cell_data["part"] = [np.array([1, 2])]
+    asked = tetwright.improve(mesh, material_field="part", fix_boundary=True)
+    assert set(asked.materials.tolist()) == {1, 2}
+    with pytest.raises(tetwright.InputError, match='no cell field "nothing"'):
+        tetwright.improve(mesh, material_field="nothing")
+    of_gmsh = tets_of_two_kinds(cell_data={"gmsh:physical": [np.array([4, 9])]},
+                                field_data={"bone": np.array([4, 3]), "wall": np.array([5, 2])})
+    made = tetwright.improve(of_gmsh, fix_boundary=True)
+    assert made.material_names == {4: "bone"}
+    assert '1 names of physical groups of faces, lines or points ("wall") (dropped)' in made.notes[0]
+    surface = meshio.Mesh(CUBE_POINTS, [("triangle", CUBE_TRIANGLES), ("line", [[0, 1]])],
+                          cell_data={"gmsh:physical": [np.ones(12, int), np.array([2])]},
+                          point_data={"heat": np.zeros(8)}, field_data={"wall": np.array([1, 2])})
+    note = tetwright.mesh(surface, resolution=8).notes[0]
+    for what in '1 lines', '"gmsh:physical"', 'fields of points ("heat")', 'names of physical groups ("wall")':
+        assert what in note
+
+
+def test_names_of_materials_are_kept_whole():
+    for name in "bone.v2", "a/b", "part.vdb", "x=y", "ct.nii.gz":
+        assert tetwright.mesh({name: CUBE}, resolution=8).material_names == {1: name}
+    two = tetwright.prepare({"L.femur": CUBE, "L.tibia": FAR_CUBE}, target_tets=300)
+    assert two.material_names == {1: "L.femur", 2: "L.tibia"}
+
+
+def test_names_that_meet(tmp_path):
+    assert tetwright.prepare(CUBE, material={"surface": FAR_CUBE}, target_tets=300).material_names == {
+        1: "surface_2", 2: "surface"}
+    assert tetwright.prepare([CUBE], material={"surface_1": FAR_CUBE}, target_tets=300).material_names == {
+        1: "surface_1_2", 2: "surface_1"}
+    meshio.Mesh(*FAR_CUBE[:1], [("triangle", CUBE_TRIANGLES)]).write(tmp_path / "surface_1.ply")
+    assert tetwright.prepare([CUBE, tmp_path / "surface_1.ply"], target_tets=300).material_names == {
+        1: "surface_1_2", 2: "surface_1"}
+    for scan, material in ({1: CUBE, "1": FAR_CUBE}, None), ({"a": CUBE}, {"a": FAR_CUBE}):
+        with pytest.raises(tetwright.UsageError, match="two inputs are called"):
+            tetwright.prepare(scan, material=material, target_tets=300)
+    mesh = tetwright.mesh(CUBE, resolution=8)
+    assert tetwright.check(mesh, surface={"mesh": CUBE}, before=mesh, tolerance="5%")
+    with pytest.raises(tetwright.InputError, match="it has no whole-number cell field 'x'"):
+        tetwright.check(mesh, before=mesh, material_field="x")
+    with pytest.raises(tetwright.UsageError, match="of a file and of an array"):
+        tetwright.prepare({"b.ply": CUBE}, material={"c": "b.ply"}, target_tets=300)
+    for name in "", "-", "[a]":
+        with pytest.raises(tetwright.UsageError, match="cannot be called"):
+            tetwright.mesh({name: CUBE}, resolution=8)
+    with pytest.raises(tetwright.UsageError, match="without ="):
+        tetwright.mesh(CUBE, material={"a=b": FAR_CUBE}, resolution=8)
+
+
+def test_numbers_of_options():
+    expected = tetwright.prepare(CUBE, target_tets=300, seed=3)
+    again = tetwright.prepare(CUBE, target_tets=300.0, seed=np.uint8(3), order=1.0, gamma=np.float32(10),
+                              keep_outside=np.bool_(False), beta=np.array(5))
+    assert np.array_equal(again.points, expected.points) and np.array_equal(again.tets, expected.tets)
+    wrong = [dict(resolution=True), dict(threads=False), dict(time_limit=np.bool_(True)), dict(tolerance=False),
+             dict(seed=1j), dict(seed=[1, 2]), dict(feature_angle=True), dict(keep_outside="yes"), dict(output=True),
+             dict(schedule=3), dict(labels=[1, 2, (3,)]), dict(labels=[True]), dict(material=CUBE),
+             dict(material=CUBE[0]), dict(layer={"skin": True}), dict(layer=("skin", 1)), dict(output_format=7), dict(size_field=3)]
+    for options in wrong:
+        with pytest.raises((tetwright.UsageError, tetwright.InputError), match=next(iter(options))):
+            tetwright.prepare(CUBE, **{"target_tets": 300, **options})
+
+
+def test_help_and_logs_are_the_programs(tmp_path, capfd):
+    for options in dict(help=True), dict(version=True):
+        with pytest.raises(tetwright.UsageError, match="are not options here"):
+            tetwright.prepare(CUBE, target_tets=300, **options)
+    for options in {}, {"output": tmp_path / "a.vtu"}:
+        with pytest.raises(tetwright.UsageError, match="log_file is the program's"):
+            tetwright.prepare(CUBE, target_tets=300, log_file=tmp_path / "log.txt", **options)
+    assert capfd.readouterr().out == "" and not list(tmp_path.iterdir())
+
+
+def test_what_is_no_input_is_refused():
+    void = types.SimpleNamespace
+    wrong = [("a.ply", "b.ply"), (CUBE, FAR_CUBE), void(points=CUBE_POINTS, faces=None), void(vertices=None, faces=[]),
+             (CUBE_POINTS, None), (None, CUBE_TRIANGLES), (CUBE_POINTS, CUBE_TRIANGLES + 0.9),
+             (CUBE_POINTS, [["a"] * 3]),
+             (np.ma.array(CUBE_POINTS, mask=CUBE_POINTS > 0), CUBE_TRIANGLES),
+             (CUBE_POINTS, np.ma.array(CUBE_TRIANGLES, mask=CUBE_TRIANGLES > 6)), (CUBE_POINTS * 1j, CUBE_TRIANGLES),
+             void(points=CUBE_POINTS, cells_dict={"triangle": CUBE_TRIANGLES + 0.5}),
+             np.ma.array(np.ones((4, 4, 4), int), mask=np.eye(4, dtype=bool)[None].repeat(4, 0)),
+             "\ud800.ply", "a\0.ply", {"a\0b": CUBE}, {"\ud800": CUBE}, ["a\0.ply", CUBE]]
+    for scan in wrong:
+        with pytest.raises((tetwright.InputError, tetwright.UsageError)) as caught:
+            tetwright.mesh(scan, resolution=8)
+        assert len(str(caught.value)) > 10
+    for tets in [[0.9, 4.9, 2.9, 1.9]], [[0, 4, 2, np.nan]]:
+        with pytest.raises(tetwright.InputError, match="tets hold .* which is no number of a point"):
+            tetwright.improve((CUBE_POINTS, tets))
+    with pytest.raises(tetwright.InputError, match="materials are masked"):
+        tetwright.improve((CUBE_POINTS, TWO_TETS, np.ma.array([1, 2], mask=[True, False])))
+    labels = np.ones((4, 4, 4), int)
+    for options in dict(spacing=(1, 2)), dict(origin=(1, 2)), dict(affine="x"), dict(spacing="x"), dict(origin=[[1]]):
+        with pytest.raises(tetwright.UsageError, match=next(iter(options))):
+            tetwright.mesh(labels, **options)
+
+
+def test_names_of_files_are_whole(tmp_path, cube_mesh, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for options in dict(path="n\0x.vtu"), dict(path="n.vtu", boundary="n\0.ply"), dict(path="\ud800.vtu"), \
+            dict(path="n.vtu", output_format="vt\0u"), dict(path=3):
+        with pytest.raises(tetwright.UsageError):
+            cube_mesh.write(**options)
+    for name in "n\0.vtu", "\ud800.vtu":
+        with pytest.raises(tetwright.UsageError):
+            tetwright.read(name)
+        with pytest.raises(tetwright.UsageError):
+            tetwright.prepare(CUBE, target_tets=300, output=name)
+    assert not list(tmp_path.iterdir())
+    # Linux' names of files are bytes, and need not be UTF-8.
+    strange = os.fsdecode(b"n\xff.vtu")
+    cube_mesh.write(strange)
+    assert len(tetwright.read(strange).tets) == len(cube_mesh.tets)
+    with pytest.raises(tetwright.InputError, match="n\ufffd.ply"):
+        tetwright.mesh(os.fsdecode(b"n\xff.ply"), resolution=8)
+
+
+def test_size_fields_are_named_by_their_argument(cube_mesh):
+    lengths = np.full(8, 0.5)
+    for field, message in [((CUBE_POINTS, CUBE_TRIANGLES - 1, lengths), "names point -1"),
+                           ((CUBE_POINTS, CUBE_TRIANGLES + 0.5, lengths), "cells hold 0.5"),
+                           ((CUBE_POINTS, CUBE_TRIANGLES, lengths - 0.5), "length of point 0 is 0"),
+                           ((CUBE_POINTS, CUBE_TRIANGLES, lengths * np.nan), "length of point 0 is nan"),
+                           ((CUBE_POINTS / 4, TWO_TETS, lengths), "sizes end within the body"),
+                           ((CUBE_POINTS, CUBE_TRIANGLES, ["a"] * 8), "lengths are of type"),
+                           (("a.vtu", CUBE_TRIANGLES, lengths), "names of files")]:
+        with pytest.raises(tetwright.InputError, match="^size_field.*" + message):
+            tetwright.simplify(cube_mesh, size_field=field)
+
+
+def test_stats_of_what_failed(tmp_path):
+    stats = tmp_path / "st.json"
+    with pytest.raises(tetwright.InputError):
+        tetwright.prepare("nofile.ply", target_tets=300, output=tmp_path / "a.vtu", stats=stats)
+    assert "nofile.ply" in json.loads(stats.read_text())["error"]["message"]
+    stats.unlink()
+    with pytest.raises(tetwright.InputError):
+        tetwright.check("nofile.vtu", stats=stats)
+    assert json.loads(stats.read_text())["status"] == 3
+
+
+def test_what_ran_out_of_time_says_where():
+    with pytest.raises(tetwright.OutputError, match=r"\(in stage '[a-z ]+'\)"):
+        tetwright.prepare(CUBE, target_tets=300, time_limit=1e-9)
