@@ -207,8 +207,10 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
 
   stages.begin("lattice");
   LatticePoints points = lattice_points(octree);
+  stages.throw_if_stopped();
   std::vector<NearestRegion> regions = lattice_regions(points, *field);
   validate_regions(regions_there(*field, regions));
+  stages.throw_if_stopped();
   report.lattice_estimate = estimate_from_lattice(octree, points, regions, memory, options);
   validate_estimate(report.lattice_estimate);
   TetList tets;
@@ -219,9 +221,11 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
     tets = lattice_tets(octree, points, &far, field->refinement());
   }
   octree = {};
+  stages.throw_if_stopped();
   LabelledLattice lattice =
       label_lattice(std::move(points), std::move(regions), std::move(tets), field->regions().size(),
                     options.keep_outside, &report.isolated_vertices);
+  stages.throw_if_stopped();
   read_star_values(lattice, *field);
   report.lattice_tets = lattice.tets.size();
   report.seconds_lattice = stages.seconds();
@@ -233,6 +237,7 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   stages.begin("cutting");
   lattice.stars.forget_tets();
   CutMesh cut = cut_lattice(std::move(lattice));
+  stages.throw_if_stopped();
   // A region with few lattice points may have vanished by moves or as an isolated vertex.
   validate_regions(regions_there(*field, cut.regions));
   if (std::shared_ptr<const MaterialField> as_is = field->with_true_walls()) {
@@ -241,7 +246,7 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   }
   result.mesh = to_input_units(std::move(cut), *field);
   report.seconds_cut = stages.seconds();
-  if (progress) progress->throw_if_stopped();
+  stages.throw_if_stopped();
 
   result.reference = field;
   if (std::any_of(result.mesh.interfaces.begin(), result.mesh.interfaces.end(),

@@ -19,14 +19,16 @@ class Stages {
  public:
   explicit Stages(Progress* progress) : progress_(progress) {}
   void begin(const char* name) {
-    if (progress_) {
-      progress_->throw_if_stopped();
-      progress_->begin_stage(name);
-    }
+    throw_if_stopped();
+    if (progress_) progress_->begin_stage(name);
     start_ = std::chrono::steady_clock::now();
   }
   double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  /// As Progress does.
+  void throw_if_stopped() const {
+    if (progress_) progress_->throw_if_stopped();
   }
   Progress* progress() const { return progress_; }
 

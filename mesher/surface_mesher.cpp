@@ -339,6 +339,7 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   report.resolution = static_cast<int>(std::ceil(longest_side(input) / report.cell_size - 0.5));
   report.estimate = estimate_mesh(input, options);
   validate_estimate(report.estimate);
+  stages.throw_if_stopped();
   validate_limits(options, report.cell_size);
   const GridFrame voxels =
       make_grid_frame(input.low, input.high, report.cell_size, options.uniform, options.keep_outside);
@@ -358,6 +359,7 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
     cells.push_back(
         {find_narrow_patches(input.bodies[b].surface, patches[b], voxels, max_depth, budget.base_tets),
          asked});
+  stages.throw_if_stopped();
   BodyField bodies =
       build_field(input, voxels, options.keep_outside, {options.min_gap, options.min_thickness}, budget,
                   std::move(cells), progress);

@@ -8,6 +8,7 @@
 
 #include "common/error.h"
 #include "common/memory.h"
+#include "common/mesh/interfaces.h"
 #include "common/message_text.h"
 #include "simplify/constraints/surface_samples.h"
 #include "simplify/remesher.h"
@@ -153,6 +154,26 @@ class EarlierDeadline {
   Progress::Clock::time_point deadline_ = Progress::no_deadline;
 };
 
+void throw_if_stopped(const Progress* progress) {
+  if (progress) progress->throw_if_stopped();
+}
+
+bool out_of_time(const Progress* progress) { return progress && progress->out_of_time(); }
+
+/// The result where the deadline has passed before anything was changed.
+TetMesh unchanged(TetMesh mesh, SimplifyReport* report) {
+  if (mesh.interfaces.empty()) mesh.interfaces = find_interfaces(mesh);
+  if (report) report->out_of_time = true;
+  return mesh;
+}
+
+/// The same of simplify(): its distance from what it stands for is told nevertheless.
+TetMesh not_simplified(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report) {
+  if (options.tolerance > 0 && report)
+    report->deviation = options.surface ? deviation(mesh, *options.surface) : DeviationReport();
+  return unchanged(std::move(mesh), report);
+}
+
 bool is_bounded(const SimplifyOptions& options) {
   return options.sizes || options.min_edge > 0 || std::isfinite(options.max_edge);
 }
@@ -217,6 +238,7 @@ void close(Engine& engine, const SimplifyOptions& options, std::size_t target, s
 TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report, Progress* progress) {
   check_options(options);
   check(mesh, options.name);
+  if (out_of_time(progress)) return not_simplified(std::move(mesh), options, report);
   const bool tuned = options.schedule == Schedule::tuned;
   const auto start = std::chrono::steady_clock::now();
   const std::size_t first_count = mesh.tets.size();
@@ -234,11 +256,16 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
       engine.rules.objective.quality =
           TetQuality::for_target(engine.mesh().total_volume(), static_cast<double>(target), options.beta);
   }
-  if (tuned) {
-    engine.compact();
-    engine.keep_input_surface(options.surface, options.tolerance > 0);
-  }
+  // Of a mesh that is large for the time there is, each of these takes a good part of it.
+  const bool built = done_in_time([&] {
+    throw_if_stopped(progress);
+    if (tuned) engine.compact();
+    throw_if_stopped(progress);
+    if (tuned) engine.keep_input_surface(options.surface, options.tolerance > 0);
+  });
   const double build = seconds_since(start);
+  if (report) report->seconds_build = build;
+  if (!built) return not_simplified(std::move(engine).take(), options, report);
   std::optional<DeviationReport> deviation;
   bool in_time = done_in_time([&] {
     const EarlierDeadline closing_has_time(progress, tuned ? loop_time_share : 1);
@@ -262,7 +289,6 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     report->deviation = deviation;
     report->out_of_time = !in_time;
     report->touching_points = engine.mesh().touching_points();
-    report->seconds_build = build;
     report->seconds_simplify = loop_end - build;
     report->seconds_close = seconds_since(start) - loop_end;
   }
@@ -335,6 +361,7 @@ TetMesh improve_poor_regions(TetMesh&& mesh, const ImproveOptions& options, std:
 
 TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* report, Progress* progress) {
   check(mesh, options.name);
+  if (out_of_time(progress)) return unchanged(std::move(mesh), report);
   const auto start = std::chrono::steady_clock::now();
   const auto count = static_cast<double>(mesh.tets.size());
   const auto min_tets =
@@ -350,7 +377,6 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
   engine.recorder().begin_stage("improve");
   const double build = seconds_since(start);
   engine.rules.max_error = improve_error_edges * engine.rules.objective.quality.ideal_edge;
-  engine.begin_improvement();
   const double below = improve_margin * options.min_solid_angle;
   // The last rounds are kept for what comes in the end.
   const int kept_rounds = std::min(options.max_iterations / 2, max_last_rounds);
@@ -366,6 +392,8 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
   const ImprovementTools tools = tools_of(engine);
   WholeMesh whole(engine);
   const bool in_time = done_in_time([&] {
+    throw_if_stopped(progress);
+    engine.begin_improvement();
     for (const double bound : rising_bounds(first_bound(options.min_solid_angle), below)) {
       plan.angle = bound;
       plan.max_rounds -= improve_area(tools, whole, plan, bulk_before);

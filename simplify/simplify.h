@@ -16,8 +16,9 @@ namespace tetwright {
 /// that has fewer tets than the target is only improved. Throws InputError if a coordinate is not finite, a
 /// tet repeats a point or a face has more than two tets, OutputError if there is too little memory,
 /// UsageError for impossible options, Interrupted when cancelled. The deadline of `progress` ends it with
-/// what there is then, as valid as ever: the loop before, so that the shapes can be improved, too. What comes
-/// after the last round (renumbering, distances with a tolerance) is added to that.
+/// what there is then, as valid as ever (the mesh as it came, if nothing was changed yet): the loop before,
+/// so that the shapes can be improved, too. What comes after the last round (renumbering, distances with a
+/// tolerance) is added to that.
 TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report = nullptr,
                  Progress* progress = nullptr);
 

@@ -44,13 +44,14 @@ struct CommandLine {
   /// The result stays in the memory of a host program, and -o may be left out; set before parsing.
   bool in_memory = false;
   std::vector<std::string> inputs;  ///< of `sample`: the name; standard_input for "-"
-  std::string input_format;   ///< extension that standard input is read by, ".ply"; empty: it is no input
-  std::string output;         ///< "-": standard output
-  std::string output_format;  ///< of `output`; empty: by its extension
-  int order = 1;              ///< of the elements: 2 has ten nodes
-  std::string boundary;       ///< file of the boundary and interfaces as a surface; empty: none
-  bool no_boundary = false;   ///< leave triangles out of `output`
-  std::string before;         ///< `check`: the mesh whose topology must be the same
+  std::string input_format;     ///< extension that standard input is read by, ".ply"; empty: it is no input
+  std::string output;           ///< "-": standard output
+  std::string output_format;    ///< of `output`; empty: by its extension
+  int order = 1;                ///< of the elements: 2 has ten nodes
+  std::string boundary;         ///< file of the boundary and interfaces as a surface; empty: none; may be "-"
+  std::string boundary_format;  ///< of standard output, if `boundary` is that: --output-format then
+  bool no_boundary = false;     ///< leave triangles out of `output`
+  std::string before;           ///< `check`: the mesh whose topology must be the same
   std::vector<std::string> surfaces;  ///< `check`: what the mesh is compared with
   bool json = false;                  ///< `check`
   std::string material_field;         ///< cell field of the tet mesh that is read; empty: chosen by its name

@@ -100,9 +100,10 @@ void add_mesh_output(CLI::App& app, CommandLine& c) {
   std::string formats;
   for (const TetFormatInfo& format : written_tet_formats())
     formats += (formats.empty() ? "" : " ") + format.name;
-  app.add_option(
-         "--output-format", c.output_format,
-         "Format of the mesh instead of its extension's first, and of standard output (-o -): " + formats)
+  app.add_option("--output-format", c.output_format,
+                 "Format of the mesh instead of its extension's first, and of standard output (-o - or "
+                 "--boundary -): " +
+                     formats)
       ->type_name("NAME");
   add_whole_number(app, "--order", c.order, 1, 2,
                    "2: ten-node tets, with nodes in the middle of the edges; not in .mesh .meshb .node")

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "common/error.h"
 #include "common/formats/formats.h"
@@ -17,9 +19,8 @@ void check_no_stream(const CommandLine& out) {
   const auto check = [](const char* option, const std::string& file) {
     if (file == "-")
       throw UsageError(std::string(option) +
-                       " is no stream; give it a file (- is for the input, -o and --stats)");
+                       " is no stream; give it a file (- is for the input, -o, --boundary and --stats)");
   };
-  check("--boundary", out.boundary);
   check("--write-sdf", out.write_sdf);
   check("--report", out.report);
   check("--log-file", out.log_file);
@@ -32,9 +33,18 @@ void check_no_stream(const CommandLine& out) {
   if (out.command == Command::batch) check("the file of jobs", out.inputs.front());
 }
 
-/// The streams among inputs and outputs.
-void complete_streams(CommandLine& out) {
-  check_no_stream(out);
+/// A file that is called like standard input is told from it by its folder.
+void name_folder_of_namesakes(CommandLine& out) {
+  const auto name_folder = [](std::string& file) {
+    if (file == standard_input) file.insert(0, "./");
+  };
+  std::for_each(out.inputs.begin(), out.inputs.end(), name_folder);
+  std::for_each(out.surfaces.begin(), out.surfaces.end(), name_folder);
+  for (NamedValue& m : out.materials) name_folder(m.value);
+  name_folder(out.before);
+}
+
+void complete_input_stream(CommandLine& out) {
   out.input_format = lower_case(out.input_format);
   const auto stream = std::find(out.inputs.begin(), out.inputs.end(), "-");
   const bool given = stream != out.inputs.end();
@@ -46,18 +56,38 @@ void complete_streams(CommandLine& out) {
   if (!given && !out.input_format.empty())
     throw UsageError("--input-format is for standard input; give - as the input, or leave it out");
   if (given) {
+    name_folder_of_namesakes(out);
     *stream = standard_input;
     if (!out.input_format.starts_with('.')) out.input_format.insert(0, ".");
     if (!streams(out.input_format))
       throw UsageError("--input-format " + out.input_format.substr(1) +
                        " is no format of a stream; known are " + streamed_extensions());
   }
-  if (out.output != "-") return;
+}
+
+void complete_output_stream(CommandLine& out) {
+  std::vector<const char*> streams;
+  for (const auto& [option, file] : {std::pair<const char*, const std::string*>{"-o", &out.output},
+                                     {"--boundary", &out.boundary},
+                                     {"--stats", &out.stats}})
+    if (*file == "-") streams.push_back(option);
+  if (streams.size() > 1)
+    throw UsageError(std::string(streams[0]) + " - and " + streams[1] +
+                     " - both print to standard output; give one of them a file");
+  if (streams.empty() || out.stats == "-") return;
   if (out.output_format.empty())
-    throw UsageError("standard output (-o -) has no extension; give --output-format");
-  if (out.command != Command::sample) check_tet_stream(out);  // samples are of several kinds
-  if (out.stats == "-")
-    throw UsageError("-o - and --stats - both print to standard output; give one of them a file");
+    throw UsageError("standard output (" + std::string(streams[0]) +
+                     " -) has no extension; give --output-format");
+  if (out.boundary == "-")
+    out.boundary_format = std::exchange(out.output_format, {});
+  else if (out.command != Command::sample)  // samples are of several kinds
+    check_tet_stream(out);
+}
+
+void complete_streams(CommandLine& out) {
+  check_no_stream(out);
+  complete_input_stream(out);
+  complete_output_stream(out);
 }
 
 }  // namespace

@@ -9,8 +9,11 @@
 #include "common/formats/atomic_file.h"
 #include "common/formats/file_names.h"
 #include "common/formats/glb.h"
+#include "common/formats/group_text.h"
 #include "common/formats/inr.h"
 #include "common/formats/medit.h"
+#include "common/formats/mesh_fields.h"
+#include "common/formats/mesh_parts.h"
 #include "common/formats/metaimage.h"
 #include "common/formats/msh.h"
 #include "common/formats/nifti.h"
@@ -36,6 +39,8 @@ struct SurfaceFormat {
   void (*write)(const TriangleMesh& mesh, const ByteSink& sink);  ///< null: the format is only read
   /// Null: the format has no fields of points. Nothing: the file is a tet mesh.
   std::optional<SurfaceWithFields> (*read_with_fields)(std::string_view bytes, const std::string& name);
+  /// Makes a name one that it can hold for a group of triangles; null: none is written.
+  std::string (*group_name)(const std::string& name) = nullptr;
 };
 
 template <std::string (*write)(const TriangleMesh&)>
@@ -49,11 +54,11 @@ std::optional<SurfaceWithFields> always_surface(std::string_view bytes, const st
 }
 
 constexpr std::array<SurfaceFormat, 7> surface_formats{
-    {{".ply", read_ply, write_whole_surface<write_ply>, always_surface<read_ply_with_fields>},
-     {".obj", read_obj, write_whole_surface<write_obj>, nullptr},
-     {".stl", read_stl, write_whole_surface<write_stl>, nullptr},
+    {{".ply", read_ply, write_whole_surface<write_ply>, always_surface<read_ply_with_fields>, printable_name},
+     {".obj", read_obj, write_whole_surface<write_obj>, nullptr, printable_word},
+     {".stl", read_stl, write_whole_surface<write_stl>, nullptr, printable_word},
      {".off", read_off, write_whole_surface<write_off>, nullptr},
-     {".vtp", read_vtp, write_vtp, always_surface<read_vtp_with_fields>},
+     {".vtp", read_vtp, write_vtp, always_surface<read_vtp_with_fields>, printable_name},
      {".3mf", read_3mf, nullptr, nullptr},
      {".glb", read_glb, nullptr, nullptr}}};
 /// Those of tet meshes that may hold a surface instead.
@@ -195,6 +200,10 @@ ReadTetMesh measurable(ReadTetMesh read, const std::string& name) {
   return read;
 }
 
+NameRules names_of_groups(const SurfaceFormat& format) {
+  return {.form = format.group_name ? format.group_name : printable_name, .surface_numbers = false};
+}
+
 /// Among `files`, or alone if that is null.
 void write_into(OutputFiles* files, const std::string& path,
                 const std::function<void(const ByteSink&)>& content) {
@@ -250,9 +259,29 @@ TetFormatInfo written_tet_format(const std::string& path, const std::string& nam
 NameChanges written_name_changes(const TetMesh& mesh, const std::string& path, const std::string& name) {
   const TetFormat& format = need_written_format(path, name);
   NameChanges changes = name_changes(mesh, format.parts(mesh));
+  const auto add_fields = [&](const std::vector<MeshField>& fields, const std::vector<std::string>& taken) {
+    if (!format.fields) return;
+    std::vector<std::string> names = field_names_to_write(fields, taken);
+    if (format.field_name) std::transform(names.begin(), names.end(), names.begin(), format.field_name);
+    add_field_changes(fields, names, changes.fields);
+  };
+  add_fields(mesh.point_fields, {});
+  add_fields(mesh.cell_fields, format.own_cell_fields);
   if (!format.names) changes.material_names.clear();
   if (!format.patch_names) changes.patch_names.clear();
   return changes;
+}
+
+SurfaceFormatInfo written_surface_format(const std::string& path, const std::string& name) {
+  const SurfaceFormat& format = need_written_format(surface_formats, path, FileKind::surface, name);
+  return {format.extension, format.group_name != nullptr};
+}
+
+std::vector<NameChange> written_interface_name_changes(const TetMesh& mesh, const std::string& path,
+                                                       const std::string& name) {
+  const SurfaceFormat& format = need_written_format(surface_formats, path, FileKind::surface, name);
+  if (!format.group_name) return {};
+  return name_changes(mesh, names_of_parts(mesh, names_of_groups(format))).patch_names;
 }
 
 std::vector<std::string> files_of_tet_mesh(const std::string& path, const std::string& name) {
@@ -354,6 +383,12 @@ void write_surface(const TriangleMesh& mesh, const std::string& path, OutputFile
                    const std::string& name) {
   const SurfaceFormat& format = need_written_format(surface_formats, path, FileKind::surface, name);
   write_into(files, path, [&](const ByteSink& sink) { format.write(mesh, sink); });
+}
+
+void write_interfaces(const TetMesh& mesh, const std::string& path, OutputFiles* files,
+                      const std::string& name) {
+  const SurfaceFormat& format = need_written_format(surface_formats, path, FileKind::surface, name);
+  write_surface(interface_surface(mesh, names_of_groups(format)), path, files, name);
 }
 
 void write_tet_mesh(const MeshToWrite& mesh, const std::string& path, OutputFiles* files,

@@ -59,6 +59,17 @@ TetFormatInfo written_tet_format(const std::string& path, const std::string& nam
 /// place for there is nothing here.
 NameChanges written_name_changes(const TetMesh& mesh, const std::string& path, const std::string& name = {});
 
+/// The format that write_surface() and write_interfaces() choose. Throws UsageError if there is none.
+struct SurfaceFormatInfo {
+  std::string extension;
+  bool names;  ///< of groups of triangles
+};
+SurfaceFormatInfo written_surface_format(const std::string& path, const std::string& format = {});
+
+/// What write_interfaces() makes of the names of patches that the format cannot hold as they are.
+std::vector<NameChange> written_interface_name_changes(const TetMesh& mesh, const std::string& path,
+                                                       const std::string& format = {});
+
 /// Whether files with this extension may give numbers to points, which then are the fields of
 /// read_surface_with_fields() or of read_tet_mesh().
 bool may_hold_point_fields(const std::string& path);
@@ -106,6 +117,9 @@ void write_surface(const TriangleMesh& mesh, const std::string& path, OutputFile
                    const std::string& format = {});
 void write_tet_mesh(const MeshToWrite& mesh, const std::string& path, OutputFiles* files = nullptr,
                     const std::string& format = {});
+/// The boundary and the interfaces of the mesh by themselves, as a surface with their names.
+void write_interfaces(const TetMesh& mesh, const std::string& path, OutputFiles* files = nullptr,
+                      const std::string& format = {});
 void write_label_volume(const LabelVolume& volume, const std::string& path, OutputFiles* files = nullptr,
                         const std::string& format = {});
 

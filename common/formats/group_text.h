@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 
 #include "common/face_group.h"
@@ -13,11 +14,11 @@ inline std::string group_text(const FaceGroup& group) {
   return group.name.empty() ? std::to_string(group.number) : printable_name(group.name);
 }
 
-/// The text with underscores for white space.
-inline std::string one_word(std::string text) {
-  for (char& c : text)
-    if (c == ' ') c = '_';
-  return text;
+/// printable_name() with underscores for white space.
+inline std::string printable_word(const std::string& name) {
+  std::string word = printable_name(name);
+  std::replace(word.begin(), word.end(), ' ', '_');
+  return word;
 }
 
 }  // namespace tetwright

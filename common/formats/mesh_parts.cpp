@@ -133,7 +133,7 @@ std::vector<TetFace> faces_of_tets(const TetMesh& mesh) {
   return out;
 }
 
-TriangleMesh interface_surface(const TetMesh& mesh) {
+TriangleMesh interface_surface(const TetMesh& mesh, const NameRules& rules) {
   TriangleMesh surface;
   std::vector<Index> new_index(mesh.points.size(), no_index);
   for (const InterfaceTriangle& t : mesh.interfaces)
@@ -143,7 +143,7 @@ TriangleMesh interface_surface(const TetMesh& mesh) {
     new_index[p] = static_cast<Index>(surface.points.size());
     surface.points.push_back(mesh.points[p]);
   }
-  for (const MeshParts::Surface& s : mesh_parts(mesh, printable_names()).surfaces) {
+  for (const MeshParts::Surface& s : mesh_parts(mesh, rules).surfaces) {
     for (const std::size_t f : s.faces) {
       const Triangle& ids = mesh.interfaces[f].ids;
       surface.triangles.push_back({new_index[ids[0]], new_index[ids[1]], new_index[ids[2]]});

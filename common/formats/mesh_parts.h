@@ -77,7 +77,7 @@ std::vector<TetFace> faces_of_tets(const TetMesh& mesh);
 
 /// The boundary and the interfaces of the mesh as a surface by themselves: triangles by group, those of
 /// mesh_parts(); points in the order of the mesh, those of no interface left out.
-TriangleMesh interface_surface(const TetMesh& mesh);
+TriangleMesh interface_surface(const TetMesh& mesh, const NameRules& rules);
 
 /// The nodes of the faces of a surface, ascending, each once. With `midside` (MidsideNodes::of_faces) those,
 /// too, numbered after `points` points.

@@ -32,4 +32,9 @@ NameChanges name_changes(const TetMesh& mesh, const MeshParts& written) {
   return changes;
 }
 
+void add_field_changes(const std::vector<MeshField>& fields, const std::vector<std::string>& written,
+                       std::vector<NameChange>& changes) {
+  for (std::size_t f = 0; f < fields.size(); ++f) compare_names(fields[f].name, written[f], changes);
+}
+
 }  // namespace tetwright

@@ -175,7 +175,7 @@ std::string write_stl(const TriangleMesh& mesh) {
   std::string out;
   const std::size_t solids = std::max<std::size_t>(mesh.groups.size(), 1);
   for (std::size_t g = 0; g < solids; ++g) {
-    const std::string name = mesh.groups.empty() ? "tetwright" : one_word(group_text(mesh.groups[g]));
+    const std::string name = mesh.groups.empty() ? "tetwright" : printable_word(group_text(mesh.groups[g]));
     out += "solid " + name + '\n';
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
       if (!mesh.groups.empty() && mesh.triangle_groups[i] != g) continue;

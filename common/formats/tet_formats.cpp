@@ -10,10 +10,12 @@
 #include "common/formats/medit.h"
 #include "common/formats/medit_binary.h"
 #include "common/formats/msh.h"
+#include "common/formats/msh_data.h"
 #include "common/formats/msh_groups.h"
 #include "common/formats/nastran.h"
 #include "common/formats/tetgen.h"
 #include "common/formats/vtk.h"
+#include "common/formats/vtk_cells.h"
 #include "common/formats/vtu.h"
 #include "common/formats/xdmf.h"
 
@@ -75,6 +77,7 @@ const std::vector<TetFormat>& tet_formats() {
                                                .read = read_vtu,
                                                .write = {{".vtu", write_alone<write_vtu>}},
                                                .parts = vtu_parts,
+                                               .own_cell_fields = {"material"},
                                                .surfaces = false,
                                                .second_order = true},
                                               {.extension = ".msh",
@@ -82,18 +85,21 @@ const std::vector<TetFormat>& tet_formats() {
                                                .read = read_msh,
                                                .write = {{".msh", write_as_one<write_msh>}},
                                                .parts = msh_parts,
+                                               .field_name = msh_name,
                                                .second_order = true},
                                               {.extension = ".msh",
                                                .name = "msh41",
                                                .read = read_msh,
                                                .write = {{".msh", write_alone<write_msh41>}},
                                                .parts = msh_parts,
+                                               .field_name = msh_name,
                                                .second_order = true},
                                               {.extension = ".msh",
                                                .name = "msh41-binary",
                                                .read = read_msh,
                                                .write = {{".msh", write_alone<write_msh41_binary>}},
                                                .parts = msh_parts,
+                                               .field_name = msh_name,
                                                .second_order = true},
                                               {.extension = ".mesh",
                                                .name = "medit",
@@ -117,6 +123,7 @@ const std::vector<TetFormat>& tet_formats() {
                                                .read = read_vtk,
                                                .write = {{".vtk", write_alone<write_vtk>}},
                                                .parts = printable_parts,
+                                               .own_cell_fields = {"material", vtk_surface_field},
                                                .second_order = true},
                                               {.extension = ".inp",
                                                .name = "abaqus",
@@ -145,6 +152,7 @@ const std::vector<TetFormat>& tet_formats() {
                                                .read_files = read_xdmf_files,
                                                .write = xdmf,
                                                .parts = printable_parts,
+                                               .own_cell_fields = {"material"},
                                                .second_order = true},
                                               {.extension = ".node",
                                                .name = "tetgen",

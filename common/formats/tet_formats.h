@@ -30,6 +30,10 @@ struct TetFormat {
   std::vector<WrittenFile> write;  ///< empty: only read
   /// What the writer calls the parts of a mesh.
   MeshParts (*parts)(const TetMesh& mesh) = nullptr;
+  /// Cell fields of the writer's own, whose names no other can have.
+  std::vector<std::string> own_cell_fields = {};
+  /// What becomes of a name of field_names_to_write(); null: nothing.
+  std::string (*field_name)(const std::string& name) = nullptr;
   bool point_fields = true;  ///< when it is read
   // As in TetFormatInfo.
   bool names = true, surfaces = true, patch_names = true, fields = true, second_order = false;

@@ -36,6 +36,7 @@ BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool ke
     result.finer = combine(std::move(result.finer), std::move(narrow.finer));
     result.finer = combine(std::move(result.finer), std::move(asked.finer));
     all.push_back(&surveys[b]);
+    if (progress) progress->throw_if_stopped();
   }
   choose_depths(all, budget);
   std::vector<std::shared_ptr<const LevelSet>> level_sets;
@@ -50,6 +51,7 @@ BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool ke
     const auto number = static_cast<std::uint16_t>(b);
     ThinWallPlan plan = plan_thin_walls(surveys[b]);
     surveys[b] = {};
+    if (progress) progress->throw_if_stopped();
     const std::uint16_t surface =
         add(plan.walls ? LevelSet::with_walls(*surfaces[b], std::move(plan.walls)) : surfaces[b]);
     result.finer = combine(std::move(result.finer), std::move(plan.finer));

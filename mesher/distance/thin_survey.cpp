@@ -285,6 +285,7 @@ ThinSurvey survey_thin_walls(const RepairedSurface& surface, const LevelSet& lev
   }
   if (progress) progress->throw_if_stopped();
   find_regions(survey);
+  if (progress) progress->throw_if_stopped();
   count_cells(survey);
   return survey;
 }

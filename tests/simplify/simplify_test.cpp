@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstring>
+#include <functional>
 
 #include "common/mesh/interfaces.h"
 #include "common/mesh/mesh_check.h"
@@ -157,6 +159,46 @@ TEST(Simplify, UnreachableTargetsEndWithTheSmallestMesh) {
   for (const MeshFinding& finding : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(finding);
   for (const std::string& d : topology_differences(topology(mesh), topology(after))) ADD_FAILURE() << d;
   EXPECT_LT(after.tets.size(), mesh.tets.size() / 5);
+}
+
+TEST(Simplify, WithoutAnyTimeTheMeshIsAsItCame) {
+  const TetMesh mesh = ring();
+  Progress progress;
+  progress.set_deadline(Progress::Clock::now());
+  SimplifyOptions options;
+  options.target_tets = 1500;
+  options.tolerance = 0.1;
+  for (const auto& work :
+       {std::function([&](SimplifyReport* report) { return simplify(mesh, options, report, &progress); }),
+        std::function([&](SimplifyReport* report) { return improve(mesh, {}, report, &progress); })}) {
+    SimplifyReport report;
+    const TetMesh after = work(&report);
+    EXPECT_TRUE(same_bytes(after, mesh));
+    EXPECT_EQ(after.interfaces, find_interfaces(mesh));
+    EXPECT_TRUE(report.out_of_time);
+    EXPECT_TRUE(report.iterations.empty());
+    if (report.deviation) {
+      EXPECT_EQ(report.deviation->upper(), 0);
+    }
+  }
+}
+
+// Also where it ends while the editable mesh is made, before the first change.
+TEST(Simplify, ADeadlineAtAnyMomentLeavesAValidMesh) {
+  const TetMesh mesh = ring();
+  SimplifyOptions options;
+  options.target_tets = 1500;
+  options.tolerance = 0.1;
+  for (std::chrono::microseconds time(250); time < std::chrono::milliseconds(70); time *= 2) {
+    Progress progress;
+    progress.set_deadline(Progress::Clock::now() + time);
+    SimplifyReport report;
+    const TetMesh after = simplify(mesh, options, &report, &progress);
+    for (const MeshFinding& finding : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(finding);
+    for (const std::string& d : topology_differences(topology(mesh), topology(after))) ADD_FAILURE() << d;
+    ASSERT_TRUE(report.deviation);
+    EXPECT_LE(report.deviation->upper(), options.tolerance);
+  }
 }
 
 TEST(Simplify, CancelsAndRefuses) {

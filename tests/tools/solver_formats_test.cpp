@@ -4,6 +4,7 @@
 
 #include "common/formats/formats.h"
 #include "common/mesh/interfaces.h"
+#include "common/message_text.h"
 #include "tests/tools/program.h"
 
 namespace tetwright::solver_formats_test {
@@ -99,8 +100,52 @@ TEST_F(SolverFormats, WhatAFormatChangesIsSaid) {
               "1 names of patches (changed, as .mesh cannot hold it: \"in let\" -> \"in_let\")");
   expect_said(said("out.meshb"), "1 names of patches (not written; .meshb has no place for them");
   EXPECT_EQ(said("out.meshb", "--boundary " + (f / "b.vtp")).find("names of patches"), std::string::npos);
+  expect_said(said("out.meshb", "--boundary " + (f / "b.off")), "1 named patches (not written; .off has no");
+  expect_said(said("out.msh", "--boundary " + (f / "b.obj")),
+              "1 names of patches (changed, as .obj cannot hold it: \"in let\" -> \"in_let\")");
   EXPECT_EQ(said("out.msh").find("changed, as"), std::string::npos);
   EXPECT_EQ(read_tet_mesh(f / "out.mesh").mesh.patch_groups.begin()->second, (FaceGroup{7, "in_let"}));
+}
+
+TEST_F(SolverFormats, NamesThatBecomeEqualStayApart) {
+  TetMesh mesh = read_tet_mesh(f / "in.vtu").mesh;
+  mesh.interfaces = find_interfaces(mesh);
+  for (InterfaceTriangle& t : mesh.interfaces) {
+    if (t.other) continue;
+    t.patch = 1;
+    mesh.patch_groups[{t.pair(), 1}] = {0, t.material == 1 ? "in let" : "in_let"};
+  }
+  for (const char* extension : {".stl", ".obj", ".ply", ".vtp"}) {
+    const std::string file = f / (std::string("b") + extension);
+    write_interfaces(mesh, file);
+    EXPECT_EQ(read_surface(file).groups.size(), 3u) << extension;
+    const bool words = std::string(extension) == ".stl" || std::string(extension) == ".obj";
+    EXPECT_EQ(written_interface_name_changes(mesh, file).size(), words ? 2u : 0u) << extension;
+  }
+}
+
+TEST_F(SolverFormats, NamesOfFieldsThatAreChangedAreSaid) {
+  TetMesh mesh = read_tet_mesh(f / "in.vtu").mesh;
+  for (const char* name : {"surface", "material", "a \"b\"", "same", "same", "two\nlines"})
+    mesh.cell_fields.push_back({name, 1, false, std::vector<double>(mesh.tets.size(), 1.5)});
+  mesh.point_fields.push_back({"material", 1, false, std::vector<double>(mesh.points.size(), 2.5)});
+  for (const TetFormatInfo& format : written_tet_formats()) {
+    if (!format.fields) continue;
+    SCOPED_TRACE(format.name);
+    const std::string file = f / (format.name + format.extension);
+    write_tet_mesh(mesh, file, nullptr, format.name);
+    const TetMesh back = read_tet_mesh(file).mesh;
+    ASSERT_EQ(back.cell_fields.size(), mesh.cell_fields.size());
+    std::map<std::string, std::string> changed;
+    for (std::size_t i = 0; i < mesh.cell_fields.size(); ++i)
+      if (mesh.cell_fields[i].name != back.cell_fields[i].name)
+        changed[in_quotes(mesh.cell_fields[i].name)] = in_quotes(back.cell_fields[i].name);
+    std::map<std::string, std::string> said;
+    for (const NameChange& change : written_name_changes(mesh, file, format.name).fields)
+      said[change.own] = change.written;
+    EXPECT_EQ(said, changed);
+    EXPECT_GE(said.size(), 2u);
+  }
 }
 
 TEST_F(SolverFormats, SizesThatNothingCanBeComputedForAreRefused) {

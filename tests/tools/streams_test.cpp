@@ -36,6 +36,33 @@ TEST(Streams, AreReadAndWrittenLikeFiles) {
   EXPECT_EQ(f.entries(), 2u);
 }
 
+TEST(Streams, OfTheBoundary) {
+  const TemporaryFolder f;
+  ASSERT_EQ(run("sample two_materials -o " + (f / "in.vtu")).status, 0);
+  const std::string call = "improve " + (f / "in.vtu") + " -o " + (f / "out.msh") + " --boundary ";
+  ASSERT_EQ(run(call + (f / "file.vtp") + " --output-format msh41").status, 0);
+  const std::string mesh = contents(f / "out.msh");
+  const Answer a = run(call + "- --output-format vtp");
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_EQ(a.out, contents(f / "file.vtp"));
+  EXPECT_NE(contents(f / "out.msh"), mesh) << "--output-format is that of the stream";
+  expect_refused(call + "-", 2, {"--boundary -", "--output-format"});
+  expect_refused(call + "- --output-format msh41", 2, {"msh41", "for a surface", ".vtp"});
+  expect_refused(call + "- --output-format vtp --stats -", 2, {"--boundary -", "--stats -"});
+  expect_refused("improve " + (f / "in.vtu") + " -o - --boundary - --output-format vtp", 2,
+                 {"-o -", "--boundary -"});
+}
+
+TEST(Streams, AFileOfTheirName) {
+  const TemporaryFolder f;
+  ASSERT_EQ(run("sample two_spheres -o " + (f / "t.ply")).status, 0);
+  ASSERT_EQ(run("sample torus -o " + (f / "t.off")).status, 0);
+  const Answer a = shell("cd " + (f / "") + " && cp t.off stdin && $t mesh - stdin --input-format ply" +
+                         " --resolution 16 -o o.vtu <t.ply");
+  EXPECT_EQ(a.status, 2) << a.err;
+  EXPECT_NE(a.err.find("./stdin"), std::string::npos) << a.err;
+}
+
 TEST(Streams, OfVolumes) {
   const TemporaryFolder f;
   ASSERT_EQ(run("sample organs -o " + (f / "o.nrrd")).status, 0);

@@ -57,7 +57,7 @@ CommandLine parse(const Job& job) {
     throw UsageError(std::string(name_of(line.command)) +
                      " is no job; jobs are prepare, mesh, simplify, improve and check");
   if (!line.log_file.empty()) throw UsageError("--log-file is of the whole batch; give it there");
-  if (!line.input_format.empty() || line.output == "-")
+  if (!line.input_format.empty() || line.output == "-" || line.boundary == "-")
     throw UsageError("a job has no standard input and output; give it files");
   if (line.stats == "-") throw UsageError("--stats - is of a single run; the results have the statistics");
   return line;

@@ -14,6 +14,8 @@ namespace {
 constexpr double gigabyte = 1 << 30;
 /// More than a clock can count would be no limit.
 constexpr double max_seconds = 1e9;
+/// Share of --time-limit that is kept at least for comparing and writing the mesh.
+constexpr double min_reserve = 0.1;
 
 bool is_stream(const CommandLine& line, const std::string& name) {
   return name == standard_input && !line.input_format.empty();
@@ -34,11 +36,16 @@ auto take(std::map<std::string, Object> InputObjects::*kind, InputObjects* objec
 
 CommandRun::CommandRun(const CommandLine& call, Progress& shown, InputObjects* in_memory)
     : line(call), memory_limit(call.memory_limit * gigabyte), progress(shown), objects(in_memory) {
-  if (call.time_limit > 0)
-    progress.set_deadline(Progress::Clock::now() + std::chrono::duration_cast<Progress::Clock::duration>(
-                                                       making_share * std::chrono::duration<double>(std::min(
-                                                                          call.time_limit, max_seconds))));
+  reserve_time(min_reserve * std::min(call.time_limit, max_seconds));
   report.inputs = input_files(call);
+}
+
+void CommandRun::reserve_time(double seconds) {
+  if (line.time_limit == 0) return;
+  const std::chrono::duration<double> left(std::min(line.time_limit, max_seconds) - since_start.seconds() -
+                                           seconds);
+  const auto end = Progress::Clock::now() + std::chrono::duration_cast<Progress::Clock::duration>(left);
+  progress.set_deadline(std::min(progress.deadline(), end));
 }
 
 bool is_object(const CommandRun& run, const std::string& name) {

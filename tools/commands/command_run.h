@@ -29,14 +29,15 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Share of --time-limit that making the mesh may take; the rest is for comparing and writing it.
-inline constexpr double making_share = 0.9;
-
 /// What all steps of a command share. The meshes themselves are handed from step to step.
 struct CommandRun {
   /// What it is given must outlive it. Inputs are moved out of `objects` as they are read. The time and the
   /// memory of --time-limit and --memory-limit are those of its life, on the thread that makes it.
   CommandRun(const CommandLine& line, Progress& progress, InputObjects* objects = nullptr);
+
+  /// Making the mesh ends these seconds before --time-limit, or as many as it was told before if that is
+  /// more: what comparing and writing the mesh are expected to take.
+  void reserve_time(double seconds);
 
   const CommandLine& line;
   MemoryLimit memory_limit;

@@ -143,7 +143,7 @@ void check_tet_stream(const CommandLine& line) {
 
 void check_output_paths(const CommandLine& line) {
   if (line.command != Command::check) check_output_path(line.output, FileKind::tet_mesh, line.output_format);
-  if (!line.boundary.empty()) check_output_path(line.boundary, FileKind::surface);
+  if (!line.boundary.empty()) check_output_path(line.boundary, FileKind::surface, line.boundary_format);
   check_sdf_path(line);
   check_report_path(line);
   check_files_are_different(line, Which::all);

@@ -7,7 +7,6 @@
 
 #include "common/formats/atomic_file.h"
 #include "common/formats/formats.h"
-#include "common/formats/mesh_parts.h"
 #include "common/message_text.h"
 #include "tools/commands/report_file.h"
 #include "tools/commands/unwritten.h"
@@ -453,7 +452,7 @@ void write_result(CommandResult& result, CommandRun& run) {
     write_mesh(without_triangles(result.mesh), run, files);
   else
     write_mesh(result.mesh, run, files);
-  if (!line.boundary.empty()) write_surface(interface_surface(result.mesh), line.boundary, &files);
+  if (!line.boundary.empty()) write_interfaces(result.mesh, line.boundary, &files, line.boundary_format);
   write_report(result.mesh, run, files);
   run.report.seconds_write = watch.seconds();
   run.report.seconds_total = run.since_start.seconds();
@@ -466,7 +465,7 @@ void print_result(const CommandRun& run) {
   if (!run.line.quiet) print_notes(notes_of(run.report));
   if (run.line.stats == "-")
     std::printf("%s\n", stats_json(run.line, run.report).c_str());
-  else if (!run.line.quiet && run.line.output != "-")
+  else if (!run.line.quiet && run.line.output != "-" && run.line.boundary != "-")
     print_report(run.line, run.report);
   for (const Shortfall& s : run.report.shortfall) print_line(s.message);
 }

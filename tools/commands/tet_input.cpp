@@ -50,9 +50,11 @@ TetInput read_tets(CommandRun& run) {
   ReadTetMesh read = take_tet_mesh(run, file, {run.line.material_field});
   run.report.material_field = read.material_field;
   run.report.input_points = read.mesh.points.size();
+  run.progress.throw_if_stopped();
   report_dropped(read.dropped, file, run.report);
   TetInput input{std::move(read.mesh), {}};
   repair(input.mesh, file, run.report);
+  run.progress.throw_if_stopped();
   if (!input.mesh.point_fields.empty() || !input.mesh.cell_fields.empty()) {
     input.with_fields = input.mesh;
     input.mesh.point_fields.clear();
@@ -64,8 +66,10 @@ TetInput read_tets(CommandRun& run) {
         {material_name_of(run, file), find_mesh_patches(input.mesh, run.line.feature_angle, file)});
     run.report.features.back().found.patches = {};
   }
+  run.progress.throw_if_stopped();
   run.report.creases = mesh_creases(input.mesh);
   run.report.seconds_read = watch.seconds();
+  run.reserve_time(run.report.seconds_read);  // measured: comparing and writing take as long
   if (run.line.target_tets > input.mesh.tets.size())
     throw UsageError("--target-tets " + std::to_string(run.line.target_tets) + " is above the " +
                      std::to_string(input.mesh.tets.size()) + " tets of " + file + "; give fewer");

@@ -16,7 +16,6 @@
 #include "common/error.h"
 #include "common/formats/atomic_file.h"
 #include "common/formats/formats.h"
-#include "common/formats/mesh_parts.h"
 #include "common/parallel/parallel.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/output_paths.h"
@@ -187,7 +186,7 @@ void write_mesh_files(const Mesh& mesh, const std::string& path, const std::stri
   } else {
     write_tet_mesh({mesh.mesh, midside}, path, &files, format);
   }
-  if (!boundary.empty()) write_surface(interface_surface(mesh.mesh), boundary, &files);
+  if (!boundary.empty()) write_interfaces(mesh.mesh, boundary, &files);
   files.commit();
 }
 

@@ -88,7 +88,7 @@ TEST(MeshParts, TheInterfacesAsASurface) {
   for (Tet& tet : mesh.tets)
     for (Index& v : tet) ++v;
   mesh.interfaces = find_interfaces(mesh);
-  const TriangleMesh surface = interface_surface(mesh);
+  const TriangleMesh surface = interface_surface(mesh, printable_names());
   EXPECT_EQ(surface.points, two_tets().points);
   EXPECT_EQ(surface.groups, (std::vector<FaceGroup>{{1, "b|outside"}, {2, "b|a"}, {3, "a|outside"}}));
   EXPECT_EQ(surface.triangle_groups, (std::vector<std::uint32_t>{0, 0, 0, 1, 2, 2, 2}));
