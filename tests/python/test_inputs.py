@@ -104,8 +104,60 @@ def test_fields_and_groups_of_objects_are_kept_or_noted():
                           cell_data={"gmsh:physical": [np.ones(12, int), np.array([2])]},
                           point_data={"heat": np.zeros(8)}, field_data={"wall": np.array([1, 2])})
     note = tetwright.mesh(surface, resolution=8).notes[0]
-    for what in '1 lines', '"gmsh:physical"', 'fields of points ("heat")', 'names of physical groups ("wall")':
+    for what in '1 lines', 'fields of points ("heat")':
         assert what in note
+
+
+def outer_triangles(mesh, groups):
+    """The boundary of a mesh as cells of meshio, with a group for each triangle."""
+    return [("tetra", mesh.tets), ("triangle", mesh.interfaces.triangles)], [np.ones(len(mesh.tets), int), groups]
+
+
+def names_of_surfaces(mesh):
+    used = set(mesh.interfaces.group.tolist())
+    return {n for number, n in mesh.interfaces.group_names.items() if number in used}
+
+
+def test_groups_of_faces_are_patches(cube_mesh, tmp_path):
+    top = (cube_mesh.points[cube_mesh.interfaces.triangles][:, :, 2] > 0.99).all(axis=1)
+    assert top.any() and not top.all()
+    cells, groups = outer_triangles(cube_mesh, np.where(top, 5, 0))
+    named = meshio.Mesh(cube_mesh.points, cells, cell_data={"gmsh:physical": groups},
+                        field_data={"wall": np.array([5, 2])})
+    made = tetwright.improve(named)
+    of_set = tetwright.improve(meshio.Mesh(cube_mesh.points, cells, cell_sets={"wall": [None, np.flatnonzero(top)]}))
+    named.write(tmp_path / "named.msh", file_format="gmsh22")  # as the program reads it
+    for mesh in made, of_set, tetwright.improve(tmp_path / "named.msh"):
+        assert names_of_surfaces(mesh) == {"wall", "material_1|outside"} and "(dropped)" not in str(mesh.notes)
+        on_wall = np.array([mesh.interfaces.group_names[g] == "wall" for g in mesh.interfaces.group.tolist()])
+        assert (mesh.points[mesh.interfaces.triangles[on_wall]][:, :, 2] > 0.99).all() and on_wall.any()
+    # From one program to the next.
+    again = tetwright.improve(made.to_meshio())
+    assert names_of_surfaces(again) == names_of_surfaces(made) and "(dropped)" not in str(again.notes)
+    # A triangle within the mesh is the surface of nothing.
+    cells[1] = ("triangle", np.vstack([cells[1][1], cube_mesh.tets[:1, :3]]))
+    groups[1] = np.append(groups[1], 5)
+    note = tetwright.improve(meshio.Mesh(cube_mesh.points, cells, cell_data={"medit:ref": groups})).notes[0]
+    assert "1 triangles of groups inside a material (dropped)" in note
+
+
+def test_groups_of_surfaces_are_patches():
+    # Two triangles of each side; the fan of a polygon is of one group.
+    sides = np.repeat(np.arange(6), 2)
+    names = {"wall": np.array([3, 2])}
+    labelled = meshio.Mesh(CUBE_POINTS, [("triangle", CUBE_TRIANGLES)], cell_data={"gmsh:physical": [sides]},
+                           field_data=names)
+    polygons = types.SimpleNamespace(points=CUBE_POINTS, faces=np.hstack([np.full((6, 1), 4), CUBE_QUADS]).ravel(),
+                                     cell_data={"patch": np.arange(6), "heat": np.zeros(6)}, point_data={})
+    in_sets = meshio.Mesh(CUBE_POINTS, [("triangle", CUBE_TRIANGLES)],
+                          cell_sets={"wall": [np.array([6, 7])], "twice": [np.array([7, 8])]})
+    assert names_of_surfaces(tetwright.mesh(labelled, resolution=8)) == {
+        "surface|outside", "surface_1", "surface_2", "wall", "surface_4", "surface_5"}
+    made = tetwright.mesh(polygons, resolution=8)
+    assert len(names_of_surfaces(made)) == 6 and '1 fields of cells ("heat") (dropped)' in made.notes[0]
+    made = tetwright.mesh(in_sets, resolution=8)
+    assert names_of_surfaces(made) == {"surface|outside", "wall", "twice"}
+    assert "1 faces of sets that are in a group already (dropped)" in made.notes[0]
 
 
 def test_names_of_materials_are_kept_whole():

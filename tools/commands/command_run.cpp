@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/formats/file_triangles.h"
 #include "common/formats/mesh_fields.h"
 #include "common/measurable.h"
 #include "tools/stats_json.h"
@@ -88,6 +89,8 @@ ReadTetMesh take_tet_mesh(CommandRun& run, const std::string& name, const ReadTe
       ReadTetMesh read = std::move(object->second);
       require_measurable(read.mesh, name);
       take_material(read, options, name);
+      if (const auto listed = run.objects->triangles.find(name); listed != run.objects->triangles.end())
+        take_triangles(listed->second, "group", name, read);
       return read;
     }
   }

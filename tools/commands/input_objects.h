@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/formats/dropped.h"
+#include "common/formats/file_triangles.h"
 #include "common/formats/read_tet_mesh_result.h"
 #include "common/label_volume.h"
 #include "common/tet_mesh.h"
@@ -26,6 +27,7 @@ struct InputObjects {
   std::map<std::string, TriangleMesh> surfaces;
   /// As the reader of a file leaves them before it chooses the material.
   std::map<std::string, ReadTetMesh> meshes;
+  std::map<std::string, FileTriangles> triangles;  ///< that the host lists beside the tets of `meshes`
   std::map<std::string, LabelVolume> volumes;
   std::map<std::string, SizesObject> sizes;  ///< of --size-field
   /// What the host's surfaces had beside points and triangles.

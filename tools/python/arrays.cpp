@@ -1,5 +1,6 @@
 #include "tools/python/arrays.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -75,12 +76,24 @@ std::vector<Vec3> to_points(const Points& array, const std::string& name) {
   return points;
 }
 
-TriangleMesh to_surface(const std::string& name, const Points& points, const Cells& triangles) {
-  TriangleMesh surface;
-  surface.points = to_points(points, name);
-  surface.triangles = to_cells<3>(triangles, surface.points.size(), name, "triangles");
-  if (surface.triangles.empty()) throw InputError(name, 0, "has no triangles; give a surface");
-  return surface;
+FileTriangles to_triangles(const std::string& name, std::size_t points, const GroupedTriangles& triangles) {
+  const auto& [cells, groups, names] = triangles;
+  FileTriangles listed;
+  listed.triangles = to_cells<3>(cells, points, name, "triangles");
+  if (groups.ndim() != 1 || static_cast<std::size_t>(groups.shape(0)) != listed.triangles.size())
+    throw InputError(name, 0,
+                     "groups are an array of shape " + shape_text(groups) + "; give one for each of the " +
+                         std::to_string(listed.triangles.size()) + " triangles");
+  listed.groups.assign(groups.data(), groups.data() + groups.size());
+  listed.names = names;
+  return listed;
+}
+
+TriangleMesh to_surface(const std::string& name, const Points& points, const GroupedTriangles& triangles) {
+  std::vector<Vec3> places = to_points(points, name);
+  const FileTriangles listed = to_triangles(name, places.size(), triangles);
+  if (listed.triangles.empty()) throw InputError(name, 0, "has no triangles; give a surface");
+  return surface_of(listed, std::move(places), name);
 }
 
 ReadTetMesh to_mesh(const std::string& name, const Points& points, const Cells& tets,
@@ -132,7 +145,9 @@ SizesObject to_sizes(const std::string& name, const Points& points, const Cells&
     count = mesh.points.size();
     sizes.elements = std::move(mesh);
   } else {
-    TriangleMesh surface = to_surface(name, points, cells);
+    Cells groups(static_cast<py::ssize_t>(cells.shape(0)));
+    std::fill_n(groups.mutable_data(), groups.size(), 0);
+    TriangleMesh surface = to_surface(name, points, {cells, groups, {}});
     count = surface.points.size();
     sizes.elements = std::move(surface);
   }

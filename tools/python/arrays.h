@@ -10,6 +10,7 @@
 #include <tuple>
 #include <vector>
 
+#include "common/formats/file_triangles.h"
 #include "common/formats/read_tet_mesh_result.h"
 #include "common/label_volume.h"
 #include "common/tet_mesh.h"
@@ -32,11 +33,16 @@ using Labels = py::array_t<MaterialTag, py::array::f_style | py::array::forcecas
 using Fields = std::vector<std::tuple<std::string, bool, Values>>;
 /// What it is (plural), how many, and whether it is found again from the rest.
 using DroppedItems = std::vector<std::tuple<std::string, std::size_t, bool>>;
+/// Triangles of shape (m, 3), the number of each one's group, 0 for none, of shape (m,), and the names of
+/// groups that have one.
+using GroupedTriangles = std::tuple<Cells, Cells, std::map<std::int64_t, std::string>>;
 
 /// Points of shape (n, 3), all finite.
 std::vector<Vec3> to_points(const Points& array, const std::string& name);
-/// Triangles of shape (m, 3) of numbers of points from 0 on; at least one.
-TriangleMesh to_surface(const std::string& name, const Points& points, const Cells& triangles);
+/// At least one triangle, of numbers of points from 0 on.
+TriangleMesh to_surface(const std::string& name, const Points& points, const GroupedTriangles& triangles);
+/// Those of a mesh of so many points.
+FileTriangles to_triangles(const std::string& name, std::size_t points, const GroupedTriangles& triangles);
 /// Tets of shape (m, 4), at least one, and the material of each, of shape (m,); without them a cell field may
 /// give it, as with files. Numbers of points and tets are fields of shape (n, components).
 ReadTetMesh to_mesh(const std::string& name, const Points& points, const Cells& tets,

@@ -16,6 +16,8 @@
 #include "common/error.h"
 #include "common/formats/atomic_file.h"
 #include "common/formats/formats.h"
+#include "common/formats/label_groups.h"
+#include "common/formats/mesh_parts.h"
 #include "common/parallel/parallel.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/output_paths.h"
@@ -163,6 +165,17 @@ py::tuple other_sides(const TetMesh& mesh) {
     boundary.mutable_at(i) = !tag;
   }
   return py::make_tuple(other, boundary);
+}
+
+/// The number of the group of each interface triangle, and the names of these, as files have them.
+py::tuple groups_of(const TetMesh& mesh) {
+  py::array_t<std::int64_t> numbers(static_cast<py::ssize_t>(mesh.interfaces.size()));
+  py::dict names;
+  for (const MeshParts::Surface& s : mesh_parts(mesh, printable_names()).surfaces) {
+    names[py::int_(s.number)] = to_text(s.name);
+    for (const std::size_t f : s.faces) numbers.mutable_at(static_cast<py::ssize_t>(f)) = s.number;
+  }
+  return py::make_tuple(numbers, names);
 }
 
 void write_mesh_files(const Mesh& mesh, const std::string& path, const std::string& format,
@@ -351,17 +364,19 @@ PYBIND11_MODULE(_core, module) {
   py::class_<InputObjects>(module, "Inputs")
       .def(py::init<>())
       .def("add_surface",
-           [](InputObjects& to, const std::string& name, const Points& points, const Cells& triangles,
-              const DroppedItems& dropped) {
+           [](InputObjects& to, const std::string& name, const Points& points,
+              const GroupedTriangles& triangles, const DroppedItems& dropped) {
              to.surfaces[name] = to_surface(name, points, triangles);
              to.dropped[name] = to_dropped(dropped);
            })
       .def("add_mesh",
            [](InputObjects& to, const std::string& name, const Points& points, const Cells& tets,
               const std::optional<Tags>& materials, const std::map<MaterialTag, std::string>& names,
-              const Fields& point_fields, const Fields& cell_fields, const DroppedItems& dropped) {
-             to.meshes[name] =
+              const Fields& point_fields, const Fields& cell_fields, const DroppedItems& dropped,
+              const GroupedTriangles& triangles) {
+             const ReadTetMesh& read = to.meshes[name] =
                  to_mesh(name, points, tets, materials, names, point_fields, cell_fields, dropped);
+             to.triangles[name] = to_triangles(name, read.mesh.points.size(), triangles);
            })
       .def("add_own_mesh",
            [](InputObjects& to, const std::string& name, const Mesh& mesh) {
@@ -420,6 +435,7 @@ PYBIND11_MODULE(_core, module) {
                                                           self);
                              })
       .def("interface_others", [](const Mesh& m) { return other_sides(m.mesh); })
+      .def("interface_groups", [](const Mesh& m) { return groups_of(m.mesh); })
       .def_property_readonly("midside_points",
                              [](const py::object& self) -> py::object {
                                const auto& midside = self.cast<const Mesh&>().midside;
@@ -442,6 +458,7 @@ PYBIND11_MODULE(_core, module) {
       .def("write", &write_mesh_files);
 
   module.def("option_types", &option_types);
+  module.def("is_face_label", [](const std::string& name) { return is_face_label(name); });
   module.def("run", &run);
   module.def("check", &check);
   module.def("read", [](const std::string& path, const std::string& material_field) {

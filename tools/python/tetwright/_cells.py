@@ -22,6 +22,9 @@ FACE_CORNERS = {"triangle": 3, "quad": 4, "pixel": 4, "polygon": None, "VTK_LAGR
 FLAT_KINDS = {"vertex", "line", "VTK_LAGRANGE_CURVE"}
 PLURALS = {"vertex": "vertex cells", "hexahedron": "hexahedra", "polyhedron": "polyhedra", "tetra": "tets"}
 TET_KINDS = ("tetra", "tetra10")
+# Fields of faces whose numbers are groups beside tets, as in files; of a surface many more are.
+FACE_GROUPS = ("gmsh:physical", "medit:ref", "surface")
+SURFACE = FACE_GROUPS[-1]
 # What TetMesh.to_meshio() tells of its triangles, which follow from the tets.
 OTHER_MATERIAL = "other_material"
 
@@ -31,6 +34,8 @@ class Cells:
     """A surface, or a tet mesh where there are tets."""
     points: Any
     triangles: Any = None
+    groups: Any = None  # of each triangle, 0: none
+    group_names: dict[int, bytes] = dataclasses.field(default_factory=dict)
     tets: Any = None
     materials: Any = None
     names: dict[int, bytes] = dataclasses.field(default_factory=dict)
@@ -42,6 +47,12 @@ class Cells:
         """Notes what the object has and this has not: `what` is a plural."""
         if count > 0:
             self.dropped.append((what.encode(errors="replace"), count, restored))
+
+    def grouped_triangles(self) -> tuple[Any, Any, dict[int, bytes]]:
+        """As the compiled part takes them."""
+        triangles = np.empty((0, 3), np.int64) if self.triangles is None else self.triangles
+        groups = np.zeros(triangles.shape[:1], np.int64) if self.groups is None else self.groups
+        return triangles, groups, self.group_names
 
     def drop_names(self, what: str, names: Iterable[Any]) -> None:
         """The same, by their names."""
@@ -81,41 +92,65 @@ def _of_arrays(value: Any, name: str) -> Cells:
 def _of_poly_data(value: Any, name: str) -> Cells:
     if getattr(value, "n_strips", 0):
         raise _core.InputError(f"{name}: it has {value.n_strips} triangle strips; make them triangles by triangulate()")
-    made = Cells(numbers(value.points, name, "points"), _triangles_of_faces(indices(value.faces, name, "faces"), name))
+    triangles, face_of = _triangles_of_faces(indices(value.faces, name, "faces"), name)
+    made = Cells(numbers(value.points, name, "points"), triangles)
     made.drop("lines", getattr(value, "n_lines", 0))
-    made.drop_names("fields of cells", getattr(value, "cell_data", ()))
+    data = getattr(value, "cell_data", {})
+    faces = int(face_of[-1]) + 1 if len(face_of) > 0 else 0
+    label = _label_field([data], [faces], True)
+    if label is not None:
+        made.groups = np.asarray(data[label]).astype(np.int64)[face_of]
+    made.drop_names("fields of cells", [f for f in data.keys() if f != label])
     made.point_fields, left = _fields(getattr(value, "point_data", {}), len(made.points))
     made.drop_names("fields of points", left)
     return made
 
 
-def _triangles_of_faces(faces: np.ndarray, name: str) -> np.ndarray:
-    """Of VTK's list: each face's number of points, then these. Polygons become fans, as from files."""
+def _triangles_of_faces(faces: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Of VTK's list: each face's number of points, then these. Polygons become fans, as from files. The triangles, and
+    the number of each one's face."""
     if faces.ndim == 2:
-        return faces
+        return faces, np.arange(len(faces))
     if faces.size % 4 == 0 and (faces[::4] == 3).all():
-        return faces.reshape(-1, 4)[:, 1:]
+        return faces.reshape(-1, 4)[:, 1:], np.arange(faces.size // 4)
     triangles: list[tuple[int, int, int]] = []
-    at = 0
+    face_of: list[int] = []
+    at = number = 0
     while at < faces.size:
         count = int(faces[at])
         corners = faces[at + 1:at + 1 + count]
         if count < 3 or len(corners) < count:
             raise _core.InputError(f"{name}: a face at {at} has {count} points; give polygons of 3 or more")
         triangles.extend((corners[0], corners[k], corners[k + 1]) for k in range(1, count - 1))
+        face_of.extend([number] * (count - 2))
         at += 1 + count
-    return np.asarray(triangles, np.int64).reshape(-1, 3)
+        number += 1
+    return np.asarray(triangles, np.int64).reshape(-1, 3), np.asarray(face_of, np.int64)
 
 
-# One kind of cell, its cells, and the numbers that they have, by name.
-Block = tuple[str, Any, dict[str, Any]]
+def _label_field(data_of_blocks: list[Any], counts: list[int], is_surface: bool) -> Optional[str]:
+    """The field that says by whole numbers which groups the faces of all blocks are in."""
+    def is_label(field: Any) -> bool:
+        if field not in FACE_GROUPS and not (is_surface and _core.is_face_label(str(field))):
+            return False
+        arrays = [np.asarray(data[field]) if field in data.keys() else None for data in data_of_blocks]
+        return all(a is not None and a.dtype.kind in "iu" and a.shape == (n,) for a, n in zip(arrays, counts))
+    labels = [f for f in data_of_blocks[0].keys() if is_label(f)] if data_of_blocks else []
+    return min(labels, key=lambda f: f != FACE_GROUPS[0], default=None)
+
+
+# One kind of cell, its cells, the numbers that they have, by name, and the sets that some of them are in.
+Block = tuple[str, Any, dict[str, Any], dict[str, Any]]
 
 
 def _blocks(value: Any, name: str) -> list[Block]:
     blocks = getattr(value, "cells", None)
     if isinstance(blocks, list) and all(hasattr(b, "type") and hasattr(b, "data") for b in blocks):  # meshio
         data = getattr(value, "cell_data", None) or {}
-        return [(str(b.type), b.data, {f: v[i] for f, v in data.items()}) for i, b in enumerate(blocks)]
+        sets = _sets_of_cells(value)
+        return [(str(b.type), b.data, {f: v[i] for f, v in data.items()},
+                 {s: v[i] for s, v in sets.items() if i < len(v) and v[i] is not None and len(v[i]) > 0})
+                for i, b in enumerate(blocks)]
     try:
         by_kind = dict(value.cells_dict)
     except Exception as error:  # of the other library, such as for cells of different sizes
@@ -132,7 +167,7 @@ def _blocks(value: Any, name: str) -> list[Block]:
             data = {f: np.asarray(of_all[f])[np.asarray(types) == kind] for f in of_all.keys()}
         else:
             data = {f: of_all[f] for f in of_all.keys()} if len(by_kind) == 1 else {}
-        made.append((text, cells, data))
+        made.append((text, cells, data, {}))
     return made
 
 
@@ -154,7 +189,7 @@ def _of_blocks(value: Any, name: str) -> Cells:
          others).append(block)
     others = [b for b in others if len(b[1]) > 0]
     if others:
-        counts = ", ".join(f"{len(cells)} {_plural(kind)}" for kind, cells, _ in others)
+        counts = ", ".join(f"{len(b[1])} {_plural(b[0])}" for b in others)
         raise _core.InputError(f"{name}: {counts}; only triangles, polygons and tets of 4 or 10 points can be read: "
                                "convert other cells to tets")
     if not tets and not faces:
@@ -164,63 +199,70 @@ def _of_blocks(value: Any, name: str) -> Cells:
     made.point_fields, left = _fields(getattr(value, "point_data", None) or {}, len(made.points))
     made.drop_names("fields of points", left)
     if tets:
-        _take_tets(made, tets, name)
-        own = any(OTHER_MATERIAL in data for _, _, data in faces)
-        if own:
+        midside = _take_tets(made, tets, name)
+        if any(OTHER_MATERIAL in b[2] for b in faces):
             made.cell_fields.pop(OTHER_MATERIAL, None)
-        for kind, cells, _ in faces:
-            made.drop(_plural(kind), len(cells), restored=own)
+    label = _take_faces(made, faces, name)
+    if tets:
+        if label == SURFACE:  # of tets it says nothing
+            made.cell_fields.pop(SURFACE, None)
+        _remove_midside_nodes(made, midside, name)
     else:
-        _take_faces(made, faces, name)
-    for kind, cells, _ in flat:
-        made.drop(_plural(kind), len(cells))
+        made.drop_names("fields of cells", [f for f in dict.fromkeys(f for b in faces for f in b[2]) if f != label])
+    for block in flat:
+        made.drop(_plural(block[0]), len(block[1]))
     _take_names(made, value)
     return made
 
 
-def _take_tets(made: Cells, blocks: list[Block], name: str) -> None:
+def _take_tets(made: Cells, blocks: list[Block], name: str) -> list[np.ndarray]:
+    """Returns their midside nodes."""
     nodes = []
-    for kind, cells, _ in blocks:
+    for kind, cells, _, _ in blocks:
         array = indices(cells, name, "tets")
         count = 10 if kind == "tetra10" else 4
         if array.ndim != 2 or array.shape[1] != count:
             raise _core.InputError(f"{name}: cells of kind {kind} have the shape {array.shape}; give (m, {count})")
         nodes.append(array)
     made.tets = np.concatenate([n[:, :4] for n in nodes])
-    common = [f for f in blocks[0][2] if all(f in data for _, _, data in blocks)]
+    common = [f for f in blocks[0][2] if all(f in b[2] for b in blocks)]
     joined = {}
     for field in common:
         try:
-            joined[field] = np.ma.concatenate([np.ma.asarray(data[field]) for _, _, data in blocks])
+            joined[field] = np.ma.concatenate([np.ma.asarray(b[2][field]) for b in blocks])
         except (ValueError, TypeError):
             joined[field] = None
     made.cell_fields, left = _fields(joined, len(made.tets))
     made.drop_names("fields of cells", left)
-    _remove_midside_nodes(made, [n[:, 4:] for n in nodes if n.shape[1] > 4], name)
+    return [n[:, 4:] for n in nodes if n.shape[1] > 4]
 
 
 def _remove_midside_nodes(made: Cells, midside: list[np.ndarray], name: str) -> None:
     if not midside:
         return
     count = len(made.points)
-    for cells in (made.tets, *midside):
-        check_range(cells, count, name, "tets")
+    for cells, what in ((made.triangles, "triangles"), *((c, "tets") for c in (made.tets, *midside))):
+        check_range(cells, count, name, what)
     keep = np.ones(count, bool)
     for cells in midside:
         keep[cells] = False
     keep[made.tets] = True
+    keep[made.triangles] = True
     new_index = np.cumsum(keep) - 1
-    made.tets = new_index[made.tets]
+    made.tets, made.triangles = new_index[made.tets], new_index[made.triangles]
     made.points = made.points[keep]
     made.point_fields = {f: v[keep] for f, v in made.point_fields.items()}
     made.drop("midside nodes; tets of ten nodes are taken by their corners", int(count - keep.sum()))
 
 
-def _take_faces(made: Cells, blocks: list[Block], name: str) -> None:
-    fans = []
-    fields: dict[str, None] = {}  # a set that keeps the order
-    for kind, cells, data in blocks:
-        fields.update(dict.fromkeys(data))
+def _take_faces(made: Cells, blocks: list[Block], name: str) -> Optional[str]:
+    """Returns the field that groups them. Those that it leaves out may be in sets with names."""
+    fans, groups = [np.empty((0, 3), np.int64)], [np.empty(0, np.int64)]
+    label = _label_field([b[2] for b in blocks], [len(b[1]) for b in blocks], made.tets is None)
+    first_set = 1 + max((int(np.max(b[2][label], initial=0)) for b in blocks), default=0) if label is not None else 1
+    numbers_of_sets: dict[str, int] = {}
+    repeated = 0
+    for kind, cells, data, sets in blocks:
         array = indices(cells, name, _plural(_base(kind)))
         corners = FACE_CORNERS[_base(kind)] or (array.shape[1] if array.ndim == 2 else 3)
         if array.ndim != 2 or array.shape[1] < corners:
@@ -228,18 +270,29 @@ def _take_faces(made: Cells, blocks: list[Block], name: str) -> None:
         if corners < 3:
             made.drop("faces of fewer than three vertices", len(array))
             continue
-        if array.shape[1] > corners:
+        if array.shape[1] > corners and made.tets is None:
             made.drop(f"midside nodes; {_plural(kind)} are taken by their corners",
                       len(np.unique(array[:, corners:])))
         array = array[:, [0, 1, 3, 2]] if kind == "pixel" else array[:, :corners]
         fans.append(np.stack([array[:, [0, k, k + 1]] for k in range(1, corners - 1)], axis=1).reshape(-1, 3))
-    made.triangles = np.concatenate(fans) if fans else np.empty((0, 3), np.int64)
-    made.drop_names("fields of cells", fields)
+        of_cells = np.zeros(len(array), np.int64) if label is None else np.asarray(data[label]).astype(np.int64)
+        for group, members in sets.items():
+            number = numbers_of_sets.setdefault(group, first_set + len(numbers_of_sets))
+            made.group_names[number] = plain_text(group, "the name of a set of cells")
+            chosen = indices(members, name, f"the set '{group}'")
+            check_range(chosen, len(array), name, f"the set '{group}'")
+            repeated += int(np.count_nonzero(of_cells[chosen]))
+            of_cells[chosen[of_cells[chosen] == 0]] = number
+        groups.append(np.repeat(of_cells, corners - 2))
+    made.triangles, made.groups = np.concatenate(fans), np.concatenate(groups)
+    made.drop("faces of sets that are in a group already", repeated)
+    return label
 
 
 def _take_names(made: Cells, value: Any) -> None:
     """Names of materials, which are Gmsh's physical volumes in meshio; other names are noted."""
     groups, arrays = [], []
+    numbers_of_faces = set() if made.groups is None else set(np.unique(made.groups).tolist())
     of_gmsh = not hasattr(value, "celltypes")
     for group, data in (getattr(value, "field_data", None) or {}).items():
         array = np.asarray(data)
@@ -247,16 +300,23 @@ def _take_names(made: Cells, value: Any) -> None:
             arrays.append(group)
         elif made.tets is not None and array.flat[1] == 3 and abs(int(array.flat[0])) < 2**31:
             made.names[int(array.flat[0])] = plain_text(str(group), "the name of a physical group")
+        elif array.flat[1] == 2 and int(array.flat[0]) in numbers_of_faces - made.group_names.keys():
+            made.group_names[int(array.flat[0])] = plain_text(str(group), "the name of a physical group")
         else:
             groups.append(group)
     made.drop_names("names of physical groups of faces, lines or points" if made.tets is not None else
                     "names of physical groups", groups)
     made.drop_names("arrays of the whole dataset", arrays)
-    # Those of Gmsh itself say what bounds what; those with the names of physical groups say the same as these.
-    known = set(getattr(value, "field_data", None) or {}) if of_gmsh else set()
-    sets = [s for s in getattr(value, "cell_sets", None) or {} if s not in known and not str(s).startswith("gmsh:")]
-    made.drop_names("sets of cells", sets)
+    taken = set(made.group_names.values())
+    made.drop_names("sets of cells", [s for s in _sets_of_cells(value) if str(s).encode() not in taken])
     made.drop_names("sets of points", getattr(value, "point_sets", None) or {})
+
+
+def _sets_of_cells(value: Any) -> dict[str, Any]:
+    """Of meshio, but for those of Gmsh, which say what bounds what, or the same as its physical groups."""
+    known = getattr(value, "field_data", None) or {}
+    return {s: v for s, v in (getattr(value, "cell_sets", None) or {}).items()
+            if s not in known and not str(s).startswith("gmsh:")}
 
 
 def _fields(data: Any, rows: int) -> tuple[dict[str, np.ndarray], list[str]]:

@@ -103,12 +103,12 @@ class Inputs:
     def _add_cells(self, key: bytes, name: str, cells: Cells) -> None:
         if cells.tets is None:
             cells.drop_names("fields of points", cells.point_fields)
-            self.core.add_surface(key, cells.points, cells.triangles, cells.dropped)
+            self.core.add_surface(key, cells.points, cells.grouped_triangles(), cells.dropped)
             return
         note_large_integers(cells)
         tags = None if cells.materials is None else whole_numbers(cells.materials, name, "materials")
         self.core.add_mesh(key, cells.points, cells.tets, tags, cells.names, field_items(cells.point_fields),
-                           field_items(cells.cell_fields), cells.dropped)
+                           field_items(cells.cell_fields), cells.dropped, cells.grouped_triangles())
 
     def _add_volume(self, key: bytes, name: str, labels: np.ndarray, own_affine: Optional[np.ndarray]) -> None:
         spacing, origin, affine = self._placement

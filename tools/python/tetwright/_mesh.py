@@ -40,6 +40,17 @@ class Interfaces:
         return self._core.interface_patches
 
     @property
+    def group(self) -> np.ndarray:
+        """(n,) int64, a copy: the number of the surface that files list the triangle in, see `group_names`."""
+        return self._core.interface_groups()[0]
+
+    @property
+    def group_names(self) -> dict[int, str]:
+        """The names of these surfaces: patches of the input, by their own numbers where they have any, and "bone|skin"
+        or "bone|outside" for what is in none."""
+        return self._core.interface_groups()[1]
+
+    @property
     def other(self) -> np.ndarray:
         """(n,) int32, a copy: the material on the other side; 0 on the boundary, see `on_boundary`."""
         return self._core.interface_others()[0]
@@ -137,7 +148,8 @@ class TetMesh:
 
     def to_meshio(self):
         """A meshio.Mesh: tets (ten-node ones with order=2) with the cell data `material`, and triangles with those of
-        the materials on their sides, 0 for outside."""
+        the materials on their sides, 0 for outside, and of `surface`, the numbers of `interfaces.group`. The names of
+        materials and surfaces are in `field_data`, as those of Gmsh's physical groups: number and dimension."""
         import meshio
         tets10 = self.tets10
         points = self.points if tets10 is None else np.vstack([self.points, self.midside_points])
@@ -147,8 +159,12 @@ class TetMesh:
             cells.append(("triangle", np.ascontiguousarray(self.interfaces.triangles)))
             data["material"].append(np.array(self.interfaces.material))
             data["other_material"] = [np.zeros(len(self.tets), np.int32), self.interfaces.other]
+            data["surface"] = [np.zeros(len(self.tets), np.int64), self.interfaces.group]
+        names = {name: np.array([tag, 3]) for tag, name in self.material_names.items()}
+        for number, name in self.interfaces.group_names.items():
+            names[name if name not in names else name + " (surface)"] = np.array([number, 2])
         point_data = self.point_fields if tets10 is None else {}
-        return meshio.Mesh(points, cells, point_data=point_data, cell_data=data)
+        return meshio.Mesh(points, cells, point_data=point_data, cell_data=data, field_data=names)
 
     def to_pyvista(self):
         """A pyvista.UnstructuredGrid of the tets, with the cell data `material` and all fields."""
