@@ -28,6 +28,8 @@ namespace {
 /// Where time is limited: the share of it that the loop may take. The closing takes about as long as the last
 /// fifth of the loop.
 constexpr double loop_time_share = 0.75;
+/// The same of loop and closing together, where the result is compared with a tolerance.
+constexpr double changing_time_share = 0.8;
 /// Rounds that close simplify().
 constexpr int max_closing_rounds = 40;
 /// The closing works on tets whose quality is below this many times the bound: dihedral angles up to 25
@@ -154,23 +156,20 @@ class EarlierDeadline {
   Progress::Clock::time_point deadline_ = Progress::no_deadline;
 };
 
-void throw_if_stopped(const Progress* progress) {
-  if (progress) progress->throw_if_stopped();
-}
-
 bool out_of_time(const Progress* progress) { return progress && progress->out_of_time(); }
 
-/// The result where the deadline has passed before anything was changed.
+/// What improve() returns where the deadline has passed before anything was changed.
 TetMesh unchanged(TetMesh mesh, SimplifyReport* report) {
   if (mesh.interfaces.empty()) mesh.interfaces = find_interfaces(mesh);
   if (report) report->out_of_time = true;
   return mesh;
 }
 
-/// The same of simplify(): its distance from what it stands for is told nevertheless.
-TetMesh not_simplified(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report) {
+/// The same of simplify(): its distance from the surface is measured all the same.
+TetMesh not_simplified(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report,
+                       const Progress* progress) {
   if (options.tolerance > 0 && report)
-    report->deviation = options.surface ? deviation(mesh, *options.surface) : DeviationReport();
+    report->deviation = options.surface ? deviation(mesh, *options.surface, progress) : DeviationReport();
   return unchanged(std::move(mesh), report);
 }
 
@@ -223,6 +222,7 @@ void close(Engine& engine, const SimplifyOptions& options, std::size_t target, s
   if (options.tolerance == 0) return;
   deviation = engine.deviation();
   if (deviation->upper() <= options.tolerance) return;
+  engine.throw_if_stopped();
   deviation.reset();
   // Where the tolerance has held the count back it may do so here.
   ImprovementPlan holding = plan;
@@ -238,7 +238,7 @@ void close(Engine& engine, const SimplifyOptions& options, std::size_t target, s
 TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report, Progress* progress) {
   check_options(options);
   check(mesh, options.name);
-  if (out_of_time(progress)) return not_simplified(std::move(mesh), options, report);
+  if (out_of_time(progress)) return not_simplified(std::move(mesh), options, report, progress);
   const bool tuned = options.schedule == Schedule::tuned;
   const auto start = std::chrono::steady_clock::now();
   const std::size_t first_count = mesh.tets.size();
@@ -258,31 +258,36 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
   }
   // Of a mesh that is large for the time there is, each of these takes a good part of it.
   const bool built = done_in_time([&] {
-    throw_if_stopped(progress);
+    engine.throw_if_stopped();
     if (tuned) engine.compact();
-    throw_if_stopped(progress);
+    engine.throw_if_stopped();
     if (tuned) engine.keep_input_surface(options.surface, options.tolerance > 0);
   });
   const double build = seconds_since(start);
   if (report) report->seconds_build = build;
-  if (!built) return not_simplified(std::move(engine).take(), options, report);
+  if (!built) return not_simplified(std::move(engine).take(), options, report, progress);
   std::optional<DeviationReport> deviation;
-  bool in_time = done_in_time([&] {
-    const EarlierDeadline closing_has_time(progress, tuned ? loop_time_share : 1);
-    engine.recorder().begin_stage("simplify");
-    if (tuned)
-      run_tuned_schedule(engine, options, target);
-    else
-      run_paper_schedule(engine, options);
-  });
-  const double loop_end = seconds_since(start);
-  if (tuned) {
-    // A count that was not reached is no aim for the closing.
-    const std::size_t closing_target = in_time ? target : engine.mesh().live_tets();
-    in_time &= done_in_time([&] {
-      engine.recorder().begin_stage("improve");
-      close(engine, options, closing_target, first_count, deviation);
+  bool in_time = true;
+  double loop_end = build;
+  {
+    const EarlierDeadline measuring_has_time(progress, options.tolerance > 0 ? changing_time_share : 1);
+    in_time = done_in_time([&] {
+      const EarlierDeadline closing_has_time(progress, tuned ? loop_time_share : 1);
+      engine.recorder().begin_stage("simplify");
+      if (tuned)
+        run_tuned_schedule(engine, options, target);
+      else
+        run_paper_schedule(engine, options);
     });
+    loop_end = seconds_since(start);
+    if (tuned) {
+      // A count that was not reached is no aim for the closing.
+      const std::size_t closing_target = in_time ? target : engine.mesh().live_tets();
+      in_time &= done_in_time([&] {
+        engine.recorder().begin_stage("improve");
+        close(engine, options, closing_target, first_count, deviation);
+      });
+    }
   }
   if (options.tolerance > 0 && !deviation) deviation = engine.deviation();
   if (report) {
@@ -295,11 +300,11 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
   return std::move(engine).take();
 }
 
-DeviationReport deviation(const TetMesh& mesh, const TriangleMesh& surface) {
+DeviationReport deviation(const TetMesh& mesh, const TriangleMesh& surface, const Progress* progress) {
   const EditableMesh editable(TetMesh(mesh), "mesh");
   InputSurface input(editable, &surface);
   input.find_hidden(editable);
-  return input.deviation(editable);
+  return input.deviation(editable, progress);
 }
 
 namespace {
@@ -392,7 +397,7 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
   const ImprovementTools tools = tools_of(engine);
   WholeMesh whole(engine);
   const bool in_time = done_in_time([&] {
-    throw_if_stopped(progress);
+    engine.throw_if_stopped();
     engine.begin_improvement();
     for (const double bound : rising_bounds(first_bound(options.min_solid_angle), below)) {
       plan.angle = bound;

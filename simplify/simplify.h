@@ -16,16 +16,18 @@ namespace tetwright {
 /// that has fewer tets than the target is only improved. Throws InputError if a coordinate is not finite, a
 /// tet repeats a point or a face has more than two tets, OutputError if there is too little memory,
 /// UsageError for impossible options, Interrupted when cancelled. The deadline of `progress` ends it with
-/// what there is then, as valid as ever (the mesh as it came, if nothing was changed yet): the loop before,
-/// so that the shapes can be improved, too. What comes after the last round (renumbering, distances with a
-/// tolerance) is added to that.
+/// what there is then, as valid as ever (the same mesh, perhaps renumbered, if nothing was changed yet): the
+/// loop before, so that the shapes can be improved, too, and that with a tolerance before, so that distances
+/// can be measured. Renumbering after the last round is added to that, and what it takes to bound the
+/// distances at all.
 TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report = nullptr,
                  Progress* progress = nullptr);
 
 /// How far a mesh's surface is from the one that it was made from, proven. `surface` in input units, wound
 /// outwards. Works on a copy. Throws InputError as simplify() does. Parallel; the result does not depend on
-/// the threads.
-DeviationReport deviation(const TetMesh& mesh, const TriangleMesh& surface);
+/// the threads. `progress` (may be null) ends it as it ends surface_deviation().
+DeviationReport deviation(const TetMesh& mesh, const TriangleMesh& surface,
+                          const Progress* progress = nullptr);
 
 /// Improves the shapes of a mesh at about its count: what closes simplify(), by itself. The same guarantees,
 /// threads and errors.

@@ -101,15 +101,15 @@ void add_mesh_output(CLI::App& app, CommandLine& c) {
   for (const TetFormatInfo& format : written_tet_formats())
     formats += (formats.empty() ? "" : " ") + format.name;
   app.add_option("--output-format", c.output_format,
-                 "Format of the mesh instead of its extension's first, and of standard output (-o - or "
-                 "--boundary -): " +
-                     formats)
+                 "Format of the mesh instead of its extension's first, or of -o -: " + formats +
+                     "; of --boundary -: an extension of a surface without its dot")
       ->type_name("NAME");
   add_whole_number(app, "--order", c.order, 1, 2,
                    "2: ten-node tets, with nodes in the middle of the edges; not in .mesh .meshb .node")
       ->default_str(std::to_string(c.order));
   app.add_option("--boundary", c.boundary,
-                 "Write the boundary and the interfaces between materials as a surface, too: " +
+                 "Write the boundary and the interfaces between materials as a surface, too (- is standard "
+                 "output): " +
                      known_extensions(FileKind::surface, FileUse::write))
       ->type_name("FILE");
   app.add_flag(

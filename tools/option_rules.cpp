@@ -33,17 +33,6 @@ void check_no_stream(const CommandLine& out) {
   if (out.command == Command::batch) check("the file of jobs", out.inputs.front());
 }
 
-/// A file that is called like standard input is told from it by its folder.
-void name_folder_of_namesakes(CommandLine& out) {
-  const auto name_folder = [](std::string& file) {
-    if (file == standard_input) file.insert(0, "./");
-  };
-  std::for_each(out.inputs.begin(), out.inputs.end(), name_folder);
-  std::for_each(out.surfaces.begin(), out.surfaces.end(), name_folder);
-  for (NamedValue& m : out.materials) name_folder(m.value);
-  name_folder(out.before);
-}
-
 void complete_input_stream(CommandLine& out) {
   out.input_format = lower_case(out.input_format);
   const auto stream = std::find(out.inputs.begin(), out.inputs.end(), "-");
@@ -56,7 +45,9 @@ void complete_input_stream(CommandLine& out) {
   if (!given && !out.input_format.empty())
     throw UsageError("--input-format is for standard input; give - as the input, or leave it out");
   if (given) {
-    name_folder_of_namesakes(out);
+    if (std::find(out.inputs.begin(), out.inputs.end(), standard_input) != out.inputs.end())
+      throw UsageError(std::string("a file called ") + standard_input +
+                       " would be taken for standard input; give it another name, with an extension");
     *stream = standard_input;
     if (!out.input_format.starts_with('.')) out.input_format.insert(0, ".");
     if (!streams(out.input_format))

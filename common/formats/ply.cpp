@@ -1,6 +1,8 @@
 #include "common/formats/ply.h"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -77,7 +79,21 @@ enum class Encoding { ascii, little, big };
 struct PlyHeader {
   Encoding encoding = Encoding::ascii;
   std::vector<Element> elements;
+  /// Of groups by their names, each of which is that of one: what write_ply() says in comments.
+  std::map<std::string, std::int64_t> labels;
 };
+
+constexpr std::string_view group_property = "surface", group_comment = "surface ";
+
+/// Of a comment such as " surface 3: inlet".
+void read_group_name(std::string_view comment, PlyHeader& header) {
+  comment.remove_prefix(std::min<std::size_t>(1, comment.size()));
+  const std::size_t colon = comment.find(": ");
+  if (!comment.starts_with(group_comment) || colon == std::string_view::npos) return;
+  std::int64_t label = 0;
+  if (!parse_number(comment.substr(group_comment.size(), colon - group_comment.size()), label)) return;
+  header.labels.emplace(comment.substr(colon + 2), label);
+}
 
 Role role_of(const Element& element, std::string_view name, bool list) {
   if (element.is_vertex() && !list) {
@@ -160,7 +176,10 @@ PlyHeader read_ply_header(TextScanner& in) {
     } else if (keyword == "end_header") {
       in.skip_line();
       break;
-    } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
+    } else if (keyword == "comment") {
+      read_group_name(in.rest_of_line(), header);
+      continue;
+    } else if (keyword != "obj_info" && !keyword.empty()) {
       in.fail("unknown keyword " + in_quotes(keyword) + " in the header");
     }
     in.skip_line();
@@ -327,6 +346,13 @@ void note_dropped(const PlyHeader& header, SurfaceBuilder& surface) {
 }
 
 /// `point_fields` is filled unless it is null.
+void take_names(const PlyHeader& header, std::vector<FaceGroup>& groups) {
+  std::map<std::int64_t, std::string> names;
+  for (const auto& [name, label] : header.labels) names.emplace(label, name);
+  for (FaceGroup& group : groups)
+    if (const auto known = names.find(group.number); known != names.end()) group.name = known->second;
+}
+
 TriangleMesh read_polygons(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped,
                            std::vector<MeshField>* point_fields) {
   TextScanner in(bytes, name);
@@ -368,7 +394,11 @@ TriangleMesh read_polygons(std::string_view bytes, const std::string& name, std:
       if (const Property& p = vertex->properties[k]; p.role == Role::skipped && !p.count_type)
         point_fields->push_back(
             {field_name(p.name), 1, is_integer(p.type), std::move(content.point_values[k])});
-  return content.surface.finish(dropped, content.labels.groups());
+  std::vector<FaceGroup> groups = content.labels.groups();
+  if (std::any_of(face->properties.begin(), face->properties.end(),
+                  [](const Property& p) { return p.role == Role::label && p.name == group_property; }))
+    take_names(header, groups);
+  return content.surface.finish(dropped, std::move(groups));
 }
 
 }  // namespace
@@ -387,13 +417,14 @@ std::string write_ply(const TriangleMesh& mesh) {
   const bool grouped = !mesh.groups.empty();
   std::string out = "ply\nformat binary_little_endian 1.0\n";
   for (std::size_t g = 0; g < mesh.groups.size(); ++g)
-    out += "comment surface " + std::to_string(g + 1) + ": " + group_text(mesh.groups[g]) + '\n';
+    out += "comment " + std::string(group_comment) + std::to_string(g + 1) + ": " +
+           group_text(mesh.groups[g]) + '\n';
   out += "element vertex ";
   append_number(out, mesh.points.size());
   out += "\nproperty double x\nproperty double y\nproperty double z\nelement face ";
   append_number(out, mesh.triangles.size());
   out += "\nproperty list uchar uint vertex_indices\n";
-  if (grouped) out += "property int surface\n";
+  if (grouped) out += "property int " + std::string(group_property) + '\n';
   out += "end_header\n";
   for (const Vec3& p : mesh.points)
     for (int k = 0; k < 3; ++k) append_bytes(out, p[k]);

@@ -30,7 +30,7 @@ struct TetFormat {
   std::vector<WrittenFile> write;  ///< empty: only read
   /// What the writer calls the parts of a mesh.
   MeshParts (*parts)(const TetMesh& mesh) = nullptr;
-  /// Cell fields of the writer's own, whose names no other can have.
+  /// Names of cell fields that the writer adds itself; no other field may have them.
   std::vector<std::string> own_cell_fields = {};
   /// What becomes of a name of field_names_to_write(); null: nothing.
   std::string (*field_name)(const std::string& name) = nullptr;

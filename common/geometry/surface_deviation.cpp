@@ -9,10 +9,12 @@
 #include <optional>
 #include <vector>
 
+#include "common/error.h"
 #include "common/geometry/even_points.h"
 #include "common/geometry/projection_tree.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
+#include "common/progress.h"
 
 namespace tetwright {
 
@@ -235,7 +237,8 @@ std::optional<Measured> beyond(const ProjectionTree& to, const Piece& triangle, 
 
 }  // namespace
 
-SurfaceDeviation surface_deviation(const ProjectionTree& from, const ProjectionTree& to, double accuracy) {
+SurfaceDeviation surface_deviation(const ProjectionTree& from, const ProjectionTree& to, double accuracy,
+                                   const Progress* progress) {
   SurfaceDeviation result;
   if (from.empty()) return result;
   if (to.empty()) {
@@ -281,7 +284,12 @@ SurfaceDeviation surface_deviation(const ProjectionTree& from, const ProjectionT
         }
       });
   for (const double upper : block_settled) settled = std::max(settled, upper);
-  for (int level = 0; level < max_levels && !open.empty() && open.size() < max_pieces; ++level) {
+  const auto stopped = [&] {
+    if (progress && progress->cancelled()) throw Interrupted();
+    return progress && progress->out_of_time();
+  };
+  for (int level = 0; level < max_levels && !open.empty() && open.size() < max_pieces && !stopped();
+       ++level) {
     std::vector<std::array<Piece, 2>> parts(open.size());
     const bool halve = level % halving_period == halving_period - 1;
     parallel_for(0, open.size(), grain, [&](std::size_t begin, std::size_t end) {

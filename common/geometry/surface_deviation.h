@@ -8,6 +8,7 @@
 
 namespace tetwright {
 
+class Progress;
 class ProjectionTree;
 
 /// How near to each other the bounds of a SurfaceDeviation are, as a share of it.
@@ -41,8 +42,10 @@ struct DeviationReport {
 /// any distance grows no faster than the way; over triangles of the other surface that meet, a map to them,
 /// linear in parts, bounds it. Triangles that may be farther than what is known are cut in two, where the
 /// nearest triangle of the other surface changes. Infinite where `to` is empty and `from` is not. Parallel;
-/// the result does not depend on the threads.
-SurfaceDeviation surface_deviation(const ProjectionTree& from, const ProjectionTree& to, double accuracy);
+/// the result does not depend on the threads. Throws Interrupted when `progress` (may be null) is cancelled;
+/// once its deadline has passed the bounds are left as far apart as they are.
+SurfaceDeviation surface_deviation(const ProjectionTree& from, const ProjectionTree& to, double accuracy,
+                                   const Progress* progress = nullptr);
 
 /// A triangle with a point that is far from another surface.
 struct FarTriangle {

@@ -153,7 +153,7 @@ double InputSurface::accuracy() const {
   return tolerance::deviation_share * (box.high - box.low).norm();
 }
 
-DeviationReport InputSurface::deviation(const EditableMesh& mesh) const {
+DeviationReport InputSurface::deviation(const EditableMesh& mesh, const Progress* progress) const {
   DeviationReport report;
   const double scale = mesh.space().scale();
   const bool given = std::any_of(triangles_.items().begin(), triangles_.items().end(), is_given);
@@ -170,8 +170,8 @@ DeviationReport InputSurface::deviation(const EditableMesh& mesh) const {
     return SurfaceDeviation{d.lower / scale, d.upper / scale, mesh.space().to_input(d.place), d.rms / scale};
   };
   const ProjectionTree input = shown(), own = faces_of(mesh);
-  report.from_mesh = in_input_units(surface_deviation(own, input, accuracy()));
-  report.from_surface = in_input_units(surface_deviation(input, own, accuracy()));
+  report.from_mesh = in_input_units(surface_deviation(own, input, accuracy(), progress));
+  report.from_surface = in_input_units(surface_deviation(input, own, accuracy(), progress));
   return report;
 }
 

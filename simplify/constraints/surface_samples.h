@@ -39,7 +39,8 @@ class InputSurface {
   /// Finds what no part of the mesh as it came is near, for deviation(). Parallel.
   void find_hidden(const EditableMesh& mesh);
   /// How far the mesh's surface is from this one now, proven; input units. Of the same mesh. Parallel.
-  DeviationReport deviation(const EditableMesh& mesh) const;
+  /// `progress` (may be null) ends it as it ends surface_deviation().
+  DeviationReport deviation(const EditableMesh& mesh, const Progress* progress) const;
   /// A boundary or interface face, by number of mesh.interface_faces(), that is far from this surface, or
   /// nearest to a place of it that is far from all faces.
   struct FarFace {

@@ -34,7 +34,8 @@ Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, P
     : constrained_(std::move(mesh), options.name, options.frozen, options.fix_boundary, options.keep_volumes),
       projection_(mesh_, options.reference),
       runner_(mesh_, grid_, constrained_.ledger, options.seed, options.batch_size, progress),
-      recorder_(mesh_, runner_, report, progress) {
+      recorder_(mesh_, runner_, report, progress),
+      progress_(progress) {
   rules.objective.quality = TetQuality::for_target(mesh_.total_volume(), options.target_tets, options.beta);
   rules.objective.shape = options.objective;
   rules.gamma = options.gamma;
@@ -99,7 +100,7 @@ void Engine::own_samples(double edge) {
   grid_.set_samples(samples_.get());
 }
 
-DeviationReport Engine::deviation() const { return input_surface_->deviation(mesh_); }
+DeviationReport Engine::deviation() const { return input_surface_->deviation(mesh_, progress_); }
 
 void Engine::compact_if_sparse() {
   if (mesh_.dead_share() > compact_above) compact();

@@ -60,8 +60,12 @@ class Engine {
   double tets_for_edge(double length) const;
   /// EdgeSizes::allow_shorter().
   void allow_shorter_edges() { sizes_->allow_shorter(); }
-  /// How far the mesh's surface is from that, proven.
+  /// How far the mesh's surface is from that, proven; within wider bounds once the deadline has passed.
   DeviationReport deviation() const;
+  /// As Progress does.
+  void throw_if_stopped() const {
+    if (progress_) progress_->throw_if_stopped();
+  }
   /// The tets of boundary and interface faces that are farther from that than `limit` (working coordinates),
   /// or nearest to a part of that which is, in the order of the curve. Places of that part become samples.
   std::vector<ListedTet> find_far_tets(double limit);
@@ -122,6 +126,7 @@ class Engine {
   std::optional<EdgeSizes> sizes_;
   BlockRunner runner_;
   RoundRecorder recorder_;
+  const Progress* progress_;  ///< may be null
 };
 
 /// The mesh of an engine.

@@ -160,6 +160,69 @@ def test_groups_of_surfaces_are_patches():
     assert "1 faces of sets that are in a group already (dropped)" in made.notes[0]
 
 
+def test_sets_of_cells_are_patches_or_noted(cube_mesh, tmp_path):
+    triangles = cube_mesh.interfaces.triangles
+    top = np.flatnonzero((cube_mesh.points[triangles][:, :, 2] > 0.99).all(axis=1))
+    cells, _ = outer_triangles(cube_mesh, None)
+
+    def improved(**more):
+        return tetwright.improve(meshio.Mesh(cube_mesh.points, more.pop("cells", cells), **more))
+    # A set may be called like a material, and a smaller one is not lost to one of all.
+    named = improved(cell_data={"gmsh:physical": [np.ones(len(cube_mesh.tets), int), np.zeros(len(triangles), int)]},
+                     field_data={"bone": np.array([1, 3]), "rest": np.array([7, 2])},
+                     cell_sets={"all": [None, np.arange(len(triangles))], "bone": [np.array([0]), top]})
+    assert names_of_surfaces(named) == {"all", "bone"} and named.material_names == {1: "bone"}
+    assert f"{len(top)} faces of sets that are in a group already (dropped)" in named.notes[0]
+    assert 'names of physical groups of faces, lines or points ("rest") (dropped)' in named.notes[0]
+    # To meshio and back, with a set more, or through a file.
+    handed_on = named.to_meshio()
+    handed_on.write(tmp_path / "m.msh", file_format="gmsh22")
+    again = tetwright.improve(tmp_path / "m.msh")
+    assert names_of_surfaces(again) == {"all", "bone_2"} and again.material_names == {1: "bone"}
+    plain = improved().to_meshio()
+    plain.cell_sets["lid"] = [None, (plain.points[plain.cells[1].data][:, :, 2] > 0.99).all(axis=1)]
+    assert names_of_surfaces(tetwright.improve(plain)) == {"lid", "material_1|outside"}
+    # Shells, tets in sets, and numbers that are none.
+    shells = [*cells, ("triangle", np.array([[0, 1, 2], [1, 2, 3]]) * (len(cube_mesh.points) // 4))]
+    made = improved(cells=shells, cell_sets={"shell": [np.array([3]), None, np.array([0, 1])]})
+    assert "2 triangles of sets that are no faces of a tet (dropped)" in made.notes[0]
+    assert '1 sets of cells ("shell") (dropped)' in made.notes[0] and len(names_of_surfaces(made)) == 1
+    zero = [np.zeros(len(c), int) for _, c in cells]
+    made = improved(cell_data={"gmsh:physical": zero}, field_data={"zero": np.array([0, 2])})
+    assert names_of_surfaces(made) == {"material_0|outside"} and '("zero") (dropped)' in made.notes[0]
+    made = improved(cell_data={"surface": [np.arange(len(c)) * 0.5 for _, c in cells]})
+    assert set(made.fields) == {"surface"}
+
+
+def test_groups_that_make_no_sense(cube_mesh):
+    cells, groups = outer_triangles(cube_mesh, np.full(len(cube_mesh.interfaces), 2**63 - 1))
+    largest = meshio.Mesh(cube_mesh.points, cells, cell_data={"gmsh:physical": groups},
+                          cell_sets={"lid": [None, np.array([0])]})
+    assert len(tetwright.improve(largest).interfaces.group_names) == 1
+    for group, members in ("lid", [9999999]), ("lid", [-1]), ("lid", [0.5]), ("lid", [True, False]), ("\udcff", [0]):
+        with pytest.raises(tetwright.Error):
+            tetwright.improve(meshio.Mesh(cube_mesh.points, cells, cell_sets={group: [None, np.array(members)]}))
+    alone = meshio.Mesh(cube_mesh.points, cells, cell_sets={"\udcff": [np.array([0]), None]})
+    assert "sets of cells" in tetwright.improve(alone).notes[0]
+    faces = np.hstack([np.full((6, 1), 4), CUBE_QUADS]).ravel()
+    labels = [None, {"label": [[1], [2, 3]]}, {"label": np.arange(5)}, {"\udcff": np.arange(6)},
+              {"label": np.ma.masked_less(np.arange(6), 3)}, {"label": np.full(6, 2**64 - 1, np.uint64)}]
+    for data in labels:
+        made = tetwright.mesh(types.SimpleNamespace(points=CUBE_POINTS, faces=faces, cell_data=data, point_data=None),
+                              resolution=8)
+        assert len(names_of_surfaces(made)) == 1
+        assert (made.notes == []) == (data is None)
+
+
+def test_standard_output_is_the_hosts(cube_mesh, tmp_path):
+    for options in {"output": "-", "output_format": "vtu"}, {"output": tmp_path / "m.vtu", "boundary": "-"}:
+        with pytest.raises(tetwright.UsageError, match="output"):
+            tetwright.mesh(CUBE, resolution=8, **options)
+    for options in {"path": "-", "output_format": "vtu"}, {"path": tmp_path / "m.vtu", "boundary": "-"}:
+        with pytest.raises(tetwright.UsageError, match="host"):
+            cube_mesh.write(**options)
+
+
 def test_names_of_materials_are_kept_whole():
     for name in "bone.v2", "a/b", "part.vdb", "x=y", "ct.nii.gz":
         assert tetwright.mesh({name: CUBE}, resolution=8).material_names == {1: name}

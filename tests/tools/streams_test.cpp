@@ -53,16 +53,6 @@ TEST(Streams, OfTheBoundary) {
                  {"-o -", "--boundary -"});
 }
 
-TEST(Streams, AFileOfTheirName) {
-  const TemporaryFolder f;
-  ASSERT_EQ(run("sample two_spheres -o " + (f / "t.ply")).status, 0);
-  ASSERT_EQ(run("sample torus -o " + (f / "t.off")).status, 0);
-  const Answer a = shell("cd " + (f / "") + " && cp t.off stdin && $t mesh - stdin --input-format ply" +
-                         " --resolution 16 -o o.vtu <t.ply");
-  EXPECT_EQ(a.status, 2) << a.err;
-  EXPECT_NE(a.err.find("./stdin"), std::string::npos) << a.err;
-}
-
 TEST(Streams, OfVolumes) {
   const TemporaryFolder f;
   ASSERT_EQ(run("sample organs -o " + (f / "o.nrrd")).status, 0);
@@ -115,6 +105,7 @@ TEST(Streams, ThatCannotBe) {
   const std::string output = " -o " + (f / "o.vtu");
   expect_refused("mesh -" + output, 2, {"--input-format", ".ply"});
   expect_refused("mesh - - --input-format ply" + output, 2, {"one input"});
+  expect_refused("mesh - stdin --input-format ply" + output, 2, {"stdin", "another name"});
   expect_refused("mesh a.ply --input-format ply" + output, 2, {"--input-format"});
   expect_refused("mesh - --input-format jpeg" + output, 2, {"jpeg", ".ply"});
   for (const char* several : {"xdmf", "node", "hdr", "nhdr"})

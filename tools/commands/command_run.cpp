@@ -1,6 +1,7 @@
 #include "tools/commands/command_run.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "common/formats/file_triangles.h"
@@ -22,6 +23,13 @@ bool is_stream(const CommandLine& line, const std::string& name) {
   return name == standard_input && !line.input_format.empty();
 }
 
+std::string read_stream(CommandRun& run) {
+  const Stopwatch watch;
+  std::string bytes = read_standard_input();
+  run.seconds_waited += watch.seconds();
+  return bytes;
+}
+
 /// Takes the object of that name, or `read`s the file.
 template <class Object, class Read>
 auto take(std::map<std::string, Object> InputObjects::*kind, InputObjects* objects, const std::string& name,
@@ -37,14 +45,18 @@ auto take(std::map<std::string, Object> InputObjects::*kind, InputObjects* objec
 
 CommandRun::CommandRun(const CommandLine& call, Progress& shown, InputObjects* in_memory)
     : line(call), memory_limit(call.memory_limit * gigabyte), progress(shown), objects(in_memory) {
-  reserve_time(min_reserve * std::min(call.time_limit, max_seconds));
+  reserve_time(min_reserve * seconds_left());
   report.inputs = input_files(call);
+}
+
+double CommandRun::seconds_left() const {
+  return line.time_limit == 0 ? std::numeric_limits<double>::infinity()
+                              : std::max(0.0, std::min(line.time_limit, max_seconds) - since_start.seconds());
 }
 
 void CommandRun::reserve_time(double seconds) {
   if (line.time_limit == 0) return;
-  const std::chrono::duration<double> left(std::min(line.time_limit, max_seconds) - since_start.seconds() -
-                                           seconds);
+  const std::chrono::duration<double> left(seconds_left() - seconds);
   const auto end = Progress::Clock::now() + std::chrono::duration_cast<Progress::Clock::duration>(left);
   progress.set_deadline(std::min(progress.deadline(), end));
 }
@@ -77,7 +89,7 @@ TriangleMesh take_surface(CommandRun& run, const std::string& name, std::vector<
       dropped->insert(dropped->end(), of_object->second.begin(), of_object->second.end());
   return take(&InputObjects::surfaces, run.objects, name, [&] {
     return is_stream(run.line, name)
-               ? read_surface_bytes(read_standard_input(), name, run.line.input_format, dropped)
+               ? read_surface_bytes(read_stream(run), name, run.line.input_format, dropped)
                : read_surface(name, dropped);
   });
 }
@@ -87,23 +99,22 @@ ReadTetMesh take_tet_mesh(CommandRun& run, const std::string& name, const ReadTe
     auto& meshes = run.objects->meshes;
     if (const auto object = meshes.find(name); object != meshes.end()) {
       ReadTetMesh read = std::move(object->second);
+      const FileTriangles listed = std::exchange(run.objects->triangles[name], {});
       require_measurable(read.mesh, name);
       take_material(read, options, name);
-      if (const auto listed = run.objects->triangles.find(name); listed != run.objects->triangles.end())
-        take_triangles(listed->second, "group", name, read);
+      take_triangles(listed, "group", name, read);
       return read;
     }
   }
   return is_stream(run.line, name)
-             ? read_tet_mesh_bytes(read_standard_input(), name, run.line.input_format, options)
+             ? read_tet_mesh_bytes(read_stream(run), name, run.line.input_format, options)
              : read_tet_mesh(name, options);
 }
 
 LabelVolume take_label_volume(CommandRun& run, const std::string& name) {
   return take(&InputObjects::volumes, run.objects, name, [&] {
-    return is_stream(run.line, name)
-               ? read_label_volume_bytes(read_standard_input(), name, run.line.input_format)
-               : read_label_volume(name);
+    return is_stream(run.line, name) ? read_label_volume_bytes(read_stream(run), name, run.line.input_format)
+                                     : read_label_volume(name);
   });
 }
 

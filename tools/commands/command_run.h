@@ -35,8 +35,10 @@ struct CommandRun {
   /// memory of --time-limit and --memory-limit are those of its life, on the thread that makes it.
   CommandRun(const CommandLine& line, Progress& progress, InputObjects* objects = nullptr);
 
-  /// Making the mesh ends these seconds before --time-limit, or as many as it was told before if that is
-  /// more: what comparing and writing the mesh are expected to take.
+  /// Until --time-limit; 0 where it has passed, infinite where there is none.
+  double seconds_left() const;
+  /// Work on the mesh ends this many seconds before --time-limit, or earlier if it was told so before: what
+  /// comparing and writing the mesh are expected to take.
   void reserve_time(double seconds);
 
   const CommandLine& line;
@@ -44,6 +46,7 @@ struct CommandRun {
   Stopwatch since_start;
   Progress& progress;
   InputObjects* objects;
+  double seconds_waited = 0;  ///< for standard input
   RunReport report;
   std::optional<MidsideNodes> midside;        ///< of the result, with --order 2
   std::optional<SurfaceDistances> distances;  ///< of the result, with --report where there is a surface

@@ -139,8 +139,12 @@ void find_deviation(RunReport& report) {
   if (d.upper() <= report.tolerance) return;
   const bool mesh = d.from_mesh.upper >= d.from_surface.upper;
   const SurfaceDeviation& worst = mesh ? d.from_mesh : d.from_surface;
+  const bool stopped =
+      (report.simplify && report.simplify->out_of_time) || (report.mesher && report.mesher->out_of_time);
   // Of a volume the dense mesh's own surface is what is meant.
-  const char* limit = report.mesher && !report.volume
+  const char* limit = worst.lower <= report.tolerance && stopped
+                          ? "--time-limit, which ended measuring it: it may be held"
+                      : report.mesher && !report.volume
                           ? "the dense mesh is that far there; give a larger --resolution, or a larger "
                             "tolerance"
                           : "the shapes of tets there; give a larger tolerance";
@@ -417,6 +421,7 @@ void write_mesh(const TetMesh& mesh, const CommandRun& run, OutputFiles& files) 
 void assess(const TetMesh& mesh, CommandRun& run) {
   RunReport& report = run.report;
   report.material_names = mesh.material_names;
+  report.seconds_total = run.since_start.seconds();
   if (report.simplify) {
     report.result = mesh_statistics(mesh, run.line.min_solid_angle);
     report.held_by_input = tets_held_by_input(mesh, report.creases, run.line.min_solid_angle);

@@ -326,7 +326,8 @@ DenseMesh make_dense_mesh(ScanInput input, CommandRun& run) {
   run.report.creases = std::move(dense.report.creases);
   run.report.mesher = std::move(dense.report);
   run.report.seconds_mesh = watch.seconds();
-  // Measured: comparing and writing that mesh.
+  // What comparing and writing that mesh take of the time it took to make it: 5 s of 20 (4.3 million tets of
+  // dragon_vrip_res2.ply, --resolution 200).
   constexpr double finishing_share = 0.25;
   run.reserve_time(finishing_share * run.report.seconds_mesh);
   input = {};  // gigabytes of a large volume

@@ -10,6 +10,9 @@ namespace tetwright {
 
 namespace {
 
+/// What notes call a file that is written.
+std::string shown(const std::string& file) { return file == "-" ? "standard output" : file; }
+
 /// Notes what `file` has in place of numbers and names of the user's.
 void note_changes(const std::string& file, const std::string& extension, const char* what,
                   const std::vector<NameChange>& changed, RunReport& report) {
@@ -33,7 +36,7 @@ void find_name_changes(const CommandLine& line, const TetMesh& mesh, RunReport& 
   const NameChanges changes = written_name_changes(mesh, line.output, line.output_format);
   const std::string extension = written_tet_format(line.output, line.output_format).extension;
   const auto note = [&](const char* what, const std::vector<NameChange>& changed) {
-    note_changes(line.output, extension, what, changed, report);
+    note_changes(shown(line.output), extension, what, changed, report);
   };
   note("tags of materials", changes.tags);
   note("names of materials", changes.material_names);
@@ -49,38 +52,46 @@ std::size_t named_patches(const RunReport& report) {
                     [](const PatchFidelity& p) { return !p.group.name.empty(); }));
 }
 
-/// What --boundary lacks. Returns whether it tells patches apart.
-bool find_unwritten_by_boundary(const CommandLine& line, const TetMesh& mesh, RunReport& report) {
-  if (line.boundary.empty()) return false;
-  const SurfaceFormatInfo format = written_surface_format(line.boundary, line.boundary_format);
-  if (!format.names)
-    note_missing(line.boundary, "named patches", report.patches.size(),
-                 "; " + format.extension + " has no place for them, but .vtp .ply .stl .obj have", report);
-  note_changes(line.boundary, format.extension, "names of patches",
-               written_interface_name_changes(mesh, line.boundary, line.boundary_format), report);
-  return format.names;
+/// What neither the mesh nor --boundary tells of patches.
+void find_unwritten_patches(const CommandLine& line, const TetFormatInfo& format, RunReport& report) {
+  const bool boundary_lacks =
+      !line.boundary.empty() && !written_surface_format(line.boundary, line.boundary_format).names;
+  if (!line.boundary.empty() && !boundary_lacks) return;
+  const auto note = [&](const char* what, std::size_t count, const std::string& why) {
+    note_missing(shown(line.output), what, count, why, report);
+  };
+  const std::string no_place =
+      "; " + format.extension + " has no place for them, " +
+      (boundary_lacks ? "nor has .off, but .vtp .ply .stl .obj have" : "but --boundary FILE has") +
+      ", and .msh";
+  if (line.no_boundary)
+    note("named patches", report.patches.size(), ", as --no-boundary asks");
+  else if (!format.surfaces)
+    note("named patches", report.patches.size(), no_place);
+  else if (!format.patch_names)
+    note("names of patches", named_patches(report), no_place);
+}
+
+void find_boundary_changes(const CommandLine& line, const TetMesh& mesh, RunReport& report) {
+  if (line.boundary.empty()) return;
+  note_changes(shown(line.boundary), written_surface_format(line.boundary, line.boundary_format).extension,
+               "names of patches", written_interface_name_changes(mesh, line.boundary, line.boundary_format),
+               report);
 }
 
 }  // namespace
 
 void find_unwritten(const CommandLine& line, const TetMesh& mesh, RunReport& report) {
   const TetFormatInfo format = written_tet_format(line.output, line.output_format);
-  const std::string no_place = "; " + format.extension + " has no place for them",
-                    but_elsewhere = no_place + ", but --boundary FILE has, and .msh";
+  const std::string no_place = "; " + format.extension + " has no place for them";
   const auto note = [&](const std::string& what, std::size_t count, const std::string& why) {
-    note_missing(line.output, what, count, why, report);
+    note_missing(shown(line.output), what, count, why, report);
   };
-  if (!find_unwritten_by_boundary(line, mesh, report)) {
-    if (line.no_boundary)
-      note("named patches", report.patches.size(), ", as --no-boundary asks");
-    else if (!format.surfaces)
-      note("named patches", report.patches.size(), but_elsewhere);
-    else if (!format.patch_names)
-      note("names of patches", named_patches(report), but_elsewhere);
-  }
+  find_unwritten_patches(line, format, report);
   if (!format.names) note("names of materials", mesh.material_names.size(), no_place);
   if (!format.fields) note("fields", mesh.point_fields.size() + mesh.cell_fields.size(), no_place);
   find_name_changes(line, mesh, report);
+  find_boundary_changes(line, mesh, report);
 }
 
 }  // namespace tetwright

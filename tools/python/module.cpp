@@ -18,6 +18,7 @@
 #include "common/formats/formats.h"
 #include "common/formats/label_groups.h"
 #include "common/formats/mesh_parts.h"
+#include "common/mesh/boundary_groups.h"
 #include "common/parallel/parallel.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/output_paths.h"
@@ -167,15 +168,24 @@ py::tuple other_sides(const TetMesh& mesh) {
   return py::make_tuple(other, boundary);
 }
 
-/// The number of the group of each interface triangle, and the names of these, as files have them.
+/// The number of the group of each interface triangle, and the names of these, as files have them: of all,
+/// and of those that are the user's.
 py::tuple groups_of(const TetMesh& mesh) {
+  const BoundaryGroups groups(mesh);
   py::array_t<std::int64_t> numbers(static_cast<py::ssize_t>(mesh.interfaces.size()));
-  py::dict names;
-  for (const MeshParts::Surface& s : mesh_parts(mesh, printable_names()).surfaces) {
+  for (std::size_t f = 0; f < mesh.interfaces.size(); ++f)
+    numbers.mutable_at(static_cast<py::ssize_t>(f)) = groups.number_of(mesh.interfaces[f]);
+  py::dict names, of_patches;
+  for (const MeshParts::Surface& s : names_of_parts(mesh, printable_names()).surfaces) {
     names[py::int_(s.number)] = to_text(s.name);
-    for (const std::size_t f : s.faces) numbers.mutable_at(static_cast<py::ssize_t>(f)) = s.number;
+    if (s.group) of_patches[py::int_(s.number)] = to_text(s.name);
   }
-  return py::make_tuple(numbers, names);
+  return py::make_tuple(numbers, names, of_patches);
+}
+
+void check_no_standard_output(const CommandLine& line) {
+  if (line.output == "-" || line.boundary == "-")
+    throw UsageError("standard output is the host's; give output and boundary names of files");
 }
 
 void write_mesh_files(const Mesh& mesh, const std::string& path, const std::string& format,
@@ -186,7 +196,7 @@ void write_mesh_files(const Mesh& mesh, const std::string& path, const std::stri
   line.output = path;
   line.output_format = format;
   line.boundary = boundary;
-  if (boundary == "-") throw UsageError("boundary is no stream; give it a file");
+  check_no_standard_output(line);
   check_output_paths(line);
   if (mesh.midside) check_holds_second_order(path, format);
   OutputFiles files;
@@ -218,6 +228,7 @@ CommandLine parse(std::vector<std::string> arguments) {
     throw UsageError(
         "boundary, write_sdf, report and stats are written beside an output; give output too, or call "
         "write()");
+  check_no_standard_output(line);
   if (!line.log_file.empty())
     throw UsageError(
         "log_file is the program's; leave it out: notes, shortfall, stats and progress say what it would");

@@ -164,6 +164,14 @@ TEST(Ply, LabelsOfFacesAreGroups) {
     ASSERT_EQ(dropped.size(), 1u);
   }
   expect_input_error(read_ply, text("property int label", "x"), "label of a face", "\"x\"");
+  // Names are in comments, as write_ply() writes them; two groups do not get one.
+  const std::string named = "comment surface 7: in: let\ncomment surface 3: in: let\ncomment surface x: a\n";
+  EXPECT_EQ(read_ply(text(named + "comment\nproperty int surface", "7"), "f").groups,
+            (std::vector<FaceGroup>{{3, ""}, {7, "in: let"}}));
+  EXPECT_EQ(read_ply(text(named + "property int patch_id", "7"), "f").groups,
+            (std::vector<FaceGroup>{{3, ""}, {7, ""}}));
+  const TriangleMesh back = read_ply(write_ply(mesh), "f");
+  EXPECT_EQ(back.groups, (std::vector<FaceGroup>{{1, "3"}, {2, "7"}}));
 }
 
 }  // namespace

@@ -9,6 +9,8 @@ import numpy as np
 
 from . import _core
 from ._arrays import MAX_EXACT_WHOLE, check_range, indices, numbers
+from ._faces import (GMSH_GROUPS, VTK_GROUPS, Block, Names, are_faces, label_field, sets_of_cells,
+                     sets_of_faces, whole_labels)
 from ._text import plain_text
 
 # VTK's numbers of cell types, by the names of meshio.
@@ -22,9 +24,6 @@ FACE_CORNERS = {"triangle": 3, "quad": 4, "pixel": 4, "polygon": None, "VTK_LAGR
 FLAT_KINDS = {"vertex", "line", "VTK_LAGRANGE_CURVE"}
 PLURALS = {"vertex": "vertex cells", "hexahedron": "hexahedra", "polyhedron": "polyhedra", "tetra": "tets"}
 TET_KINDS = ("tetra", "tetra10")
-# Fields of faces whose numbers are groups beside tets, as in files; of a surface many more are.
-FACE_GROUPS = ("gmsh:physical", "medit:ref", "surface")
-SURFACE = FACE_GROUPS[-1]
 # What TetMesh.to_meshio() tells of its triangles, which follow from the tets.
 OTHER_MATERIAL = "other_material"
 
@@ -95,13 +94,14 @@ def _of_poly_data(value: Any, name: str) -> Cells:
     triangles, face_of = _triangles_of_faces(indices(value.faces, name, "faces"), name)
     made = Cells(numbers(value.points, name, "points"), triangles)
     made.drop("lines", getattr(value, "n_lines", 0))
-    data = getattr(value, "cell_data", {})
-    faces = int(face_of[-1]) + 1 if len(face_of) > 0 else 0
-    label = _label_field([data], [faces], True)
+    of_cells = getattr(value, "cell_data", None) or {}
+    block = Block("polygon", range(int(face_of[-1]) + 1 if len(face_of) > 0 else 0),
+                  {f: of_cells[f] for f in of_cells.keys()})
+    label = label_field([block], [])
     if label is not None:
-        made.groups = np.asarray(data[label]).astype(np.int64)[face_of]
-    made.drop_names("fields of cells", [f for f in data.keys() if f != label])
-    made.point_fields, left = _fields(getattr(value, "point_data", {}), len(made.points))
+        made.groups = whole_labels(block.data[label], len(block.cells))[face_of]
+    made.drop_names("fields of cells", [f for f in block.data if f != label])
+    made.point_fields, left = _fields(getattr(value, "point_data", None) or {}, len(made.points))
     made.drop_names("fields of points", left)
     return made
 
@@ -128,28 +128,13 @@ def _triangles_of_faces(faces: np.ndarray, name: str) -> tuple[np.ndarray, np.nd
     return np.asarray(triangles, np.int64).reshape(-1, 3), np.asarray(face_of, np.int64)
 
 
-def _label_field(data_of_blocks: list[Any], counts: list[int], is_surface: bool) -> Optional[str]:
-    """The field that says by whole numbers which groups the faces of all blocks are in."""
-    def is_label(field: Any) -> bool:
-        if field not in FACE_GROUPS and not (is_surface and _core.is_face_label(str(field))):
-            return False
-        arrays = [np.asarray(data[field]) if field in data.keys() else None for data in data_of_blocks]
-        return all(a is not None and a.dtype.kind in "iu" and a.shape == (n,) for a, n in zip(arrays, counts))
-    labels = [f for f in data_of_blocks[0].keys() if is_label(f)] if data_of_blocks else []
-    return min(labels, key=lambda f: f != FACE_GROUPS[0], default=None)
-
-
-# One kind of cell, its cells, the numbers that they have, by name, and the sets that some of them are in.
-Block = tuple[str, Any, dict[str, Any], dict[str, Any]]
-
-
 def _blocks(value: Any, name: str) -> list[Block]:
     blocks = getattr(value, "cells", None)
     if isinstance(blocks, list) and all(hasattr(b, "type") and hasattr(b, "data") for b in blocks):  # meshio
         data = getattr(value, "cell_data", None) or {}
-        sets = _sets_of_cells(value)
-        return [(str(b.type), b.data, {f: v[i] for f, v in data.items()},
-                 {s: v[i] for s, v in sets.items() if i < len(v) and v[i] is not None and len(v[i]) > 0})
+        sets = sets_of_cells(value)
+        return [Block(str(b.type), b.data, {f: v[i] for f, v in data.items()},
+                      {s: v[i] for s, v in sets.items() if i < len(v) and v[i] is not None and np.size(v[i]) > 0})
                 for i, b in enumerate(blocks)]
     try:
         by_kind = dict(value.cells_dict)
@@ -167,7 +152,7 @@ def _blocks(value: Any, name: str) -> list[Block]:
             data = {f: np.asarray(of_all[f])[np.asarray(types) == kind] for f in of_all.keys()}
         else:
             data = {f: of_all[f] for f in of_all.keys()} if len(by_kind) == 1 else {}
-        made.append((text, cells, data, {}))
+        made.append(Block(text, cells, data))
     return made
 
 
@@ -184,52 +169,63 @@ def _plural(kind: str) -> str:
 def _of_blocks(value: Any, name: str) -> Cells:
     tets, faces, flat, others = [], [], [], []
     for block in _blocks(value, name):
-        base = _base(block[0])
-        (tets if block[0] in TET_KINDS else faces if base in FACE_CORNERS else flat if base in FLAT_KINDS else
+        base = _base(block.kind)
+        (tets if block.kind in TET_KINDS else faces if base in FACE_CORNERS else flat if base in FLAT_KINDS else
          others).append(block)
-    others = [b for b in others if len(b[1]) > 0]
+    others = [b for b in others if len(b.cells) > 0]
     if others:
-        counts = ", ".join(f"{len(b[1])} {_plural(b[0])}" for b in others)
+        counts = ", ".join(f"{len(b.cells)} {_plural(b.kind)}" for b in others)
         raise _core.InputError(f"{name}: {counts}; only triangles, polygons and tets of 4 or 10 points can be read: "
                                "convert other cells to tets")
     if not tets and not faces:
-        raise _core.InputError(f"{name} has cells of {', '.join(b[0] for b in flat) or 'no kind'}; give triangles or "
+        raise _core.InputError(f"{name} has cells of {', '.join(b.kind for b in flat) or 'no kind'}; give triangles or "
                                "tets")
     made = Cells(numbers(value.points, name, "points"))
     made.point_fields, left = _fields(getattr(value, "point_data", None) or {}, len(made.points))
     made.drop_names("fields of points", left)
+    names = Names(value)
     if tets:
         midside = _take_tets(made, tets, name)
-        if any(OTHER_MATERIAL in b[2] for b in faces):
-            made.cell_fields.pop(OTHER_MATERIAL, None)
-    label = _take_faces(made, faces, name)
+        # An int32 is what a material can be.
+        made.names = names.take(3, [n for d, n in names.of_groups if d == 3 and abs(n) < 2**31])
+    label = label_field(faces, tets)
+    _take_faces(made, faces, label, names, name)
     if tets:
-        if label == SURFACE:  # of tets it says nothing
-            made.cell_fields.pop(SURFACE, None)
+        if any(OTHER_MATERIAL in b.data for b in faces):  # of to_meshio()
+            made.cell_fields.pop(OTHER_MATERIAL, None)
+            made.cell_fields.pop(GMSH_GROUPS, None)
+        if label == VTK_GROUPS and not np.any(made.cell_fields.get(VTK_GROUPS, 0)):
+            made.cell_fields.pop(VTK_GROUPS, None)  # of tets it says nothing
         _remove_midside_nodes(made, midside, name)
     else:
-        made.drop_names("fields of cells", [f for f in dict.fromkeys(f for b in faces for f in b[2]) if f != label])
+        made.drop_names("fields of cells", [f for f in dict.fromkeys(f for b in faces for f in b.data) if f != label])
     for block in flat:
-        made.drop(_plural(block[0]), len(block[1]))
-    _take_names(made, value)
+        made.drop(_plural(block.kind), len(block.cells))
+    made.drop_names("names of physical groups of faces, lines or points" if tets else "names of physical groups",
+                    names.of_groups.values())
+    made.drop_names("arrays of the whole dataset", names.others)
+    unused = dict.fromkeys(s for b in tets + flat for s in b.sets if s.encode(errors="replace")
+                           not in made.names.values())
+    made.drop_names("sets of cells", unused)
+    made.drop_names("sets of points", getattr(value, "point_sets", None) or {})
     return made
 
 
 def _take_tets(made: Cells, blocks: list[Block], name: str) -> list[np.ndarray]:
     """Returns their midside nodes."""
     nodes = []
-    for kind, cells, _, _ in blocks:
-        array = indices(cells, name, "tets")
-        count = 10 if kind == "tetra10" else 4
+    for block in blocks:
+        array = indices(block.cells, name, "tets")
+        count = 10 if block.kind == "tetra10" else 4
         if array.ndim != 2 or array.shape[1] != count:
-            raise _core.InputError(f"{name}: cells of kind {kind} have the shape {array.shape}; give (m, {count})")
+            raise _core.InputError(f"{name}: cells of kind {block.kind} have the shape {array.shape}; give (m, {count})")
         nodes.append(array)
     made.tets = np.concatenate([n[:, :4] for n in nodes])
-    common = [f for f in blocks[0][2] if all(f in b[2] for b in blocks)]
+    common = [f for f in blocks[0].data if all(f in b.data for b in blocks)]
     joined = {}
     for field in common:
         try:
-            joined[field] = np.ma.concatenate([np.ma.asarray(b[2][field]) for b in blocks])
+            joined[field] = np.ma.concatenate([np.ma.asarray(b.data[field]) for b in blocks])
         except (ValueError, TypeError):
             joined[field] = None
     made.cell_fields, left = _fields(joined, len(made.tets))
@@ -255,68 +251,55 @@ def _remove_midside_nodes(made: Cells, midside: list[np.ndarray], name: str) -> 
     made.drop("midside nodes; tets of ten nodes are taken by their corners", int(count - keep.sum()))
 
 
-def _take_faces(made: Cells, blocks: list[Block], name: str) -> Optional[str]:
-    """Returns the field that groups them. Those that it leaves out may be in sets with names."""
-    fans, groups = [np.empty((0, 3), np.int64)], [np.empty(0, np.int64)]
-    label = _label_field([b[2] for b in blocks], [len(b[1]) for b in blocks], made.tets is None)
-    first_set = 1 + max((int(np.max(b[2][label], initial=0)) for b in blocks), default=0) if label is not None else 1
-    numbers_of_sets: dict[str, int] = {}
-    repeated = 0
-    for kind, cells, data, sets in blocks:
-        array = indices(cells, name, _plural(_base(kind)))
-        corners = FACE_CORNERS[_base(kind)] or (array.shape[1] if array.ndim == 2 else 3)
-        if array.ndim != 2 or array.shape[1] < corners:
-            raise _core.InputError(f"{name}: cells of kind {kind} have the shape {array.shape}; give (m, {corners})")
-        if corners < 3:
-            made.drop("faces of fewer than three vertices", len(array))
-            continue
-        if array.shape[1] > corners and made.tets is None:
-            made.drop(f"midside nodes; {_plural(kind)} are taken by their corners",
-                      len(np.unique(array[:, corners:])))
-        array = array[:, [0, 1, 3, 2]] if kind == "pixel" else array[:, :corners]
-        fans.append(np.stack([array[:, [0, k, k + 1]] for k in range(1, corners - 1)], axis=1).reshape(-1, 3))
-        of_cells = np.zeros(len(array), np.int64) if label is None else np.asarray(data[label]).astype(np.int64)
-        for group, members in sets.items():
-            number = numbers_of_sets.setdefault(group, first_set + len(numbers_of_sets))
-            made.group_names[number] = plain_text(group, "the name of a set of cells")
-            chosen = indices(members, name, f"the set '{group}'")
-            check_range(chosen, len(array), name, f"the set '{group}'")
-            repeated += int(np.count_nonzero(of_cells[chosen]))
-            of_cells[chosen[of_cells[chosen] == 0]] = number
-        groups.append(np.repeat(of_cells, corners - 2))
-    made.triangles, made.groups = np.concatenate(fans), np.concatenate(groups)
+def _take_faces(made: Cells, blocks: list[Block], label: Optional[str], names: Names, name: str) -> None:
+    """Those that `label` leaves out of its groups may be in sets with names."""
+    fans = [_fans(made, block, name) for block in blocks]
+    labels = [np.zeros(len(b.cells), np.int64) if label is None else whole_labels(b.data[label], len(b.cells))
+              for b in blocks]
+    made.group_names = names.take(2, set().union(*(np.unique(of_block).tolist() for of_block in labels)) - {0})
+    # The sets of Gmsh's physical groups say the same as their numbers.
+    known = set(made.group_names.values())
+    for block in blocks:
+        block.sets = {s: v for s, v in block.sets.items() if str(s).encode(errors="replace") not in known}
+    of_sets, repeated = set(), 0
+    for number, group, members in sets_of_faces(blocks, labels, made.group_names, name):
+        made.group_names[number] = plain_text(group, "the name of a set of cells")
+        of_sets.add(number)
+        for of_block, chosen in zip(labels, members):
+            free = chosen[of_block[chosen] == 0]
+            repeated += len(chosen) - len(free)
+            of_block[free] = number
     made.drop("faces of sets that are in a group already", repeated)
-    return label
+    made.triangles = np.concatenate([np.empty((0, 3), np.int64), *(f.reshape(-1, 3) for f in fans)])
+    made.groups = np.concatenate([np.empty(0, np.int64), *(np.repeat(of_block[:len(f)], f.shape[1])
+                                                           for f, of_block in zip(fans, labels))])
+    if made.tets is not None and of_sets:
+        _drop_shells(made, np.isin(made.groups, list(of_sets)), name)
 
 
-def _take_names(made: Cells, value: Any) -> None:
-    """Names of materials, which are Gmsh's physical volumes in meshio; other names are noted."""
-    groups, arrays = [], []
-    numbers_of_faces = set() if made.groups is None else set(np.unique(made.groups).tolist())
-    of_gmsh = not hasattr(value, "celltypes")
-    for group, data in (getattr(value, "field_data", None) or {}).items():
-        array = np.asarray(data)
-        if not of_gmsh or array.dtype.kind not in "iu" or array.size != 2:
-            arrays.append(group)
-        elif made.tets is not None and array.flat[1] == 3 and abs(int(array.flat[0])) < 2**31:
-            made.names[int(array.flat[0])] = plain_text(str(group), "the name of a physical group")
-        elif array.flat[1] == 2 and int(array.flat[0]) in numbers_of_faces - made.group_names.keys():
-            made.group_names[int(array.flat[0])] = plain_text(str(group), "the name of a physical group")
-        else:
-            groups.append(group)
-    made.drop_names("names of physical groups of faces, lines or points" if made.tets is not None else
-                    "names of physical groups", groups)
-    made.drop_names("arrays of the whole dataset", arrays)
-    taken = set(made.group_names.values())
-    made.drop_names("sets of cells", [s for s in _sets_of_cells(value) if str(s).encode() not in taken])
-    made.drop_names("sets of points", getattr(value, "point_sets", None) or {})
+def _fans(made: Cells, block: Block, name: str) -> np.ndarray:
+    """The triangles of each face: (faces, triangles, 3). Polygons become fans, as from files."""
+    kind, array = block.kind, indices(block.cells, name, _plural(_base(block.kind)))
+    corners = FACE_CORNERS[_base(kind)] or (array.shape[1] if array.ndim == 2 else 3)
+    if array.ndim != 2 or array.shape[1] < corners:
+        raise _core.InputError(f"{name}: cells of kind {kind} have the shape {array.shape}; give (m, {corners})")
+    if corners < 3:
+        made.drop("faces of fewer than three vertices", len(array))
+        return np.empty((0, 1, 3), np.int64)
+    if array.shape[1] > corners and made.tets is None:
+        made.drop(f"midside nodes; {_plural(kind)} are taken by their corners", len(np.unique(array[:, corners:])))
+    array = array[:, [0, 1, 3, 2]] if kind == "pixel" else array[:, :corners]
+    return np.stack([array[:, [0, k, k + 1]] for k in range(1, corners - 1)], axis=1)
 
 
-def _sets_of_cells(value: Any) -> dict[str, Any]:
-    """Of meshio, but for those of Gmsh, which say what bounds what, or the same as its physical groups."""
-    known = getattr(value, "field_data", None) or {}
-    return {s: v for s, v in (getattr(value, "cell_sets", None) or {}).items()
-            if s not in known and not str(s).startswith("gmsh:")}
+def _drop_shells(made: Cells, of_sets: np.ndarray, name: str) -> None:
+    """Triangles of sets that are no faces of tets: shells beside the solid."""
+    for cells, what in (made.triangles, "triangles"), (made.tets, "tets"):
+        check_range(cells, len(made.points), name, what)
+    shells = of_sets.copy()
+    shells[of_sets] = ~are_faces(made.triangles[of_sets], made.tets, len(made.points))
+    made.drop("triangles of sets that are no faces of a tet", int(shells.sum()))
+    made.triangles, made.groups = made.triangles[~shells], made.groups[~shells]
 
 
 def _fields(data: Any, rows: int) -> tuple[dict[str, np.ndarray], list[str]]:

@@ -41,13 +41,14 @@ class Interfaces:
 
     @property
     def group(self) -> np.ndarray:
-        """(n,) int64, a copy: the number of the surface that files list the triangle in, see `group_names`."""
+        """(n,) int64, a copy: the number of the surface that .msh and .vtk files list the triangle in, see
+        `group_names`. A patch of the input keeps its own number where it has one that is free."""
         return self._core.interface_groups()[0]
 
     @property
     def group_names(self) -> dict[int, str]:
-        """The names of these surfaces: patches of the input, by their own numbers where they have any, and "bone|skin"
-        or "bone|outside" for what is in none."""
+        """The names of these surfaces, a copy: patches of the input, and "bone|skin" or "bone|outside" for what is in
+        none."""
         return self._core.interface_groups()[1]
 
     @property
@@ -148,8 +149,9 @@ class TetMesh:
 
     def to_meshio(self):
         """A meshio.Mesh: tets (ten-node ones with order=2) with the cell data `material`, and triangles with those of
-        the materials on their sides, 0 for outside, and of `surface`, the numbers of `interfaces.group`. The names of
-        materials and surfaces are in `field_data`, as those of Gmsh's physical groups: number and dimension."""
+        the materials on their sides, 0 for outside. `gmsh:physical` has the materials and the numbers of the input's
+        patches, 0 for triangles in none, and `field_data` their names (a name that a material has, too, gets a suffix),
+        so that meshio writes both as physical groups."""
         import meshio
         tets10 = self.tets10
         points = self.points if tets10 is None else np.vstack([self.points, self.midside_points])
@@ -159,10 +161,14 @@ class TetMesh:
             cells.append(("triangle", np.ascontiguousarray(self.interfaces.triangles)))
             data["material"].append(np.array(self.interfaces.material))
             data["other_material"] = [np.zeros(len(self.tets), np.int32), self.interfaces.other]
-            data["surface"] = [np.zeros(len(self.tets), np.int64), self.interfaces.group]
+        groups, _, patch_names = self._core.interface_groups()
+        data["gmsh:physical"] = [self.materials, np.where(np.isin(groups, list(patch_names)), groups, 0)][:len(cells)]
         names = {name: np.array([tag, 3]) for tag, name in self.material_names.items()}
-        for number, name in self.interfaces.group_names.items():
-            names[name if name not in names else name + " (surface)"] = np.array([number, 2])
+        for number, name in patch_names.items():
+            unique, suffix = name, 2
+            while unique in names:
+                unique, suffix = f"{name}_{suffix}", suffix + 1
+            names[unique] = np.array([number, 2])
         point_data = self.point_fields if tets10 is None else {}
         return meshio.Mesh(points, cells, point_data=point_data, cell_data=data, field_data=names)
 

@@ -1,0 +1,118 @@
+"""Groups of the faces of other libraries' meshes: by the numbers of a field, as in files, or by sets with names."""
+from __future__ import annotations
+
+import dataclasses
+from typing import Any, Iterable, Iterator, Optional
+
+import numpy as np
+
+from . import _core
+from ._text import plain_text
+
+# Fields of faces whose numbers are groups beside tets; of a surface many more are.
+GMSH_GROUPS = "gmsh:physical"
+VTK_GROUPS = "surface"
+FACE_GROUPS = (GMSH_GROUPS, "medit:ref", VTK_GROUPS)
+
+
+@dataclasses.dataclass
+class Block:
+    """Cells of one kind."""
+    kind: str
+    cells: Any
+    data: dict[str, Any]  # numbers of the cells, by name
+    sets: dict[str, Any] = dataclasses.field(default_factory=dict)  # those of them that are in sets with names
+
+
+def whole_labels(values: Any, count: int) -> Optional[np.ndarray]:
+    """As int64; None where they are not one whole number for each cell."""
+    if values is None or np.ma.is_masked(values):
+        return None
+    try:
+        array = np.asarray(values)
+    except (ValueError, TypeError):
+        return None
+    if array.dtype.kind not in "iu" or array.shape != (count,):
+        return None
+    if array.dtype.kind == "u" and (array > np.iinfo(np.int64).max).any():
+        return None
+    return array.astype(np.int64)
+
+
+def label_field(faces: list[Block], tets: list[Block]) -> Optional[str]:
+    """The field that says which groups the faces are in: whole numbers, 0 for none, of tets too where they have it."""
+    def is_label(field: Any) -> bool:
+        if field not in FACE_GROUPS and (tets or not _core.is_face_label(str(field).encode(errors="replace"))):
+            return False
+        return all(whole_labels(b.data.get(field), len(b.cells)) is not None
+                   for b in faces + [t for t in tets if field in t.data])
+    labels = [f for f in faces[0].data if is_label(f)] if faces else []
+    return min(labels, key=lambda f: f != GMSH_GROUPS, default=None)
+
+
+class Names:
+    """Names of Gmsh's physical groups in meshio, by dimension and number; what else its `field_data` holds."""
+
+    def __init__(self, value: Any):
+        self.of_groups: dict[tuple[int, int], Any] = {}
+        self.others: list[Any] = []
+        of_gmsh = not hasattr(value, "celltypes")
+        for name, data in (getattr(value, "field_data", None) or {}).items():
+            array = np.asarray(data)
+            if of_gmsh and array.dtype.kind in "iu" and array.size == 2:
+                self.of_groups[int(array.flat[1]), int(array.flat[0])] = name
+            else:
+                self.others.append(name)
+
+    def take(self, dimension: int, numbers: Iterable[int]) -> dict[int, bytes]:
+        """Those of these groups, which are removed here."""
+        found = {n: self.of_groups.pop((dimension, n)) for n in numbers if (dimension, n) in self.of_groups}
+        return {n: plain_text(str(name), "the name of a physical group") for n, name in found.items()}
+
+    def of_dimension(self, dimension: int) -> set[Any]:
+        return {name for (d, _), name in self.of_groups.items() if d == dimension}
+
+
+def sets_of_cells(value: Any) -> dict[Any, Any]:
+    """Of meshio: members for each block. Those of Gmsh itself only say what bounds what."""
+    return {s: v for s, v in (getattr(value, "cell_sets", None) or {}).items() if not str(s).startswith("gmsh:")}
+
+
+def members_of(block: Block, group: Any, name: str) -> np.ndarray:
+    """The numbers of the block's cells that are in the set."""
+    values = np.asarray(block.sets[group])
+    if values.dtype == bool and values.shape == (len(block.cells),):
+        return np.flatnonzero(values)
+    if values.dtype.kind not in "iu" or values.ndim != 1:
+        raise _core.InputError(f"{name}: the set '{group}' has members of type {values.dtype} and shape "
+                               f"{values.shape}; give the numbers of its cells")
+    bad = (values < 0) | (values >= len(block.cells))
+    if bad.any():
+        raise _core.InputError(f"{name}: the set '{group}' names cell {values[bad][0]} of kind {block.kind}, but there "
+                               f"are {len(block.cells)}, numbered from 0")
+    return values.astype(np.int64)
+
+
+def sets_of_faces(faces: list[Block], labels: list[np.ndarray], names: dict[int, bytes], name: str) \
+        -> Iterator[tuple[int, str, list[np.ndarray]]]:
+    """A free number, the name and the members in each block of the sets of faces, smaller sets first, so that a set of
+    all leaves others what is theirs."""
+    members = {s: [members_of(b, s, name) if s in b.sets else np.empty(0, np.int64) for b in faces]
+               for s in dict.fromkeys(s for b in faces for s in b.sets)}
+    used = set(names).union(*(np.unique(of_block).tolist() for of_block in labels))
+    number = 0
+    for group in sorted(members, key=lambda s: sum(map(len, members[s]))):
+        number += 1
+        while number in used:
+            number += 1
+        yield number, str(group), members[group]
+
+
+def are_faces(triangles: np.ndarray, tets: np.ndarray, points: int) -> np.ndarray:
+    """Whether each triangle is a face of a tet; all are in range."""
+    marked = np.zeros(points, bool)
+    marked[triangles] = True
+    near = tets[marked[tets].sum(axis=1) >= 3]
+    corners = np.sort(near[:, [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]]].reshape(-1, 3), axis=1)
+    known = set(map(tuple, corners.tolist()))
+    return np.fromiter((tuple(t) in known for t in np.sort(triangles, axis=1).tolist()), bool, len(triangles))
