@@ -289,7 +289,10 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
       });
     }
   }
-  if (options.tolerance > 0 && !deviation) deviation = engine.deviation();
+  if (options.tolerance > 0 && !deviation) {
+    engine.recorder().begin_stage("compare");
+    deviation = engine.deviation();
+  }
   if (report) {
     report->deviation = deviation;
     report->out_of_time = !in_time;

@@ -55,7 +55,7 @@ std::optional<SurfaceWithFields> always_surface(std::string_view bytes, const st
 
 constexpr std::array<SurfaceFormat, 7> surface_formats{
     {{".ply", read_ply, write_whole_surface<write_ply>, always_surface<read_ply_with_fields>, printable_name},
-     {".obj", read_obj, write_whole_surface<write_obj>, nullptr, printable_word},
+     {".obj", read_obj, write_whole_surface<write_obj>, nullptr, word_without_hash},
      {".stl", read_stl, write_whole_surface<write_stl>, nullptr, printable_word},
      {".off", read_off, write_whole_surface<write_off>, nullptr},
      {".vtp", read_vtp, write_vtp, always_surface<read_vtp_with_fields>, printable_name},
@@ -201,7 +201,9 @@ ReadTetMesh measurable(ReadTetMesh read, const std::string& name) {
 }
 
 NameRules names_of_groups(const SurfaceFormat& format) {
-  return {.form = format.group_name ? format.group_name : printable_name, .surface_numbers = false};
+  return {
+      .form = format.group_name ? format.group_name : printable_name,
+  };
 }
 
 /// Among `files`, or alone if that is null.
@@ -261,9 +263,7 @@ NameChanges written_name_changes(const TetMesh& mesh, const std::string& path, c
   NameChanges changes = name_changes(mesh, format.parts(mesh));
   const auto add_fields = [&](const std::vector<MeshField>& fields, const std::vector<std::string>& taken) {
     if (!format.fields) return;
-    std::vector<std::string> names = field_names_to_write(fields, taken);
-    if (format.field_name) std::transform(names.begin(), names.end(), names.begin(), format.field_name);
-    add_field_changes(fields, names, changes.fields);
+    add_field_changes(fields, field_names_to_write(fields, taken, format.field_name), changes.fields);
   };
   add_fields(mesh.point_fields, {});
   add_fields(mesh.cell_fields, format.own_cell_fields);

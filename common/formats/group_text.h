@@ -21,4 +21,11 @@ inline std::string printable_word(const std::string& name) {
   return word;
 }
 
+/// The same for formats in which # begins a comment.
+inline std::string word_without_hash(const std::string& name) {
+  std::string word = printable_word(name);
+  std::replace(word.begin(), word.end(), '#', '_');
+  return word;
+}
+
 }  // namespace tetwright

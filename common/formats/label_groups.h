@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <map>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -36,5 +38,17 @@ class LabelGroups {
   std::map<std::int64_t, std::uint32_t> indices_;
   std::vector<FaceGroup> groups_;
 };
+
+/// Numbers that label the groups in a file: their own, where these are above 0, of 32 bits and no two alike,
+/// else their places, from 1 on.
+inline std::vector<std::int32_t> labels_of(const std::vector<FaceGroup>& groups) {
+  std::vector<std::int32_t> own, places;
+  for (const FaceGroup& group : groups) {
+    if (group.number > 0 && group.number <= std::numeric_limits<std::int32_t>::max())
+      own.push_back(static_cast<std::int32_t>(group.number));
+    places.push_back(static_cast<std::int32_t>(places.size()) + 1);
+  }
+  return std::set<std::int32_t>(own.begin(), own.end()).size() == groups.size() ? own : places;
+}
 
 }  // namespace tetwright

@@ -84,13 +84,14 @@ std::string field_name(std::string_view name) {
 }
 
 std::vector<std::string> field_names_to_write(const std::vector<MeshField>& fields,
-                                              std::vector<std::string> taken) {
+                                              std::vector<std::string> taken,
+                                              std::string (*form)(const std::string& name)) {
   std::set<std::string> used(taken.begin(), taken.end());
   std::map<std::string, std::size_t>
       next;  // the next suffix to try, so that many equal names take linear time
   std::vector<std::string> names;
   for (const MeshField& field : fields) {
-    const std::string name = field_name(field.name);
+    const std::string plain = field_name(field.name), name = form ? form(plain) : plain;
     std::string unique = name;
     std::size_t& number = next.try_emplace(name, 2).first->second;
     while (!used.insert(unique).second) unique = name + "_" + std::to_string(number++);

@@ -16,10 +16,11 @@ inline constexpr double max_exact_whole = 0x1p53;
 /// control characters and bytes that are not UTF-8; "field" if it is empty.
 std::string field_name(std::string_view name);
 
-/// field_name() of each field, made unique: a name that is in `taken` or that an earlier field has gets
-/// the suffix "_2", "_3" and so on.
+/// field_name() of each field, in the form that a format can hold (null: as it is), made unique: a name that
+/// is in `taken` or that an earlier field has gets the suffix "_2", "_3" and so on.
 std::vector<std::string> field_names_to_write(const std::vector<MeshField>& fields,
-                                              std::vector<std::string> taken);
+                                              std::vector<std::string> taken,
+                                              std::string (*form)(const std::string& name) = nullptr);
 
 /// Whether every value is whole and exactly represented (below 2^53 in absolute value).
 bool all_whole(const MeshField& field);

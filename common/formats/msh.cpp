@@ -91,7 +91,7 @@ std::string write_msh(const MeshToWrite& written) {
   }
   out += "$EndElements\n";
   append_msh_data(out, "NodeData", written.node_fields(), written.nodes());
-  append_msh_data(out, "ElementData", mesh.cell_fields, mesh.tets.size());
+  append_msh_data(out, "ElementData", fields_of_elements(mesh), mesh.tets.size() + mesh.interfaces.size());
   return out;
 }
 

@@ -94,8 +94,9 @@ class Msh4Writer {
     write_nodes();
     write_elements();
     std::string data;
-    append_msh_data(data, "NodeData", written_.node_fields(), written_.nodes(), binary_);
-    append_msh_data(data, "ElementData", mesh_.cell_fields, mesh_.tets.size(), binary_);
+    append_msh_data(data, "NodeData", written_.node_fields(), written_.nodes(), binary_, order_of_nodes());
+    append_msh_data(data, "ElementData", fields_of_elements(mesh_),
+                    mesh_.tets.size() + mesh_.interfaces.size(), binary_, order_of_elements());
     out_ << data;
     out_.flush();
   }
@@ -243,6 +244,21 @@ class Msh4Writer {
       }
     }
     numbers_.end("Elements");
+  }
+
+  // As write_nodes() and write_elements() list them.
+  std::vector<std::size_t> order_of_nodes() const {
+    std::vector<std::size_t> order;
+    for (const Entity& entity : entities_)
+      order.insert(order.end(), entity.nodes.begin(), entity.nodes.end());
+    return order;
+  }
+  std::vector<std::size_t> order_of_elements() const {
+    std::vector<std::size_t> order;
+    for (const Entity& entity : entities_)
+      for (const std::size_t e : entity.elements)
+        order.push_back((entity.dimension == surface_dimension ? mesh_.tets.size() : 0) + e);
+    return order;
   }
 
   const MeshToWrite& written_;

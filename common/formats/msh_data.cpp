@@ -6,6 +6,7 @@
 #include "common/error.h"
 #include "common/formats/byte_order.h"
 #include "common/formats/mesh_fields.h"
+#include "common/formats/mesh_parts.h"
 #include "common/number_text.h"
 #include "common/utf8.h"
 
@@ -14,6 +15,7 @@ namespace tetwright {
 namespace {
 
 constexpr std::int64_t max_components = 9;
+constexpr std::size_t max_name_bytes = 120;  // see msh_name()
 
 void append_value(std::string& out, double value) {
   if (std::isnan(value))
@@ -86,21 +88,35 @@ MeshField read_msh_data(TextScanner& in, const MshNumbers& like, const std::stri
   return field;
 }
 
+std::vector<MeshField> fields_of_elements(const TetMesh& mesh) {
+  std::vector<MeshField> fields = mesh.cell_fields;
+  if (fields.empty() || mesh.interfaces.empty()) return fields;
+  const std::vector<TetFace> beside = faces_of_tets(mesh);
+  for (MeshField& field : fields) {
+    const auto n = static_cast<std::size_t>(field.components);
+    field.values.reserve(field.values.size() + n * beside.size());
+    for (const TetFace& face : beside)
+      for (std::size_t k = 0; k < n; ++k) field.values.push_back(field.values[face.tet * n + k]);
+  }
+  return fields;
+}
+
 void append_msh_data(std::string& out, const std::string& section, const std::vector<MeshField>& fields,
-                     std::size_t items, bool binary) {
-  const std::vector<std::string> names = field_names_to_write(fields, {});
+                     std::size_t items, bool binary, const std::vector<std::size_t>& order) {
+  const std::vector<std::string> names = field_names_to_write(fields, {}, msh_name);
   // Appends a section of `used` components of each item, beginning with `first`, padded to `written`
   // components.
   const auto append_view = [&](const MeshField& field, const std::string& name, int first, int used,
                                int written) {
-    out += "$" + section + "\n1\n\"" + msh_name(name) + "\"\n1\n0\n3\n0\n" + std::to_string(written) + "\n" +
+    out += "$" + section + "\n1\n\"" + name + "\"\n1\n0\n3\n0\n" + std::to_string(written) + "\n" +
            std::to_string(items) + "\n";
     const auto value = [&](std::size_t i, int k) {
       return k < used ? field.values[i * static_cast<std::size_t>(field.components) +
                                      static_cast<std::size_t>(first + k)]
                       : 0.0;
     };
-    for (std::size_t i = 0; i < items; ++i) {
+    for (std::size_t row = 0; row < items; ++row) {
+      const std::size_t i = order.empty() ? row : order[row];
       if (binary) {
         append_bytes(out, static_cast<std::int32_t>(i + 1));
         for (int k = 0; k < written; ++k) append_bytes(out, value(i, k));
@@ -129,7 +145,10 @@ std::string msh_name(const std::string& name) {
   std::string out;
   for (char c : valid_utf8(name))
     out += c == '"' || c == '\\' || static_cast<unsigned char>(c) < ' ' ? '_' : c;
-  return out;
+  if (out.size() <= max_name_bytes) return out;
+  std::size_t end = max_name_bytes;
+  while (end > 0 && (static_cast<unsigned char>(out[end]) & 0xC0) == 0x80) --end;  // no part of a character
+  return out.substr(0, end);
 }
 
 }  // namespace tetwright

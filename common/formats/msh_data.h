@@ -22,15 +22,21 @@ MeshField read_msh_data(TextScanner& in, const MshNumbers& like, const std::stri
                         const FileNumbers& numbers, std::size_t items, bool missing_allowed,
                         std::size_t& room);
 
+/// The fields of the tets with values for the triangles of the interfaces, too, which follow them: those of
+/// the tets on the side of their `material`. Some readers (meshio 5.0) want one for each element.
+std::vector<MeshField> fields_of_elements(const TetMesh& mesh);
+
 /// Appends the fields as sections "$NodeData" or "$ElementData" (`section` is the keyword without the
 /// dollar); items are numbered from 1. The format has fields of 1, 3 and 9 components: others are padded with
 /// zeros, and one of more than nine is written as one field for each component, "name_0" and so on. It has no
-/// integers. Rows are binary in binary files, little-endian.
+/// integers. Rows are binary in binary files, little-endian. `order`: of the rows, as the file lists the
+/// items (empty: ascending), since meshio 5.0 does not look at their numbers in text.
 void append_msh_data(std::string& out, const std::string& section, const std::vector<MeshField>& fields,
-                     std::size_t items, bool binary = false);
+                     std::size_t items, bool binary = false, const std::vector<std::size_t>& order = {});
 
 /// A name as it may stand in quotes: a quote, backslash or control character becomes an underscore, and what
-/// is no UTF-8 a replacement character, which other readers need.
+/// is no UTF-8 a replacement character, which other readers need. At most 120 bytes: Gmsh 4.8.4 takes 127 for
+/// the name, the rest is for the suffixes of names that would be equal, and cannot load a file with 245.
 std::string msh_name(const std::string& name);
 
 }  // namespace tetwright

@@ -180,7 +180,7 @@ std::string write_obj(const TriangleMesh& mesh) {
   }
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     if (!mesh.groups.empty() && (i == 0 || mesh.triangle_groups[i] != mesh.triangle_groups[i - 1]))
-      out += "g " + printable_word(group_text(mesh.groups[mesh.triangle_groups[i]])) + '\n';
+      out += "g " + word_without_hash(group_text(mesh.groups[mesh.triangle_groups[i]])) + '\n';
     out += 'f';
     for (const Index v : mesh.triangles[i]) {
       out += ' ';

@@ -416,8 +416,9 @@ SurfaceWithFields read_ply_with_fields(std::string_view bytes, const std::string
 std::string write_ply(const TriangleMesh& mesh) {
   const bool grouped = !mesh.groups.empty();
   std::string out = "ply\nformat binary_little_endian 1.0\n";
+  const std::vector<std::int32_t> labels = labels_of(mesh.groups);
   for (std::size_t g = 0; g < mesh.groups.size(); ++g)
-    out += "comment " + std::string(group_comment) + std::to_string(g + 1) + ": " +
+    out += "comment " + std::string(group_comment) + std::to_string(labels[g]) + ": " +
            group_text(mesh.groups[g]) + '\n';
   out += "element vertex ";
   append_number(out, mesh.points.size());
@@ -431,7 +432,7 @@ std::string write_ply(const TriangleMesh& mesh) {
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     out += '\3';
     for (const Index v : mesh.triangles[i]) append_bytes(out, v);
-    if (grouped) append_bytes(out, static_cast<std::int32_t>(mesh.triangle_groups[i] + 1));
+    if (grouped) append_bytes(out, labels[mesh.triangle_groups[i]]);
   }
   return out;
 }

@@ -32,7 +32,7 @@ struct TetFormat {
   MeshParts (*parts)(const TetMesh& mesh) = nullptr;
   /// Names of cell fields that the writer adds itself; no other field may have them.
   std::vector<std::string> own_cell_fields = {};
-  /// What becomes of a name of field_names_to_write(); null: nothing.
+  /// As field_names_to_write() takes it.
   std::string (*field_name)(const std::string& name) = nullptr;
   bool point_fields = true;  ///< when it is read
   // As in TetFormatInfo.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -43,8 +44,14 @@ void write_fields(TextWriter& out, const std::vector<MeshField>& fields, std::ve
   out << "FIELD FieldData " << fields.size() << '\n';
   for (std::size_t f = 0; f < fields.size(); ++f) {
     const bool whole = fields[f].integer && all_whole(fields[f]);
+    const bool small = std::all_of(fields[f].values.begin(), fields[f].values.end(), [](double value) {
+      return std::fabs(value) <= std::numeric_limits<std::int32_t>::max();
+    });
     const auto components = static_cast<std::size_t>(fields[f].components);
-    out << encoded(names[f]) << ' ' << components << ' ' << items << ' ' << (whole ? "vtkIdType" : "double")
+    out << encoded(names[f]) << ' ' << components << ' ' << items << ' '
+        << (!whole  ? "double"
+            : small ? "int"
+                    : "long")
         << '\n';
     for (std::size_t i = 0; i < fields[f].values.size(); ++i) {
       const double value = fields[f].values[i];

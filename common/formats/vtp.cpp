@@ -124,10 +124,11 @@ SurfaceWithFields read_vtp_with_fields(std::string_view bytes, const std::string
 void write_vtp(const TriangleMesh& mesh, const ByteSink& sink) {
   const std::size_t triangles = mesh.triangles.size();
   sink(vtu_head("PolyData"));
+  const std::vector<std::int32_t> labels = labels_of(mesh.groups);
   if (!mesh.groups.empty()) {
     std::vector<std::pair<std::int64_t, std::string>> names;
     for (std::size_t g = 0; g < mesh.groups.size(); ++g)
-      names.emplace_back(static_cast<std::int64_t>(g) + 1, group_text(mesh.groups[g]));
+      names.emplace_back(labels[g], group_text(mesh.groups[g]));
     sink("<FieldData>\n");
     write_vtu_names(sink, vtk_surface_names, names);
     sink("</FieldData>\n");
@@ -145,7 +146,7 @@ void write_vtp(const TriangleMesh& mesh, const ByteSink& sink) {
   if (!mesh.groups.empty()) {
     sink("<CellData>\n");
     write_vtu_numbers(sink, "Int32", vtk_surface_field, "", triangles,
-                      [&](std::size_t i) { return static_cast<std::int32_t>(mesh.triangle_groups[i] + 1); });
+                      [&](std::size_t i) { return labels[mesh.triangle_groups[i]]; });
     sink("</CellData>\n");
   }
   sink("</Piece>\n</PolyData>\n</VTKFile>\n");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "common/formats/mesh_fields.h"
 #include "common/formats/midside_nodes_read.h"
 #include "common/formats/text_scanner.h"
+#include "common/formats/unique_names.h"
 #include "common/formats/vtk_cells.h"
 #include "common/formats/vtu_arrays.h"
 #include "common/formats/vtu_data.h"
@@ -293,8 +295,13 @@ std::string write_vtu(const MeshToWrite& written) {
 
 MeshParts vtu_parts(const TetMesh& mesh) {
   MeshParts parts;
-  for (const auto& [tag, name] : mesh.material_names)
-    parts.materials.push_back({tag, tag, printable_name(name), {}});
+  UniqueNames names(printable_name);
+  std::map<std::string, std::string> written;  // materials of one name keep it
+  for (const auto& [tag, name] : mesh.material_names) {
+    const auto [known, added] = written.try_emplace(name);
+    if (added) known->second = names.add(name);
+    parts.materials.push_back({tag, tag, known->second, {}});
+  }
   return parts;
 }
 
@@ -303,8 +310,8 @@ void write_vtu(const MeshToWrite& written, const ByteSink& sink) {
   const MidsideNodes* midside = written.midside;
   sink(vtu_head("UnstructuredGrid"));
   if (!mesh.material_names.empty()) {
-    std::vector<std::pair<std::int64_t, std::string>> names(mesh.material_names.begin(),
-                                                            mesh.material_names.end());
+    std::vector<std::pair<std::int64_t, std::string>> names;
+    for (const MeshParts::Material& m : vtu_parts(mesh).materials) names.emplace_back(m.tag, m.name);
     sink("<FieldData>\n");
     write_vtu_names(sink, vtk_material_names, names);
     sink("</FieldData>\n");

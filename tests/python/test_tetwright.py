@@ -333,3 +333,46 @@ def check_linkage(module):
     assert needed <= of_systems | named, needed - of_systems - named
     found = subprocess.run(["ldd", module], capture_output=True, text=True, check=True).stdout
     assert "not found" not in found and "tetwright" not in found.replace(str(module), ""), found
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_meshio_reads_the_fields_of_every_format_that_has_them(tmp_path, order):
+    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1.], [2, 0, 1]])
+    tets = np.array([[0, 1, 2, 3], [1, 2, 3, 4], [1, 4, 3, 5]])
+    data = {"material": [np.array([4, 9, 4])], "id": [np.array([7, 2**40, 5])], "E": [np.array([0.5, 1.5, 2.5])]}
+    made = tetwright.improve(meshio.Mesh(points, [("tetra", tets)], cell_data=data, point_data={"u": points}),
+                             fix_boundary=True, order=order)
+
+    def by_place(places, values):
+        return {tuple(np.round(p, 9)): v for p, v in zip(np.asarray(places), np.asarray(values, float).ravel().tolist())}
+    expected = {name: by_place(made.points[made.tets].mean(axis=1), made.fields[name]) for name in ("id", "E")}
+    # Of msh22 it splits the fields of several kinds of cells at the wrong places, of binary files it wants the cells in
+    # the order of their numbers.
+    for name, output_format, alone in (("m.vtu", "", False), ("m.vtk", "", False), ("m.xdmf", "", False),
+                                       ("a.msh", "msh22", True), ("b.msh", "msh41", False)):
+        made.write(tmp_path / name, output_format=output_format, no_boundary=alone)
+        read = meshio.read(tmp_path / name)
+        np.testing.assert_allclose(read.point_data["u"], read.points, atol=1e-12, err_msg=name)
+        for field in expected:
+            blocks = [(b.data[:, :4], values) for b, values in zip(read.cells, read.cell_data[field])
+                      if b.type.startswith("tetra")]
+            cells, values = (np.concatenate(parts) for parts in zip(*blocks))
+            assert by_place(read.points[cells].mean(axis=1), values) == expected[field], (name, field)
+    handed_on = made.to_meshio()
+    np.testing.assert_allclose(handed_on.point_data["u"], handed_on.points, atol=1e-12)
+    beside = handed_on.points[made.interfaces.triangles].mean(axis=1)
+    assert handed_on.cell_data["E"][0].tolist() == made.fields["E"].tolist()
+    assert len(handed_on.cell_data["E"][1]) == len(beside)
+    np.testing.assert_array_equal(handed_on.cell_data["E"][1], made.fields["E"][made.interfaces.tets])
+    for triangle, tet in zip(made.interfaces.triangles.tolist(), made.interfaces.tets.tolist()):
+        assert set(triangle) < set(made.tets[tet].tolist())
+
+
+def test_what_a_file_has_no_place_for_is_noted(tmp_path):
+    made = tetwright.improve(meshio.Mesh(np.vstack([np.zeros(3), np.eye(3)]), [("tetra", [[0, 1, 2, 3]])],
+                                         cell_data={"heat": [np.array([1.5])], "a\tb": [np.array([2.5])],
+                                                    "a_b": [np.array([3.5])]}), fix_boundary=True)
+    assert {n: v[0] for n, v in made.fields.items()} == {"heat": 1.5, "a_b": 2.5, "a_b_2": 3.5}
+    assert "names of fields as they were" in made.notes[0]
+    made.write(tmp_path / "m.inp")
+    assert "m.inp: 3 fields (not written; .inp has no place for them)" in made.notes[-1]

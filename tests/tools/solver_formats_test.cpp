@@ -132,7 +132,7 @@ TEST_F(SolverFormats, NamesThatBecomeEqualStayApart) {
 
 TEST_F(SolverFormats, NamesOfFieldsThatAreChangedAreSaid) {
   TetMesh mesh = read_tet_mesh(f / "in.vtu").mesh;
-  for (const char* name : {"surface", "material", "a \"b\"", "same", "same", "two\nlines"})
+  for (const char* name : {"surface", "material", "a \"b\"", "a _b_", "same", "same", "two\nlines"})
     mesh.cell_fields.push_back({name, 1, false, std::vector<double>(mesh.tets.size(), 1.5)});
   mesh.point_fields.push_back({"material", 1, false, std::vector<double>(mesh.points.size(), 2.5)});
   for (const TetFormatInfo& format : written_tet_formats()) {

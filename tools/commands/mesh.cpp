@@ -8,7 +8,10 @@ namespace tetwright {
 
 CommandResult run_mesh(CommandRun& run) {
   DenseMesh dense = make_dense_mesh(read_scan(run), run);
-  if (run.report.tolerance > 0) run.report.deviation = deviation(dense.mesh, *dense.surface, &run.progress);
+  if (run.report.tolerance > 0) {
+    run.progress.begin_stage("compare");
+    run.report.deviation = deviation(dense.mesh, *dense.surface, &run.progress);
+  }
   if (dense.reference) make_second_order(dense.mesh, follow(*dense.reference), run);
   if (dense.surface) measure_distances(dense.mesh, *dense.surface, "the input", run);
   dense.reference.reset();  // memory that writing the mesh needs

@@ -70,6 +70,7 @@ void report_touching_points(const std::string& file, RunReport& report) {
 
 std::string rules_behind_count(const CommandLine& line, const RunReport& report, double asked,
                                double reached) {
+  if (reached > asked && report.simplify->out_of_time) return "--time-limit";
   if (line.command == Command::improve)
     return "nothing: shapes were worth " + std::string(reached < asked ? "fewer" : "more") + " tets";
   if (reached > asked && report.mesher && static_cast<double>(report.mesher->filling_tets) > asked)
@@ -179,7 +180,7 @@ void find_edge_lengths(const TetMesh& mesh, RunReport& report) {
                                     place_text(worst.place) + "; held back by: " + limit,
                                 {worst.place}});
   };
-  const char* held = "surfaces, creases and shapes there";
+  const char* held = report.simplify->out_of_time ? "--time-limit" : "surfaces, creases and shapes there";
   offend("max_edge", "--max-edge", sizes.limits.max_edge, e.above_max, "longer", held);
   offend("min_edge", "--min-edge", sizes.limits.min_edge, e.below_min, "shorter", held);
   if (e.within_share() >= min_edges_within) return;

@@ -8,6 +8,7 @@
 
 #include "common/error.h"
 #include "common/formats/mesh_fields.h"
+#include "common/formats/name_changes.h"
 #include "common/message_text.h"
 
 namespace tetwright::python {
@@ -47,16 +48,24 @@ std::vector<std::array<Index, N>> to_cells(const Cells& array, std::size_t point
 }
 
 std::vector<MeshField> to_fields(const Fields& fields, std::size_t rows, const std::string& name,
-                                 const char* of) {
+                                 const char* of, std::vector<Dropped>& dropped) {
   std::vector<MeshField> all;
   for (const auto& [field, whole, values] : fields) {
     if (values.ndim() != 2 || static_cast<std::size_t>(values.shape(0)) != rows)
       throw InputError(name, 0,
                        "the field " + in_quotes(field) + " is an array of shape " + shape_text(values) +
                            "; give one row for each of the " + std::to_string(rows) + " " + of);
-    all.push_back({field_name(field), static_cast<int>(values.shape(1)), whole,
+    all.push_back({field, static_cast<int>(values.shape(1)), whole,
                    std::vector<double>(values.data(), values.data() + values.size())});
   }
+  const std::vector<std::string> names = field_names_to_write(all, {});
+  std::vector<NameChange> changes;
+  add_field_changes(all, names, changes);
+  if (!changes.empty())
+    dropped.push_back({"names of fields as they were, the first " + changes.front().own + " (now " +
+                           changes.front().written + ")",
+                       changes.size()});
+  for (std::size_t f = 0; f < all.size(); ++f) all[f].name = names[f];
   return all;
 }
 
@@ -114,9 +123,9 @@ ReadTetMesh to_mesh(const std::string& name, const Points& points, const Cells& 
     read.material_field = "material";
   }
   mesh.material_names = names;
-  mesh.point_fields = to_fields(point_fields, mesh.points.size(), name, "points");
-  mesh.cell_fields = to_fields(cell_fields, mesh.tets.size(), name, "tets");
   read.dropped = to_dropped(dropped);
+  mesh.point_fields = to_fields(point_fields, mesh.points.size(), name, "points", read.dropped);
+  mesh.cell_fields = to_fields(cell_fields, mesh.tets.size(), name, "tets", read.dropped);
   return read;
 }
 

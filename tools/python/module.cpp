@@ -8,6 +8,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -17,13 +18,17 @@
 #include "common/formats/atomic_file.h"
 #include "common/formats/formats.h"
 #include "common/formats/label_groups.h"
+#include "common/formats/mesh_fields.h"
 #include "common/formats/mesh_parts.h"
+#include "common/formats/mesh_to_write.h"
 #include "common/mesh/boundary_groups.h"
 #include "common/parallel/parallel.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/output_paths.h"
 #include "tools/commands/result.h"
+#include "tools/commands/unwritten.h"
 #include "tools/option_rules.h"
+#include "tools/patch_fidelity.h"
 #include "tools/python/arrays.h"
 #include "tools/python/option_types.h"
 #include "tools/report.h"
@@ -143,6 +148,8 @@ py::array view(const std::vector<Row>& rows, const void* first, py::ssize_t colu
 
 py::dict fields_of(const std::vector<MeshField>& fields, const py::object& owner) {
   py::dict all;
+  const std::vector<std::string> names = field_names_to_write(fields, {});  // no two alike
+  auto name = names.begin();
   for (const MeshField& f : fields) {
     const auto components = static_cast<py::ssize_t>(f.components);
     const auto count = static_cast<py::ssize_t>(f.values.size()) / components;
@@ -150,7 +157,7 @@ py::dict fields_of(const std::vector<MeshField>& fields, const py::object& owner
     if (components > 1) shape.push_back(components);
     py::array_t<double> array(shape, f.values.data(), owner);
     array.attr("setflags")(py::arg("write") = false);
-    all[to_text(f.name)] = array;
+    all[to_text(*name++)] = array;
   }
   return all;
 }
@@ -183,12 +190,29 @@ py::tuple groups_of(const TetMesh& mesh) {
   return py::make_tuple(numbers, names, of_patches);
 }
 
+/// For each interface triangle the tet on the side of its `material`.
+py::array_t<Index> tets_beside(const TetMesh& mesh) {
+  py::array_t<Index> tets(static_cast<py::ssize_t>(mesh.interfaces.size()));
+  py::ssize_t i = 0;
+  for (const TetFace& face : faces_of_tets(mesh)) tets.mutable_at(i++) = face.tet;
+  return tets;
+}
+
+/// The fields of points and midside nodes.
+py::dict fields_of_all_nodes(const Mesh& mesh) {
+  const MeshToWrite nodes(mesh.mesh, mesh.midside ? &*mesh.midside : nullptr);
+  const auto owned = std::make_unique<std::vector<MeshField>>(nodes.node_fields());
+  py::dict all;
+  for (const auto& [name, values] : fields_of(*owned, py::none())) all[name] = values.attr("copy")();
+  return all;
+}
+
 void check_no_standard_output(const CommandLine& line) {
   if (line.output == "-" || line.boundary == "-")
     throw UsageError("standard output is the host's; give output and boundary names of files");
 }
 
-void write_mesh_files(const Mesh& mesh, const std::string& path, const std::string& format,
+void write_mesh_files(Mesh& mesh, const std::string& path, const std::string& format,
                       const std::string& boundary, bool no_boundary) {
   const py::gil_scoped_release release;
   CommandLine line;  // for the program's rules
@@ -196,6 +220,7 @@ void write_mesh_files(const Mesh& mesh, const std::string& path, const std::stri
   line.output = path;
   line.output_format = format;
   line.boundary = boundary;
+  line.no_boundary = no_boundary;
   check_no_standard_output(line);
   check_output_paths(line);
   if (mesh.midside) check_holds_second_order(path, format);
@@ -211,6 +236,10 @@ void write_mesh_files(const Mesh& mesh, const std::string& path, const std::stri
   }
   if (!boundary.empty()) write_interfaces(mesh.mesh, boundary, &files);
   files.commit();
+  RunReport report;
+  report.patches = patches_of_input(mesh.mesh);
+  find_unwritten(line, mesh.mesh, report);
+  for (std::string& note : notes_of(report)) mesh.notes.push_back(std::move(note));
 }
 
 CommandLine parse(std::vector<std::string> arguments) {
@@ -446,6 +475,7 @@ PYBIND11_MODULE(_core, module) {
                                                           self);
                              })
       .def("interface_others", [](const Mesh& m) { return other_sides(m.mesh); })
+      .def("interface_tets", [](const Mesh& m) { return tets_beside(m.mesh); })
       .def("interface_groups", [](const Mesh& m) { return groups_of(m.mesh); })
       .def_property_readonly("midside_points",
                              [](const py::object& self) -> py::object {
@@ -461,6 +491,7 @@ PYBIND11_MODULE(_core, module) {
                              })
       .def("point_fields",
            [](const py::object& self) { return fields_of(self.cast<const Mesh&>().mesh.point_fields, self); })
+      .def("node_fields", &fields_of_all_nodes)
       .def("cell_fields",
            [](const py::object& self) { return fields_of(self.cast<const Mesh&>().mesh.cell_fields, self); })
       .def_property_readonly("stats", [](const Mesh& m) { return to_text(m.stats); })

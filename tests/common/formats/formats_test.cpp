@@ -147,8 +147,8 @@ TEST_F(Formats, GroupsOfSurfaces) {
   };
   EXPECT_EQ(names("a.obj"), (std::vector<FaceGroup>{{0, "in_let"}, {0, "wall"}}));
   EXPECT_EQ(names("a.stl"), (std::vector<FaceGroup>{{0, "in_let"}, {0, "wall"}}));
-  EXPECT_EQ(names("a.ply"), (std::vector<FaceGroup>{{1, ""}, {2, ""}}));
-  EXPECT_EQ(names("a.vtp"), (std::vector<FaceGroup>{{1, "in let"}, {2, "wall"}}));
+  EXPECT_EQ(names("a.ply"), (std::vector<FaceGroup>{{3, "in let"}, {4, "wall"}}));
+  EXPECT_EQ(names("a.vtp"), (std::vector<FaceGroup>{{3, "in let"}, {4, "wall"}}));
   write_surface(surface, path("a.off"));
   EXPECT_TRUE(read_surface(path("a.off")).groups.empty());
 }

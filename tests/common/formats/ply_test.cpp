@@ -171,7 +171,7 @@ TEST(Ply, LabelsOfFacesAreGroups) {
   EXPECT_EQ(read_ply(text(named + "property int patch_id", "7"), "f").groups,
             (std::vector<FaceGroup>{{3, ""}, {7, ""}}));
   const TriangleMesh back = read_ply(write_ply(mesh), "f");
-  EXPECT_EQ(back.groups, (std::vector<FaceGroup>{{1, "3"}, {2, "7"}}));
+  EXPECT_EQ(back.groups, (std::vector<FaceGroup>{{3, "3"}, {7, "7"}}));
 }
 
 }  // namespace

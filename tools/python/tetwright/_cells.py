@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _core
 from ._arrays import MAX_EXACT_WHOLE, check_range, indices, numbers
-from ._faces import (GMSH_GROUPS, VTK_GROUPS, Block, Names, are_faces, label_field, sets_of_cells,
+from ._faces import (FACE_GROUPS, GMSH_GROUPS, VTK_GROUPS, Block, Names, are_faces, label_field, sets_of_cells,
                      sets_of_faces, whole_labels)
 from ._text import plain_text
 
@@ -62,6 +62,17 @@ class Cells:
 
 def cells_of(value: Any, name: str) -> Cells:
     """Of arrays, or of a mesh of meshio, pyvista or trimesh or what looks like one; messages call it `name`."""
+    try:
+        return _cells_of(value, name)
+    except _core.Error:
+        raise
+    # What looks like such a mesh may hold anything.
+    except (ArithmeticError, AttributeError, IndexError, LookupError, TypeError, ValueError) as error:
+        raise _core.InputError(f"{name}: a {type(value).__name__} that cannot be read as a mesh of meshio, pyvista or "
+                               f"trimesh ({type(error).__name__}: {error})") from error
+
+
+def _cells_of(value: Any, name: str) -> Cells:
     if isinstance(value, (tuple, list)) and 2 <= len(value) <= 3:
         if any(isinstance(v, (str, bytes, os.PathLike)) for v in value):
             raise _core.InputError(f"{name} is a {type(value).__name__} with names of files; give several surfaces as "
@@ -191,18 +202,20 @@ def _of_blocks(value: Any, name: str) -> Cells:
     label = label_field(faces, tets)
     _take_faces(made, faces, label, names, name)
     if tets:
-        if any(OTHER_MATERIAL in b.data for b in faces):  # of to_meshio()
-            made.cell_fields.pop(OTHER_MATERIAL, None)
+        if any(OTHER_MATERIAL in b.data for b in faces) and not np.any(made.cell_fields.get(OTHER_MATERIAL, 1)):
+            made.cell_fields.pop(OTHER_MATERIAL)  # of to_meshio(), whose groups of tets are their materials
             made.cell_fields.pop(GMSH_GROUPS, None)
         if label == VTK_GROUPS and not np.any(made.cell_fields.get(VTK_GROUPS, 0)):
             made.cell_fields.pop(VTK_GROUPS, None)  # of tets it says nothing
+        made.drop_names("groups of faces", [f for f in FACE_GROUPS if f != label and any(
+            np.any(np.asarray(b.data.get(f, 0)) != 0) for b in faces)])
         _remove_midside_nodes(made, midside, name)
     else:
         made.drop_names("fields of cells", [f for f in dict.fromkeys(f for b in faces for f in b.data) if f != label])
     for block in flat:
         made.drop(_plural(block.kind), len(block.cells))
     made.drop_names("names of physical groups of faces, lines or points" if tets else "names of physical groups",
-                    names.of_groups.values())
+                    [*names.of_groups.values(), *names.repeated])
     made.drop_names("arrays of the whole dataset", names.others)
     unused = dict.fromkeys(s for b in tets + flat for s in b.sets if s.encode(errors="replace")
                            not in made.names.values())
@@ -310,7 +323,11 @@ def _fields(data: Any, rows: int) -> tuple[dict[str, np.ndarray], list[str]]:
         if array is None or array.dtype.kind not in "biuf" or array.ndim < 1 or len(array) != rows or array.size == 0:
             left.append(field)
         else:
-            fields[str(field)] = array.reshape(rows, -1)
+            name = str(field)
+            if name in fields:  # 1 and "1"
+                left.append(field)
+            else:
+                fields[name] = array.reshape(rows, -1)
     return fields, left
 
 

@@ -56,11 +56,15 @@ class Names:
     def __init__(self, value: Any):
         self.of_groups: dict[tuple[int, int], Any] = {}
         self.others: list[Any] = []
+        self.repeated: list[Any] = []
         of_gmsh = not hasattr(value, "celltypes")
         for name, data in (getattr(value, "field_data", None) or {}).items():
             array = np.asarray(data)
             if of_gmsh and array.dtype.kind in "iu" and array.size == 2:
-                self.of_groups[int(array.flat[1]), int(array.flat[0])] = name
+                key = int(array.flat[1]), int(array.flat[0])
+                if key in self.of_groups:  # two names of one group
+                    self.repeated.append(self.of_groups[key])
+                self.of_groups[key] = name
             else:
                 self.others.append(name)
 

@@ -40,6 +40,11 @@ class Interfaces:
         return self._core.interface_patches
 
     @property
+    def tets(self) -> np.ndarray:
+        """(n,) uint32, a copy: the tet on the side of `material`."""
+        return self._core.interface_tets()
+
+    @property
     def group(self) -> np.ndarray:
         """(n,) int64, a copy: the number of the surface that .msh and .vtk files list the triangle in, see
         `group_names`. A patch of the input keeps its own number where it has one that is free."""
@@ -143,13 +148,14 @@ class TetMesh:
               no_boundary: bool = False) -> None:
         """Writes the mesh, whole or not at all, as the program does: the extension or `output_format` names the
         format; `boundary` is a file for the boundary and interfaces as a surface; `no_boundary` leaves triangles out
-        of the mesh. With order=2 tets have ten nodes, which a format must hold."""
+        of the mesh. With order=2 tets have ten nodes, which a format must hold. What the format has no place for or
+        changes is added to `notes`."""
         self._core.write(file_name(path, "path"), plain_text(output_format, "output_format"),
                          file_name(boundary, "boundary"), no_boundary)
 
     def to_meshio(self):
         """A meshio.Mesh: tets (ten-node ones with order=2) with the cell data `material`, and triangles with those of
-        the materials on their sides, 0 for outside. `gmsh:physical` has the materials and the numbers of the input's
+        the materials on their sides, 0 for outside. They have the fields of the tets beside them. `gmsh:physical` has the materials and the numbers of the input's
         patches, 0 for triangles in none, and `field_data` their names (a name that a material has, too, gets a suffix),
         so that meshio writes both as physical groups."""
         import meshio
@@ -169,8 +175,9 @@ class TetMesh:
             while unique in names:
                 unique, suffix = f"{name}_{suffix}", suffix + 1
             names[unique] = np.array([number, 2])
-        point_data = self.point_fields if tets10 is None else {}
-        return meshio.Mesh(points, cells, point_data=point_data, cell_data=data, field_data=names)
+        for name, values in self.fields.items():
+            data.setdefault(name, [values, values[self.interfaces.tets]][:len(cells)])
+        return meshio.Mesh(points, cells, point_data=self._core.node_fields(), cell_data=data, field_data=names)
 
     def to_pyvista(self):
         """A pyvista.UnstructuredGrid of the tets, with the cell data `material` and all fields."""

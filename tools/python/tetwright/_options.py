@@ -92,6 +92,10 @@ def _real(key: str, value: Any, what: str) -> Any:
         value = value.item()
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise _core.UsageError(f"{key} is {value!r}; give {what}")
+    try:
+        float(value)
+    except OverflowError:
+        raise _core.UsageError(f"{key} is too large; give {what}") from None
     return value
 
 
@@ -110,7 +114,9 @@ def _number(key: str, value: Any) -> bytes:
 
 
 def _label_ranges(value: Any) -> bytes:
-    items = value if isinstance(value, (list, tuple, set, range, np.ndarray)) else [value]
+    if isinstance(value, np.ndarray):
+        value = np.atleast_1d(value).tolist()
+    items = value if isinstance(value, (list, tuple, set, range)) else [value]
     if any(isinstance(i, tuple) and len(i) != 2 for i in items):
         raise _core.UsageError(f"labels is {value!r}; give labels, and pairs of the first and last of several")
     return b",".join(b"-".join(_whole_number("labels", end) for end in i) if isinstance(i, tuple) else
