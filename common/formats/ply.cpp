@@ -398,7 +398,7 @@ TriangleMesh read_polygons(std::string_view bytes, const std::string& name, std:
   if (std::any_of(face->properties.begin(), face->properties.end(),
                   [](const Property& p) { return p.role == Role::label && p.name == group_property; }))
     take_names(header, groups);
-  return content.surface.finish(dropped, std::move(groups));
+  return content.surface.finish(dropped, groups);
 }
 
 }  // namespace

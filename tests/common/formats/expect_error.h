@@ -15,7 +15,7 @@ std::string error_of(const Call& call) {
   try {
     call();
   } catch (const E& error) {
-    const std::string message = error.what();
+    std::string message = error.what();
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     for (char c : message) EXPECT_TRUE(c >= ' ' && c <= '~') << message;
     return message;
