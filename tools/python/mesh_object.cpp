@@ -1,0 +1,206 @@
+#include "tools/python/mesh_object.h"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <utility>
+
+#include "common/error.h"
+#include "common/formats/atomic_file.h"
+#include "common/formats/formats.h"
+#include "common/formats/mesh_fields.h"
+#include "common/formats/mesh_parts.h"
+#include "common/formats/mesh_to_write.h"
+#include "common/mesh/boundary_groups.h"
+#include "tools/commands/output_paths.h"
+#include "tools/commands/unwritten.h"
+#include "tools/option_rules.h"
+#include "tools/patch_fidelity.h"
+#include "tools/python/text.h"
+#include "tools/report.h"
+
+namespace tetwright::python {
+
+namespace {
+
+/// A read-only view of items of `Row`, `columns` numbers each from `first` on; null `columns`: one axis.
+template <class Number, class Row>
+py::array view(const std::vector<Row>& rows, const void* first, py::ssize_t columns,
+               const py::object& owner) {
+  std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(rows.size())}, strides{sizeof(Row)};
+  if (columns > 0) {
+    shape.push_back(columns);
+    strides.push_back(sizeof(Number));
+  }
+  py::array array(py::dtype::of<Number>(), shape, strides, rows.empty() ? nullptr : first, owner);
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+py::dict fields_of(const std::vector<MeshField>& fields, const py::object& owner) {
+  py::dict all;
+  const std::vector<std::string> names = field_names_to_write(fields, {});  // no two alike
+  auto name = names.begin();
+  for (const MeshField& f : fields) {
+    const auto components = static_cast<py::ssize_t>(f.components);
+    const auto count = static_cast<py::ssize_t>(f.values.size()) / components;
+    std::vector<py::ssize_t> shape{count};
+    if (components > 1) shape.push_back(components);
+    py::array_t<double> array(shape, f.values.data(), owner);
+    array.attr("setflags")(py::arg("write") = false);
+    all[to_text(*name++)] = array;
+  }
+  return all;
+}
+
+/// The other side of each interface triangle, and whether there is none but outside.
+py::tuple other_sides(const TetMesh& mesh) {
+  const auto count = static_cast<py::ssize_t>(mesh.interfaces.size());
+  py::array_t<MaterialTag> other(count);
+  py::array_t<bool> boundary(count);
+  for (py::ssize_t i = 0; i < count; ++i) {
+    const std::optional<MaterialTag>& tag = mesh.interfaces[static_cast<std::size_t>(i)].other;
+    other.mutable_at(i) = tag.value_or(0);
+    boundary.mutable_at(i) = !tag;
+  }
+  return py::make_tuple(other, boundary);
+}
+
+/// The number of the group of each interface triangle, and the names of these, as files have them: of all,
+/// and of those that are the user's.
+py::tuple groups_of(const TetMesh& mesh) {
+  const BoundaryGroups groups(mesh);
+  py::array_t<std::int64_t> numbers(static_cast<py::ssize_t>(mesh.interfaces.size()));
+  for (std::size_t f = 0; f < mesh.interfaces.size(); ++f)
+    numbers.mutable_at(static_cast<py::ssize_t>(f)) = groups.number_of(mesh.interfaces[f]);
+  py::dict names, of_patches;
+  for (const MeshParts::Surface& s : names_of_parts(mesh, printable_names()).surfaces) {
+    names[py::int_(s.number)] = to_text(s.name);
+    if (s.group) of_patches[py::int_(s.number)] = to_text(s.name);
+  }
+  return py::make_tuple(numbers, names, of_patches);
+}
+
+/// For each interface triangle the tet on the side of its `material`.
+py::array_t<Index> tets_beside(const TetMesh& mesh) {
+  py::array_t<Index> tets(static_cast<py::ssize_t>(mesh.interfaces.size()));
+  py::ssize_t i = 0;
+  for (const TetFace& face : faces_of_tets(mesh)) tets.mutable_at(i++) = face.tet;
+  return tets;
+}
+
+/// The fields of points and midside nodes.
+py::dict fields_of_all_nodes(const Mesh& mesh) {
+  const MeshToWrite nodes(mesh.mesh, mesh.midside ? &*mesh.midside : nullptr);
+  const auto owned = std::make_unique<std::vector<MeshField>>(nodes.node_fields());
+  py::dict all;
+  for (const auto& [name, values] : fields_of(*owned, py::none())) all[name] = values.attr("copy")();
+  return all;
+}
+
+void write_mesh_files(Mesh& mesh, const std::string& path, const std::string& format,
+                      const std::string& boundary, bool no_boundary) {
+  const py::gil_scoped_release release;
+  CommandLine line;  // for the program's rules
+  line.command = Command::improve;
+  line.output = path;
+  line.output_format = format;
+  line.boundary = boundary;
+  line.no_boundary = no_boundary;
+  check_no_standard_output(line);
+  check_output_paths(line);
+  if (mesh.midside) check_holds_second_order(path, format);
+  OutputFiles files;
+  const MidsideNodes* midside = mesh.midside ? &*mesh.midside : nullptr;
+  if (no_boundary) {
+    TetMesh tets = mesh.mesh;
+    tets.interfaces.clear();
+    tets.patch_groups.clear();
+    write_tet_mesh({tets, midside}, path, &files, format);
+  } else {
+    write_tet_mesh({mesh.mesh, midside}, path, &files, format);
+  }
+  if (!boundary.empty()) write_interfaces(mesh.mesh, boundary, &files);
+  files.commit();
+  RunReport report;
+  report.patches = patches_of_input(mesh.mesh);
+  find_unwritten(line, mesh.mesh, report);
+  for (std::string& note : notes_of(report)) mesh.notes.push_back(std::move(note));
+}
+
+}  // namespace
+
+void check_no_standard_output(const CommandLine& line) {
+  if (line.output == "-" || line.boundary == "-")
+    throw UsageError("standard output is the host's; give output and boundary names of files");
+}
+
+void bind_mesh(py::module_& module) {
+  py::class_<Mesh, std::shared_ptr<Mesh>>(module, "Mesh")
+      .def_property_readonly("points",
+                             [](const py::object& self) {
+                               const auto& points = self.cast<const Mesh&>().mesh.points;
+                               return view<double>(points, points.data(), 3, self);
+                             })
+      .def_property_readonly("tets",
+                             [](const py::object& self) {
+                               const auto& tets = self.cast<const Mesh&>().mesh.tets;
+                               return view<Index>(tets, tets.data(), 4, self);
+                             })
+      .def_property_readonly("materials",
+                             [](const py::object& self) {
+                               const auto& materials = self.cast<const Mesh&>().mesh.materials;
+                               return view<MaterialTag>(materials, materials.data(), 0, self);
+                             })
+      .def_property_readonly("material_names",
+                             [](const Mesh& m) {
+                               py::dict names;
+                               for (const auto& [tag, name] : m.mesh.material_names)
+                                 names[py::int_(tag)] = to_text(name);
+                               return names;
+                             })
+      .def_property_readonly("interface_triangles",
+                             [](const py::object& self) {
+                               const auto& faces = self.cast<const Mesh&>().mesh.interfaces;
+                               return view<Index>(faces, faces.empty() ? nullptr : &faces[0].ids, 3, self);
+                             })
+      .def_property_readonly("interface_materials",
+                             [](const py::object& self) {
+                               const auto& faces = self.cast<const Mesh&>().mesh.interfaces;
+                               return view<MaterialTag>(faces, faces.empty() ? nullptr : &faces[0].material,
+                                                        0, self);
+                             })
+      .def_property_readonly("interface_patches",
+                             [](const py::object& self) {
+                               const auto& faces = self.cast<const Mesh&>().mesh.interfaces;
+                               return view<std::uint16_t>(faces, faces.empty() ? nullptr : &faces[0].patch, 0,
+                                                          self);
+                             })
+      .def("interface_others", [](const Mesh& m) { return other_sides(m.mesh); })
+      .def("interface_tets", [](const Mesh& m) { return tets_beside(m.mesh); })
+      .def("interface_groups", [](const Mesh& m) { return groups_of(m.mesh); })
+      .def_property_readonly("midside_points",
+                             [](const py::object& self) -> py::object {
+                               const auto& midside = self.cast<const Mesh&>().midside;
+                               if (!midside) return py::none();
+                               return view<double>(midside->points, midside->points.data(), 3, self);
+                             })
+      .def_property_readonly("midside_of_tets",
+                             [](const py::object& self) -> py::object {
+                               const auto& midside = self.cast<const Mesh&>().midside;
+                               if (!midside) return py::none();
+                               return view<Index>(midside->of_tets, midside->of_tets.data(), 6, self);
+                             })
+      .def("point_fields",
+           [](const py::object& self) { return fields_of(self.cast<const Mesh&>().mesh.point_fields, self); })
+      .def("node_fields", &fields_of_all_nodes)
+      .def("cell_fields",
+           [](const py::object& self) { return fields_of(self.cast<const Mesh&>().mesh.cell_fields, self); })
+      .def_property_readonly("stats", [](const Mesh& m) { return to_text(m.stats); })
+      .def_property_readonly("notes", [](const Mesh& m) { return to_texts(m.notes); })
+      .def_property_readonly("shortfall", [](const Mesh& m) { return to_texts(m.shortfall); })
+      .def("write", &write_mesh_files);
+}
+
+}  // namespace tetwright::python
