@@ -73,9 +73,6 @@ class Names:
         found = {n: self.of_groups.pop((dimension, n)) for n in numbers if (dimension, n) in self.of_groups}
         return {n: plain_text(str(name), "the name of a physical group") for n, name in found.items()}
 
-    def of_dimension(self, dimension: int) -> set[Any]:
-        return {name for (d, _), name in self.of_groups.items() if d == dimension}
-
 
 def sets_of_cells(value: Any) -> dict[Any, Any]:
     """Of meshio: members for each block. Those of Gmsh itself only say what bounds what."""
