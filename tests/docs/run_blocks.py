@@ -27,7 +27,7 @@ import time
 import pages
 
 PYTHON = "/usr/bin/python3"  # another one on the path may not see Debian's modules
-SECONDS = 120  # for a block
+SECONDS = 500  # for a block, on a machine with much else to do
 
 
 def is_there(need):
