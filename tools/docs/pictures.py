@@ -115,9 +115,9 @@ def framed(image):
 
 
 def scan(studio):
-    """The Stanford bunny as 10,000 tets, half of it taken away: tets grow towards the inside."""
+    """The Stanford bunny as 10,000 tets."""
     studio.tetwright("prepare", BUNNY, "-o", "bunny.vtu", "--target-tets", 10000, "--report", "bunny.html")
-    studio.picture("scan", "bunny.html", "up=y&cut=z,0.5&look=24,12,1.9")
+    studio.picture("scan", "bunny.html", "up=y&look=28,14,1.9")
 
 
 def organs(studio):
@@ -136,7 +136,7 @@ def part(studio):
 
 def layers(studio):
     """Layers under the surface of a scan."""
-    studio.tetwright("prepare", BUNNY, "--layer", "skin=0.03", "--layer", "fat=0.06", "-o", "layers.vtu", "--target-tets", 40000,
+    studio.tetwright("prepare", BUNNY, "--layer", "skin=0.06", "--layer", "fat=0.12", "-o", "layers.vtu", "--target-tets", 20000,
                      "--report", "layers.html")
     studio.picture("layers", "layers.html", "up=y&cut=z,0.5&look=24,12,1.9")
 
