@@ -52,7 +52,7 @@ class Runner:
         os.symlink(os.path.abspath(options.program), os.path.join(tools, "tetwright"))
         os.symlink(PYTHON, os.path.join(tools, "python3"))
         self._environment = {**os.environ, "PATH": tools + os.pathsep + os.environ["PATH"],
-                             "PYTHONDONTWRITEBYTECODE": "1", "MPLBACKEND": "Agg", "OMP_NUM_THREADS": "1",
+                             "PYTHONDONTWRITEBYTECODE": "1", "OMP_NUM_THREADS": "1", "CMAKE_GENERATOR": "Ninja",
                              "PYTHONPATH": options.python_path or ""}
         if options.prefix:
             self._environment["CMAKE_PREFIX_PATH"] = options.prefix

@@ -98,6 +98,12 @@ class TextTest(unittest.TestCase):
         text = self.pages[os.path.join(pages.SOURCE, "README.md")]
         self.assertLessEqual(len(text.splitlines()), MAX_README_LINES)
 
+    def test_the_readme_shows_the_program_that_the_guide_compiles(self):
+        programs = [block.text for name in ("README.md", "data/guide/cpp.md")
+                    for block in pages.blocks(self.pages[os.path.join(pages.SOURCE, name)]) if block.attributes.get("file") == "main.cpp"]
+        self.assertEqual(len(programs), 2)
+        self.assertEqual(*programs)
+
     def test_codes_of_messages_are_listed_once(self):
         text = pages.read(os.path.join(pages.SOURCE, "data", "guide", "messages.md"))
         codes = re.findall(r"^\| `([a-z-]+)` \| (?:note|shortfall|error|warning)", text, re.M)

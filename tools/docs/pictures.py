@@ -70,8 +70,7 @@ class Studio:
         self._folder = folder
 
     def tetwright(self, *arguments):
-        done = subprocess.run([self._program, *map(str, arguments), "--quiet"], cwd=self._folder, capture_output=True, text=True,
-                              check=False)
+        done = subprocess.run([self._program, *map(str, arguments)], cwd=self._folder, capture_output=True, text=True, check=False)
         if done.returncode > 1:
             raise SystemExit(f"{arguments}: {done.stderr}")
 
@@ -98,7 +97,8 @@ class Studio:
             image = framed(image)
         os.makedirs(PICTURES, exist_ok=True)
         path = os.path.join(PICTURES, name + ".png")
-        image.quantize(COLOURS, dither=Image.Dither.NONE).save(path, optimize=True)
+        # The page has texts and swatches, whose colours a palette would change.
+        (image if whole_page else image.quantize(COLOURS, dither=Image.Dither.NONE)).save(path, optimize=True)
         print(f"{name}.png: {image.width} x {image.height}, {os.path.getsize(path) // 1000} KB")
 
 
@@ -124,7 +124,7 @@ def organs(studio):
     """A segmented volume, cut open."""
     studio.tetwright("sample", "organs", "-o", "organs.nrrd")
     studio.tetwright("prepare", "organs.nrrd", "-o", "organs.vtu", "--target-tets", 20000, "--report", "organs.html")
-    studio.picture("organs", "organs.html", "cut=y,0.45&look=-62,24,2.2")
+    studio.picture("organs", "organs.html", "cut=y,0.5&look=-68,20,1.9")
 
 
 def part(studio):
@@ -145,7 +145,7 @@ def report(studio):
     """The page itself."""
     studio.tetwright("sample", "organs", "-o", "organs.nrrd")
     studio.tetwright("prepare", "organs.nrrd", "--labels", "1-3,5", "-o", "organs.vtu", "--target-tets", 5000, "--report", "organs.html")
-    studio.picture("report", "organs.html", "cut=y,0.5&look=-62,24,2.4", whole_page=True)
+    studio.picture("report", "organs.html", "cut=y,0.5&look=-72,20,1.75", whole_page=True)
 
 
 PICTURES_BY_NAME = {make.__name__: make for make in (scan, organs, part, layers, report)}
