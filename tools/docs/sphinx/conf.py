@@ -8,6 +8,7 @@ version = release = tetwright.__version__
 extensions = ["sphinx.ext.autodoc"]
 html_theme = "alabaster"
 html_show_copyright = False
+smartquotes = False  # options keep their dashes
 autodoc_member_order = "bysource"
 
 
