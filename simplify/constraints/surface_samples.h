@@ -39,8 +39,8 @@ class InputSurface {
   static Kind kind_of(const ProjectionTree::Item& item);
   /// Distance, working coordinates, within which mesh and input correspond.
   double reach() const { return reach_; }
-  /// Finds the triangles that no part of the input mesh is near, which deviation() leaves out.
-  /// \pre `mesh` is unchanged. Parallel.
+  /// Finds the triangles that no part of the input mesh is near, which deviation() leaves out. Parallel.
+  /// \pre `mesh` is unchanged.
   void find_hidden(const EditableMesh& mesh);
   /// Two-sided distance between the current mesh's surface and this one, with proven bounds; input units.
   /// Parallel.
@@ -54,8 +54,8 @@ class InputSurface {
     std::uint32_t face;
     std::optional<Vec3> place;
   };
-  /// The faces with a distance above `limit`; working coordinates.
-  /// \pre `mesh` is the one that this surface was made for. Parallel.
+  /// The faces with a distance above `limit`, working coordinates. Parallel.
+  /// \pre `mesh` is the one that this surface was made for.
   std::vector<FarFace> far_faces(const EditableMesh& mesh, double limit) const;
 
  private:
