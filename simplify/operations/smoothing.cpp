@@ -189,7 +189,7 @@ class PlacementSearch {
                                          star_.positions[t.link[2]]);
   }
 
-  /// Initializes the tets' values; flat and inverted ones get their signed value, below 0.
+  /// Sets the tets' values at the start; flat and inverted ones get their signed value, below 0.
   void start() {
     at_ = star_.centre_position;
     worst_ = star_.worst;
