@@ -56,8 +56,8 @@ constexpr double tolerances_to_edge = 2.5, tolerances_between_places = 0.5;
 /// of them ends a stage. The last value is for target lengths: rounds of edge length adaptation do the rest.
 constexpr double stage_share = 0.6, stage_min_removed = 0.1, sized_min_removed = 0.01;
 /// Share of bad tets above which annealing accepts no worse ones, without a count: only the tolerance ends
-/// that loop, and on the way to where it refuses everything, the bunny at 0.2 % had 41 % of bad tets, for 23
-/// % fewer tets.
+/// that loop, and on the way to where it refuses everything, the bunny at 0.2 % had 41 % of bad tets, for
+/// 23 % fewer tets.
 constexpr double max_bad_share = 0.25;
 /// Multiple of the target below which every iteration fits surfaces: fitting from 4 times the target on makes
 /// the result no better, no fitting in the loop makes it 10 % worse.
