@@ -13,7 +13,7 @@ using RegionId = std::uint32_t;
 inline constexpr RegionId outside_id = 0xffffffffu;
 
 /// Number of a patch: a part of the boundary or of an interface that keeps its identity. Faces between the
-/// same two regions that differ in their patch meet in a junction curve.
+/// same two regions that differ in their patch meet in a junction curve: a feature edge, or crease.
 using PatchId = std::uint16_t;
 
 /// A tet's entry for one of its faces: the tet across it and whether that one is of another region, or
