@@ -22,8 +22,8 @@ struct SimplifyReport;
 
 struct RemesherOptions {
   ShapeObjective objective = ShapeObjective::both;
-  /// Steradians: improve() works on tets whose shape is worse than its shape_quality_bound(). coarsen() and
-  /// refine() finish with that, and leave no tet much worse than this that was not so before.
+  /// Steradians: improve() works on tets worse than the shape_quality_bound() of this angle. coarsen() and
+  /// refine() finish with that, and leave no tet much worse that was not so before.
   double min_solid_angle = 0.1;
   /// One value for each vertex of the mesh given, nonzero: frozen, never moved nor removed; tets with frozen
   /// vertices only stay. Empty: none.
@@ -41,13 +41,13 @@ struct RemesherOptions {
   /// finds, so that small distances may add up.
   bool keep_surfaces = false;
   SimplifyReport* report = nullptr;  ///< gets the rounds of improvement
-  Progress* progress = nullptr;      ///< is told of them; when it is cancelled or its deadline passes,
-                                     ///< Interrupted or OutOfTime is thrown
+  /// Is told of the rounds. When it is cancelled or its deadline passes, Interrupted or OutOfTime is thrown.
+  Progress* progress = nullptr;
 };
 
 /// Aim of improve().
 struct RemeshAim {
-  double angle;  ///< steradians: tets with a shape worse than its shape_quality_bound() are improved
+  double angle;  ///< steradians: tets worse than the shape_quality_bound() of this angle are improved
   /// Likewise: for tets worse than this, points of surfaces may leave them a little.
   double leave_surface_angle;
   /// Number of tets of the whole mesh: its bounds, and the target to which collapses return it when it is

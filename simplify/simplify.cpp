@@ -55,8 +55,8 @@ constexpr int max_polish_rounds = 3;
 constexpr int max_last_rounds = 20;
 /// Another call of the Remesher is made only if the last one left less than this fraction of the bad tets.
 constexpr double min_call_gain = 0.95;
-/// Min and max factor on the count with ImproveOptions::free_count, lest detail be lost on the way or a mesh
-/// grow for ever.
+/// Min and max factor on the count with ImproveOptions::free_count, so that no detail is lost on the way and
+/// no mesh grows for ever.
 constexpr double min_free = 0.8, max_free = 4;
 /// Min value of the first bound, for a --min-solid-angle of nearly 0.
 constexpr double min_first_bound = 1e-3;

@@ -22,8 +22,8 @@ Iterations count_iterations(const TetMesh& mesh, const SparseMatrix& heat, const
 struct PoissonErrors {
   double l2 = 0;
   double energy = 0;  ///< L2 error of the gradient
-  double interpolation =
-      0;  ///< energy error of the interpolated exact solution: no solver can be much better
+  /// Energy error of the interpolated exact solution: no solver can be much better.
+  double interpolation = 0;
 };
 
 /// Solves -div grad u = f with the exact u at the boundary's points. u is a sum of three plane waves fixed in

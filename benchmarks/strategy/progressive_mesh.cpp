@@ -73,7 +73,7 @@ class ProgressiveMesh {
     fresh_.clear();
   }
 
-  /// Removes outdated entries, lest memory grow without bound.
+  /// Removes outdated entries: memory would otherwise grow without bound.
   void drop_outdated() {
     std::erase_if(heap_, [&](const Queued& q) { return !current(q); });
     std::make_heap(heap_.begin(), heap_.end(), later);

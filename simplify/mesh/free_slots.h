@@ -9,7 +9,8 @@
 namespace tetwright {
 
 /// The free slots of an array: the ones given back, the last first, then unused ones at its end. A slot given
-/// back becomes free only after end_batch(), lest two operations of one batch write it. One thread at a time.
+/// back becomes free only after end_batch(): before that, two operations of one batch could write it. One
+/// thread at a time.
 class FreeSlots {
  public:
   /// Makes the slots [first, end) the free ones.

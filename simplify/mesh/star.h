@@ -50,8 +50,8 @@ struct Star {
   std::vector<Index> points;                           ///< link points, by local number
   std::vector<Vec3> positions;                         ///< positions of the link points
   std::vector<InterfaceTriangle> interface_triangles;  ///< each once
-  std::vector<std::uint16_t>
-      interface_count;   ///< by link point: interface triangles at the edge from the centre to it
+  /// By link point: interface triangles at the edge from the centre to it.
+  std::vector<std::uint16_t> interface_count;
   float worst = 1;       ///< min quality of the tets
   bool frozen = false;   ///< the centre must stay (EditableMesh::frozen)
   bool creases = false;  ///< two interface triangles meet at an edge and do not continue each other
@@ -104,7 +104,7 @@ struct Star {
   /// over the materials of the cube root of the volume change.
   ///
   /// \param losses_cancel uses the net change, as the paper does. Otherwise the gains and losses of the
-  ///   interface triangles add up, lest a saddle or an edge be cut off at no cost.
+  ///   interface triangles add up, so that cutting off a saddle or an edge has its cost.
   double surface_error(const Vec3& step, double gamma, bool losses_cancel);
 
  private:

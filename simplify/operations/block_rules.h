@@ -35,11 +35,11 @@ struct BlockRules {
   /// Error(op) takes the net volume changes, as in the paper; otherwise it adds up the volumes that the
   /// interface triangles sweep.
   bool losses_cancel = false;
-  double accept_worse =
-      0;  ///< annealing: probability of accepting an action that leaves a worse tet than before
+  /// Annealing: probability of accepting an action that leaves a worse tet than before.
+  double accept_worse = 0;
   float annealing_floor = 0;  ///< min share of the worst quality that such an action keeps
-  float good_enough =
-      1;  ///< accept any operation whose new tets are all better than this, whatever was there before
+  /// Operations whose new tets are all better than this are accepted, whatever was there before.
+  float good_enough = 1;
   /// Max number of targets that a collapse tries, in the order of their weight.
   std::size_t max_targets = 4;
   /// Weight, relative to E, of the distance by which a collapse moves the surface at the removed point; 0:

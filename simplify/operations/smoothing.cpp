@@ -24,8 +24,9 @@ constexpr double first_step = 0.3;        ///< in shortest edges
 constexpr double difference_step = 1e-5;  ///< step of the finite differences, in shortest edges
 constexpr float active_within = 1.15f;    ///< factor on the worst quality up to which a tet's gradient counts
 constexpr std::size_t max_active = 8;
-constexpr int hull_steps = 12;               ///< iterations of shortest_of_hull()
-constexpr float min_smoothing_gain = 1.01f;  ///< min factor on the worst quality that is worth another round
+constexpr int hull_steps = 12;  ///< iterations of shortest_of_hull()
+/// Min factor on the worst quality that is worth another round.
+constexpr float min_smoothing_gain = 1.01f;
 /// Max distance from which a point is projected back onto its surface, in shortest edges.
 constexpr double projection_reach = 0.5;
 

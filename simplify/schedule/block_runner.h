@@ -43,8 +43,8 @@ class BlockRunner {
   /// Called before each winner is chosen; true ends the block.
   using Stop = std::function<bool()>;
 
-  /// Runs the items in random order, with one of M neighbouring items in a batch: few conflict. A batch
-  /// slides along the list, so that its memory is near.
+  /// Runs the items in random order, with one of M neighbouring items in a batch, so that few conflict. A
+  /// batch slides along the list, so that its memory is near.
   ///
   /// \param items in the order of the mesh's space-filling curve.
   /// \throws Interrupted or OutOfTime between batches.

@@ -80,7 +80,7 @@ class Engine {
   /// become samples.
   std::vector<TetSnapshot> find_far_tets(double limit);
   bool owns_samples() const { return samples_ != nullptr; }
-  /// compact() if enough slots are dead for it to pay.
+  /// compact() if so many slots are dead that it pays off.
   void compact_if_sparse();
   /// Rates every tet by rules.objective.
   void rate_all();

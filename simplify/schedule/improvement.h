@@ -10,7 +10,7 @@ namespace tetwright {
 
 struct ImprovementPlan {
   const char* kind;  ///< kind of its rounds in the report
-  /// Steradians: tets with a shape worse than its shape_quality_bound() are worked on.
+  /// Steradians: tets worse than the shape_quality_bound() of this angle are worked on.
   double angle;
   /// Likewise: for tets worse than this, points of the surface may leave it a little.
   double leave_surface_angle;

@@ -79,13 +79,13 @@ struct ImproveOptions {
 struct IterationReport {
   std::string kind;  ///< "simplify", "close" (the end of simplify()) or "improve"
   std::size_t tets_before = 0, tets_after = 0;
-  double cutoff =
-      0;  ///< Quality(t) below which tets are worked on; in the closing, the solid angle in steradians
+  /// Quality(t) below which tets are worked on; in the closing, the solid angle in steradians.
+  double cutoff = 0;
   double percent = 0;    ///< percentage of tets worked on
   double max_error = 0;  ///< E, input units
   OperationCounts counts;
-  std::uint64_t conflicts =
-      0;  ///< proposals that lost to an earlier one of their batch, and were decided again
+  /// Proposals that lost to an earlier one of their batch, and were decided again.
+  std::uint64_t conflicts = 0;
   std::uint64_t repeats = 0;  ///< items that were decided again
   std::uint64_t batches = 0;
   double seconds = 0;
