@@ -58,7 +58,7 @@ GridFrame make_grid_frame(const Vec3& low, const Vec3& high, double cell_size, b
 /// \param edges of the parallelepiped, as columns, right-handed; input units
 GridFrame make_box_frame(const Vec3& corner, const Eigen::Matrix3d& edges, double cell_size, bool uniform);
 
-/// The same box, refined: cells of 1/2^levels the size, root cells of the same size.
+/// A frame of the same box, refined: cells of 1/2^levels the size, root cells of the same size.
 GridFrame refined_frame(GridFrame frame, int levels);
 
 }  // namespace tetwright
