@@ -10,14 +10,14 @@ namespace tetwright {
 
 namespace {
 
-/// Queries of a surface above which a tree pays: each of the others takes a look at every triangle.
+/// Number of queries of a surface above which a tree pays; each query without one visits every triangle.
 constexpr std::size_t max_plain_queries = 16;
 
 bool boxes_meet(const RepairedSurface& a, const RepairedSurface& b) {
   return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
 }
 
-/// Whether points off a closed surface are inside.
+/// Tests whether points off a closed surface are inside.
 class Inside {
  public:
   Inside(const RepairedSurface& surface, std::size_t queries) : surface_(surface) {
@@ -32,7 +32,7 @@ class Inside {
   std::optional<SurfaceTree> tree_;
 };
 
-/// Whether surfaces meet each other.
+/// True if the body's surface or those of later bodies intersect each other.
 bool meet(const RepairedSurface& body, const std::vector<const RepairedSurface*>& later) {
   std::vector<Vec3> points = body.points;
   std::vector<Triangle> triangles = body.triangles;
@@ -44,8 +44,8 @@ bool meet(const RepairedSurface& body, const std::vector<const RepairedSurface*>
   return !self_intersections(points, triangles).empty();
 }
 
-/// The solid of a body without `later` ones, whose surfaces do not meet: what of its shells is in none of
-/// them, and their shells inside it, wound the other way, that are in no other one.
+/// The solid of a body without `later` ones, whose surfaces do not meet. Consists of the body's shells that
+/// are in none of them, and of their shells inside the body, reversed, that are in no other one.
 SolidShape carved_solid(const RepairedSurface& body, const SolidShape& solid,
                         const std::vector<const RepairedSurface*>& later,
                         const std::vector<SolidShape>& later_solids) {
@@ -72,7 +72,7 @@ SolidShape carved_solid(const RepairedSurface& body, const SolidShape& solid,
   return carved;
 }
 
-/// Nothing where edges have not just two triangles, or points more than one fan of them.
+/// Nothing where an edge does not have exactly two triangles, or a point has more than one fan of them.
 std::optional<SolidShape> clear_solid(const RepairedSurface& s) {
   if (s.closed != s.triangles.size() || s.intersects_itself) return {};
   SolidShape solid = solid_shape(s.points, s.triangles);
