@@ -163,7 +163,7 @@ struct Link {
   bool regular(const RegionSet& regions, Mask keep) {
     for (RegionIndex r : regions) {
       const Mask part = of_region(r) & keep;
-      // Of two regions on a sphere each is connected if and only if neither encloses anything.
+      // On a sphere of two regions each is connected if and only if neither encloses anything.
       if (regions.size() == 2 ? !one_piece(part) : !one_disc(part)) return false;
     }
     return true;
