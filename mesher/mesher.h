@@ -107,9 +107,8 @@ struct MesherReport {
   int resolution = 0;     ///< finest cells along the longest side
   int refinement = 0;     ///< how many times cells were halved beyond `resolution` where sheets are thin
   std::size_t cells = 0;  ///< leaves of the octree
-  std::size_t lattice_tets = 0;  ///< before cutting, without those far outside
-  std::size_t isolated_vertices =
-      0;  ///< components and cavities of a single lattice point, which are omitted
+  std::size_t lattice_tets = 0;       ///< before cutting, without those far outside
+  std::size_t isolated_vertices = 0;  ///< components and cavities of one lattice point, omitted
   std::vector<ThinPartReport> thin_parts;
   ThickenedWallsReport thickened;
   std::vector<ClosedGapReport> closed_gaps;

@@ -135,8 +135,8 @@ std::vector<Vec3> places_on(const ProjectionTree& surface) {
 
 /// Points where a dense mesh and its surface are too far from each other.
 struct Misfit {
-  std::vector<RefinementRegion>
-      places;  ///< with the halvings of cells that would suffice if distances fell in proportion
+  /// With the halvings of cells that would suffice if distances fell in proportion.
+  std::vector<RefinementRegion> places;
   double worst = 0;
 };
 
@@ -381,7 +381,7 @@ double cell_size_for_target(const LabelInput& labels, std::size_t target_tets, c
     of_cell.voxel_size = cell;
     return static_cast<double>(estimate_mesh(labels, of_cell).tets);
   };
-  double smallest = std::numeric_limits<double>::max();  // average part of a label, voxels
+  double smallest = std::numeric_limits<double>::max();  // of the labels' average parts, voxels
   for (const LabelMaterial& m : labels.materials)
     if (const auto voxels = static_cast<double>(m.voxels); voxels > few_voxels)
       smallest = std::min(smallest, voxels / static_cast<double>(m.parts.by_faces));

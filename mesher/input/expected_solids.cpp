@@ -17,7 +17,7 @@ bool boxes_meet(const RepairedSurface& a, const RepairedSurface& b) {
   return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
 }
 
-/// Tests whether points off a closed surface are inside.
+/// Whether points off a closed surface are inside.
 class Inside {
  public:
   Inside(const RepairedSurface& surface, std::size_t queries) : surface_(surface) {
@@ -32,7 +32,7 @@ class Inside {
   std::optional<SurfaceTree> tree_;
 };
 
-/// True if the body's surface or those of later bodies intersect each other.
+/// Whether surfaces meet each other.
 bool meet(const RepairedSurface& body, const std::vector<const RepairedSurface*>& later) {
   std::vector<Vec3> points = body.points;
   std::vector<Triangle> triangles = body.triangles;
@@ -72,7 +72,7 @@ SolidShape carved_solid(const RepairedSurface& body, const SolidShape& solid,
   return carved;
 }
 
-/// Nothing where an edge does not have exactly two triangles, or a point has more than one fan of them.
+/// Nothing where edges have not just two triangles, or points more than one fan of them.
 std::optional<SolidShape> clear_solid(const RepairedSurface& s) {
   if (s.closed != s.triangles.size() || s.intersects_itself) return {};
   SolidShape solid = solid_shape(s.points, s.triangles);

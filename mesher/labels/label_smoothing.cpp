@@ -30,7 +30,7 @@ constexpr float min_contact = 0.25F;
 constexpr float deviation = 1.0F, probit_slope = 1.2533141F;
 /// Change of the lead of one share over the other along one voxel across a flat interface.
 constexpr float share_per_voxel = 0.8F;
-/// 2u - 1| is clamped to this, where the distance is LabelSmoother::band.
+/// |2u - 1| is clamped to this, where the distance is LabelSmoother::band.
 constexpr float max_excess = 0.95F;
 
 /// Approximates -probit(u) using only + - * / and sqrt, which round identically everywhere: within 0.05 up to
