@@ -214,7 +214,7 @@ HeaderFields read_nrrd_header(TextScanner& in, Segments& segments) {
   return header;
 }
 
-/// Reads vectors "(1,0,0) (0, 1, 0) none"; "none" and vectors with a number that is not finite are empty.
+/// Reads vectors "(1,0,0) (0, 1, 0) none"; "none" and vectors of NaN are empty.
 std::vector<std::optional<Vec3>> vectors(const HeaderFields& header, const std::string& field) {
   std::vector<std::optional<Vec3>> out;
   std::string_view rest = header.text(field);
