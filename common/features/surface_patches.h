@@ -19,7 +19,7 @@ struct FeatureAngle {
   enum class Rule : std::uint8_t {
     automatic,  ///< as for 35 degrees, if the creases found look like those of a mechanical part
     off,        ///< none
-    degrees     ///< edges whose dihedral turn exceeds `degrees`
+    degrees     ///< edges at which the normal turns by more than `degrees`
   };
   Rule rule = Rule::automatic;
   double degrees = 0;  ///< above 0, below 180
@@ -57,7 +57,7 @@ struct SurfacePatches {
 };
 
 /// Cuts a surface into patches. Regions grow across edges that turn little; two regions merge if less than
-/// half of the length of their border turns by more than the angle. Facetted cylinders and fillets thus stay
+/// half of the length of their border turns by more than the angle. Faceted cylinders and fillets thus stay
 /// whole, and creases that fade out within a patch disappear. A plain threshold would let patches leak
 /// through every edge that turns a little less.
 ///

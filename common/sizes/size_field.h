@@ -52,8 +52,8 @@ class SizeField {
 
   /// Target edge length at a point; outside the box, that of its nearest point.
   double at(const Vec3& place) const;
-  /// First of `places` that is farther from the source's domain than the edge length there and two nodes: a
-  /// mesh with sizes may have chords where the body is round.
+  /// First of `places` that is farther from the source's domain than the edge length there plus two grid
+  /// spacings: a mesh with sizes may have chords where the body is round.
   /// \return std::nullopt if the source reaches all
   std::optional<Vec3> first_beyond(const SizeSource& source, const std::vector<Vec3>& places) const;
   const SizeLimits& limits() const { return limits_; }

@@ -28,7 +28,7 @@ FORMATS = {
     "xdmf": "m.xdmf",
 }
 SECOND_ORDER = {"vtu", "vtk", "msh22", "msh41", "msh41-binary", "abaqus", "nastran", "xdmf"}
-# Relative: formats of solvers have few characters for a coordinate, and round.
+# Maximum difference of coordinates: formats of solvers have few characters for them, and round.
 TOLERANCE = {"abaqus": 1e-14, "nastran": 1e-9}
 failures = []
 

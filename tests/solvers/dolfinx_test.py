@@ -79,7 +79,7 @@ class Body:
 
 
 def names_of(path):
-    """Numbers of the names in a file, from an Information element that contains a document, as meshio writes it."""
+    """Numbers of the names in a file, from the document in an Information element, as meshio writes it."""
     numbers = {}
     for information in xml.etree.ElementTree.parse(path).iter("Information"):
         for entry in xml.etree.ElementTree.fromstring(information.text):

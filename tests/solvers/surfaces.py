@@ -17,7 +17,7 @@ def beam(path, length, side):
 
 
 def spheres(path, outer, inner=None, parts=120):
-    """A ball, or with an inner radius a thick sphere, with its walls as groups, the inner one with reversed orientation.
+    """A ball, or with an inner radius a thick sphere, with its walls as groups, the inner one reversed.
 
     `parts` is the number of triangles from pole to pole.
     """

@@ -32,10 +32,10 @@ struct FileTriangles {
   std::map<std::int64_t, std::string> comments;  ///< comments of write_medit() on groups
 };
 
-/// Turns the groups of the triangles into patches of `read.mesh`, with their names and numbers: fills
-/// `interfaces` and `patch_groups`, which stay empty if all groups are derived ones. A derived group is one
-/// that writers make of a pair of materials: all its triangles lie between two materials, or between one and
-/// outside; it contains each face there that is in no other group; and it is identified by
+/// Turns the groups of the triangles, except derived ones, into patches of `read.mesh`, with their names and
+/// numbers: fills `interfaces` and `patch_groups`, which stay empty if all groups are derived ones. A derived
+/// group is one that writers make of a pair of materials: all its triangles lie between two materials, or
+/// between one and outside; it contains each face there that is in no other group; and it is identified by
 /// - its name: pair_name()'s, or with the suffix that write_msh() adds if the input has groups of this name;
 /// - or, if the group has one, the comment of write_medit();
 /// - or, if it has neither, its number, if that is the one that BoundaryGroups gives the pair and all groups
