@@ -22,7 +22,7 @@ class BoundaryGroups {
     std::optional<MaterialPair> pair;  ///< for faces in no region
   };
 
-  /// Regions keep their numbers where these are unique and from 1 to 2^31 - 1. Pairs get the smallest free
+  /// Regions keep their numbers where these are free and from 1 to 2^31 - 1. Pairs get the smallest free
   /// numbers, in ascending order (outside before any tag), then regions without a number.
   explicit BoundaryGroups(const TetMesh& mesh);
 
