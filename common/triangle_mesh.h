@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "common/face_group.h"
+#include "common/surface_region.h"
 #include "common/types.h"
 
 namespace tetwright {
@@ -14,9 +15,9 @@ struct TriangleMesh {
   std::vector<Vec3> points;  ///< input units
   std::vector<Triangle>
       triangles;  ///< indices into points; counter-clockwise seen from outside where it is closed
-  /// What a file tells apart, and for each triangle an index into it; both are empty where it does not. One
-  /// of them may be no group.
-  std::vector<FaceGroup> groups = {};
+  /// Regions that the file distinguishes, and the index of each triangle's region; both empty if it
+  /// distinguishes none. One entry may be no region.
+  std::vector<SurfaceRegion> groups = {};
   std::vector<std::uint32_t> triangle_groups = {};
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/field_mesher.h"
 
 #include <algorithm>
@@ -12,9 +13,9 @@
 #include "common/parallel/parallel.h"
 #include "mesher/cut/cut_off_surface.h"
 #include "mesher/cut/cutting.h"
-#include "mesher/cut/point_mover.h"
-#include "mesher/cut/wall_restoring.h"
-#include "mesher/distance/thin_survey.h"
+#include "mesher/cut/thin_wall_recovery.h"
+#include "mesher/cut/vertex_snapping.h"
+#include "mesher/distance/local_thickness.h"
 #include "mesher/lattice/labelled_lattice.h"
 #include "mesher/lattice/lattice.h"
 #include "mesher/lattice/octree.h"
@@ -31,7 +32,8 @@ constexpr double max_tets = 2e9;
 /// Coordinates must resolve this fraction of a finest cell, or rounding them could invert a thin tet.
 constexpr double cell_share_of_rounding = 0x1p-20;
 
-/// Gives the faces on the sides of the frame's box the patches 1 to 6. `sides` are the box_faces() of points.
+/// Gives the faces on the sides of the frame's box the patches 1 to 6.
+/// \param sides box_faces() of each point
 void number_box_patches(std::vector<InterfaceTriangle>& interfaces, const std::vector<std::uint8_t>& sides) {
   parallel_for(0, interfaces.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -90,14 +92,14 @@ std::vector<std::uint8_t> regions_there(const MaterialField& field,
   return there;
 }
 
-/// The estimate from the regions at the centres of leaves. Nearly exact, except that cuts between two
-/// materials are not counted.
+/// The estimate from the regions at the centres of leaves. Nearly exact, except that it ignores cuts between
+/// two materials.
 MesherEstimate estimate_from_lattice(const Octree& octree, const LatticePoints& points,
                                      const std::vector<NearestRegion>& regions, const MemoryModel& memory,
                                      const MesherOptions& options) {
-  // Tets for each leaf whose centre is inside, and outside less than half, or less than one leaf from an
-  // interface. Fitted to 23 inputs: within 5 % of the lattice's tets, and of the dense ones within 6 % for
-  // one material and 16 % for several.
+  // Tets per leaf by its centre: inside; outside and less than half a leaf from an interface; outside and
+  // less than one leaf from it. Fitted to 23 inputs: within 5 % of the lattice's tets, and within 6 % of the
+  // dense ones for one material, 16 % for several.
   constexpr double dense_inside = 12.03, dense_near = 6.2;
   constexpr double lattice_inside = 12.16, lattice_near = 24.1, lattice_beside = 5.8;
   constexpr double kept_uniform = 12.2, kept = 13.6, cut_share = 1.025;  // with the outside, for all leaves
@@ -149,7 +151,7 @@ double finest_cell_size(const MesherOptions& options, double longest_side, doubl
 }
 
 int max_possible_refinement(const GridFrame& frame, double max_coordinate) {
-  // As make_grid_frame() requires.
+  // Required by make_grid_frame().
   constexpr double max_cells = 1 << 18;
   const double cells = *std::max_element(frame.cells.begin(), frame.cells.end());
   int depth = 0;
@@ -186,7 +188,7 @@ ThickenedWallsReport thickened_report(const ThickenedWalls& left, const GridFram
 }
 
 DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<MortonKey> interface_voxels,
-                     FinerCells finer, const MesherOptions& options, const MemoryModel& memory,
+                     RefinementRegions finer, const MesherOptions& options, const MemoryModel& memory,
                      MesherReport report, Stages& stages,
                      const std::function<void(const std::vector<std::uint8_t>&)>& validate_regions) {
   DenseMesh result;
@@ -231,7 +233,7 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   report.seconds_lattice = stages.seconds();
 
   stages.begin("moving points");
-  move_points(lattice, *field, progress);
+  snap_vertices(lattice, *field, progress);
   report.seconds_move = stages.seconds();
 
   stages.begin("cutting");
@@ -241,7 +243,7 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   // A region with few lattice points may have vanished by moves or as an isolated vertex.
   validate_regions(regions_there(*field, cut.regions));
   if (std::shared_ptr<const MaterialField> as_is = field->with_true_walls()) {
-    report.thickened = thickened_report(restore_walls(cut, *field, *as_is), field->frame());
+    report.thickened = thickened_report(recover_thin_walls(cut, *field, *as_is), field->frame());
     field = std::move(as_is);
   }
   result.mesh = to_input_units(std::move(cut), *field);

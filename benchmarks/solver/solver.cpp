@@ -1,4 +1,6 @@
-// What a mesh is worth to a solver: iterations, time steps, eigenvalues and errors of linear finite elements.
+// SPDX-License-Identifier: Apache-2.0
+
+// The value of meshes to a solver: iterations, time steps, eigenvalues and errors of linear finite elements.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -9,19 +11,20 @@
 #include "benchmarks/solver/spectrum.h"
 #include "benchmarks/table1/surface_distance.h"
 #include "common/error.h"
-#include "common/formats/formats.h"
-#include "common/mesh/foreign_mesh.h"
+#include "common/io/formats.h"
+#include "common/mesh/import_cleanup.h"
 #include "common/mesh/mesh_faces.h"
 #include "common/mesh/mesh_statistics.h"
 
 namespace tetwright {
 namespace {
 
-/// Reads a mesh of any program and turns its tets to be positive. Throws InputError if that is not possible,
-/// since a solver could not use them.
+/// Reads any program's mesh and makes its tets positive.
+///
+/// \throws InputError if that is not possible, since a solver could not use them.
 TetMesh read_for_solver(const std::string& path) {
   TetMesh mesh = read_tet_mesh(path).mesh;
-  const ForeignReport report = make_coherent(mesh);
+  const ImportCleanupReport report = make_coherent(mesh);
   if (mesh.tets.empty()) throw InputError(path, 0, "has no tets");
   if (report.inverted_tets > 0)
     throw InputError(path, 0, "has " + std::to_string(report.inverted_tets) + " flat or negative tets");
@@ -29,7 +32,7 @@ TetMesh read_for_solver(const std::string& path) {
   return mesh;
 }
 
-/// Speed of the fastest waves in the material with unit density.
+/// Speed of the fastest waves in the material, with unit density.
 double wave_speed(const Elasticity& e) {
   return std::sqrt(e.young * (1 - e.poisson) / ((1 + e.poisson) * (1 - 2 * e.poisson)));
 }
@@ -42,7 +45,7 @@ TriangleMesh boundary(const TetMesh& mesh) {
   return surface;
 }
 
-/// How far the mesh's boundary is from the surface that the body was given as.
+/// Distances between the mesh's boundary and the given surface of the body.
 nlohmann::json distances(const TetMesh& mesh, const TriangleMesh& reference) {
   const TriangleMesh surface = boundary(mesh);
   const SurfaceDistance distance = surface_distance(surface, reference);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +11,7 @@ namespace {
 
 constexpr double percent_step = 10;
 constexpr int iteration_limit = 200;
-constexpr int max_idle = 5;  ///< iterations in a row that remove next to nothing
+constexpr int max_idle = 5;  ///< max consecutive iterations that remove hardly any tets
 
 /// Quality^3 below which `percent` of the tets lie.
 float cutoff(const EditableMesh& mesh, double percent) {
@@ -23,8 +24,8 @@ float cutoff(const EditableMesh& mesh, double percent) {
   return qualities[k];
 }
 
-std::vector<ListedTet> poor_tets(const EditableMesh& mesh, float limit) {
-  std::vector<ListedTet> list;
+std::vector<TetSnapshot> bad_tets(const EditableMesh& mesh, float limit) {
+  std::vector<TetSnapshot> list;
   for (Index t = 0; t < mesh.tet_slots(); ++t) {
     if (!mesh.dead(t) && mesh.quality(t) <= limit) list.push_back({t, mesh.points(t)});
   }
@@ -39,7 +40,8 @@ void sort_by_weight(std::vector<WeighedCollapse>& candidates) {
   });
 }
 
-/// The loop that both blocks have; `block(limit)` takes up what is below, `grow(removed)` changes E.
+/// The loop shared by both blocks. `block(limit)` processes the tets below the limit, `grow(removed)` updates
+/// E.
 template <class Block, class Grow>
 void iterate(Workpiece& piece, const Block& block, const Grow& grow) {
   double percent = percent_step;
@@ -63,8 +65,8 @@ void block_of_tets(Workpiece& piece, std::uint64_t seed) {
   std::vector<WeighedCollapse> candidates;
   const auto block = [&](float limit) {
     runner.tets(
-        poor_tets(piece.mesh, limit),
-        [&](Workspace& ws, const ListedTet& item, int) {
+        bad_tets(piece.mesh, limit),
+        [&](Workspace& ws, const TetSnapshot& item, int) {
           if (!exists(piece.mesh, item) || piece.mesh.quality(item.tet) > limit) return Outcome::stale;
           candidates.clear();
           const auto of_the_tet = [&](Index p) {
@@ -96,7 +98,7 @@ void block_of_points(Workpiece& piece, std::uint64_t seed) {
   std::vector<WeighedCollapse> candidates;
   const auto block = [&](float limit) {
     std::vector<Index> points;
-    for (const ListedTet& t : poor_tets(piece.mesh, limit))
+    for (const TetSnapshot& t : bad_tets(piece.mesh, limit))
       points.insert(points.end(), t.points.begin(), t.points.end());
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());

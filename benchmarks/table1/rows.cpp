@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "benchmarks/table1/rows.h"
 
 #include <cmath>
 
 #include "benchmarks/processes.h"
 #include "benchmarks/table1/surface_distance.h"
-#include "common/formats/formats.h"
+#include "common/io/formats.h"
 #include "common/mesh/interfaces.h"
 #include "common/mesh/mesh_check.h"
 #include "common/mesh/mesh_statistics.h"
@@ -57,7 +58,7 @@ nlohmann::json make_dense(const std::string& scan, std::size_t tets, const std::
   MesherOptions options;
   options.uniform = true;
   options.voxel_size = (input.high - input.low).maxCoeff() / 64;
-  // Tets grow with the cube of the resolution.
+  // The number of tets grows with the cube of the resolution.
   options.voxel_size *= std::cbrt(static_cast<double>(estimate_mesh(input, options).tets) / wanted);
   double last_size = 0, last_count = 0;
   for (int step = 1; step <= max_steps; ++step) {

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Table 1 of Cutler, Dorsey & McMillan 2004, measured again: the paper's columns beside ours.
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -9,7 +11,7 @@
 #include "benchmarks/processes.h"
 #include "benchmarks/table1/rows.h"
 #include "common/error.h"
-#include "common/formats/formats.h"
+#include "common/io/formats.h"
 
 namespace tetwright {
 namespace {
@@ -85,7 +87,7 @@ void print_row(const PaperRow& p, const std::string& schedule, const nlohmann::j
   std::fflush(stdout);
 }
 
-/// All repetitions of one row with one schedule, each in a process of its own.
+/// Measures all repetitions of a row with one schedule, each in a process of its own.
 nlohmann::json measure(const PaperRow& p, const std::string& schedule, const std::string& dense,
                        const std::string& scan, const Options& o) {
   nlohmann::json row;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/mesh_faces.h"
 
 #include "common/error.h"
@@ -8,7 +9,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t vertex_grain = 4096;  ///< vertices a parallel loop hands out at a time
+constexpr std::size_t vertex_grain = 4096;  ///< vertices for each task of a parallel loop
 
 template <class Code>
 std::vector<MeshFace> collect_faces(std::span<const Tet> tets, std::size_t points,

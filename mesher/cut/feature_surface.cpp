@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/cut/feature_surface.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@ namespace tetwright {
 
 namespace {
 
-/// Triangles whose normals have a smaller cosine face the other way.
+/// Cosine below which a triangle's normal faces the other way.
 constexpr double min_facing = -0.5;
 
 }  // namespace

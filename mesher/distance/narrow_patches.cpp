@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/distance/narrow_patches.h"
 
 #include <algorithm>
@@ -13,14 +14,13 @@ namespace tetwright {
 namespace {
 
 constexpr std::size_t segment_grain = 256;
-/// Cells that the width of a patch should have.
+/// Cells that should span the width of a patch.
 constexpr double cells_to_width = 2;
-/// Creases that are nearer to each other than this share of their distance from a corner do not just meet in
-/// it.
+/// Creases closer to each other than this fraction of their distance from a corner do more than meet in it.
 constexpr double corner_share = 0.4;
-/// Distance of places that are looked at along a crease, voxels.
+/// Spacing of the points tested along a crease, voxels.
 constexpr double place_distance = 0.5;
-/// Dense tets for each cell that is split, about: half of its eight parts are inside.
+/// Approximate number of dense tets for each split cell: half of its eight parts are inside.
 constexpr double tets_of_split = 42;
 
 struct Split {
@@ -30,9 +30,9 @@ struct Split {
   bool operator<(const Split& o) const { return depth != o.depth ? depth < o.depth : key < o.key; }
 };
 
-/// In voxels.
-std::vector<FinePlace> narrow_places(const RepairedSurface& surface, const SurfacePatches& patches,
-                                     const GridFrame& frame, int max_depth) {
+/// Points on creases where patches are narrow, in voxels.
+std::vector<RefinementRegion> narrow_places(const RepairedSurface& surface, const SurfacePatches& patches,
+                                            const GridFrame& frame, int max_depth) {
   const SurfaceCreases creases = find_creases(surface.points, surface.triangles, patches.patches);
   std::vector<Vec3> points;
   points.reserve(surface.points.size());
@@ -42,9 +42,9 @@ std::vector<FinePlace> narrow_places(const RepairedSurface& surface, const Surfa
     segments.push_back({{s.ends[0], s.ends[1], s.ends[1]}, {s.patches[0], s.patches[1], 0}});
   for (const Index c : creases.corners) corners.push_back({{c, c, c}, {}});
   const ProjectionTree segment_tree(points, std::move(segments)), corner_tree(points, std::move(corners));
-  return parallel_collect<FinePlace>(
+  return parallel_collect<RefinementRegion>(
       0, creases.segments.size(), segment_grain,
-      [&](std::size_t begin, std::size_t end, std::vector<FinePlace>& out) {
+      [&](std::size_t begin, std::size_t end, std::vector<RefinementRegion>& out) {
         for (std::size_t i = begin; i < end; ++i) {
           const SurfaceCreases::Segment& segment = creases.segments[i];
           const std::array<std::uint16_t, 2>& own = segment.patches;
@@ -61,7 +61,7 @@ std::vector<FinePlace> narrow_places(const RepairedSurface& surface, const Surfa
             if (!other) continue;
             const double width = (other->point - at).norm();
             if (corner_tree.nearest_of(at, width / corner_share, [](const auto&) { return true; })) continue;
-            // Creases that touch there are a corner, too.
+            // Creases that touch there form a corner, too.
             if (!(width > 0)) continue;
             out.push_back(
                 {at, std::min(max_depth, static_cast<int>(std::ceil(std::log2(cells_to_width / width))))});
@@ -70,11 +70,12 @@ std::vector<FinePlace> narrow_places(const RepairedSurface& surface, const Surfa
       });
 }
 
-/// Halves cells at places in voxels and around them, at most so often that `max_tets` hold.
-NarrowPatches halve_cells(const std::vector<FinePlace>& places, int max_depth, double max_tets) {
+/// Halves the cells at the given points (voxels) and around them, reducing the depth until `max_tets`
+/// suffice.
+NarrowPatches halve_cells(const std::vector<RefinementRegion>& places, int max_depth, double max_tets) {
   for (; max_depth > 0; --max_depth) {
     std::vector<Split> splits;
-    for (const FinePlace& n : places)
+    for (const RefinementRegion& n : places)
       for (int depth = 0; depth < std::min(n.halvings, max_depth); ++depth) {
         const Vec3 cell = n.place * std::ldexp(1, depth);
         const auto along = [&](int axis, int step) {
@@ -89,12 +90,12 @@ NarrowPatches halve_cells(const std::vector<FinePlace>& places, int max_depth, d
     if (splits.empty()) return {};
     if (tets_of_split * static_cast<double>(splits.size()) > max_tets) continue;
     NarrowPatches narrow;
-    FinerCells& finer = narrow.finer;
+    RefinementRegions& finer = narrow.finer;
     finer.refinement = splits.back().depth + 1;
     finer.cells.resize(static_cast<std::size_t>(finer.refinement) + 2);
     for (const Split& s : splits) {
       finer.cells[static_cast<std::size_t>(finer.refinement - s.depth)].push_back(s.key);
-      // Cells of two voxels must be split for that.
+      // That requires cells of two voxels to be split.
       if (s.depth > 0) continue;
       finer.cells.back().push_back(s.key >> 3);
       narrow.voxels.push_back(s.key);
@@ -114,11 +115,11 @@ NarrowPatches find_narrow_patches(const RepairedSurface& surface, const SurfaceP
   return halve_cells(narrow_places(surface, patches, frame, max_depth), max_depth, max_tets);
 }
 
-NarrowPatches cells_around(const std::vector<FinePlace>& asked, const GridFrame& frame, int max_depth,
+NarrowPatches cells_around(const std::vector<RefinementRegion>& asked, const GridFrame& frame, int max_depth,
                            double max_tets) {
-  std::vector<FinePlace> places;
+  std::vector<RefinementRegion> places;
   places.reserve(asked.size());
-  for (const FinePlace& p : asked) places.push_back({frame.to_grid(p.place), p.halvings});
+  for (const RefinementRegion& p : asked) places.push_back({frame.to_grid(p.place), p.halvings});
   return halve_cells(places, max_depth, max_tets);
 }
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/distance/vdb_files.h"
 
 #include <set>
 #include <stdexcept>
 
 #include "common/error.h"
-#include "common/formats/atomic_file.h"
+#include "common/files/atomic_file.h"
 #include "mesher/distance/openvdb_grids.h"
 #include "mesher/distance/vdb_structure.h"
 
@@ -21,7 +22,7 @@ std::vector<VdbGrid> take_apart(const std::string& file) {
   }
 }
 
-/// The grid itself if it is a level set, else nothing.
+/// The distances of a grid that is a level set, else nothing.
 std::optional<DistanceGrid> level_set_of(VdbGrid& grid, const std::string& file) {
   const bool without_kind = grid.kind == "unknown";
   if (grid.type != "float" || grid.alone.empty() || !(without_kind || grid.kind == "level set"))
@@ -33,7 +34,7 @@ std::optional<DistanceGrid> level_set_of(VdbGrid& grid, const std::string& file)
 
 bool has_whole_numbers(const VdbGrid& grid) { return grid.type == "int32" || grid.type == "int64"; }
 
-/// As in "density (fog volume, float)".
+/// For example "density (fog volume, float)".
 std::string described(const VdbGrid& grid) {
   return grid.name + " (" + (grid.kind == "unknown" ? "no class" : grid.kind) + ", " + grid.type + ")";
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/input/mesher_input.h"
 
 #include <algorithm>
@@ -7,17 +8,17 @@
 #include <utility>
 
 #include "common/error.h"
-#include "common/measurable.h"
+#include "common/geometry/measurable.h"
 #include "common/message_text.h"
 
 namespace tetwright {
 
 namespace {
 
-/// A region's number has 16 bits, and a few are reserved.
+/// Regions have numbers of 16 bits, a few of them reserved.
 constexpr std::size_t max_materials = 60000;
 
-/// The tags that the caller gave out. Throws UsageError for a layer without a thickness.
+/// The tags assigned by the caller. Throws UsageError for a layer without a thickness.
 std::set<MaterialTag> tags_in_use(const std::vector<MaterialSurface>& surfaces,
                                   const std::vector<MaterialLayer>& layers) {
   std::set<MaterialTag> tags;
@@ -31,15 +32,15 @@ std::set<MaterialTag> tags_in_use(const std::vector<MaterialSurface>& surfaces,
   return tags;
 }
 
-/// Makes the names of groups differ from surface to surface. Throws InputError where the files give the same,
-/// and where a name made of a number is that of another group.
+/// Makes the names of groups differ between surfaces. Throws InputError where files share a name, and where a
+/// name made from a number is that of another group.
 void name_groups(std::vector<MaterialSurface>& surfaces) {
   const auto with_groups = std::count_if(surfaces.begin(), surfaces.end(),
                                          [](const MaterialSurface& s) { return !s.surface.groups.empty(); });
   if (with_groups < 2) return;
   std::map<std::string, const MaterialSurface*> known;
   for (MaterialSurface& s : surfaces)
-    for (FaceGroup& group : s.surface.groups) {
+    for (SurfaceRegion& group : s.surface.groups) {
       if (!group) continue;
       const std::int64_t number = group.number;
       const bool numbered = group.name.empty();
@@ -56,13 +57,13 @@ void name_groups(std::vector<MaterialSurface>& surfaces) {
     }
 }
 
-/// The groups that have triangles of which the points are there.
+/// The area and centre of each group with triangles, ignoring triangles with missing points.
 std::vector<MesherInput::Group> measure_groups(const std::vector<MaterialSurface>& surfaces) {
-  std::map<FaceGroup, MesherInput::Group> measured;
-  std::map<FaceGroup, double> largest;
+  std::map<SurfaceRegion, MesherInput::Group> measured;
+  std::map<SurfaceRegion, double> largest;
   for (const MaterialSurface& s : surfaces)
     for (std::size_t t = 0; t < s.surface.triangle_groups.size(); ++t) {
-      const FaceGroup& group = s.surface.groups[s.surface.triangle_groups[t]];
+      const SurfaceRegion& group = s.surface.groups[s.surface.triangle_groups[t]];
       const Triangle& corners = s.surface.triangles[t];
       const std::vector<Vec3>& points = s.surface.points;
       if (!group || std::any_of(corners.begin(), corners.end(), [&](Index p) { return p >= points.size(); }))
@@ -88,7 +89,7 @@ void add_bodies(std::vector<MaterialSurface> surfaces, std::set<MaterialTag> tag
   MaterialTag next_tag = 1;
   for (MaterialSurface& s : surfaces) {
     SurfaceRepair repaired = repair_surface(s.surface, s.file, nested);
-    const std::vector<FaceGroup> groups = std::move(s.surface.groups);
+    const std::vector<SurfaceRegion> groups = std::move(s.surface.groups);
     s.surface = {};
     for (SurfaceFinding& f : repaired.findings) input.findings.push_back({s.file, std::move(f)});
     input.bodies.push_back({s.name, s.tag, s.file, std::move(repaired.surface), groups});

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/lattice/sized_cells.h"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 #include "common/memory.h"
 #include "common/message_text.h"
 #include "common/parallel/parallel_sort.h"
-#include "mesher/mesh_estimate.h"
+#include "mesher/lattice/octree_memory.h"
 
 namespace tetwright {
 
@@ -27,10 +28,10 @@ std::vector<MortonKey> root_cells(const GridFrame& frame) {
 
 }  // namespace
 
-FinerCells find_sized_cells(const MaterialField& field, const MaxCell& max_cell, bool outside,
-                            Progress* progress) {
+RefinementRegions find_sized_cells(const MaterialField& field, const MaxCell& max_cell, bool outside,
+                                   Progress* progress) {
   const GridFrame& frame = field.frame();
-  // At the centre and the corners: lengths that grow slowly are not much smaller anywhere between.
+  // Tested at the centre and the corners: lengths that grow slowly are not much smaller anywhere between.
   const auto too_large = [&](const Vec3& centre, double side) {
     const auto asks = [&](const Vec3& at) { return side * frame.cell_size > max_cell(frame.to_input(at)); };
     if (asks(centre)) return true;
@@ -38,7 +39,7 @@ FinerCells find_sized_cells(const MaterialField& field, const MaxCell& max_cell,
       if (asks(centre + side * (Vec3(k & 1, k >> 1 & 1, k >> 2) - Vec3::Constant(0.5)))) return true;
     return false;
   };
-  std::vector<std::vector<MortonKey>> split_by_step;  // from the root cells on
+  std::vector<std::vector<MortonKey>> split_by_step;  // starting at the root cells
   std::vector<MortonKey> cells = root_cells(frame);
   double total = 0;
   for (int level = frame.root_level; level > -max_refinement && !cells.empty(); --level) {
@@ -69,7 +70,7 @@ FinerCells find_sized_cells(const MaterialField& field, const MaxCell& max_cell,
     split_by_step.push_back(std::move(split));
   }
   while (!split_by_step.empty() && split_by_step.back().empty()) split_by_step.pop_back();
-  FinerCells finer;
+  RefinementRegions finer;
   const int steps = static_cast<int>(split_by_step.size());
   // The cells of the last step are of level root_level - steps + 1 above a voxel.
   finer.refinement = std::max(0, steps - frame.root_level);

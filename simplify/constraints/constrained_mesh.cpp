@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/constraints/constrained_mesh.h"
 
 #include <utility>
@@ -8,7 +9,7 @@ namespace tetwright {
 
 namespace {
 
-/// Share by which the volume of a material may change.
+/// Max relative change of a material's volume.
 constexpr double volume_share = 0.008;
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -8,36 +9,41 @@
 
 namespace tetwright {
 
-/// One word for each vertex: which winner of which batch marked it (deterministic reservations: Blelloch,
-/// Fineman, Gibbons & Shun 2012, "Internally deterministic parallel algorithms can be fast"). Winners are
-/// numbered through, so that words of earlier batches need no clearing.
+/// Deterministic reservations: one word for each vertex, the last winner that claimed it (Blelloch, Fineman,
+/// Gibbons & Shun 2012, "Internally deterministic parallel algorithms can be fast"). Winners are numbered
+/// consecutively over all batches, so that old words need no clearing.
 class Reservations {
  public:
-  /// All free. Only while no task runs. `first` is the number of the first winner, for tests.
+  /// Frees all vertices.
+  ///
+  /// \param first number of the first winner, for tests.
+  /// \pre No task runs.
   void reset(std::size_t vertices, std::uint32_t first = 1) {
     words_.assign(vertices, 0);
     first_ = next_ = first;
   }
   void reserve(std::size_t vertices) { words_.reserve(vertices); }
-  /// More vertices, free ones.
+  /// Adds free vertices.
   void grow(std::size_t vertices) { words_.resize(vertices, 0); }
-  /// What was marked before is free. At most so many items win.
+  /// Frees all vertices.
+  ///
+  /// \param items max number of winners of the batch.
   void begin_batch(std::size_t items);
 
-  /// Whether no winner of this batch has marked one of these vertices.
-  bool free(std::span<const Index> needed) const {
-#ifndef TETWRIGHT_IGNORE_RESERVATIONS  // defined only in the test that shows that the others notice
-    for (Index v : needed)
+  /// Whether no winner of this batch has claimed a vertex of the read set.
+  bool free(std::span<const Index> read_set) const {
+#ifndef TETWRIGHT_IGNORE_RESERVATIONS  // defined only in the test that shows that the other tests notice it
+    for (Index v : read_set)
       if (words_[v] >= first_) return false;
 #else
-    (void)needed;
+    (void)read_set;
 #endif
     return true;
   }
-  /// Gives vertices to the next winner, also such that earlier winners marked: it needs none of them, so what
-  /// it has read is what it would read after them.
-  void mark(std::span<const Index> marked) {
-    for (Index v : marked) words_[v] = next_;
+  /// Claims a write set for the next winner, including vertices of earlier winners: none of these is in its
+  /// read set, so it has read what it would read after they commit.
+  void claim(std::span<const Index> write_set) {
+    for (Index v : write_set) words_[v] = next_;
     ++next_;
   }
 
@@ -47,13 +53,13 @@ class Reservations {
   std::uint32_t next_ = 1;
 };
 
-/// The rule that makes results independent of threads, asserted in builds without NDEBUG: a thread that
-/// decides writes nothing, one that commits writes only what its operation marked. What breaks it throws
-/// InternalError at once. In release builds these do nothing.
+/// Asserts, in builds without NDEBUG, the rule that makes results independent of threads: a thread that
+/// decides writes nothing, and one that commits writes only its write set. A violation throws InternalError
+/// at once. Does nothing in release builds.
 class WriteRule {
  public:
 #ifndef NDEBUG
-  /// While it exists, this thread may write nothing.
+  /// While it exists, this thread must not write.
   class Deciding {
    public:
     Deciding();
@@ -61,16 +67,16 @@ class WriteRule {
     Deciding(const Deciding&) = delete;
     Deciding& operator=(const Deciding&) = delete;
   };
-  /// While it exists, this thread may write at these vertices alone.
+  /// While it exists, this thread may write only these vertices.
   class Committing {
    public:
-    explicit Committing(std::span<const Index> marked);
+    explicit Committing(std::span<const Index> write_set);
     ~Committing();
     Committing(const Committing&) = delete;
     Committing& operator=(const Committing&) = delete;
   };
   static void check(Index vertex);
-  /// For what no vertex reserves.
+  /// Checks a write that no vertex reserves.
   static void check();
 #else
   struct Deciding {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/edge_turn.h"
 
 #include <algorithm>
@@ -9,7 +10,7 @@ namespace tetwright {
 
 namespace {
 
-/// Degrees; what is more is not rounding.
+/// Degrees; the excess is more than rounding.
 constexpr double full_turn = 360.001;
 
 /// A point of a tet after the proposal.
@@ -24,7 +25,9 @@ class EdgeTurn {
   EdgeTurn(Workspace& ws, const std::array<Index, 2>& ends)
       : mesh_(ws.mesh), proposal_(ws.proposal), walk_(ws.walk), ends_(ends) {}
 
-  /// The sum of their dihedral angles, degrees; `at`: one of the edge's ends, which stays where it is.
+  /// Sum of their dihedral angles, degrees.
+  ///
+  /// \param at an end of the edge that the proposal does not change.
   double around(Index at) {
     double sum = 0;
     walk_.any_tet(mesh_, at, [&](Index t) {
@@ -53,7 +56,7 @@ class EdgeTurn {
     return {mesh_.original(p), mesh_.position(p)};
   }
 
-  /// The dihedral angle of a tet at the edge, 0 if it is not there.
+  /// The tet's dihedral angle at the edge, degrees; 0 if it does not have the edge.
   double angle(const Tet& points) const {
     std::array<Vec3, 4> at;
     std::array<bool, 4> is_end{};
@@ -88,11 +91,11 @@ bool folds_over(Workspace& ws) {
                            (p.change == Proposal::Change::collapse && point == p.target);
       return (original == ends[0] || original == ends[1]) && !changes;
     };
-    const auto at = std::find_if(p.marks.begin(), p.marks.end(), stays);
-    if (at == p.marks.end()) continue;
+    const auto at = std::find_if(p.write_set.begin(), p.write_set.end(), stays);
+    if (at == p.write_set.end()) continue;
     if (EdgeTurn(ws, ends).around(*at) > full_turn) return true;
-    const auto read = static_cast<std::size_t>(at - p.marks.begin());
-    if (read >= p.needs) std::swap(p.marks[read], p.marks[p.needs++]);
+    const auto read = static_cast<std::size_t>(at - p.write_set.begin());
+    if (read >= p.read_set_size) std::swap(p.write_set[read], p.write_set[p.read_set_size++]);
   }
   return false;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/movement.h"
 
 #include <algorithm>
@@ -11,10 +12,10 @@ namespace tetwright {
 
 namespace {
 
-/// Fills the proposal's edit with the interface triangles before and after; false if one is too far from the
-/// reference. At junctions that points may leave, find_place() has tested the point itself: where three
-/// regions meet in a loop smaller than a tet, the triangles' centres may have no interface of their two
-/// regions nearby.
+/// Fills the proposal's edit with the interface triangles before and after the move. False if an added one is
+/// too far from the reference. At junctions that points may leave, find_place() has tested the point itself
+/// instead: where three regions meet in a loop smaller than a tet, a triangle's centroid may have no
+/// interface of its two regions nearby.
 bool surface_edit(Workspace& ws, const BlockRules& rules, const Vec3& to) {
   const Star& star = ws.star;
   const bool by_point = rules.leave_surface && star.dimension() < 2;
@@ -29,7 +30,7 @@ bool surface_edit(Workspace& ws, const BlockRules& rules, const Vec3& to) {
   return true;
 }
 
-/// Whether a point where patches meet stays near its crease at `to`.
+/// Whether a point where patches meet stays near its feature edge at `to`.
 bool stays_near_crease(const Star& star, const BlockRules& rules, const Vec3& to) {
   if (!(rules.max_crease_distance > 0) || !star.creases) return true;
   std::optional<std::size_t> first;
@@ -89,7 +90,7 @@ Outcome move_to(Workspace& ws, const BlockRules& rules, const Vec3& to, const st
   proposal.change = Proposal::Change::move;
   proposal.centre = star.centre;
   proposal.position = to;
-  proposal.mark_star(star);
+  proposal.claim_star(star);
   proposal.rated.clear();
   for (std::size_t k = 0; k < star.tets.size(); ++k)
     proposal.rated.push_back({star.tets[k].tet, star.tets[k].slot, qualities[k]});

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/schedule/block_runner.h"
 
 #include <algorithm>
@@ -15,29 +16,30 @@ namespace tetwright {
 
 namespace {
 
-/// M: of that many items near each other, one is in a batch. More of them make fewer conflicts, but the
-/// batches of a block then reach over more memory: 24 times a batch of points still fits into a core's cache.
-/// For tets conflicts cost more than cache misses: there are five times as many, an operation on one changes
-/// those around its four points, and tets around one edge stand next to each other in a list.
+/// M: a batch has one of that many neighbouring items. A larger M makes fewer conflicts, but the batches of a
+/// block then reach over more memory: 24 times a batch of points still fits into a core's cache. For tets
+/// conflicts cost more than cache misses: there are five times as many tets, an operation on one changes
+/// those around its four points, and tets around an edge are neighbours in the list.
 constexpr std::size_t point_spacing = 24, tet_spacing = 256;
-/// Items of a batch: enough to keep several threads busy, few enough for the cache, and more of them where
-/// there are so many items that none of these fits it anyway.
+/// Items of a batch: enough to keep several threads busy, few enough for the cache. Blocks that exceed the
+/// cache in any case get larger batches.
 constexpr std::size_t min_batch = 256, max_batch = 1024, batches_of_large_blocks = 1024;
-/// The same in the order given, where each item takes ten times as long and what failed before comes again.
+/// Items of a batch in the order given, where each item takes ten times as long and earlier failures are
+/// tried again.
 constexpr std::size_t min_ordered_batch = 16, max_ordered_batch = 1024, ordered_batches = 16;
-/// Of the proposals of a batch, the share that loses: above it the next batch is filled up less, below half
-/// of it more. What loses is decided twice, and in a mesh of few points, or around points of many tets, large
-/// batches hold little else.
+/// Share of a batch's proposals that may lose: above it the next batch is smaller, below half of it larger.
+/// Losers are decided twice, and in a mesh of few points, or around points of many tets, large batches have
+/// hardly any winners.
 constexpr double max_lost_share = 0.3;
-/// Batches are not made smaller than this.
+/// Min size of a reduced batch.
 constexpr std::size_t min_shrunk_batch = 16;
-/// Items that a thread decides at a time, and winners that it commits.
+/// Items that a thread decides, and winners that it commits, at a time.
 constexpr std::size_t chunk_in_order = 2, chunk_shuffled = 16, commit_chunk = 16;
-/// Batches with fewer chunks than this are not worth waking other threads.
+/// Min number of chunks that is worth waking other threads.
 constexpr std::size_t min_parallel_chunks = 3;
 
-/// The order of a shuffled block: item i has the key i / step + r, the keys ascend, and r goes through all
-/// numbers below `spacing` in random order, for as many items in a row. `step` 0: the order given.
+/// The order of a shuffled block, by ascending keys: item i has the key i / step + r, where r is a random
+/// permutation of the numbers below `spacing` for as many consecutive items. `step` 0: the order given.
 class BlockOrder {
  public:
   BlockOrder(std::size_t items, std::size_t step, std::size_t spacing, Random random)
@@ -48,7 +50,7 @@ class BlockOrder {
     waiting_.resize(spacing_);
   }
   bool empty() const { return left_ == 0; }
-  /// The next item; there is one.
+  /// \pre !empty().
   std::uint32_t take() {
     --left_;
     if (step_ == 0) return static_cast<std::uint32_t>(listed_++);
@@ -70,13 +72,13 @@ class BlockOrder {
 
   std::size_t items_, step_, spacing_, left_, listed_ = 0, key_ = 0;
   Random random_;
-  std::vector<std::uint32_t> keys_;  ///< of `spacing` items in a row, less key_
+  std::vector<std::uint32_t> keys_;  ///< of `spacing` consecutive items, less key_
   std::vector<std::vector<std::uint32_t>> waiting_;
-  std::vector<std::uint32_t> due_;  ///< of one key
+  std::vector<std::uint32_t> due_;  ///< items of one key
   std::size_t next_ = 0;            ///< of due_
 };
 
-/// In the test build that looks for what depends on time: lets another thread run now and then.
+/// Lets another thread run now and then, in the test build that looks for dependence on timing.
 void maybe_yield() {
 #ifdef TETWRIGHT_INJECT_YIELDS
   static thread_local Random random(reinterpret_cast<std::uintptr_t>(&random));
@@ -84,7 +86,7 @@ void maybe_yield() {
 #endif
 }
 
-/// Over chunks, or in this thread where there are few.
+/// Runs chunks in parallel, or all in this thread if there are few.
 void for_chunks(std::size_t count, std::size_t chunk,
                 const std::function<void(std::size_t begin, std::size_t end, unsigned worker)>& body) {
   const std::size_t chunks = (count + chunk - 1) / chunk;
@@ -136,13 +138,13 @@ void BlockRunner::decide(const std::function<Outcome(Workspace&, const Entry&)>&
 }
 
 Outcome BlockRunner::admit(Proposal& p) {
-  if (!mesh_.reservations().free(p.needed())) return Outcome::conflict;
+  if (!mesh_.reservations().free(p.read_set())) return Outcome::conflict;
   if (!p.edit.empty())
     for (std::uint32_t w : surface_winners_)
       if (!SurfaceGrid::apart(proposals_[w].edit, p.edit)) return Outcome::conflict;
   if (!ledger_.allows(p.volumes)) return Outcome::volume;
   if (!p.count_bounds.allow(mesh_.live_tets(), p.count_change)) return Outcome::count;
-  ledger_.book(p.volumes);
+  ledger_.commit(p.volumes);
   grant(mesh_, grid_, p);
   return Outcome::done;
 }
@@ -191,9 +193,9 @@ void BlockRunner::commit_winners() {
 
 std::size_t BlockRunner::next_batch_size(std::size_t size, std::size_t max_size) const {
   const auto lost = static_cast<double>(lost_);
-  const double most = max_lost_share * static_cast<double>(lost_ + winners_.size());
-  if (lost > most) return std::max(std::min(min_shrunk_batch, max_size), size - size / 4);
-  return lost < most / 2 ? std::min(max_size, size + size / 4) : size;
+  const double max_lost = max_lost_share * static_cast<double>(lost_ + winners_.size());
+  if (lost > max_lost) return std::max(std::min(min_shrunk_batch, max_size), size - size / 4);
+  return lost < max_lost / 2 ? std::min(max_size, size + size / 4) : size;
 }
 
 template <class Item, class Attempt>
@@ -206,7 +208,7 @@ void BlockRunner::run(const std::vector<Item>& items, bool in_order, const Attem
   if (step == 0)
     step = in_order ? std::clamp(n / ordered_batches, min_ordered_batch, max_ordered_batch)
                     : std::clamp(n / batches_of_large_blocks, min_batch, max_batch);
-  constexpr std::size_t spacing = std::is_same_v<Item, ListedTet> ? tet_spacing : point_spacing;
+  constexpr std::size_t spacing = std::is_same_v<Item, TetSnapshot> ? tet_spacing : point_spacing;
   BlockOrder order(n, in_order ? 0 : step, spacing, Random(seed_, block, ~std::uint64_t{0}));
   const auto decide_entry = [&](Workspace& ws, const Entry& entry) {
     ws.random = Random(seed_, block, entry.item);
@@ -216,7 +218,7 @@ void BlockRunner::run(const std::vector<Item>& items, bool in_order, const Attem
   again_.clear();
   while (!order.empty() || !again_.empty()) {
     if (progress_) progress_->throw_if_stopped();
-    // Those that lost come first, so that each is done some time.
+    // Losers come first, so that each item gets its turn.
     totals_.repeats += static_cast<std::uint64_t>(
         std::count_if(again_.begin(), again_.end(), [](const Entry& e) { return e.stage == 0; }));
     batch_ = again_;
@@ -236,7 +238,7 @@ void BlockRunner::points(const std::vector<Index>& items, const PointAttempt& at
       items, false, [&](Workspace& ws, Index p, int) { return attempt(ws, p); }, stop);
 }
 
-void BlockRunner::tets(const std::vector<ListedTet>& items, const TetAttempt& attempt, const Stop& stop) {
+void BlockRunner::tets(const std::vector<TetSnapshot>& items, const TetAttempt& attempt, const Stop& stop) {
   run(items, false, attempt, stop);
 }
 
@@ -252,7 +254,7 @@ void BlockRunner::each_star(const std::vector<Index>& points, Operation kind,
       stop);
 }
 
-void BlockRunner::tets_in_order(const std::vector<ListedTet>& items, const TetAttempt& attempt) {
+void BlockRunner::tets_in_order(const std::vector<TetSnapshot>& items, const TetAttempt& attempt) {
   run(items, true, attempt, [] { return false; });
 }
 

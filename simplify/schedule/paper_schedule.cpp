@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/schedule/paper_schedule.h"
 
 #include <algorithm>
@@ -16,11 +17,11 @@ namespace tetwright {
 
 namespace {
 
-/// Around the target, once it is reached: actions that leave this band are not taken.
+/// Half width of the band around the target, once it is reached: actions that leave it are refused.
 constexpr double count_slack = 0.005;
 
-/// The tet's half-edge of least weight that passes every test.
-Outcome collapse_tet(Workspace& ws, const BlockRules& rules, const ListedTet& item) {
+/// Collapses the tet's half-edge of least weight that passes every test.
+Outcome collapse_tet(Workspace& ws, const BlockRules& rules, const TetSnapshot& item) {
   struct HalfEdge {
     double weight;
     Index from, to;
@@ -60,8 +61,9 @@ Outcome collapse_tet(Workspace& ws, const BlockRules& rules, const ListedTet& it
   return refusal;
 }
 
-/// "move each vertex of the element": the first from `first` on that moves; the turn goes on with the next.
-Outcome smooth_points(Workspace& ws, const BlockRules& rules, const ListedTet& item, int first) {
+/// "move each vertex of the element": moves the first point from `first` on that can move; the turn continues
+/// with the next.
+Outcome smooth_points(Workspace& ws, const BlockRules& rules, const TetSnapshot& item, int first) {
   for (int k = first; k < 4; ++k) {
     Outcome o = ws.gather(item.points[k]);
     if (o == Outcome::done) o = smooth(ws, rules);
@@ -72,9 +74,9 @@ Outcome smooth_points(Workspace& ws, const BlockRules& rules, const ListedTet& i
   return Outcome::no_candidate;
 }
 
-/// One tet's turn: the actions of section 4 in their order; the first that succeeds ends it. Stages above 0
-/// are the points still to be moved.
-Outcome paper_turn(Workspace& ws, const BlockRules& rules, const ListedTet& item, int stage, float limit) {
+/// One step at a tet: tries the actions of section 4 in their order until one succeeds. A stage above 0 is
+/// the next point to move.
+Outcome paper_step(Workspace& ws, const BlockRules& rules, const TetSnapshot& item, int stage, float limit) {
   const EditableMesh& mesh = ws.mesh;
   if (!exists(mesh, item)) return Outcome::stale;
   if (stage > 0) return smooth_points(ws, rules, item, stage);
@@ -85,7 +87,7 @@ Outcome paper_turn(Workspace& ws, const BlockRules& rules, const ListedTet& item
     if (remove_edge(ws, rules, item.tet, e, basic_reach) == Outcome::done) return Outcome::done;
   if (ws.count(Operation::collapse, collapse_tet(ws, rules, item)) == Outcome::done) return Outcome::done;
   if (smooth_points(ws, rules, item, 0) == Outcome::done) return Outcome::done;
-  // New points must better the tets they go into: what annealing lets pass would be split for ever.
+  // A new point must improve the tets around it: tets that annealing accepts would be split for ever.
   BlockRules strict = rules;
   strict.accept_worse = 0;
   if (insert_in_tet(ws, strict, item.tet, InsertionPlace::centre) == Outcome::done) return Outcome::done;
@@ -129,15 +131,15 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
   double percent = percent_step;
   int idle = 0;
   bool reached = false;
-  std::size_t poor = mesh.live_tets();
+  std::size_t bad = mesh.live_tets();
   for (int i = 0; i < options.max_iterations && idle < max_idle_iterations; ++i) {
     reached = reached || mesh.live_tets() <= target_tets;
     if (reached) {
-      // The second stop. The counts of poor tets tell whether anything is still gained.
+      // Second stop: the number of bad tets tells whether anything is still gained.
       const std::size_t now = below_angle(mesh, options.min_solid_angle);
       if (now == 0) break;
-      idle = now < poor ? 0 : idle + 1;
-      poor = now;
+      idle = now < bad ? 0 : idle + 1;
+      bad = now;
     }
     engine.compact_if_sparse();
     RoundRecorder::Round round(engine.recorder(), "simplify", rules.max_error);
@@ -146,14 +148,15 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
     const auto before = static_cast<double>(it.tets_before);
     const double log_now = portable_log(std::max(before / target, 1.0));
     rules.accept_worse = reached ? 0 : first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
-    // Before, whatever does not undo the iterations before it; then only what keeps or restores the count.
+    // Before the target is reached, allow all that does not undo earlier iterations; then only what keeps or
+    // restores the count.
     rules.count.max = reached ? static_cast<std::size_t>(target * (1 + count_slack)) : it.tets_before;
     const float limit = engine.cutoff(percent);
     it.cutoff = portable_cbrt(limit);
     engine.runner().tets(
-        engine.poor_tets(limit),
-        [&](Workspace& ws, const ListedTet& item, int stage) {
-          return paper_turn(ws, rules, item, stage, limit);
+        engine.bad_tets(limit),
+        [&](Workspace& ws, const TetSnapshot& item, int stage) {
+          return paper_step(ws, rules, item, stage, limit);
         },
         [&] { return !reached && mesh.live_tets() <= target_tets; });
     round.finish();

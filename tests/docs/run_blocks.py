@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs the code blocks of Markdown pages in order, as a reader does who copies them.
 
     run_blocks.py --program TETWRIGHT [--python-path FOLDER] [--prefix FOLDER] PAGE...

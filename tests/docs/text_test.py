@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What README and guide say exists: options, commands, links, anchors, pictures and files.
 
     text_test.py TETWRIGHT

@@ -1,18 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Readers of tet meshes: each must return a mesh whose indices are in range and whose fields have the right
 // sizes, or throw an InputError. The mesh must survive a round trip through a writer, and the functions that
 // work on meshes of other programs must accept it.
 #include "common/error.h"
-#include "common/formats/abaqus.h"
-#include "common/formats/medit.h"
-#include "common/formats/medit_binary.h"
-#include "common/formats/msh.h"
-#include "common/formats/nastran.h"
-#include "common/formats/tetgen.h"
-#include "common/formats/vtk.h"
-#include "common/formats/vtu.h"
-#include "common/formats/xdmf.h"
+#include "common/io/tets/abaqus.h"
+#include "common/io/tets/medit.h"
+#include "common/io/tets/medit_binary.h"
+#include "common/io/tets/msh.h"
+#include "common/io/tets/nastran.h"
+#include "common/io/tets/tetgen.h"
+#include "common/io/tets/vtk.h"
+#include "common/io/tets/vtu.h"
+#include "common/io/tets/xdmf.h"
 #include "common/mesh/field_transfer.h"
-#include "common/mesh/foreign_mesh.h"
+#include "common/mesh/import_cleanup.h"
 #include "common/mesh/mesh_check.h"
 #include "common/mesh/mesh_statistics.h"
 #include "common/mesh/topology.h"
@@ -52,7 +54,7 @@ void run(std::string_view bytes, Read read, Write write, Read read_back) {
     TETWRIGHT_CHECK(back.points == mesh.points);
     TETWRIGHT_CHECK(back.tets == mesh.tets);
     TETWRIGHT_CHECK(back.materials == mesh.materials);
-    constexpr std::size_t max_tets = 100;  // of meshes on which all the rest is tried
+    constexpr std::size_t max_tets = 100;  // limit of meshes for the further functions
     if (mesh.tets.size() >= max_tets) return;
     // A format may change names and components in the first round trip, but not in the second.
     const std::string again = write(back);
@@ -70,11 +72,10 @@ void run(std::string_view bytes, Read read, Write write, Read read_back) {
   }
 }
 
-/// By way of VTU.
+/// Round trip through VTU.
 void run(std::string_view bytes, Read read) { run(bytes, read, write_vtu, read_vtu); }
 
-/// The files of points, tets and faces in one text, in which lines of equal signs separate them; faces may be
-/// left out.
+/// Files of points, tets and faces in one text, separated by lines of equal signs; faces may be missing.
 ReadTetMesh read_tetgen_files(std::string_view bytes, const std::string& name, const ReadTetMeshOptions&) {
   constexpr std::string_view between = "=====\n";
   const auto next = [&] {
@@ -89,7 +90,7 @@ ReadTetMesh read_tetgen_files(std::string_view bytes, const std::string& name, c
   return read_tetgen({node, name}, {ele, name}, face);
 }
 
-/// A file with its numbers in the text: no other file is there.
+/// Reads a file with its numbers in the text: there is no other file.
 ReadTetMesh read_xdmf_alone(std::string_view bytes, const std::string& name, const ReadTetMeshOptions&) {
   return read_xdmf(bytes, name,
                    [](const std::string& path) -> std::string { throw InputError(path + ": is not there"); });

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -14,31 +15,30 @@
 namespace tetwright::label_mesher_test {
 namespace {
 
-/// Promises of cells no larger than half a voxel.
+/// Checks the promises for cells no larger than half a voxel.
 void expect_faithful(const LabelInput& labels, const TetMesh& mesh) {
-  const LabelFidelity f = fidelity(labels, mesh);
-  EXPECT_EQ(f.lost, 0u) << fidelity_line(f);
-  EXPECT_LE(f.moved, 0.75) << fidelity_line(f);
-  EXPECT_LE(f.worst_volume, 0.02) << fidelity_line(f);
+  const LabelComparison f = compare_with_voxels(labels, mesh);
+  EXPECT_EQ(f.lost, 0u) << comparison_line(f);
+  EXPECT_LE(f.moved, 0.75) << comparison_line(f);
+  EXPECT_LE(f.worst_volume, 0.02) << comparison_line(f);
 }
 
 struct Angles {
-  double percent_poor = 0, smallest = HUGE_VAL;
+  double percent_bad = 0, smallest = HUGE_VAL;
 };
 Angles angles_of(const TetMesh& mesh) {
   Angles a;
-  std::size_t poor = 0;
+  std::size_t bad = 0;
   for (const auto& [i, j, k, l] : mesh.tets) {
     const double angle = min_solid_angle(mesh.points[i], mesh.points[j], mesh.points[k], mesh.points[l]);
-    poor += angle < 0.1;
+    bad += angle < 0.1;
     a.smallest = std::min(a.smallest, angle);
   }
-  a.percent_poor = 100.0 * static_cast<double>(poor) / static_cast<double>(mesh.tets.size());
+  a.percent_bad = 100.0 * static_cast<double>(bad) / static_cast<double>(mesh.tets.size());
   return a;
 }
 
-/// Cells of voxels that are nearest to scattered seeds: blobs without thin parts in most places, of labels
-/// from `lowest` on.
+/// Voronoi cells of scattered seeds: blobs mostly without thin parts, of labels from `lowest` on.
 LabelInput blobs(const std::array<int, 3>& size, int seeds, int labels, std::uint64_t seed,
                  MaterialTag lowest = 1, const Eigen::Matrix3d& directions = Eigen::Matrix3d::Identity(),
                  const Vec3& origin = Vec3::Zero()) {
@@ -54,11 +54,11 @@ LabelInput blobs(const std::array<int, 3>& size, int seeds, int labels, std::uin
   return make_labels(
       size,
       [&](int x, int y, int z) {
-        double least = HUGE_VAL;
+        double min_distance = HUGE_VAL;
         MaterialTag label = 0;
         for (const Seed& s : all) {
           const double d = (s.at - Vec3(x, y, z)).squaredNorm();
-          if (d < least) least = d, label = s.label;
+          if (d < min_distance) min_distance = d, label = s.label;
         }
         return label;
       },
@@ -84,7 +84,7 @@ TEST(LabelMesher, CentresInterfacesAndVolumesOfBallsTouchingOneAnother) {
     if (length(x - 7.3, y - 7.6, z - 7.4) < 6.5) return 3;
     return length(x - 17.7, y - 7.2, z - 7.9) < 6.5 ? 9 : 0;
   });
-  for (const LabelMaterial& m : labels.materials) EXPECT_GT(m.voxels, LabelFidelity::many_voxels);
+  for (const LabelMaterial& m : labels.materials) EXPECT_GT(m.voxels, LabelComparison::many_voxels);
   for (const double cell : {0.5, 0.3}) expect_faithful(labels, checked_mesh(labels, cell).mesh);
 }
 
@@ -97,8 +97,8 @@ LabelInput noise(int side, std::uint32_t labels, std::uint64_t seed) {
 TEST(LabelMesher, InterfacesOfNoiseStayNear) {
   for (const std::uint32_t labels : {2u, 6u}) {
     const LabelInput volume = noise(4, labels, labels);
-    const LabelFidelity f = fidelity(volume, checked_mesh(volume, 0.5).mesh);
-    EXPECT_LE(f.moved, 0.75) << fidelity_line(f);
+    const LabelComparison f = compare_with_voxels(volume, checked_mesh(volume, 0.5).mesh);
+    EXPECT_LE(f.moved, 0.75) << comparison_line(f);
   }
 }
 
@@ -106,7 +106,7 @@ TEST(LabelMesher, CentresOfNoise) {
   std::size_t lost = 0, centres = 0;
   for (std::uint64_t seed = 1; seed < 5; ++seed) {
     const LabelInput volume = noise(4, 2 + seed % 2, seed);
-    const LabelFidelity f = fidelity(volume, checked_mesh(volume, 0.5).mesh);
+    const LabelComparison f = compare_with_voxels(volume, checked_mesh(volume, 0.5).mesh);
     lost += f.lost;
     centres += f.centres;
   }
@@ -120,13 +120,13 @@ const std::vector<Sides> all_sides{{0, 0}, {1, 1}, {1, 3}, {0, 1}};
 
 const std::string shell = "components 1, euler 2, boundary components 2, boundary euler 4";
 
-/// The sheet is label 2; `topology` is what it must have.
+/// Expects that the sheet, label 2, has this topology.
 void expect_whole(const LabelInput& labels, double adaptivity, const std::string& topology) {
   const TetMesh mesh = checked_mesh(labels, cells_of(0.5, adaptivity)).mesh;
   expect_line(mesh, (labels.materials.size() > 1 ? "material 2: " : "domain: ") + topology);
 }
 
-/// A plane from side to side of a volume, by its slopes.
+/// Expects that a plane across a volume, given by its slopes, stays whole.
 void expect_plane_whole(double a, double b, double thickness, double adaptivity) {
   for (const Sides& s : all_sides) {
     SCOPED_TRACE(::testing::Message()
@@ -185,7 +185,7 @@ TEST(LabelMesher, VolumesOfSheetsOfAVoxel) {
       const double r = length(x - 12.5, y - 12.5, z - 12.5);
       return r > 11 ? 0 : r > 10 ? sides.above : r > 9 ? 2 : sides.below;
     });
-    EXPECT_GT(labels.materials.back().voxels, LabelFidelity::many_voxels);
+    EXPECT_GT(labels.materials.back().voxels, LabelComparison::many_voxels);
     expect_faithful(labels, checked_mesh(labels, 0.5).mesh);
   }
 }
@@ -214,7 +214,7 @@ TEST(LabelMesher, NormalsOfABallAreSmooth) {
   }
 }
 
-/// True if each voxel is in a cube of 2 x 2 x 2 of its label; outside goes on beyond the volume.
+/// True if each voxel is in a cube of 2 x 2 x 2 of its label; the outside continues beyond the volume.
 bool two_thick(const LabelInput& labels) {
   const auto at = [&](int x, int y, int z) {
     const std::array<int, 3> v{x, y, z};
@@ -237,7 +237,7 @@ bool two_thick(const LabelInput& labels) {
   return true;
 }
 
-/// Coarse voxels of random labels, each of two by two by two.
+/// Random labels on coarse voxels of 2 x 2 x 2.
 LabelInput doubled_noise(int side, std::uint32_t labels, std::uint64_t seed) {
   Random random(seed);
   std::vector<MaterialTag> coarse;
@@ -247,9 +247,9 @@ LabelInput doubled_noise(int side, std::uint32_t labels, std::uint64_t seed) {
                      [&](int x, int y, int z) { return coarse[((z / 2) * side + y / 2) * side + x / 2]; });
 }
 
-void expect_good_shapes(const LabelInput& labels, double cell = 1, double max_poor = 2) {
+void expect_good_shapes(const LabelInput& labels, double cell = 1, double max_bad = 2) {
   const Angles a = angles_of(checked_mesh(labels, cell).mesh);
-  EXPECT_LE(a.percent_poor, max_poor);
+  EXPECT_LE(a.percent_bad, max_bad);
   EXPECT_GE(a.smallest, 0.001);
 }
 
@@ -264,7 +264,7 @@ TEST(LabelMesher, ShapesOfTetsInCellsOfAVoxel) {
   for (const LabelInput* labels : {&ball, &cube, &slabs}) expect_good_shapes(*labels);
 }
 
-// Parts are two voxels thick here too, but four labels meet in every line between them: more tets are poor.
+// Parts are two voxels thick here too, but four labels meet in every line between them: more tets are bad.
 TEST(LabelMesher, ShapesOfTetsWhereManyLabelsMeet) {
   const LabelInput bars =
       make_labels({12, 12, 12}, [](int x, int, int z) { return x / 2 % 2 + 2 * (z / 4 % 2); });
@@ -326,7 +326,7 @@ TEST(LabelMesher, RightPlacesInAnyDirections) {
   }
 }
 
-// A label that fills the volume ends where the voxels end, half a step beyond their centres.
+// A label that fills the volume ends at the border of the voxels, half a step beyond their centres.
 TEST(LabelMesher, LabelsTouchingTheBorder) {
   const LabelInput full = make_labels({9, 8, 7}, [](int, int, int) { return 4; });
   const TetMesh mesh = checked_mesh(full, 0.5).mesh;
@@ -354,7 +354,7 @@ void expect_volume_of_one_label(const Size& size, double cell) {
   with_outside.keep_outside = true;
   try {
     const TetMesh mesh = checked_mesh(labels, cell).mesh;
-    const LabelFidelity f = fidelity(labels, mesh);
+    const LabelComparison f = compare_with_voxels(labels, mesh);
     EXPECT_EQ(f.lost + f.lone_lost, 0u);
     EXPECT_LE(f.moved, 0.75);
     expect_line(mesh, "domain: " + disc);
@@ -406,9 +406,9 @@ TEST(LabelMesher, CoarseCellsWithoutThinParts) {
   for (const double cell : {2.0, 3.0, 5.0}) {
     SCOPED_TRACE(cell);
     const DenseMesh m = checked_mesh(labels, cell);
-    const LabelFidelity f = fidelity(labels, m.mesh);
-    EXPECT_LE(f.moved, 0.5 * cell) << fidelity_line(f);
-    EXPECT_LE(f.worst_volume, 0.02 * cell) << fidelity_line(f);
+    const LabelComparison f = compare_with_voxels(labels, m.mesh);
+    EXPECT_LE(f.moved, 0.5 * cell) << comparison_line(f);
+    EXPECT_LE(f.worst_volume, 0.02 * cell) << comparison_line(f);
     expect_line(m.mesh, "material 1: " + disc);
     expect_line(m.mesh, "material 2: " + disc);
   }
@@ -422,9 +422,9 @@ TEST(LabelMesher, CoarseCellsKeepThinSheets) {
         return z < 9 ? 1 : z < 9 + thickness ? 2 : 3;
       });
       const DenseMesh m = checked_mesh(labels, cell);
-      const LabelFidelity f = fidelity(labels, m.mesh);
+      const LabelComparison f = compare_with_voxels(labels, m.mesh);
       expect_line(m.mesh, "material 2: " + disc);
-      EXPECT_LE(f.moved, 0.5 * cell) << fidelity_line(f);
+      EXPECT_LE(f.moved, 0.5 * cell) << comparison_line(f);
     }
 }
 
@@ -436,9 +436,9 @@ TEST(LabelMesher, CoarseCellsKeepShells) {
       return d > 0 ? 0 : d > -1.6 ? 2 : 1;
     });
     const DenseMesh m = checked_mesh(labels, cell);
-    const LabelFidelity f = fidelity(labels, m.mesh);
+    const LabelComparison f = compare_with_voxels(labels, m.mesh);
     expect_line(m.mesh, "material 2: " + shell);
-    EXPECT_LE(f.moved, 0.5 * cell + 0.25) << fidelity_line(f);
+    EXPECT_LE(f.moved, 0.5 * cell + 0.25) << comparison_line(f);
   }
 }
 

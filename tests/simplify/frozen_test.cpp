@@ -1,4 +1,6 @@
-// What is frozen stays through blocks of every operation.
+// SPDX-License-Identifier: Apache-2.0
+
+// Frozen parts survive blocks of every operation.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -31,8 +33,7 @@ std::array<Place, N> places(const EditableMesh& mesh, const std::array<Index, N>
   return out;
 }
 
-/// What may not change: the frozen points, the tets of which all points are, and the faces between regions
-/// of which all are.
+/// Must not change: the frozen points, and the tets and the faces between regions with frozen points only.
 struct Kept {
   std::set<Place> points;
   std::set<std::pair<std::array<Place, 4>, MaterialTag>> tets;
@@ -61,7 +62,8 @@ bool includes(const Set& all, const Set& some) {
   return std::includes(all.begin(), all.end(), some.begin(), some.end());
 }
 
-/// Blocks of every operation, several times; how many of each were done. What stays is compared after each.
+/// Runs blocks of every operation several times and compares the frozen parts after each. Returns the number
+/// of each operation done.
 std::map<Operation, std::uint64_t> run_all(Workbench& w, const SurfaceProjection& projection) {
   const Kept before = kept(w.mesh);
   w.own_samples(0.5 * w.mesh.space().scale());
@@ -92,13 +94,13 @@ std::map<Operation, std::uint64_t> run_all(Workbench& w, const SurfaceProjection
   };
   const auto tets = [&](Operation operation, int count,
                         const std::function<Outcome(Workspace&, Index, int)>& act) {
-    w.rules.count.max = w.mesh.live_tets() + 300;  // more would take their time
-    std::vector<ListedTet> items;
+    w.rules.count.max = w.mesh.live_tets() + 300;  // more would take too long
+    std::vector<TetSnapshot> items;
     for (Index t = 0; t < w.mesh.tet_slots(); ++t)
       if (!w.mesh.dead(t)) items.push_back({t, w.mesh.points(t)});
     runner.tets(
         items,
-        [&](Workspace& ws, const ListedTet& item, int) {
+        [&](Workspace& ws, const TetSnapshot& item, int) {
           if (!exists(w.mesh, item)) return Outcome::stale;
           for (int k = 0; k < count; ++k)
             if (act(ws, item.tet, k) == Outcome::done) return Outcome::done;
@@ -113,7 +115,7 @@ std::map<Operation, std::uint64_t> run_all(Workbench& w, const SurfaceProjection
     stars(Operation::smooth, [&](Workspace& ws) { return smooth(ws, w.rules); });
     stars(Operation::optimise, [&](Workspace& ws) { return optimise(ws, w.rules); });
     stars(Operation::fit, [&](Workspace& ws) { return fit_to_samples(ws, w.rules, 0); });
-    make_poor(w);
+    make_bad(w);
     for (const auto place : {InsertionPlace::best, InsertionPlace::centre}) {
       tets(Operation::insert_in_tet, 1,
            [&](Workspace& ws, Index t, int) { return insert_in_tet(ws, w.rules, t, place); });
@@ -121,14 +123,14 @@ std::map<Operation, std::uint64_t> run_all(Workbench& w, const SurfaceProjection
            [&](Workspace& ws, Index t, int f) { return insert_in_face(ws, w.rules, t, f, place); });
       tets(Operation::insert_in_edge, 6,
            [&](Workspace& ws, Index t, int e) { return insert_in_edge(ws, w.rules, t, e, place, true); });
-      make_poor(w);
+      make_bad(w);
     }
     tets(Operation::edge_removal, 6,
          [&](Workspace& ws, Index t, int e) { return remove_edge(ws, w.rules, t, e, full_reach); });
-    make_poor(w);
+    make_bad(w);
     tets(Operation::face_removal, 4,
          [&](Workspace& ws, Index t, int f) { return remove_face(ws, w.rules, t, f, full_reach); });
-    make_poor(w);
+    make_bad(w);
     for (int k = 0; k < 4; ++k)
       stars(Operation::collapse, [&](Workspace& ws) { return collapse(ws, w.rules); });
   }
@@ -148,7 +150,7 @@ TEST(Frozen, PointsOfTheMaskStayWithTheirTets) {
   Random random(3);
   std::size_t frozen = 0;
   for (std::size_t p = 0; p < mask.size(); ++p) {
-    // A corner of the mesh as a whole, and points here and there.
+    // A whole corner of the mesh, and scattered points.
     mask[p] = mesh.points[p].maxCoeff() < 3.5 || random.below(12) == 0;
     frozen += mask[p];
   }
@@ -173,11 +175,11 @@ TEST(Frozen, FacesOfBoundaryAndInterfacesStay) {
     EXPECT_GT(done.at(inner), 0u) << operation_names[static_cast<std::size_t>(inner)];
   EXPECT_EQ(done.at(Operation::fit), 0u);
   EXPECT_EQ(done.at(Operation::insert_in_face), 0u);
-  EXPECT_EQ(kept(w.mesh).faces.size(), faces);  // none came, either
+  EXPECT_EQ(kept(w.mesh).faces.size(), faces);  // none was added, either
   EXPECT_EQ(w.grid.triangles().size(), faces);
 }
 
-// Without it, everything moves.
+// Without a mask everything moves.
 TEST(Frozen, NothingIsWithoutAMask) {
   Workbench w(two_materials());
   EXPECT_FALSE(w.mesh.any_frozen());

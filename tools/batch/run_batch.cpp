@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <atomic>
 #include <csignal>
@@ -12,20 +13,20 @@
 #include <thread>
 
 #include "common/error.h"
-#include "common/formats/atomic_file.h"
+#include "common/files/atomic_file.h"
 #include "common/memory.h"
 #include "common/parallel/parallel.h"
+#include "tools/app/commands/commands.h"
+#include "tools/app/commands/output_paths.h"
+#include "tools/app/commands/result.h"
+#include "tools/app/exit_status.h"
+#include "tools/app/interruption.h"
+#include "tools/app/printed_report.h"
+#include "tools/app/progress_report.h"
 #include "tools/batch/child_process.h"
 #include "tools/batch/jobs.h"
 #include "tools/batch/results_file.h"
-#include "tools/commands/commands.h"
-#include "tools/commands/output_paths.h"
-#include "tools/commands/result.h"
-#include "tools/exit_status.h"
-#include "tools/interruption.h"
-#include "tools/progress_report.h"
-#include "tools/report.h"
-#include "tools/stats_json.h"
+#include "tools/report/stats_json.h"
 
 namespace tetwright {
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes the generated pages of the guide: options, formats and statistics.
 
     generate.py TETWRIGHT [--check]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes the pictures of README and guide: meshes by the program, drawn by the page of its --report in a headless Chromium.
 
     pictures.py TETWRIGHT [NAME...]

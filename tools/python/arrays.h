@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -10,13 +11,13 @@
 #include <tuple>
 #include <vector>
 
-#include "common/formats/file_triangles.h"
-#include "common/formats/read_tet_mesh_result.h"
+#include "common/io/contents/read_tet_mesh_result.h"
+#include "common/io/tets/file_triangles.h"
 #include "common/label_volume.h"
 #include "common/tet_mesh.h"
 #include "common/triangle_mesh.h"
 #include "common/types.h"
-#include "tools/commands/input_objects.h"
+#include "tools/app/commands/input_objects.h"
 
 // What the Python package makes of arrays of numpy. `name` is what messages call the input; all throw
 // InputError.

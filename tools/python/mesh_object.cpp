@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/python/mesh_object.h"
 
 #include <pybind11/numpy.h>
@@ -7,18 +8,18 @@
 #include <utility>
 
 #include "common/error.h"
-#include "common/formats/atomic_file.h"
-#include "common/formats/formats.h"
-#include "common/formats/mesh_fields.h"
-#include "common/formats/mesh_parts.h"
-#include "common/formats/mesh_to_write.h"
+#include "common/files/atomic_file.h"
+#include "common/io/contents/mesh_to_write.h"
+#include "common/io/formats.h"
+#include "common/io/names/mesh_fields.h"
+#include "common/io/names/mesh_parts.h"
 #include "common/mesh/boundary_groups.h"
-#include "tools/commands/output_paths.h"
-#include "tools/commands/unwritten.h"
-#include "tools/option_rules.h"
-#include "tools/patch_fidelity.h"
+#include "tools/app/commands/output_paths.h"
+#include "tools/app/commands/unwritten.h"
+#include "tools/app/option_rules.h"
+#include "tools/app/printed_report.h"
+#include "tools/compare/patch_comparison.h"
 #include "tools/python/text.h"
-#include "tools/report.h"
 
 namespace tetwright::python {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -8,7 +9,7 @@
 
 #include "common/mesh/midside_nodes.h"
 #include "common/tet_mesh.h"
-#include "tools/command_line.h"
+#include "tools/app/command_line.h"
 
 namespace tetwright::python {
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // tetwright._core: what the Python package calls. Python turns its objects into arrays, arrays.h these into
 // meshes, and mesh_object.h those of the results into views.
 #include <pybind11/functional.h>
@@ -15,18 +17,18 @@
 #include <utility>
 
 #include "common/error.h"
-#include "common/formats/formats.h"
-#include "common/formats/label_groups.h"
+#include "common/io/formats.h"
+#include "common/io/names/label_groups.h"
 #include "common/parallel/parallel.h"
-#include "tools/commands/commands.h"
-#include "tools/commands/output_paths.h"
-#include "tools/commands/result.h"
+#include "tools/app/commands/commands.h"
+#include "tools/app/commands/output_paths.h"
+#include "tools/app/commands/result.h"
+#include "tools/app/printed_report.h"
 #include "tools/python/arrays.h"
 #include "tools/python/mesh_object.h"
 #include "tools/python/option_types.h"
 #include "tools/python/text.h"
-#include "tools/report.h"
-#include "tools/stats_json.h"
+#include "tools/report/stats_json.h"
 
 namespace tetwright::python {
 

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/python/option_types.h"
 
 #include <CLI/CLI.hpp>
 
-#include "tools/command_line.h"
-#include "tools/command_options.h"
+#include "tools/app/command_line.h"
+#include "tools/app/command_options.h"
 
 namespace tetwright::python {
 

@@ -1,16 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/solid_shape.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "common/samples.h"
+#include "common/samples/samples.h"
 #include "common/triangle_mesh.h"
 
 namespace tetwright {
 namespace {
 
-/// A box, wound outwards.
+/// A box, oriented outwards.
 TriangleMesh box(const Vec3& low, const Vec3& high) {
   TriangleMesh mesh;
   for (int k = 0; k < 8; ++k)

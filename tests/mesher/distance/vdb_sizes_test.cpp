@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/distance/vdb_sizes.h"
 
 #include <gtest/gtest.h>
@@ -8,8 +9,7 @@
 #include <limits>
 
 #include "common/error.h"
-#include "common/formats/atomic_file.h"
-#include "common/formats/formats.h"
+#include "common/files/atomic_file.h"
 #include "common/random.h"
 #include "tests/common/small_meshes.h"
 #include "tests/common/temporary_folder.h"
@@ -19,10 +19,10 @@ namespace {
 
 double linear(const Vec3& p) { return 64 + 2 * p.x() - 0.5 * p.y() + 0.25 * p.z(); }
 
-/// Where the grids made here have voxel (i, j, k).
+/// Position of voxel (i, j, k) of the grids made here.
 Vec3 world(double i, double j, double k) { return {10 + 0.5 * i, 20 - 0.5 * j, 30 + 0.25 * k + 0.5 * i}; }
 
-/// Active from (-2, 0, 0) to (9, 9, 9), with linear() at these voxels.
+/// Active from (-2, 0, 0) to (9, 9, 9), with the value linear() at each voxel.
 template <class Grid = openvdb::FloatGrid>
 typename Grid::Ptr linear_grid(const std::string& name) {
   const auto grid = Grid::create(1000);
@@ -88,7 +88,7 @@ TEST_F(VdbSizes, NothingWhereAVoxelThatIsNeededIsInactive) {
   EXPECT_FALSE(source->at(world(3.001, 4, 4)));
   ASSERT_TRUE(source->at(world(3, 4, 4)));
   EXPECT_TRUE(source->at(world(3, 4.5, 4.5)));
-  // Up to the centres of the last voxels, but for rounding.
+  // Up to the centres of the last voxels, except for rounding.
   EXPECT_TRUE(source->at(world(9, 9, 9)));
   EXPECT_TRUE(source->at(world(9 + 1e-9, 0 - 1e-9, 9)));
   EXPECT_FALSE(source->at(world(9.001, 9, 9)));
@@ -188,26 +188,6 @@ TEST_F(VdbSizes, DamagedFiles) {
       } catch (const InputError&) {
       }
     }
-  }
-}
-
-TEST_F(VdbSizes, EitherKindOfFileByItsExtension) {
-  const auto grid = read_size_field(written({linear_grid("h")}));
-  EXPECT_TRUE(grid->at(world(1, 1, 1)));
-  EXPECT_EQ(grid->field(), "h");
-  TetMesh mesh = one_tet();
-  mesh.point_fields = {{"size", 1, false, {2, 2, 2, 2}}};
-  write_tet_mesh(mesh, folder_ / "a.vtu");
-  EXPECT_EQ(read_size_field(folder_ / "a.vtu")->at({0.2, 0.2, 0.2})->length, 2);
-  EXPECT_NO_THROW(check_size_field_path("a.VDB"));
-  try {
-    check_size_field_path("a.nrrd");
-    ADD_FAILURE();
-  } catch (const UsageError& e) {
-    EXPECT_STREQ(e.what(),
-                 "a.nrrd: unknown extension \".nrrd\"; edge lengths are read from .vtu .msh .vtk .xdmf .node "
-                 ".ele .ply "
-                 ".vtp .vdb");
   }
 }
 

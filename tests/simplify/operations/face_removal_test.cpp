@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/face_removal.h"
 #include "simplify/operations/edge_removal.h"
 
@@ -9,7 +10,7 @@ namespace {
 
 const FlipReach all_flips{7, 5}, basic_flips{3, 1};
 
-/// Two tets above and below a triangle, their far points at the given heights.
+/// Two tets above and below a triangle, with their apices at the given heights.
 TetMesh bipyramid(double height, MaterialTag below = 1) {
   TetMesh mesh;
   mesh.points = {{1, 0, 0}, {-0.5, 0.9, 0}, {-0.5, -0.9, 0}, {0, 0, height}, {0, 0, -height}};
@@ -26,7 +27,7 @@ int inner_face(const Workbench& w, Index t) {
 
 TEST(FaceRemoval, TwoToThree) {
   Workbench w(bipyramid(0.3));
-  make_poor(w);
+  make_bad(w);
   ASSERT_EQ(w.carry_out(remove_face(*w.ws, w.rules, 0, inner_face(w, 0), basic_flips)), Outcome::done);
   EXPECT_EQ(w.mesh.live_tets(), 3u);
   EXPECT_EQ(w.ws->counts.of(Operation::flip23, Outcome::done), 1u);
@@ -41,20 +42,20 @@ TEST(FaceRemoval, IsRefusedWhereItDoesNotImprove) {
 
 TEST(FaceRemoval, NeverCrossesAnInterfaceNorTheBoundary) {
   Workbench w(bipyramid(0.12, 2));
-  make_poor(w);
+  make_bad(w);
   const int inner = inner_face(w, 0);
   EXPECT_EQ(w.carry_out(remove_face(*w.ws, w.rules, 0, inner, all_flips)), Outcome::material_rule);
   EXPECT_EQ(w.carry_out(remove_face(*w.ws, w.rules, 0, (inner + 1) % 4, all_flips)), Outcome::no_candidate);
   w.expect_sound();
 }
 
-// What edge removal took apart, face removal puts together again: the ring of six stands between two points.
+// Face removal undoes edge removal: the ring of six lies between two points.
 TEST(FaceRemoval, UndoesEdgeRemoval) {
   for (int n = 4; n <= 6; ++n) {
     TetMesh flat =
         ring_mesh(n, 0.25);  // a lens: tets around its short axis are good, those over its faces flat
     Workbench w(flat);
-    make_poor(w);
+    make_bad(w);
     const Index low = w.at(0, 0, -0.25), high = w.at(0, 0, 0.25);
     const Tet p = w.mesh.points(0);
     for (int e = 0; e < 6; ++e) {

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Sphinx makes the reference of the Python API of the docstrings of the built package."""
 import re
 

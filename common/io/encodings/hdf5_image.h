@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tetwright {
+
+/// Writes an HDF5 file in memory, on the HDF5 library. Not safe for concurrent use, since the library is not.
+class Hdf5Writer {
+ public:
+  Hdf5Writer();
+  ~Hdf5Writer();
+
+  /// Adds a dataset with `columns` numbers in each row, compressed by zlib.
+  /// \param name without slashes
+  void add(const std::string& name, std::span<const double> values, std::size_t columns);
+  void add(const std::string& name, std::span<const std::int64_t> values, std::size_t columns);
+  void add(const std::string& name, std::span<const std::int32_t> values, std::size_t columns);
+  /// Bytes of the file, identical for identical datasets.
+  std::string bytes();
+
+ private:
+  struct File;
+  std::unique_ptr<File> file_;
+};
+
+/// Reads datasets of an HDF5 file in memory.
+class Hdf5Reader {
+ public:
+  /// \throws InputError if the bytes are no HDF5 file
+  Hdf5Reader(std::string bytes, std::string name);
+  ~Hdf5Reader();
+
+  /// Reads all numbers of a dataset ("/Mesh/geometry"), row by row; integers beyond 2^53 lose digits.
+  /// \throws InputError if it is missing, not numeric, or has more than `max_count` numbers
+  std::vector<double> numbers(const std::string& dataset, std::size_t max_count) const;
+
+ private:
+  struct File;
+  std::unique_ptr<File> file_;
+  std::string name_;
+};
+
+}  // namespace tetwright

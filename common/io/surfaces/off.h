@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/io/contents/dropped.h"
+#include "common/triangle_mesh.h"
+
+namespace tetwright {
+
+/// Reads a surface in the Object File Format, ASCII: OFF with or without colours, normals and texture
+/// coordinates (COFF, NOFF, STOFF, ...), with or without its keyword. Polygons become fans of triangles. 4-
+/// and n-dimensional and binary variants are rejected.
+///
+/// Not a library: the format is small, and every message names the line and the value.
+/// \param name used in messages
+/// \param dropped receives the dropped contents; may be null
+/// \throws InputError with the line for malformed contents
+TriangleMesh read_off(std::string_view bytes, const std::string& name,
+                      std::vector<Dropped>* dropped = nullptr);
+
+/// Content of a file; coordinates round-trip bit by bit. The format has no groups.
+std::string write_off(const TriangleMesh& mesh);
+
+}  // namespace tetwright

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Every key that --stats writes is in the schema, and every key that the schema requires is written.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validator.hpp>
+
+#include "tests/tools/program.h"
+
+namespace tetwright::stats_json_test {
+namespace {
+
+std::string violations(const nlohmann::json& document, const std::string& kind = "stats") {
+  const auto schema_json = nlohmann::json::parse(contents(TETWRIGHT_DATA "/" + kind + ".schema.json"));
+  valijson::Schema schema;
+  valijson::SchemaParser().populateSchema(valijson::adapters::NlohmannJsonAdapter(schema_json), schema);
+  valijson::ValidationResults results;
+  valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(document), &results);
+  std::string out;
+  valijson::ValidationResults::Error error;
+  while (results.popError(error)) {
+    for (const std::string& place : error.context) out += place;
+    out += ": " + error.description + "\n";
+  }
+  return out;
+}
+
+TEST(StatsJson, FollowsItsSchema) {
+  const TemporaryFolder f;
+  const auto stats = [&](const std::string& arguments) {
+    EXPECT_LE(run(arguments + " --stats " + (f / "s.json")).status, 1) << arguments;
+    const auto j = nlohmann::json::parse(contents(f / "s.json"));
+    EXPECT_EQ(violations(j), "") << arguments;
+    return j;
+  };
+  stats("sample torus -o " + (f / "t.ply"));
+  stats("mesh " + (f / "t.ply") + " -o " + (f / "d.vtu") + " --resolution 24");
+  stats("simplify " + (f / "d.vtu") + " -o " + (f / "s.vtu") + " --target-tets 3");
+  stats("improve " + (f / "s.vtu") + " -o " + (f / "i.vtu"));
+  stats("check " + (f / "d.vtu"));
+  stats("sample organs -o " + (f / "o.nrrd"));
+  const auto organs = stats("mesh " + (f / "o.nrrd") + " -o " + (f / "o.vtu") + " --voxel-size 2 --uniform");
+  EXPECT_EQ(organs["input"]["volume"]["labels"].size(), organs["result"]["materials"].size());
+  EXPECT_FALSE(organs["result"]["interfaces"].empty());
+  auto j = stats("prepare " + (f / "t.ply") + " -o " + (f / "p.vtu") + " --target-tets 1000 --threads 2");
+  EXPECT_EQ(j["threads"], 2);
+  EXPECT_EQ(j["result"]["materials"][0]["name"], "t");
+  EXPECT_GT(j["peak_bytes"], 0);
+  EXPECT_FALSE(j["iterations"].empty());
+  const auto bounded = stats("prepare " + (f / "t.ply") + " -o " + (f / "p.vtu") +
+                             " --tolerance 2% --max-edge 20% --target-tets 2000");
+  EXPECT_TRUE(bounded["tolerance"]["held"]);
+  EXPECT_GT(bounded["edge_lengths"]["edges"], 0);
+  // The schema refuses unknown keys and wrong types.
+  j["surprise"] = 1;
+  EXPECT_NE(violations(j), "");
+  j.erase("surprise");
+  j["result"]["tets"] = "many";
+  EXPECT_NE(violations(j), "");
+}
+
+TEST(CheckJson, FollowsItsSchema) {
+  const TemporaryFolder f;
+  const auto check = [&](const std::string& arguments) {
+    const Answer a = run("check --json " + arguments);
+    EXPECT_LE(a.status, 1) << a.err;
+    const auto j = nlohmann::json::parse(a.out);
+    EXPECT_EQ(violations(j, "check"), "") << arguments;
+    return j;
+  };
+  ASSERT_EQ(run("sample organs -o " + (f / "o.nrrd")).status, 0);
+  ASSERT_EQ(
+      run("mesh " + (f / "o.nrrd") + " -o " + (f / "o.vtu") + " --voxel-size 2 --uniform --accept-changes")
+          .status,
+      0);
+  const auto organs = check((f / "o.vtu") + " --before " + (f / "o.vtu"));
+  EXPECT_EQ(organs["topology"], organs["topology_before"]);
+  EXPECT_TRUE(organs["topology_differences"].empty());
+  EXPECT_EQ(organs["topology"]["materials"].size(), organs["mesh"]["materials"].size());
+  EXPECT_EQ(organs["topology"]["materials"][0]["name"], organs["mesh"]["materials"][0]["name"]);
+  EXPECT_GT(organs["topology"]["junction_curves"]["components"], 0);
+
+  ASSERT_EQ(run("sample torus -o " + (f / "t.ply")).status, 0);
+  ASSERT_EQ(
+      run("mesh " + (f / "t.ply") + " -o " + (f / "t.vtu") + " --resolution 24 --accept-changes").status, 0);
+  const auto torus = check((f / "t.vtu") + " --surface " + (f / "t.ply") + " --tolerance 10%");
+  EXPECT_EQ(torus["topology"]["domain"]["euler"], 0);
+  EXPECT_TRUE(torus["tolerance"]["held"]);
+  EXPECT_EQ(torus["surface"]["solid"]["result"]["handles"], 1);
+  EXPECT_NE(violations(nlohmann::json::object(), "check"), "");
+}
+
+TEST(CheckJson, PlacesAreCoordinates) {
+  const TemporaryFolder f;
+  // The second tet is inverted, and the last point is not used.
+  put(f / "bad.mesh",
+      "MeshVersionFormatted 2\nDimension 3\nVertices 6\n0 0 0 0\n3 0 0 0\n0 3 0 0\n0 0 3 0\n0 0 -3 0\n"
+      "9 9 9 0\nTetrahedra 2\n1 2 3 4 1\n1 2 3 5 1\nEnd\n");
+  const Answer a = run("check --json " + (f / "bad.mesh"));
+  EXPECT_EQ(a.status, 1);
+  const auto j = nlohmann::json::parse(a.out);
+  EXPECT_EQ(violations(j, "check"), "");
+  std::map<std::string, nlohmann::json> places;
+  for (const auto& finding : j["findings"]) places[finding["name"]] = finding["places"][0];
+  EXPECT_EQ(places["inverted"]["points"], nlohmann::json({0, 1, 2, 4}));
+  EXPECT_EQ(places["inverted"]["at"], nlohmann::json({0.75, 0.75, -0.75}));
+  EXPECT_EQ(places["unused_points"]["points"], nlohmann::json({5}));
+  EXPECT_EQ(places["unused_points"]["at"], nlohmann::json({9.0, 9.0, 9.0}));
+}
+
+TEST(StatsJson, OfARunThatFails) {
+  const TemporaryFolder f;
+  put(f / "flat.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const Answer a = run("mesh " + (f / "flat.off") + " -o " + (f / "o.vtu") + " --stats " + (f / "s.json"));
+  EXPECT_EQ(a.status, 3);
+  const auto j = nlohmann::json::parse(contents(f / "s.json"));
+  EXPECT_EQ(violations(j), "");
+  EXPECT_EQ(j["status"], 3);
+  EXPECT_NE(j["error"]["message"].get<std::string>().find("flat.off"), std::string::npos);
+  EXPECT_NE(j["error"]["stage"], "");
+  EXPECT_EQ(f.entries(), 2u);  // and no mesh
+}
+
+TEST(StatsJson, ToStandardOutput) {
+  const TemporaryFolder f;
+  put(f / "t.off", tetrahedron_off);
+  const std::string mesh = "mesh " + (f / "t.off") + " -o " + (f / "o.vtu") + " --resolution 16";
+  const auto j = nlohmann::json::parse(run(mesh + " --stats -").out);
+  EXPECT_EQ(violations(j), "");
+  EXPECT_EQ(j["status"], 0);
+  const auto checked = nlohmann::json::parse(run("check " + (f / "o.vtu") + " --stats -").out);
+  EXPECT_EQ(violations(checked), "");
+  expect_refused("check " + (f / "o.vtu") + " --stats - --json", 2, {"--json", "--stats -"});
+}
+
+TEST(StatsJson, ProgressAsLinesOfJsonAndTheLog) {
+  const TemporaryFolder f;
+  put(f / "t.off", tetrahedron_off);
+  const std::string call =
+      "mesh " + (f / "t.off") + " -o " + (f / "o.vtu") + " --resolution 32 --log-file " + (f / "run.log");
+  const Answer a = run(call + " --progress json --quiet");
+  EXPECT_EQ(a.status, 0);
+  std::istringstream lines(a.err);
+  std::vector<std::string> stages;
+  int percent = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const auto j = nlohmann::json::parse(line);
+    if (stages.empty() || stages.back() != j["stage"]) {
+      stages.push_back(j["stage"]);
+      EXPECT_EQ(j["percent"], 0);
+    } else {
+      EXPECT_GT(j["percent"], percent);
+    }
+    percent = j["percent"];
+    EXPECT_LE(percent, 100);
+  }
+  EXPECT_GT(stages.size(), 2u);
+  EXPECT_EQ(stages.front(), "read");
+  EXPECT_EQ(run("mesh " + (f / "t.off") + " -o " + (f / "o.vtu") + " --threads 1 --resolution 8 --log-file " +
+                (f / "run.log") + " --voxel-size 9 --progress none")
+                .status,
+            2);
+  EXPECT_EQ(
+      run("mesh " + (f / "none.off") + " -o " + (f / "o.vtu") + " --log-file " + (f / "run.log")).status, 3);
+  const std::string log = contents(f / "run.log");
+  for (const char* said :
+       {"--resolution 32", "stage: read", "stage: write", "exit status 0", "none.off", "exit status 3"})
+    EXPECT_NE(log.find(said), std::string::npos) << log << "lacks: " << said;
+  expect_refused("mesh " + (f / "t.off") + " -o " + (f / "o.vtu") + " --log-file " + (f / "no/where.log"), 5,
+                 {"where.log"});
+  expect_refused("mesh " + (f / "t.off") + " -o " + (f / "o.vtu") + " --log-file " + (f / "t.off"), 2,
+                 {"--log-file", "is also an input"});
+}
+
+}  // namespace
+}  // namespace tetwright::stats_json_test
