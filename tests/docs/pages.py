@@ -26,6 +26,15 @@ def guide_pages():
             *(os.path.join(guide, name) for name in names)]
 
 
+def all_pages():
+    """Every Markdown page of the source: those of guide_pages() and what folders say of themselves."""
+    found = []
+    for folder, folders, names in os.walk(SOURCE):
+        folders[:] = [name for name in folders if name not in ("build", "out", "shared") and not name.startswith(".")]
+        found += [os.path.join(folder, name) for name in names if name.endswith(".md")]
+    return sorted(found)
+
+
 def read(path):
     with open(path, encoding="utf-8") as file:
         return file.read()

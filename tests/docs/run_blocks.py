@@ -13,8 +13,8 @@ file. Behind the language a block may say
     file=NAME     the block is written to this file and not run; a script or an input for what follows
 
 --python-path is where the Python package is, --prefix where CMake finds the installed library; without them the blocks
-that need them (`import tetwright`, and `sh` that calls CMake) are left out. Status 1 if a block fails; blocks that are
-left out for want of a package are named.
+that need them (`import tetwright`, and `sh` that calls CMake) are left out. Status 1 if a block fails, or another
+package is missing than those that may be; blocks that are left out are named.
 """
 import argparse
 import importlib.util
@@ -29,6 +29,8 @@ import time
 import pages
 
 PYTHON = "/usr/bin/python3"  # another one on the path may not see Debian's modules
+# Packages that tools/optional lists, and what Debian has not. Others are installed by tools/setup test.
+MAY_BE_MISSING = ("ccx", "python:dolfinx", "python:pyvista")
 SECONDS = 500  # for a block, on a machine with much else to do
 
 
@@ -105,6 +107,10 @@ def run_page(path, options):
             why_not = runner.why_not(block) if runs else ""
             if why_not and why_not != "no-run":
                 print(f"left out: {name}:{block.line}: {why_not}")
+                need = block.attributes.get("needs")
+                if need and not is_there(need) and need not in MAY_BE_MISSING:
+                    print(f"FAILED: {name}:{block.line}: tools/setup test installs {need}")
+                    return 1
             if why_not or not runs:
                 continue
             begin = time.monotonic()

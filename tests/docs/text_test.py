@@ -16,7 +16,7 @@ MAX_README_LINES = 150
 MAX_PICTURE_BYTES = 200_000
 
 # Options of other programs, which the text names beside ours.
-OTHERS = {"--build", "--install", "--ml", "--no-build-isolation", "--no-deps", "--prefix", "--target"}
+OTHERS = {"--build", "--install", "--ml", "--no-build-isolation", "--no-deps", "--prefix", "--suite", "--target"}
 
 
 def run(*arguments):
@@ -66,8 +66,8 @@ class TextTest(unittest.TestCase):
                 self.assertIn(f"`{option}`", table, command)
 
     def test_links_and_pictures_resolve(self):
-        for path, text in self.pages.items():
-            for target, line in pages.links(text):
+        for path in pages.all_pages():
+            for target, line in pages.links(pages.read(path)):
                 if re.match(r"[a-z]+:", target):
                     continue
                 file, _, anchor = target.partition("#")
