@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/parallel/parallel.h"
-#include "tools/app/printed_report.h"
+#include "tools/prepare/notes.h"
 
 namespace tetwright {
 
@@ -173,7 +173,7 @@ nlohmann::json mesh_json(const MeshStatistics& m, const std::map<MaterialTag, st
           {"histogram", m.histogram.counts}};
 }
 
-nlohmann::json input_json(const RunReport& run) {
+nlohmann::json input_json(const PrepareReport& run) {
   nlohmann::json j = {
       {"files", run.inputs}, {"triangles", run.input_triangles}, {"points", run.input_points}};
   if (!run.material_field.empty()) j["material_field"] = run.material_field;
@@ -323,7 +323,7 @@ void add_mesher_json(const MesherReport& m, nlohmann::json& dense) {
                                     {"place", place_json(g.place)}});
 }
 
-nlohmann::json seconds_json(const RunReport& run) {
+nlohmann::json seconds_json(const PrepareReport& run) {
   nlohmann::json seconds = {
       {"read", run.seconds_read}, {"write", run.seconds_write}, {"total", run.seconds_total}};
   if (run.mesher) {
@@ -350,29 +350,31 @@ std::size_t peak_bytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
 }
 
-std::string stats_json(const CommandLine& line, const RunReport& run) {
+std::string stats_json(const CommandRun& ended) {
+  const CommandLine& line = ended.line;
+  const PrepareReport& run = ended.report;
   nlohmann::json j;
   j["version"] = TETWRIGHT_VERSION;
   j["command"] = name_of(line.command);
-  j["status"] = static_cast<int>(run.status);
-  if (!run.error.empty()) j["error"] = {{"message", run.error}, {"stage", run.stage}};
+  j["status"] = static_cast<int>(ended.status);
+  if (!ended.error.empty()) j["error"] = {{"message", ended.error}, {"stage", ended.stage}};
   j["notes"] = notes_of(run);
   j["threads"] = thread_count();
-  j["seed"] = line.seed;
+  j["seed"] = line.options.seed;
   if (run.simplify) {
-    j["objective"] = name_of(line.objective);
+    j["objective"] = name_of(line.options.shapes.objective);
     if (line.command == Command::improve) {
-      j["only_below"] = line.only_below;
-      j["free_count"] = line.free_count;
+      j["only_below"] = line.options.shapes.only_below.value_or(0);
+      j["free_count"] = line.options.shapes.free_count;
     } else {
-      j["schedule"] = name_of(line.schedule);
+      j["schedule"] = name_of(line.options.schedule.kind);
     }
   }
   j["input"] = input_json(run);
-  if (run.dense) j["dense"] = mesh_json(*run.dense, run.material_names, line.min_solid_angle);
+  if (run.dense) j["dense"] = mesh_json(*run.dense, run.material_names, line.options.shapes.bound());
   if (run.mesher) add_mesher_json(*run.mesher, j["dense"]);
   j["result"] =
-      run.result ? mesh_json(*run.result, run.material_names, line.min_solid_angle) : nlohmann::json();
+      run.result ? mesh_json(*run.result, run.material_names, line.options.shapes.bound()) : nlohmann::json();
   if (run.simplify) j["result"]["held_by_input"] = run.input_limited;
   if (run.mesher) j["fidelity"] = fidelity_json(run.solids);
   if (!run.features.empty()) j["features"] = features_json(run.features);
@@ -403,7 +405,9 @@ std::string stats_json(const CommandLine& line, const RunReport& run) {
   return json_text(j);
 }
 
-std::string check_json(const CommandLine& line, const RunReport& run, const CheckReport& check) {
+std::string check_json(const CommandRun& ended, const CheckReport& check) {
+  const CommandLine& line = ended.line;
+  const PrepareReport& run = ended.report;
   nlohmann::json j = {{"valid", check.valid()}, {"findings", nlohmann::json::array()}};
   for (const MeshFinding& f : check.findings) {
     nlohmann::json places = nlohmann::json::array();
@@ -419,7 +423,7 @@ std::string check_json(const CommandLine& line, const RunReport& run, const Chec
                              {"places", places}});
   }
   if (check.measurable) {
-    j["mesh"] = mesh_json(*run.result, run.material_names, line.min_solid_angle);
+    j["mesh"] = mesh_json(*run.result, run.material_names, line.options.shapes.bound());
     j["topology"] = topology_json(*check.topology, run.material_names);
   }
   if (check.topology_before) j["topology_before"] = topology_json(*check.topology_before, run.material_names);

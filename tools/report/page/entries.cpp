@@ -8,7 +8,7 @@
 #include "common/geometry/predicates.h"
 #include "common/geometry/quality.h"
 #include "common/parallel/parallel.h"
-#include "tools/app/printed_report.h"
+#include "tools/prepare/notes.h"
 #include "tools/report/page/html_text.h"
 
 namespace tetwright {
@@ -82,7 +82,7 @@ void add_worst(const TetMesh& mesh, PageEntries& entries) {
 
 }  // namespace
 
-PageEntries page_entries(const RunReport& run, const TetMesh& mesh, const CheckReport* check) {
+PageEntries page_entries(const PrepareReport& run, const TetMesh& mesh, const CheckReport* check) {
   PageEntries entries;
   for (const Shortfall& s : run.shortfall) entries.short_of.push_back({s.message, "", s.places});
   for (const InputFinding& f : run.findings) entries.found.push_back(entry_of(f));

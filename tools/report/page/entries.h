@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "common/types.h"
-#include "tools/prepare/run_report.h"
+#include "tools/compare/check_report.h"
+#include "tools/prepare/report.h"
 
 namespace tetwright {
 
@@ -23,6 +24,6 @@ struct PageEntries {
 
 /// What a run reports; of `check` with what it found in the mesh. Parallel; the result does not depend on the
 /// threads.
-PageEntries page_entries(const RunReport& run, const TetMesh& mesh, const CheckReport* check);
+PageEntries page_entries(const PrepareReport& run, const TetMesh& mesh, const CheckReport* check);
 
 }  // namespace tetwright

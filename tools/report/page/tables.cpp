@@ -57,7 +57,7 @@ std::string figures_table(std::span<const ChartMesh> meshes, double threshold) {
   return out + "</tbody></table>";
 }
 
-std::string materials_table(const RunReport& run) {
+std::string materials_table(const PrepareReport& run) {
   std::string out =
       "<table><thead><tr><th scope=\"col\">material</th><th scope=\"col\">tag</th><th "
       "scope=\"col\">tets</th><th scope=\"col\">volume</th></tr></thead><tbody>";

@@ -35,7 +35,7 @@ std::string page_of(const TetMesh& mesh, const PageLimits& limits = {}) {
   CommandLine line;
   line.command = Command::check;
   line.inputs = {"mesh.vtu"};
-  RunReport run;
+  PrepareReport run;
   run.inputs = line.inputs;
   run.result = mesh_statistics(mesh);
   return report_page(line, run, mesh, nullptr, nullptr, limits);
@@ -88,7 +88,7 @@ TEST(ReportPage, NamesOfTheUserAreNoMarkup) {
   line.command = Command::improve;
   line.output = evil + ".vtu";
   line.arguments = " improve " + evil;
-  RunReport run;
+  PrepareReport run;
   run.inputs = {evil};
   run.material_names = mesh.material_names;
   run.dense = run.result = mesh_statistics(mesh);

@@ -10,22 +10,18 @@
 
 #include "common/features/surface_patches.h"
 #include "common/mesh/curved_elements.h"
-#include "common/mesh/mesh_check.h"
 #include "common/mesh/mesh_statistics.h"
-#include "common/mesh/topology.h"
 #include "common/sizes/size_field.h"
 #include "mesher/mesher.h"
 #include "simplify/simplify.h"
-#include "tools/app/exit_status.h"
 #include "tools/compare/crease_comparison.h"
 #include "tools/compare/edge_lengths.h"
 #include "tools/compare/patch_comparison.h"
 #include "tools/compare/solid_comparison.h"
-#include "tools/compare/surface_comparison.h"
 
 namespace tetwright {
 
-/// A request that was not met, which makes the exit status 1.
+/// A request that was not met.
 struct Shortfall {
   std::string what;  ///< as in --stats: "target_tets", "fidelity" and others
   double asked = 0, reached = 0;
@@ -74,8 +70,8 @@ struct CoarserCells {
   double bytes;        ///< that those asked for would take
 };
 
-/// Everything that a run of the program reports. What a command does not do stays empty.
-struct RunReport {
+/// Everything that a run reports. What it does not do stays empty.
+struct PrepareReport {
   std::vector<std::string> inputs;
   std::size_t input_triangles = 0, input_points = 0;
   std::string material_field;          ///< the cell field of a tet mesh that its materials came from
@@ -104,23 +100,6 @@ struct RunReport {
   std::optional<EdgeLengthReport> edge_lengths;  ///< where sizes are asked for
   double seconds_read = 0, seconds_mesh = 0, seconds_write = 0, seconds_total = 0;
   std::vector<Shortfall> shortfall;
-  ExitStatus status = ExitStatus::done;
-  std::string error, stage;  ///< of a run that failed: its message, and the stage in which it did
-};
-
-/// What `check` found in a mesh.
-struct CheckReport {
-  std::vector<MeshFinding> findings;
-  /// False if indices or coordinates are unsound: then there are no statistics and no topology.
-  bool measurable = true;
-  std::optional<Topology> topology, topology_before;             ///< of the mesh, and of that of --before
-  std::optional<std::vector<std::string>> topology_differences;  ///< from the mesh of --before, if given
-  std::optional<SurfaceComparison> surface;                      ///< with --surface
-  double tolerance = 0;                                          ///< input units; 0: none
-
-  bool valid() const { return is_valid(findings); }
-  bool within_tolerance() const { return tolerance == 0 || (surface && surface->upper() <= tolerance); }
-  bool topology_kept() const { return !topology_differences || topology_differences->empty(); }
 };
 
 }  // namespace tetwright

@@ -1,29 +1,28 @@
-#include "tools/app/commands/tet_input.h"
+#include "tools/prepare/tet_input.h"
 
 #include <utility>
 
 #include "common/error.h"
 #include "common/formats/formats.h"
 #include "common/mesh/foreign_mesh.h"
-#include "tools/app/commands/edge_sizes_input.h"
-#include "tools/app/commands/scan_input.h"
-#include "tools/app/commands/simplification.h"
+#include "tools/prepare/edge_sizes_input.h"
+#include "tools/prepare/simplification.h"
 
 namespace tetwright {
 
 namespace {
 
-void check_input_kind(const CommandRun& run) {
-  const std::string& file = run.line.inputs.front();
-  const FileKind kind = input_kind(run, file);
+void check_input_kind(const Input& input, Task task) {
+  const std::string& file = input.name;
+  const FileKind kind = input.kind();
   if (kind == FileKind::surface || kind == FileKind::volume || is_vdb(file))
     throw UsageError(file + " is a " + (kind == FileKind::surface ? "surface" : "volume") +
-                     ", which 'tetwright prepare' and 'tetwright mesh' take; " + name_of(run.line.command) +
+                     ", which 'tetwright prepare' and 'tetwright mesh' take; " + name_of(task) +
                      " reads tet meshes (" + known_extensions(FileKind::tet_mesh) + ")");
 }
 
 /// Other programs list tets in the opposite orientation or repeat points for each tet.
-void repair(TetMesh& mesh, const std::string& file, RunReport& report) {
+void repair(TetMesh& mesh, const std::string& file, PrepareReport& report) {
   const ForeignReport found = make_coherent(mesh);
   const auto add = [&](std::size_t count, const char* what, const char* done,
                        std::optional<Vec3> place = {}) {
@@ -42,12 +41,12 @@ void repair(TetMesh& mesh, const std::string& file, RunReport& report) {
 
 }  // namespace
 
-TetInput read_tets(CommandRun& run) {
+TetInput read_tets(Input from, PrepareRun& run) {
   const Stopwatch watch;
-  const std::string& file = run.line.inputs.front();
+  const std::string& file = from.name;
   run.progress.begin_stage("read");
-  check_input_kind(run);
-  ReadTetMesh read = take_tet_mesh(run, file, {run.line.material_field});
+  check_input_kind(from, run.task);
+  ReadTetMesh read = take_tet_mesh(from, {run.options.material_field}, run.seconds_waited);
   run.report.material_field = read.material_field;
   run.report.input_points = read.mesh.points.size();
   run.progress.throw_if_stopped();
@@ -61,9 +60,9 @@ TetInput read_tets(CommandRun& run) {
     input.mesh.cell_fields.clear();
   }
   run.report.patches = patches_of_input(input.mesh);
-  if (run.line.feature_angle.rule != FeatureAngle::Rule::off) {
+  if (run.options.feature_angle.rule != FeatureAngle::Rule::off) {
     run.report.features.push_back(
-        {material_name_of(run, file), find_mesh_patches(input.mesh, run.line.feature_angle, file)});
+        {from.material_name(), find_mesh_patches(input.mesh, run.options.feature_angle, file)});
     run.report.features.back().found.patches = {};
   }
   run.progress.throw_if_stopped();
@@ -72,17 +71,17 @@ TetInput read_tets(CommandRun& run) {
   // Comparing and writing a mesh take as long as reading it (5 s each of the 4.3 million tets of
   // dragon_vrip_res2.ply at --resolution 200); what simplifying leaves of it takes less.
   const double finishing = run.report.seconds_read - run.seconds_waited;
-  run.reserve_time(run.line.command == Command::improve ? finishing
-                                                        : std::min(finishing, run.seconds_left() / 2));
-  if (run.line.target_tets > input.mesh.tets.size())
-    throw UsageError("--target-tets " + std::to_string(run.line.target_tets) + " is above the " +
+  run.reserve_time(run.task == Task::improve ? finishing : std::min(finishing, run.seconds_left() / 2));
+  const TargetOptions& target = run.options.target;
+  if (target.tets && *target.tets > input.mesh.tets.size())
+    throw UsageError("--target-tets " + std::to_string(*target.tets) + " is above the " +
                      std::to_string(input.mesh.tets.size()) + " tets of " + file + "; give fewer");
   Box3 box;
   for (const Vec3& p : input.mesh.points) box.add(p);
   read_sizes(run, box);
   require_sizes_at(run, input.mesh.points);
-  run.report.dense = mesh_statistics(input.mesh, run.line.min_solid_angle);
-  if (run.line.tolerance.value > 0) run.report.tolerance = tolerance_of(run.line, diagonal_of(input.mesh));
+  run.report.dense = mesh_statistics(input.mesh, run.options.shapes.bound());
+  if (target.tolerance) run.report.tolerance = tolerance_of(*target.tolerance, diagonal_of(input.mesh));
   return input;
 }
 

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "common/tet_mesh.h"
+#include "tools/prepare/run.h"
+
+namespace tetwright {
+
+/// Compares a result with what was asked for and with what was there before: fills `run.report`. `mesh` has
+/// its interfaces.
+void assess(const TetMesh& mesh, PrepareRun& run);
+
+/// Decides what falls short, once all findings are in the report. May be called again when some were added.
+void conclude(const AcceptanceOptions& acceptance, PrepareReport& report);
+
+}  // namespace tetwright

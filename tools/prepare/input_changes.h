@@ -1,0 +1,12 @@
+#pragma once
+
+#include "common/tet_mesh.h"
+#include "tools/prepare/run.h"
+
+namespace tetwright {
+
+/// Compares the result with the input: labels, solids, thin walls, creases and patches. Adds findings and
+/// shortfalls to `run.report`. `mesh` has its interfaces.
+void find_input_changes(const TetMesh& mesh, PrepareRun& run);
+
+}  // namespace tetwright
