@@ -69,7 +69,7 @@ struct LabelInput {
   /// Of the outside, those that do not reach the border of the volume. No parts are counted of 2^32 voxels
   /// and more.
   LabelParts outside_parts;
-  std::vector<InputFinding> findings;  ///< changes to the input, for the user
+  std::vector<Diagnostic> findings;  ///< changes to the input, for the user
 
   std::size_t voxel_count() const { return regions.size(); }
 };

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "common/diagnostic.h"
 #include "common/triangle_mesh.h"
 #include "common/types.h"
 
@@ -37,26 +37,12 @@ struct RepairedSurface {
   double volume = 0;
 };
 
-/// A defect of an input that was found, and what was done about it.
-struct SurfaceFinding {
-  std::string what;           ///< plural, for example "boundary edges of holes"
-  std::size_t count = 0;      ///< at least 1
-  std::optional<Vec3> place;  ///< of the first one, input units
-  std::string done;           ///< what was done about it
-};
-
-/// A finding and the file that it is about.
-struct InputFinding {
-  std::string file;
-  SurfaceFinding finding;
-};
-
 struct SurfaceRepair {
   RepairedSurface surface;
   /// With NestedRule::material the enclosed components, oriented outwards; enclosers come first, so that
   /// later surfaces carve earlier ones.
   std::vector<RepairedSurface> nested;
-  std::vector<SurfaceFinding> findings;
+  std::vector<Diagnostic> findings;  ///< without the file
 };
 
 /// Repairs a surface and reports every change, so a clean closed surface has no findings. Steps, in this

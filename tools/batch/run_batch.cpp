@@ -79,7 +79,7 @@ void check_jobs_are_independent(const CommandLine& batch, const std::vector<Job>
       continue;  // its result will say so
     }
     for (const std::string& path : written_files(line)) {
-      for (const std::string& of_batch : {file, results_file_of(batch), batch.log_file})
+      for (const std::string& of_batch : {file, results_file_of(batch), batch.console.log_file})
         if (!of_batch.empty() && real_path(path) == real_path(of_batch))
           throw InputError(
               file, 0,
@@ -112,7 +112,7 @@ void carry_out(CommandRun& run, Ended& ended) {
     ended.stats = nlohmann::json::parse(stats_json(run));
   }
   ended.messages = notes_of(run.report);
-  for (const Shortfall& s : run.report.shortfall) ended.messages.push_back(s.message);
+  for (std::string& line : shortfalls_of(run.report)) ended.messages.push_back(std::move(line));
   ended.status = run.status;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/diagnostic.h"
 #include "common/mesh/mesh_check.h"
 #include "common/mesh/topology.h"
 #include "tools/compare/surface_comparison.h"
@@ -24,5 +25,8 @@ struct CheckReport {
   bool within_tolerance() const { return tolerance == 0 || (surface && surface->upper() <= tolerance); }
   bool topology_kept() const { return !topology_differences || topology_differences->empty(); }
 };
+
+/// What is wrong with the mesh, and what it falls short of.
+std::vector<Diagnostic> diagnostics_of(const CheckReport& check);
 
 }  // namespace tetwright

@@ -9,7 +9,4 @@ namespace tetwright {
 /// its interfaces.
 void assess(const TetMesh& mesh, PrepareRun& run);
 
-/// Decides what falls short, once all findings are in the report. May be called again when some were added.
-void conclude(const AcceptanceOptions& acceptance, PrepareReport& report);
-
 }  // namespace tetwright

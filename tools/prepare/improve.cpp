@@ -24,9 +24,15 @@ void report_tets_below(const TetMesh& mesh, PrepareRun& run) {
   char what[120];
   std::snprintf(what, sizeof what, "tets still below --only-below %.6g sr, the smallest at %.4g sr", bound,
                 statistics.min_solid_angle);
-  run.report.findings.push_back(
-      {run.report.inputs.front(),
-       {what, left, {}, "held back by: " + rules_limiting_shapes(*run.report.simplify)}});
+  const std::string held = rules_limiting_shapes(*run.report.simplify);
+  run.report.diagnostics.push_back({.code = DiagnosticCode::tets_still_below,
+                                    .file = run.report.inputs.front(),
+                                    .what = what,
+                                    .count = left,
+                                    .done = "held back by: " + held,
+                                    .asked = bound,
+                                    .reached = statistics.min_solid_angle,
+                                    .limited_by = held});
 }
 
 }  // namespace

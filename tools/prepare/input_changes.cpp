@@ -31,20 +31,18 @@ void find_lost_labels(PrepareRun& run) {
   if (lost.size() > max_lost_named) names += ", ...";
   const std::string rule =
       "--min-voxels " + std::to_string(options.labels.min_voxels.value_or(default_min_voxels));
-  report.shortfall.push_back(
-      {"labels", static_cast<double>(all), static_cast<double>(kept), rule + ": " + names,
-       "lost " + std::to_string(lost.size()) + " of " + std::to_string(all) + " labels: " + names +
-           "; all their islands have fewer voxels than " + rule + " keeps; give a smaller number",
-       places});
+  report.diagnostics.push_back({.code = DiagnosticCode::labels_lost,
+                                .what = "lost " + std::to_string(lost.size()) + " of " + std::to_string(all) +
+                                        " labels: " + names + "; all their islands have fewer voxels than " +
+                                        rule + " keeps",
+                                .remedy = "give a smaller number",
+                                .asked = static_cast<double>(all),
+                                .reached = static_cast<double>(kept),
+                                .limited_by = rule + ": " + names,
+                                .places = places});
 }
 
-/// Whether --min-gap or --min-thickness have changed something.
-bool changed_on_purpose(const PrepareReport& report) {
-  return report.mesher && std::any_of(report.mesher->closed_gaps.begin(), report.mesher->closed_gaps.end(),
-                                      [](const ClosedGapReport& g) { return g.on_purpose; });
-}
-
-/// Materials that are not the solid they are meant to be: a shortfall, or with --accept-changes a finding.
+/// Materials that are not the solid they are meant to be.
 void find_changed_solids(const TetMesh& mesh, PrepareRun& run) {
   const PrepareOptions& options = run.options;
   PrepareReport& report = run.report;
@@ -76,31 +74,26 @@ void find_changed_solids(const TetMesh& mesh, PrepareRun& run) {
   }
   if (text.empty()) return;
   const std::size_t all = report.solids.size();
-  const bool on_purpose = changed_on_purpose(report);
-  if (options.acceptance.accept_changes || on_purpose) {
-    report.findings.push_back(
-        {report.inputs.front(),
-         {"of " + std::to_string(all) + " materials not the solid of the input: " + text, all - same,
-          places.empty() ? std::nullopt : std::optional(places.front()),
-          options.acceptance.accept_changes ? "accepted" : "as --min-gap and --min-thickness ask"}});
-    return;
-  }
   std::string thin;
   for (const ThinPartReport& t : report.mesher->thin_parts)
     thin += (thin.empty() ? "" : ", ") + (t.name.empty() ? "a gap" : "'" + t.name + "'") + " at " +
             place_text(t.first);
-  report.shortfall.push_back({"fidelity", static_cast<double>(all), static_cast<double>(same),
-                              dense_was_same ? "the number of tets"
-                              : thin.empty() ? "the size of the cells"
-                                             : "what is thin for the cells: " + thin,
-                              "not the solid of the input: " + text + "; raise " +
-                                  (dense_was_same ? "--target-tets" : "--resolution") +
-                                  ", or take it as it is with --accept-changes",
-                              places});
+  report.diagnostics.push_back({.code = DiagnosticCode::solid_changed,
+                                .file = report.inputs.front(),
+                                .what = "not the solid of the input: " + text,
+                                .remedy = std::string("raise ") +
+                                          (dense_was_same ? "--target-tets" : "--resolution") +
+                                          ", or take it as it is with --accept-changes",
+                                .asked = static_cast<double>(all),
+                                .reached = static_cast<double>(same),
+                                .limited_by = dense_was_same ? "the number of tets"
+                                              : thin.empty() ? "the size of the cells"
+                                                             : "what is thin for the cells: " + thin,
+                                .places = places});
 }
 
-/// Walls that are too thick and gaps that are closed because cells are too large: a shortfall, or with
-/// --accept-changes a finding. What was asked for is a finding.
+/// Walls that are too thick and gaps that are closed because cells are too large, and those that were changed
+/// on purpose.
 void find_thin_walls(PrepareRun& run) {
   const PrepareOptions& options = run.options;
   PrepareReport& report = run.report;
@@ -112,9 +105,13 @@ void find_thin_walls(PrepareRun& run) {
     std::snprintf(numbers, sizeof numbers, "%.3g wide, over an area of %.3g, narrowest at ", g.width, g.area);
     const std::string what = "'" + g.name + "' " + numbers + place_text(g.place);
     if (g.on_purpose) {
-      report.findings.push_back({report.inputs.front(),
-                                 {(g.gap ? "gap of " : "wall of ") + what, 1, g.place,
-                                  g.gap ? "closed by --min-gap" : "left out by --min-thickness"}});
+      report.diagnostics.push_back(
+          {.code = g.gap ? DiagnosticCode::gap_closed : DiagnosticCode::wall_left_out,
+           .file = report.inputs.front(),
+           .what = (g.gap ? "gap of " : "wall of ") + what,
+           .count = 1,
+           .done = g.gap ? "closed by --min-gap" : "left out by --min-thickness",
+           .places = {g.place}});
       continue;
     }
     text += (text.empty() ? "" : "; ") + std::string("a gap of ") + what + " is closed";
@@ -130,24 +127,21 @@ void find_thin_walls(PrepareRun& run) {
     places.push_back(t.place);
   }
   if (text.empty()) return;
-  if (options.acceptance.accept_changes) {
-    report.findings.push_back(
-        {report.inputs.front(), {"thin place, too thin for cells: " + text, 1, places.front(), "accepted"}});
-    return;
-  }
   const bool finer = !options.cells.uniform && options.cells.max_refinement.value_or(0) < max_wall_refinement;
-  report.shortfall.push_back(
-      {"thin_walls", 0, static_cast<double>(report.mesher->closed_gaps.size() + t.points),
-       "the size of the cells",
-       "too thin for cells: " + text + "; raise --resolution" + (finer ? " or --max-refinement" : "") +
-           ", or take it as it is with --accept-changes",
-       places});
+  report.diagnostics.push_back({.code = DiagnosticCode::thin_walls_changed,
+                                .file = report.inputs.front(),
+                                .what = "too thin for cells: " + text,
+                                .remedy = std::string("raise --resolution") +
+                                          (finer ? " or --max-refinement" : "") +
+                                          ", or take it as it is with --accept-changes",
+                                .asked = 0,
+                                .reached = static_cast<double>(report.mesher->closed_gaps.size() + t.points),
+                                .limited_by = "the size of the cells",
+                                .places = places});
 }
 
-/// Creases and corners that are not where they are in the input: a shortfall, or with --accept-changes a
-/// finding.
+/// Creases and corners that are not where they are in the input.
 void find_changed_creases(const TetMesh& mesh, PrepareRun& run) {
-  const PrepareOptions& options = run.options;
   PrepareReport& report = run.report;
   if (report.creases.segments.empty()) return;
   report.crease_comparison = compare_creases(report.creases, mesh);
@@ -160,30 +154,26 @@ void find_changed_creases(const TetMesh& mesh, PrepareRun& run) {
   if (c.lost_corners > 0)
     text += ", and " + std::to_string(c.lost_corners) + " of " + std::to_string(c.corners) +
             " corners are lost, the first at " + place_text(c.lost_corner);
-  if (options.acceptance.accept_changes || changed_on_purpose(report)) {
-    report.findings.push_back(
-        {report.inputs.front(),
-         {"place where " + text, 1, c.place,
-          options.acceptance.accept_changes ? "accepted" : "as --min-gap and --min-thickness ask"}});
-    return;
-  }
   const bool of_tets = !report.mesher;
   std::vector<Vec3> places{c.place};
   if (c.lost_corners > 0) places.push_back(c.lost_corner);
-  report.shortfall.push_back({"creases", 0, c.max_distance,
-                              report.simplify ? "the number of tets" : "the size of the cells",
-                              text + "; " +
-                                  (run.task == Task::improve ? ""
-                                   : report.simplify         ? "raise --target-tets, or "
-                                                             : "raise --resolution, or ") +
-                                  (of_tets ? "leave sharp edges alone with --feature-angle off"
-                                           : "take it as it is with --accept-changes"),
-                              places});
+  report.diagnostics.push_back(
+      {.code = DiagnosticCode::creases_changed,
+       .file = report.inputs.front(),
+       .what = text,
+       .remedy = std::string(run.task == Task::improve ? ""
+                             : report.simplify         ? "raise --target-tets, or "
+                                                       : "raise --resolution, or ") +
+                 (of_tets ? "leave sharp edges alone with --feature-angle off"
+                          : "take it as it is with --accept-changes"),
+       .asked = 0,
+       .reached = c.max_distance,
+       .limited_by = report.simplify ? "the number of tets" : "the size of the cells",
+       .places = places});
 }
 
-/// Patches of the user of which the mesh has nothing: a shortfall, or with --accept-changes a finding.
+/// Patches of the user of which the mesh has nothing.
 void find_lost_patches(const TetMesh& mesh, PrepareRun& run) {
-  const PrepareOptions& options = run.options;
   PrepareReport& report = run.report;
   compare_patches(mesh, report.patches);
   std::string text;
@@ -197,19 +187,47 @@ void find_lost_patches(const TetMesh& mesh, PrepareRun& run) {
   if (lost == 0) return;
   if (lost > max_lost_named) text += ", ...";
   const std::size_t all = report.patches.size();
-  if (options.acceptance.accept_changes || changed_on_purpose(report)) {
-    report.findings.push_back(
-        {report.inputs.front(),
-         {"named patches that are lost: " + text, lost, places.front(),
-          options.acceptance.accept_changes ? "accepted" : "as --min-gap and --min-thickness ask"}});
-    return;
-  }
-  report.shortfall.push_back(
-      {"patches", static_cast<double>(all), static_cast<double>(all - lost), "the size of the cells",
-       "lost " + std::to_string(lost) + " of " + std::to_string(all) + " named patches: " + text +
-           "; they are smaller than cells, within the solid, or on triangles that are there twice: raise "
-           "--resolution, or leave them out",
-       places});
+  report.diagnostics.push_back(
+      {.code = DiagnosticCode::patches_lost,
+       .file = report.inputs.front(),
+       .what = "lost " + std::to_string(lost) + " of " + std::to_string(all) + " named patches: " + text,
+       .remedy = "they are smaller than cells, within the solid, or on triangles that are there twice: raise "
+                 "--resolution, or leave them out",
+       .asked = static_cast<double>(all),
+       .reached = static_cast<double>(all - lost),
+       .limited_by = "the size of the cells",
+       .places = places});
+}
+
+/// Parts that are small or thin for the cells.
+void find_small_parts(PrepareReport& report) {
+  for (const FeatureReport& f : report.features)
+    if (f.found.dropped > 0)
+      report.diagnostics.push_back({.code = DiagnosticCode::crease_patches_dropped,
+                                    .what = "'" + f.name + "' has " + std::to_string(f.found.dropped) +
+                                            " patches between sharp edges smaller than eight faces of a cell",
+                                    .done = "their edges are not kept; a higher resolution keeps them"});
+  if (!report.mesher) return;
+  if (report.mesher->isolated_vertices > 0)
+    report.diagnostics.push_back({.code = DiagnosticCode::specks_dropped,
+                                  .what = "parts or cavities of a single lattice point",
+                                  .count = report.mesher->isolated_vertices,
+                                  .done = "left out; a higher resolution keeps them"});
+  for (const std::string& name : report.mesher->unknown)
+    report.diagnostics.push_back(
+        {.code = DiagnosticCode::not_compared,
+         .what =
+             "'" + name +
+             "' was not compared with its input: its surface is open, intersects itself or meets another, "
+             "and cells of this size do not show it"});
+  for (const ThinPartReport& t : report.mesher->thin_parts)
+    report.diagnostics.push_back(
+        {.code = DiagnosticCode::thin_parts,
+         .what = (t.name.empty() ? "a gap" : "'" + t.name + "'") + " is thinner than " +
+                 (t.refined ? "the smallest cells can hold" : "two cells") + " at " +
+                 std::to_string(t.places) + " places, the first at " + place_text(t.first) +
+                 ": parts may tear or join there; a higher resolution keeps them",
+         .places = {t.first}});
 }
 
 }  // namespace
@@ -220,6 +238,7 @@ void find_input_changes(const TetMesh& mesh, PrepareRun& run) {
   find_thin_walls(run);
   find_changed_creases(mesh, run);
   find_lost_patches(mesh, run);
+  find_small_parts(run.report);
 }
 
 }  // namespace tetwright

@@ -30,8 +30,9 @@ struct Prepared {
   /// meshes.
   std::shared_ptr<const MaterialField> field;
 
-  /// Whether a request was not met: the mesh is valid, and `report.shortfall` says what.
-  bool short_of_request() const { return !report.shortfall.empty(); }
+  /// What was found, and which requests were not met.
+  const std::vector<Diagnostic>& diagnostics() const { return report.diagnostics; }
+  bool falls_short() const { return report.falls_short(); }
 };
 
 /// Turns scans (surfaces, level sets, or one segmented volume) into a mesh for simulation: chooses the cells,

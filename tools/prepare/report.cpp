@@ -11,4 +11,9 @@ double PrepareReport::lost_area() const {
   return all_shown ? deviation->hidden_area : 0;
 }
 
+bool PrepareReport::falls_short() const {
+  return std::any_of(diagnostics.begin(), diagnostics.end(),
+                     [](const Diagnostic& d) { return d.severity == Severity::shortfall; });
+}
+
 }  // namespace tetwright

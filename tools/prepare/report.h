@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/diagnostic.h"
 #include "common/features/surface_patches.h"
 #include "common/mesh/curved_elements.h"
 #include "common/mesh/mesh_statistics.h"
@@ -20,15 +21,6 @@
 #include "tools/compare/solid_comparison.h"
 
 namespace tetwright {
-
-/// A request that was not met.
-struct Shortfall {
-  std::string what;  ///< as in --stats: "target_tets", "fidelity" and others
-  double asked = 0, reached = 0;
-  std::string limited_by;         ///< the rules that prevented it
-  std::string message;            ///< the line for the user, without its end
-  std::vector<Vec3> places = {};  ///< that the message names, input units
-};
 
 /// A segmented volume as it was read: LabelInput without its voxels.
 struct VolumeReport {
@@ -74,9 +66,9 @@ struct CoarserCells {
 struct PrepareReport {
   std::vector<std::string> inputs;
   std::size_t input_triangles = 0, input_points = 0;
-  std::string material_field;          ///< the cell field of a tet mesh that its materials came from
-  std::optional<VolumeReport> volume;  ///< if the input is a segmented volume
-  std::vector<InputFinding> findings;
+  std::string material_field;           ///< the cell field of a tet mesh that its materials came from
+  std::optional<VolumeReport> volume;   ///< if the input is a segmented volume
+  std::vector<Diagnostic> diagnostics;  ///< all that was found and falls short
   std::optional<MesherReport> mesher;
   std::optional<CoarserCells> coarser;
   std::optional<MeshStatistics> dense, result;
@@ -96,10 +88,11 @@ struct PrepareReport {
   /// Area of the surface that the mesh does not show although no surface hides any: 0 where some are open,
   /// intersect or meet others, or carve them.
   double lost_area() const;
+  /// Whether a request was not met: the mesh is valid, and diagnostics say what.
+  bool falls_short() const;
   RequestedSizes sizes;
   std::optional<EdgeLengthReport> edge_lengths;  ///< where sizes are asked for
   double seconds_read = 0, seconds_mesh = 0, seconds_write = 0, seconds_total = 0;
-  std::vector<Shortfall> shortfall;
 };
 
 }  // namespace tetwright

@@ -37,24 +37,26 @@ void report_volumes(const TetMesh& mesh, const std::string& file, PrepareReport&
     const double volume = after == report.result->materials.end() ? 0 : after->second.volume;
     if (!(std::fabs(volume - before.volume) > volume_note_share * std::fabs(before.volume))) continue;
     const auto name = mesh.material_names.find(tag);
-    report.findings.push_back(
-        {file,
-         {"material '" + (name != mesh.material_names.end() ? name->second : std::to_string(tag)) +
-              "' whose volume changed by " +
-              std::to_string(static_cast<int>(std::lround(100 * (volume / before.volume - 1)))) + " %",
-          1,
-          {},
-          "the schedule does not bound it"}});
+    report.diagnostics.push_back(
+        {.code = DiagnosticCode::volume_changed,
+         .file = file,
+         .what = "material '" + (name != mesh.material_names.end() ? name->second : std::to_string(tag)) +
+                 "' whose volume changed by " +
+                 std::to_string(static_cast<int>(std::lround(100 * (volume / before.volume - 1)))) + " %",
+         .count = 1,
+         .done = "the schedule does not bound it",
+         .asked = before.volume,
+         .reached = volume});
   }
 }
 
 void report_touching_points(const std::string& file, PrepareReport& report) {
   if (report.simplify->touching_points > 0)
-    report.findings.push_back({file,
-                               {"points where parts touch without a common face",
-                                report.simplify->touching_points,
-                                {},
-                                "kept as they are with all their tets"}});
+    report.diagnostics.push_back({.code = DiagnosticCode::parts_touch,
+                                  .file = file,
+                                  .what = "points where parts touch without a common face",
+                                  .count = report.simplify->touching_points,
+                                  .done = "kept as they are with all their tets"});
 }
 
 std::string rules_behind_count(const PrepareRun& run, double asked, double reached) {
@@ -78,25 +80,28 @@ std::string rules_behind_count(const PrepareRun& run, double asked, double reach
              : "nothing: the closing improvement took tets away";
 }
 
-void find_count_and_shape_shortfall(PrepareRun& run) {
+void find_count_and_shapes(PrepareRun& run) {
   const PrepareOptions& options = run.options;
   PrepareReport& report = run.report;
-  const auto add = [&](const std::string& what, const std::string& option, double asked, double reached,
+  const auto add = [&](DiagnosticCode code, const std::string& option, double asked, double reached,
                        const std::string& limited_by) {
-    report.shortfall.push_back({what, asked, reached, limited_by,
-                                "short of " + option + ": " + number(asked) + " was asked, " +
-                                    number(reached) + " reached; held back by: " + limited_by});
+    report.diagnostics.push_back({.code = code,
+                                  .what = "short of " + option + ": " + number(asked) + " was asked, " +
+                                          number(reached) + " reached; held back by: " + limited_by,
+                                  .asked = asked,
+                                  .reached = reached,
+                                  .limited_by = limited_by});
   };
   const bool improved = run.task == Task::improve;
   const double asked = static_cast<double>(improved ? report.dense->tets : options.target.tets.value_or(0));
   const double reached = static_cast<double>(report.result->tets);
   if ((improved || options.target.tets.value_or(0) > 0) && !options.shapes.free_count &&
       std::fabs(reached - asked) > (improved ? improve_slack : target_slack) * asked)
-    add("target_tets", improved ? "about the same count" : "--target-tets", asked, reached,
+    add(DiagnosticCode::target_missed, improved ? "about the same count" : "--target-tets", asked, reached,
         rules_behind_count(run, asked, reached));
   if (options.shapes.min_solid_angle && report.result->min_solid_angle < options.shapes.bound())
-    add("min_solid_angle", "--min-solid-angle", options.shapes.bound(), report.result->min_solid_angle,
-        rules_limiting_shapes(*report.simplify));
+    add(DiagnosticCode::angle_missed, "--min-solid-angle", options.shapes.bound(),
+        report.result->min_solid_angle, rules_limiting_shapes(*report.simplify));
 }
 
 /// Work that --time-limit or memory has cut short.
@@ -109,18 +114,25 @@ void find_limits(PrepareRun& run) {
     const char* undone = !report.simplify ? "smaller cells where the tolerance asks for them"
                          : counted        ? "the rest of simplifying and of improving shapes"
                                           : "the rest of improving shapes";
-    report.shortfall.push_back({"time_limit", options.limits.seconds.value_or(0), report.seconds_total,
-                                "--time-limit",
-                                "out of time: --time-limit " + number(options.limits.seconds.value_or(0)) +
-                                    " s ended it; left undone: " + undone + "; give more time"});
+    const double limit = options.limits.seconds.value_or(0);
+    report.diagnostics.push_back(
+        {.code = DiagnosticCode::time_limit_reached,
+         .what = "out of time: --time-limit " + number(limit) + " s ended it; left undone: " + undone,
+         .remedy = "give more time",
+         .asked = limit,
+         .reached = report.seconds_total,
+         .limited_by = "--time-limit"});
   }
   if (report.coarser)
-    report.shortfall.push_back({"memory_limit", report.coarser->asked, report.coarser->used, "memory",
-                                "short of memory: cells of " + number(report.coarser->asked) +
-                                    " would take about " + short_number(report.coarser->bytes / (1 << 30)) +
-                                    " GB, and cells of " + number(report.coarser->used) +
-                                    " were taken; free some, give a larger --memory-limit, or say "
-                                    "--resolution"});
+    report.diagnostics.push_back({.code = DiagnosticCode::cells_enlarged,
+                                  .what = "short of memory: cells of " + number(report.coarser->asked) +
+                                          " would take about " +
+                                          short_number(report.coarser->bytes / gigabyte) +
+                                          " GB, and cells of " + number(report.coarser->used) + " were taken",
+                                  .remedy = "free some, give a larger --memory-limit, or say --resolution",
+                                  .asked = report.coarser->asked,
+                                  .reached = report.coarser->used,
+                                  .limited_by = "memory"});
 }
 
 /// A tolerance that is not proven to be held.
@@ -129,10 +141,14 @@ void find_deviation(PrepareRun& run) {
   if (!report.deviation) return;
   const DeviationReport& d = *report.deviation;
   if (report.lost_area() > 0)
-    report.shortfall.push_back(
-        {"surface_shown", 0, report.lost_area(), "the size of the cells",
-         "short of --tolerance: the mesh shows nothing of an area of " + short_number(report.lost_area()) +
-             " of the surface, all of which is its outside; raise --resolution or --max-refinement"});
+    report.diagnostics.push_back({.code = DiagnosticCode::surface_not_shown,
+                                  .what = "short of --tolerance: the mesh shows nothing of an area of " +
+                                          short_number(report.lost_area()) +
+                                          " of the surface, all of which is its outside",
+                                  .remedy = "raise --resolution or --max-refinement",
+                                  .asked = 0,
+                                  .reached = report.lost_area(),
+                                  .limited_by = "the size of the cells"});
   if (d.upper() <= report.tolerance) return;
   const bool mesh = d.from_mesh.upper >= d.from_surface.upper;
   const SurfaceDeviation& worst = mesh ? d.from_mesh : d.from_surface;
@@ -145,15 +161,15 @@ void find_deviation(PrepareRun& run) {
                           ? "the dense mesh is that far there; give a larger --resolution, or a larger "
                             "tolerance"
                           : "the shapes of tets there; give a larger tolerance";
-  report.shortfall.push_back({"tolerance",
-                              report.tolerance,
-                              worst.upper,
-                              limit,
-                              "short of --tolerance: " + number(report.tolerance) + " was asked, " +
-                                  number(worst.upper) + " reached from the " +
-                                  (mesh ? "mesh to the surface" : "surface to the mesh") + ", at " +
-                                  place_text(worst.place) + "; held back by: " + limit,
-                              {worst.place}});
+  report.diagnostics.push_back({.code = DiagnosticCode::tolerance_missed,
+                                .what = "short of --tolerance: " + number(report.tolerance) + " was asked, " +
+                                        number(worst.upper) + " reached from the " +
+                                        (mesh ? "mesh to the surface" : "surface to the mesh") + ", at " +
+                                        place_text(worst.place) + "; held back by: " + limit,
+                                .asked = report.tolerance,
+                                .reached = worst.upper,
+                                .limited_by = limit,
+                                .places = {worst.place}});
 }
 
 /// Edges that have not the lengths that are asked for.
@@ -164,30 +180,34 @@ void find_edge_lengths(const TetMesh& mesh, PrepareRun& run) {
   report.edge_lengths = compare_edge_lengths(mesh, sizes.wish.get(), sizes.source.get(),
                                              sizes.limits.min_edge, sizes.limits.max_edge);
   const EdgeLengthReport& e = *report.edge_lengths;
-  const auto offend = [&](const char* what, const char* option, double asked,
+  const auto offend = [&](DiagnosticCode code, const char* option, double asked,
                           const EdgeLengthReport::Offender& worst, const char* way, const char* limit) {
     if (worst.count == 0) return;
-    report.shortfall.push_back({what,
-                                asked,
-                                worst.length,
-                                limit,
-                                std::string("short of ") + option + ": " + std::to_string(worst.count) +
-                                    " of " + std::to_string(e.edges) + " edges are " + way + ", by most " +
-                                    number(worst.length) + " instead of " + number(asked) + " at " +
-                                    place_text(worst.place) + "; held back by: " + limit,
-                                {worst.place}});
+    report.diagnostics.push_back({.code = code,
+                                  .what = std::string("short of ") + option + ": " +
+                                          std::to_string(worst.count) + " of " + std::to_string(e.edges) +
+                                          " edges are " + way + ", by most " + number(worst.length) +
+                                          " instead of " + number(asked) + " at " + place_text(worst.place) +
+                                          "; held back by: " + limit,
+                                  .asked = asked,
+                                  .reached = worst.length,
+                                  .limited_by = limit,
+                                  .places = {worst.place}});
   };
   const char* held = report.simplify->out_of_time ? "--time-limit" : "surfaces, creases and shapes there";
-  offend("max_edge", "--max-edge", sizes.limits.max_edge, e.above_max, "longer", held);
-  offend("min_edge", "--min-edge", sizes.limits.min_edge, e.below_min, "shorter", held);
+  offend(DiagnosticCode::edges_too_long, "--max-edge", sizes.limits.max_edge, e.above_max, "longer", held);
+  offend(DiagnosticCode::edges_too_short, "--min-edge", sizes.limits.min_edge, e.below_min, "shorter", held);
   if (e.within_share() >= min_edges_within) return;
   char text[160];
   std::snprintf(text, sizeof text,
                 "short of --size-field: %.3g %% of the edges are within %.3g times the wanted length, not "
                 "%.3g %%; held back by: ",
                 100 * e.within_share(), edge_length_factor, 100 * min_edges_within);
-  report.shortfall.push_back(
-      {"size_field", min_edges_within, e.within_share(), held, text + std::string(held)});
+  report.diagnostics.push_back({.code = DiagnosticCode::sizes_missed,
+                                .what = text + std::string(held),
+                                .asked = min_edges_within,
+                                .reached = e.within_share(),
+                                .limited_by = held});
 }
 
 /// Tets below the bound where it is the default: a finding and no shortfall.
@@ -202,13 +222,19 @@ void report_bad_shapes(PrepareRun& run) {
   char what[100];
   std::snprintf(what, sizeof what, "tets below %.6g sr, %.3g %% of all, the smallest at %.3g sr",
                 options.shapes.bound(), result.below_percent, result.min_solid_angle);
-  const std::string held =
+  const std::string narrow =
       report.input_limited == 0
           ? ""
           : std::to_string(report.input_limited) + " of them in angles of the input too narrow for more; ";
-  report.findings.push_back(
-      {report.inputs.front(),
-       {what, result.below_count, {}, held + "held back by: " + rules_limiting_shapes(*report.simplify)}});
+  const std::string held = rules_limiting_shapes(*report.simplify);
+  report.diagnostics.push_back({.code = DiagnosticCode::angles_below_bound,
+                                .file = report.inputs.front(),
+                                .what = what,
+                                .count = result.below_count,
+                                .done = narrow + "held back by: " + held,
+                                .asked = options.shapes.bound(),
+                                .reached = result.min_solid_angle,
+                                .limited_by = held});
 }
 
 }  // namespace
@@ -217,7 +243,7 @@ void find_request_shortfalls(const TetMesh& mesh, PrepareRun& run) {
   if (run.report.simplify) {
     report_touching_points(run.report.inputs.front(), run.report);
     report_volumes(mesh, run.report.inputs.front(), run.report);
-    find_count_and_shape_shortfall(run);
+    find_count_and_shapes(run);
     find_edge_lengths(mesh, run);
     report_bad_shapes(run);
   }

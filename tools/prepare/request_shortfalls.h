@@ -6,7 +6,7 @@
 namespace tetwright {
 
 /// Compares the result with what was asked of it: count, shapes, edge lengths, tolerance, and limits on time
-/// and memory. Adds findings and shortfalls to `run.report`, which has the statistics of the meshes.
+/// and memory. Adds diagnostics to `run.report`, which has the statistics of the meshes.
 void find_request_shortfalls(const TetMesh& mesh, PrepareRun& run);
 
 }  // namespace tetwright

@@ -53,8 +53,12 @@ void report_dropped(const std::vector<Dropped>& dropped, const std::string& file
                     bool with_restored) {
   for (const Dropped& d : dropped)
     if (with_restored || !d.restored)
-      report.findings.push_back(
-          {file, {d.what, d.count, {}, d.restored ? "found again from the materials" : "dropped"}});
+      report.diagnostics.push_back(
+          {.code = d.restored ? DiagnosticCode::input_restored : DiagnosticCode::input_dropped,
+           .file = file,
+           .what = d.what,
+           .count = d.count,
+           .done = d.restored ? "found again from the materials" : "dropped"});
 }
 
 }  // namespace tetwright

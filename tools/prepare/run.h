@@ -57,7 +57,7 @@ struct PrepareRun {
   std::optional<MidsideNodes> midside;  ///< of the result, with order 2
 };
 
-/// Adds to the findings what a reader dropped from `file`. Items that are restored from the mesh are added
+/// Adds to the diagnostics what a reader dropped from `file`. Items that are restored from the mesh are added
 /// only if `with_restored`.
 void report_dropped(const std::vector<Dropped>& dropped, const std::string& file, PrepareReport& report,
                     bool with_restored = true);

@@ -106,7 +106,7 @@ LabelInput read_labels(std::optional<LabelVolume> vdb_labels, Input& input, Prep
   if (run.options.labels.names_file.empty()) take_names(volume, choice);
   run.report.material_colours = volume.colours;
   LabelInput labels = make_label_input(std::move(volume), input.name, choice, &run.progress);
-  run.report.findings = labels.findings;
+  run.report.diagnostics = labels.findings;
   run.report.volume.emplace(labels);
   return labels;
 }
@@ -174,7 +174,8 @@ MesherInput read_surfaces(std::vector<Input>& inputs, PrepareRun& run) {
     layers.push_back({l.name, static_cast<MaterialTag>(surfaces.size() + layers.size() + 1), l.thickness});
   run.progress.throw_if_stopped();
   MesherInput input = make_mesher_input(std::move(surfaces), std::move(layers), options.nested);
-  run.report.findings.insert(run.report.findings.end(), input.findings.begin(), input.findings.end());
+  std::vector<Diagnostic>& all = run.report.diagnostics;
+  all.insert(all.end(), input.findings.begin(), input.findings.end());
   run.report.patches = patches_of_input(input);
   return input;
 }

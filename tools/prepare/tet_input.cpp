@@ -24,17 +24,26 @@ void check_input_kind(const Input& input, Task task) {
 /// Other programs list tets in the opposite orientation or repeat points for each tet.
 void repair(TetMesh& mesh, const std::string& file, PrepareReport& report) {
   const ForeignReport found = make_coherent(mesh);
-  const auto add = [&](std::size_t count, const char* what, const char* done,
-                       std::optional<Vec3> place = {}) {
-    if (count) report.findings.push_back({file, {what, count, place, done}});
+  const auto add = [&](DiagnosticCode code, std::size_t count, const char* what, const char* done,
+                       std::vector<Vec3> places = {}) {
+    if (count > 0)
+      report.diagnostics.push_back({.code = code,
+                                    .file = file,
+                                    .what = what,
+                                    .count = count,
+                                    .done = done,
+                                    .places = std::move(places)});
   };
-  add(found.merged_points, "points repeated for each tet", "merged where coordinates are equal");
-  add(found.removed_tets, "tets with a vertex twice", "left out");
-  add(found.turned_tets, "tets listed the other way round", "turned");
-  std::optional<Vec3> first;
-  if (!found.first_inverted.empty()) first = mesh.points[mesh.tets[found.first_inverted.front()][0]];
-  add(found.inverted_tets, "flat or negative tets", "kept unless the work puts them right", first);
-  add(found.lost_faces, "faces of named patches between tets that were merged",
+  using enum DiagnosticCode;
+  add(tet_points_merged, found.merged_points, "points repeated for each tet",
+      "merged where coordinates are equal");
+  add(tets_collapsed, found.removed_tets, "tets with a vertex twice", "left out");
+  add(tets_turned, found.turned_tets, "tets listed the other way round", "turned");
+  std::vector<Vec3> first;
+  if (!found.first_inverted.empty()) first.push_back(mesh.points[mesh.tets[found.first_inverted.front()][0]]);
+  add(tets_inverted, found.inverted_tets, "flat or negative tets", "kept unless the work puts them right",
+      first);
+  add(patch_faces_lost, found.lost_faces, "faces of named patches between tets that were merged",
       "no longer of the boundary, or of another patch from their other side");
   if (mesh.tets.empty()) throw InputError(file, 0, "all its tets have a vertex twice; nothing is left of it");
 }

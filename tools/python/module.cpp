@@ -156,7 +156,7 @@ std::shared_ptr<Mesh> run(std::vector<std::string> arguments, NamedInputs& input
           });
           made->stats = stats_json(run);
           made->notes = notes_of(run.report);
-          for (const Shortfall& s : run.report.shortfall) made->shortfall.push_back(s.message);
+          made->shortfall = shortfalls_of(run.report);
           made->mesh = std::move(result.mesh);
           made->midside = std::move(result.midside);
         });

@@ -179,12 +179,78 @@ nlohmann::json input_json(const PrepareReport& run) {
   if (!run.material_field.empty()) j["material_field"] = run.material_field;
   if (run.volume) j["volume"] = volume_json(*run.volume, run.material_colours);
   j["findings"] = nlohmann::json::array();
-  for (const InputFinding& f : run.findings) {
+  for (const Diagnostic& d : run.diagnostics) {
+    if (d.severity != Severity::note || d.file.empty()) continue;
     nlohmann::json finding = {
-        {"file", f.file}, {"what", f.finding.what}, {"count", f.finding.count}, {"done", f.finding.done}};
-    if (f.finding.place) finding["place"] = place_json(*f.finding.place);
+        {"file", d.file}, {"what", d.what}, {"count", std::max<std::size_t>(1, d.count)}, {"done", d.done}};
+    if (!d.places.empty()) finding["place"] = place_json(d.places.front());
     j["findings"].push_back(finding);
   }
+  return j;
+}
+
+nlohmann::json diagnostics_json(const std::vector<Diagnostic>& all) {
+  nlohmann::json j = nlohmann::json::array();
+  for (const Diagnostic& d : all) {
+    nlohmann::json places = nlohmann::json::array();
+    for (const Vec3& p : d.places) places.push_back(place_json(p));
+    j.push_back({{"code", kind_of(d.code).name},
+                 {"severity", name_of(d.severity)},
+                 {"message", diagnostic_text(d)},
+                 {"places", places}});
+    if (!d.file.empty()) j.back()["file"] = d.file;
+    if (d.count > 0) j.back()["count"] = d.count;
+    if (d.asked) j.back()["asked"] = *d.asked;
+    if (d.reached) j.back()["reached"] = *d.reached;
+    if (!d.limited_by.empty()) j.back()["limited_by"] = d.limited_by;
+  }
+  return j;
+}
+
+/// What "shortfall" calls a request that was not met. Codes are newer and say the same.
+const char* request_name(DiagnosticCode code) {
+  switch (code) {
+    case DiagnosticCode::target_missed:
+      return "target_tets";
+    case DiagnosticCode::angle_missed:
+      return "min_solid_angle";
+    case DiagnosticCode::tolerance_missed:
+      return "tolerance";
+    case DiagnosticCode::surface_not_shown:
+      return "surface_shown";
+    case DiagnosticCode::edges_too_long:
+      return "max_edge";
+    case DiagnosticCode::edges_too_short:
+      return "min_edge";
+    case DiagnosticCode::sizes_missed:
+      return "size_field";
+    case DiagnosticCode::solid_changed:
+      return "fidelity";
+    case DiagnosticCode::thin_walls_changed:
+      return "thin_walls";
+    case DiagnosticCode::creases_changed:
+      return "creases";
+    case DiagnosticCode::patches_lost:
+      return "patches";
+    case DiagnosticCode::labels_lost:
+      return "labels";
+    case DiagnosticCode::time_limit_reached:
+      return "time_limit";
+    case DiagnosticCode::cells_enlarged:
+      return "memory_limit";
+    default:
+      return "notes";
+  }
+}
+
+nlohmann::json shortfall_json(const std::vector<Diagnostic>& all) {
+  nlohmann::json j = nlohmann::json::array();
+  for (const Diagnostic& d : all)
+    if (d.severity == Severity::shortfall)
+      j.push_back({{"what", request_name(d.code)},
+                   {"asked", d.asked.value_or(0)},
+                   {"reached", d.reached.value_or(0)},
+                   {"held_back_by", d.limited_by}});
   return j;
 }
 
@@ -342,6 +408,13 @@ nlohmann::json seconds_json(const PrepareReport& run) {
   return seconds;
 }
 
+/// Those of the report, and why there is no result.
+std::vector<Diagnostic> diagnostics_of(const CommandRun& ended) {
+  std::vector<Diagnostic> all = ended.report.diagnostics;
+  if (!ended.error.empty()) all.push_back({.code = error_code(ended.status), .what = ended.error});
+  return all;
+}
+
 }  // namespace
 
 std::size_t peak_bytes() {
@@ -398,10 +471,8 @@ std::string stats_json(const CommandRun& ended) {
     for (const IterationReport& it : run.simplify->iterations) j["iterations"].push_back(iteration_json(it));
   j["seconds"] = seconds_json(run);
   j["peak_bytes"] = peak_bytes();
-  j["shortfall"] = nlohmann::json::array();
-  for (const Shortfall& s : run.shortfall)
-    j["shortfall"].push_back(
-        {{"what", s.what}, {"asked", s.asked}, {"reached", s.reached}, {"held_back_by", s.limited_by}});
+  j["shortfall"] = shortfall_json(run.diagnostics);
+  j["diagnostics"] = diagnostics_json(diagnostics_of(ended));
   return json_text(j);
 }
 
@@ -422,6 +493,7 @@ std::string check_json(const CommandRun& ended, const CheckReport& check) {
                              {"count", f.count},
                              {"places", places}});
   }
+  j["diagnostics"] = diagnostics_json(diagnostics_of(check));
   if (check.measurable) {
     j["mesh"] = mesh_json(*run.result, run.material_names, line.options.shapes.bound());
     j["topology"] = topology_json(*check.topology, run.material_names);

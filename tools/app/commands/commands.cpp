@@ -13,7 +13,7 @@
 #include "tools/app/commands/unwritten.h"
 #include "tools/app/printed_report.h"
 #include "tools/app/progress_report.h"
-#include "tools/prepare/assess.h"
+#include "tools/prepare/acceptance.h"
 #include "tools/report/stats_json.h"
 
 namespace tetwright {
@@ -57,8 +57,8 @@ Prepared make_result(CommandRun& run) {
   PrepareRun preparing(task_of(line.command), options, run.progress, run.report);
   Prepared result = carry_out(inputs_of(line, run.in_memory), preparing);
   if (!line.outputs.mesh.empty()) find_unwritten(line, result.mesh, run.report);
-  conclude(options.acceptance, run.report);
-  run.status = run.report.shortfall.empty() ? ExitStatus::done : ExitStatus::short_of_request;
+  decide_severities(options.acceptance, run.report);
+  run.status = run.report.falls_short() ? ExitStatus::short_of_request : ExitStatus::done;
   if (result.reference) measure_distances(result.mesh, *result.reference, result.reference_name, run);
   result.reference.reset();  // memory that writing the mesh needs
   return result;

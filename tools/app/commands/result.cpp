@@ -54,7 +54,7 @@ void print_result(const CommandRun& run) {
     std::printf("%s\n", stats_json(run).c_str());
   else if (!run.line.console.quiet && run.line.outputs.mesh != "-" && run.line.outputs.boundary != "-")
     print_report(run.line, run.report);
-  for (const Shortfall& s : run.report.shortfall) print_line(s.message);
+  for (const std::string& line : shortfalls_of(run.report)) print_line(line);
 }
 
 }  // namespace tetwright

@@ -18,18 +18,23 @@ void note_changes(const std::string& file, const std::string& extension, const c
                   const std::vector<NameChange>& changed, PrepareReport& report) {
   if (changed.empty()) return;
   const NameChange& first = changed.front();
-  report.findings.push_back(
-      {file,
-       {what,
-        changed.size(),
-        {},
-        "changed, as " + extension + " cannot hold " + (changed.size() > 1 ? "them, the first: " : "it: ") +
-            first.own + " -> " + first.written}});
+  report.diagnostics.push_back({.code = DiagnosticCode::names_changed,
+                                .file = file,
+                                .what = what,
+                                .count = changed.size(),
+                                .done = "changed, as " + extension + " cannot hold " +
+                                        (changed.size() > 1 ? "them, the first: " : "it: ") + first.own +
+                                        " -> " + first.written});
 }
 
 void note_missing(const std::string& file, const std::string& what, std::size_t count, const std::string& why,
                   PrepareReport& report) {
-  if (count > 0) report.findings.push_back({file, {what, count, {}, "not written" + why}});
+  if (count > 0)
+    report.diagnostics.push_back({.code = DiagnosticCode::not_written,
+                                  .file = file,
+                                  .what = what,
+                                  .count = count,
+                                  .done = "not written" + why});
 }
 
 void find_name_changes(const CommandLine& line, const TetMesh& mesh, PrepareReport& report) {

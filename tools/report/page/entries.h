@@ -12,8 +12,9 @@ namespace tetwright {
 /// Something that the page lists, and shows in the mesh where its places are known.
 struct PageEntry {
   std::string text;          ///< what it is
-  std::string detail;        ///< what was done about it, or held it back; may be empty
+  std::string detail;        ///< what was done about it, or can be; may be empty
   std::vector<Vec3> places;  ///< input units
+  std::string code;          ///< of the diagnostic; empty: it is none
 };
 
 struct PageEntries {

@@ -75,6 +75,7 @@ std::string entries_list(const std::vector<PageEntry>& entries, std::size_t& fir
   std::string out = "<ul class=\"entries\">";
   for (const PageEntry& entry : entries) {
     out += "<li>" + html_text(entry.text);
+    if (!entry.code.empty()) out += " <code>" + html_text(entry.code) + "</code>";
     if (!entry.detail.empty()) out += " <span class=\"detail\">" + html_text(entry.detail) + "</span>";
     for (const Vec3& place : entry.places) out += mark_button(first_mark++, place);
     out += "</li>";
