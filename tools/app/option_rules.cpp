@@ -9,7 +9,7 @@
 #include "common/formats/formats.h"
 #include "common/lower_case.h"
 #include "tools/app/commands/output_paths.h"
-#include "tools/prepare/prepare.h"
+#include "tools/prepare/carry_out.h"
 
 namespace tetwright {
 

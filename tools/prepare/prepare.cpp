@@ -9,6 +9,7 @@
 #include "common/parallel/host_threads.h"
 #include "simplify/simplify.h"
 #include "tools/prepare/assess.h"
+#include "tools/prepare/carry_out.h"
 #include "tools/prepare/dense_mesh.h"
 #include "tools/prepare/improve.h"
 #include "tools/prepare/scan_input.h"

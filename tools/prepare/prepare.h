@@ -13,7 +13,6 @@
 #include "tools/prepare/inputs.h"
 #include "tools/prepare/options.h"
 #include "tools/prepare/report.h"
-#include "tools/prepare/run.h"
 
 namespace tetwright {
 
@@ -56,12 +55,5 @@ Prepared simplify_mesh(Input mesh, const PrepareOptions& options = {}, Progress*
 
 /// Better shapes at about the same count. Otherwise as prepare().
 Prepared improve_mesh(Input mesh, const PrepareOptions& options = {}, Progress* progress = nullptr);
-
-/// All of these, for a caller that reads the report of `run` after an exception, too: it says what was found
-/// until then, and stays there. Uses the threads of its caller, see with_threads().
-Prepared carry_out(std::vector<Input> inputs, PrepareRun& run);
-
-/// Throws UsageError for options that do not go together, or lack what the task needs.
-void check_options(Task task, const PrepareOptions& options);
 
 }  // namespace tetwright

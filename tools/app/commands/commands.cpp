@@ -14,6 +14,7 @@
 #include "tools/app/printed_report.h"
 #include "tools/app/progress_report.h"
 #include "tools/prepare/acceptance.h"
+#include "tools/prepare/carry_out.h"
 #include "tools/report/stats_json.h"
 
 namespace tetwright {
