@@ -17,7 +17,7 @@
 #include "common/error.h"
 #include "common/formats/formats.h"
 #include "common/formats/label_groups.h"
-#include "common/parallel/parallel.h"
+#include "common/parallel/host_threads.h"
 #include "tools/app/commands/commands.h"
 #include "tools/app/commands/output_paths.h"
 #include "tools/app/commands/result.h"
@@ -145,7 +145,7 @@ std::shared_ptr<Mesh> run(std::vector<std::string> arguments, NamedInputs& input
   SharedProgress progress;
   run_in_background(
       [&] {
-        with_threads(line.options.limits.threads, [&] {
+        with_threads_of_host(line.options.limits.threads, [&] {
           if (!line.outputs.mesh.empty()) check_stats_path(line);
           CommandRun run(line, progress, &inputs);
           Prepared result;
@@ -173,7 +173,7 @@ py::tuple check(std::vector<std::string> arguments, NamedInputs& inputs, const p
   bool passed = false;
   run_in_background(
       [&] {
-        with_threads(line.options.limits.threads, [&] {
+        with_threads_of_host(line.options.limits.threads, [&] {
           check_stats_path(line);
           CommandRun run(line, progress, &inputs);
           CheckReport found;
