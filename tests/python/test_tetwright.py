@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The Python package beside the program: the same bytes, views without copies, errors, cancelling, threads."""
 import os
 import pathlib
@@ -11,6 +12,7 @@ import types
 import warnings
 
 import meshio
+import nibabel
 import numpy as np
 import pytest
 import tetwright
@@ -86,7 +88,6 @@ def test_labels_give_the_bytes_of_the_program(tmp_path):
 
 
 def test_images_of_nibabel(tmp_path):
-    nibabel = pytest.importorskip("nibabel")
     labels = labels_of_two_balls()
     affine = np.diag([2, 2, 3, 1.0])
     affine[:3, 3] = 1, 2, 3

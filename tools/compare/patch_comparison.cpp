@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/compare/patch_comparison.h"
 
 #include <map>
@@ -22,7 +23,7 @@ struct GroupFaces {
   }
 };
 
-using FacesByGroup = std::map<FaceGroup, GroupFaces>;
+using FacesByGroup = std::map<SurfaceRegion, GroupFaces>;
 
 FacesByGroup faces_by_group(const TetMesh& mesh) {
   FacesByGroup faces;
@@ -35,7 +36,7 @@ FacesByGroup faces_by_group(const TetMesh& mesh) {
 
 }  // namespace
 
-std::string patch_name(const FaceGroup& group) {
+std::string patch_name(const SurfaceRegion& group) {
   return group.name.empty() ? std::to_string(group.number) : group.name;
 }
 

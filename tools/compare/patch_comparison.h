@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
 #include <string>
 #include <vector>
 
-#include "common/face_group.h"
+#include "common/surface_region.h"
 #include "common/tet_mesh.h"
 #include "mesher/input/mesher_input.h"
 
@@ -12,7 +13,7 @@ namespace tetwright {
 
 /// A patch that the user named or numbered, in the input and in the result.
 struct PatchComparison {
-  FaceGroup group;
+  SurfaceRegion group;
   double input_area = 0, area = 0;  ///< input units squared
   std::size_t triangles = 0;        ///< of the result
   Vec3 place = Vec3::Zero();        ///< on it in the input, input units
@@ -21,7 +22,7 @@ struct PatchComparison {
 };
 
 /// The name of a group, or its number.
-std::string patch_name(const FaceGroup& group);
+std::string patch_name(const SurfaceRegion& group);
 
 /// The patches of an input, by their numbers and names.
 std::vector<PatchComparison> patches_of_input(const MesherInput& input);

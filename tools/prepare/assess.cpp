@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/prepare/assess.h"
 
 #include "common/mesh/mesh_statistics.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/prepare/dense_mesh.h"
 
 #include <cmath>
@@ -74,12 +75,12 @@ DenseMesh mesh_input(const MesherInput& surfaces, PrepareRun& run) {
   if (choose && target.tets)
     options.resolution = resolution_for_target(surfaces, *target.tets, run.options.feature_angle);
   if (choose && run.task == Task::prepare)
-    choose_cells_for_sizes(surfaces, sizes.wish.get(), sizes.limits.max_edge, options);
+    choose_cells_for_sizes(surfaces, sizes.target_length.get(), sizes.limits.max_edge, options);
   if (choose) fit_memory(surfaces, options, run);
   if (!target.tolerance) return mesh_surfaces(surfaces, options, &run.progress);
   run.report.tolerance = tolerance_of(*target.tolerance, diagonal);
   if (!choose) return mesh_surfaces(surfaces, options, &run.progress);
-  if (!target.tets && !sizes.wish && !std::isfinite(sizes.limits.max_edge)) options.resolution = 0;
+  if (!target.tets && !sizes.target_length && !std::isfinite(sizes.limits.max_edge)) options.resolution = 0;
   return mesh_within(surfaces, options, run.report.tolerance, &run.progress);
 }
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/prepare/edge_sizes_input.h"
 
 #include <memory>
 
 #include "common/error.h"
 #include "common/message_text.h"
-#include "mesher/distance/vdb_sizes.h"
+#include "tools/prepare/size_field_file.h"
 
 namespace tetwright {
 
@@ -21,14 +22,14 @@ void read_sizes(PrepareRun& run, const Box3& box) {
   if (!asked.field) return;
   sizes.source = asked.field->source ? asked.field->source : read_size_field(asked.field->name);
   if (!(diagonal > 0)) return;  // nothing to mesh, which is said elsewhere
-  sizes.wish =
+  sizes.target_length =
       std::make_shared<const SizeField>(*sizes.source, box.low, box.high, wanted_within(sizes.limits));
 }
 
 void require_sizes_at(const PrepareRun& run, const std::vector<Vec3>& places) {
   const RequestedSizes& sizes = run.report.sizes;
-  if (!sizes.wish) return;
-  if (const auto place = sizes.wish->first_beyond(*sizes.source, places))
+  if (!sizes.target_length) return;
+  if (const auto place = sizes.target_length->first_beyond(*sizes.source, places))
     throw InputError(run.options.sizes.field->name, 0,
                      "the sizes end within the body: there are none at " + place_text(*place) +
                          "; give a field that reaches all of " + run.report.inputs.front());

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/prepare/inputs.h"
 
 #include <filesystem>
 
-#include "common/formats/mesh_fields.h"
+#include "common/geometry/measurable.h"
+#include "common/io/names/mesh_fields.h"
 #include "common/lower_case.h"
-#include "common/measurable.h"
 #include "tools/prepare/run.h"
 
 namespace tetwright {

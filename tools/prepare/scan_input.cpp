@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/prepare/scan_input.h"
 
 #include <algorithm>
@@ -6,9 +7,9 @@
 #include <utility>
 
 #include "common/error.h"
-#include "common/formats/formats.h"
-#include "common/formats/label_names.h"
-#include "common/formats/unique_names.h"
+#include "common/io/formats.h"
+#include "common/io/names/unique_names.h"
+#include "common/io/volumes/label_names.h"
 #include "common/utf8.h"
 #include "mesher/distance/vdb_files.h"
 #include "mesher/input/split_solids.h"

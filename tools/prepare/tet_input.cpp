@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/prepare/tet_input.h"
 
 #include <utility>
 
 #include "common/error.h"
-#include "common/formats/formats.h"
-#include "common/mesh/foreign_mesh.h"
+#include "common/io/formats.h"
+#include "common/mesh/import_cleanup.h"
 #include "tools/prepare/edge_sizes_input.h"
 #include "tools/prepare/simplification.h"
 
@@ -23,7 +24,7 @@ void check_input_kind(const Input& input, Task task) {
 
 /// Other programs list tets in the opposite orientation or repeat points for each tet.
 void repair(TetMesh& mesh, const std::string& file, PrepareReport& report) {
-  const ForeignReport found = make_coherent(mesh);
+  const ImportCleanupReport found = make_coherent(mesh);
   const auto add = [&](DiagnosticCode code, std::size_t count, const char* what, const char* done,
                        std::vector<Vec3> places = {}) {
     if (count > 0)

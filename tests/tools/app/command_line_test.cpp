@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/app/command_line.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/common/formats/expect_error.h"
+#include "tests/common/io/expect_error.h"
 
 namespace tetwright::command_line_test {
 namespace {
@@ -40,7 +41,8 @@ TEST(CommandLine, Labels) {
   EXPECT_EQ(parse({"--labels", "-3--1,7"}).options.labels.meshed, (Ranges{{-3, -1}, {7, 7}}));
   EXPECT_EQ(parse({"--labels=-3-4"}).options.labels.meshed, (Ranges{{-3, 4}}));
   EXPECT_EQ(parse({"--labels", "2-2", "--labels", "4"}).options.labels.meshed, (Ranges{{2, 2}, {4, 4}}));
-  EXPECT_EQ(parse({"--labels", "-2147483648-2147483647"}).options.labels.meshed, (Ranges{{-2147483648, 2147483647}}));
+  EXPECT_EQ(parse({"--labels", "-2147483648-2147483647"}).options.labels.meshed,
+            (Ranges{{-2147483648, 2147483647}}));
   expect_refused({"--labels="}, "has no value");
   for (const char* wrong : {",", "1,", "a", "1-", "--1", "1-2-3", "1.5", "1 2", "+1", "1-+2", "2147483648",
                             "1--2147483649", "0x1"})

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/prepare/acceptance.h"
 
 #include <gtest/gtest.h>
@@ -57,7 +58,7 @@ TEST(Acceptance, StrictMakesAShortfallOfNotes) {
 
 TEST(Acceptance, EveryCodeIsInTheGuide) {
   std::ifstream in(TETWRIGHT_DATA "/guide/messages.md");
-  if (!in) GTEST_SKIP() << "there is no guide";
+  ASSERT_TRUE(in);
   std::stringstream page;
   page << in.rdbuf();
   for (const DiagnosticKind& kind : diagnostic_kinds())

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The library does the program's whole job: the same bytes as the program and the Python package, for files
 // and values in memory; and it is a good guest: silent, with oneTBB's limits as they were, soon cancelled,
 // and callable from several threads at a time. This program links nothing of the program's own.
@@ -16,11 +17,11 @@
 #include <functional>
 #include <thread>
 
-#include "common/formats/formats.h"
-#include "common/formats/mesh_to_write.h"
+#include "common/io/contents/mesh_to_write.h"
+#include "common/io/formats.h"
 #include "common/parallel/parallel.h"
-#include "common/samples.h"
-#include "tests/common/formats/expect_error.h"
+#include "common/samples/samples.h"
+#include "tests/common/io/expect_error.h"
 #include "tests/tools/program.h"
 
 namespace tetwright::prepare_test {
@@ -57,7 +58,6 @@ TEST(Prepare, GivesTheProgramsBytes) {
   EXPECT_FALSE(made.falls_short());
   EXPECT_EQ(bytes_of(made, f / "a.vtu"),
             program_bytes("prepare " + scan + small_target_words + " --order 2", f / "b.vtu"));
-  // What there is beside the mesh.
   ASSERT_TRUE(made.reference);
   EXPECT_EQ(made.reference_name, "the input");
   EXPECT_TRUE(made.field);
@@ -126,7 +126,7 @@ TEST(Prepare, GivesThePythonPackagesBytes) {
 }
 #endif
 
-/// What is written to a standard stream while `work` is done.
+/// Returns the text that `work` writes to a standard stream.
 std::string written_to(int stream, const std::function<void()>& work) {
   const TemporaryFolder f;
   std::fflush(nullptr);

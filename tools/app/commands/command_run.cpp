@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/app/commands/command_run.h"
 
 #include "tools/report/stats_json.h"

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "common/formats/atomic_file.h"
+#include "common/files/atomic_file.h"
 #include "common/memory.h"
 #include "common/progress.h"
 #include "tools/app/command_line.h"

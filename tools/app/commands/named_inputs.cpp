@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/app/commands/named_inputs.h"
 
 #include <utility>
 
-#include "common/formats/atomic_file.h"
+#include "common/files/atomic_file.h"
 #include "common/sizes/mesh_sizes.h"
 
 namespace tetwright {

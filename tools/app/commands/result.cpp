@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/app/commands/result.h"
 
 #include <cstdio>
 
-#include "common/formats/atomic_file.h"
-#include "common/formats/formats.h"
+#include "common/files/atomic_file.h"
+#include "common/io/formats.h"
 #include "tools/app/commands/report_file.h"
 #include "tools/app/printed_report.h"
 #include "tools/prepare/notes.h"
