@@ -81,7 +81,7 @@ enum class DiagnosticCode : std::uint8_t {
   // Files.
   input_dropped,
   input_restored,
-  // What `check` finds, in the order of MeshFault.
+  // Findings of `check`, in the order of MeshFault.
   materials_missing,
   index_out_of_range,
   coordinates_not_finite,
@@ -105,7 +105,7 @@ enum class DiagnosticCode : std::uint8_t {
   interrupted
 };
 
-/// What turns a shortfall into a note.
+/// Decides when a shortfall becomes a note.
 enum class Yields : std::uint8_t {
   never,
   to_acceptance,            ///< --accept-changes

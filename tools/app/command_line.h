@@ -14,10 +14,10 @@ struct NamedValue {
   std::string name, value;
 };
 
-/// What messages call standard input.
+/// The name of standard input in messages.
 inline constexpr const char* standard_input = "stdin";
 
-/// What shows how far a command is.
+/// How progress is shown.
 enum class ProgressStyle { automatic, bar, json, none };
 
 enum class Command { prepare, mesh, simplify, improve, check, batch, sample };
@@ -34,7 +34,7 @@ struct OutputOptions {
   std::string stats;            ///< .json
 };
 
-/// What the program prints and logs.
+/// Output to the console and the log.
 struct ConsoleOptions {
   bool quiet = false;
   ProgressStyle progress = ProgressStyle::automatic;

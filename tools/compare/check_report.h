@@ -12,7 +12,7 @@
 
 namespace tetwright {
 
-/// What `check` found in a mesh.
+/// Findings of `check` in a mesh.
 struct CheckReport {
   std::vector<MeshFinding> findings;
   /// False if indices or coordinates are unsound: then there are no statistics and no topology.
@@ -27,7 +27,7 @@ struct CheckReport {
   bool topology_kept() const { return !topology_differences || topology_differences->empty(); }
 };
 
-/// What is wrong with the mesh, and what it falls short of.
+/// The findings, and the requests that the mesh does not meet, as diagnostics.
 std::vector<Diagnostic> diagnostics_of(const CheckReport& check);
 
 }  // namespace tetwright

@@ -141,7 +141,7 @@ DenseMesh make_dense_mesh(ScanInput input, PrepareRun& run) {
   run.report.creases = std::move(dense.report.creases);
   run.report.mesher = std::move(dense.report);
   run.report.seconds_mesh = watch.seconds();
-  // What comparing and writing that mesh take of the time it took to make it: 5 s of 20 (4.3 million tets of
+  // Fraction of the meshing time that comparing and writing the mesh take: 5 s of 20 (4.3 million tets of
   // dragon_vrip_res2.ply, --resolution 200).
   constexpr double finishing_share = 0.25;
   run.reserve_time(finishing_share * run.report.seconds_mesh);

@@ -8,9 +8,8 @@
 
 namespace tetwright {
 
-/// What --size-field, --min-edge, --max-edge and --grading ask for, put into `run.sizes`; `box` and
-/// `diagonal` are those of the input. Throws UsageError for bounds that contradict each other and what
-/// read_size_field() throws.
+/// Puts the size field, its bounds and its grading into `run.report.sizes`; `box` is that of the input.
+/// Throws UsageError for bounds that contradict each other and what read_size_field() throws.
 void read_sizes(PrepareRun& run, const Box3& box);
 
 /// Throws InputError about a size field that does not reach all of these places of the body.

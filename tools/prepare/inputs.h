@@ -63,8 +63,7 @@ struct Input {
   std::string typed_name() const;
   /// A level set or a segmented volume of OpenVDB, .vdb.
   bool is_vdb_file() const;
-  /// What a material is called that is the whole input: a value's name, a file's without folders and
-  /// extension.
+  /// The name of a material that is the whole input: a value's name, a file's without folders and extension.
   std::string material_name() const;
 
   std::string name;  ///< of a file: its path; names the input in messages

@@ -11,7 +11,7 @@ namespace tetwright {
 /// The notes, a line each; the first has all that are about files. Empty if there are none.
 std::vector<std::string> notes_of(const PrepareReport& report);
 
-/// What falls short, a line each.
+/// The requests that were not met, a line each.
 std::vector<std::string> shortfalls_of(const PrepareReport& report);
 
 }  // namespace tetwright

@@ -120,7 +120,7 @@ struct ScheduleOptions {
 /// The unit of limits on memory, bytes.
 inline constexpr double gigabyte = 1 << 30;
 
-/// What a run may take.
+/// Limits on a run.
 struct LimitOptions {
   unsigned threads = 0;            ///< 0: those of the machine
   std::optional<double> seconds;   ///< ends with the best mesh so far; results then depend on the machine
@@ -134,15 +134,15 @@ struct AcceptanceOptions {
   bool strict = false;          ///< a note is a shortfall
 };
 
-/// What a result keeps beside the mesh.
+/// Values that a result keeps beside the mesh.
 struct KeepOptions {
   bool reference = true;  ///< the surface that the mesh is compared with
   bool field = true;      ///< the signed distances that were meshed
 };
 
-/// What prepare() and its relatives are asked for. Each uses the groups that concern it: meshing scans all
-/// but `shapes`, `schedule` and most of `sizes`; simplifying a tet mesh not `cells`, `bodies` and `labels`;
-/// improving one `shapes`, `features`, `limits` and `acceptance`.
+/// Options of prepare() and its relatives. prepare() uses all of them, each relative the groups that concern
+/// it: mesh_scans() not `shapes` and `schedule`, simplify_mesh() not `cells`, `bodies` and `labels`,
+/// improve_mesh() only `shapes`, `feature_angle`, `order`, `seed`, `limits` and `acceptance`.
 struct PrepareOptions {
   CellOptions cells;
   BodyOptions bodies;

@@ -30,7 +30,7 @@ struct Prepared {
   /// meshes.
   std::shared_ptr<const MaterialField> field;
 
-  /// What was found, and which requests were not met.
+  /// The notes, and the requests that were not met.
   const std::vector<Diagnostic>& diagnostics() const { return report.diagnostics; }
   bool falls_short() const { return report.falls_short(); }
 };

@@ -48,7 +48,7 @@ struct VolumeReport {
   std::size_t merged_islands, merged_voxels;
 };
 
-/// What --size-field, --min-edge, --max-edge and --grading ask for.
+/// The edge lengths that SizeOptions ask for.
 struct RequestedSizes {
   SizeLimits limits;
   std::shared_ptr<const SizeSource> source;        ///< null: no size field
@@ -81,7 +81,7 @@ struct PrepareReport {
   std::size_t input_limited = 0;  ///< tets of the result below the bound, see input_limited_tets()
   std::vector<SolidComparison> solids;
   std::map<MaterialTag, std::string> material_names;
-  /// Of a segmented volume whose file gives its labels colours: red, green, blue, 0 to 1.
+  /// Red, green and blue, 0 to 1, of the labels of a segmented volume whose file has colours.
   std::map<MaterialTag, std::array<double, 3>> material_colours;
   std::optional<SimplifyReport> simplify;
   double tolerance = 0;                      ///< input units; 0: none

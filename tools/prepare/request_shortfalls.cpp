@@ -155,7 +155,7 @@ void find_deviation(PrepareRun& run) {
   const SurfaceDeviation& worst = mesh ? d.from_mesh : d.from_surface;
   const bool stopped =
       (report.simplify && report.simplify->out_of_time) || (report.mesher && report.mesher->out_of_time);
-  // Of a volume the dense mesh's own surface is what is meant.
+  // A volume is compared with the dense mesh's own surface.
   const char* limit = worst.lower <= report.tolerance && stopped
                           ? "--time-limit, which ended measuring it: it may be held"
                       : report.mesher && !report.volume

@@ -39,7 +39,7 @@ const char* name_of(Task task);
 /// The state that the steps of one result share. The meshes themselves are handed from step to step. Limits
 /// on time and memory begin when it is made, and hold for the thread that makes it.
 struct PrepareRun {
-  /// What it is given must outlive it. `to` may have findings already.
+  /// All arguments must outlive it. `to` may have findings already.
   PrepareRun(Task what, const PrepareOptions& of, Progress& shown, PrepareReport& to);
 
   /// Until the limit; 0 where it has passed, infinite where there is none.

@@ -43,7 +43,7 @@ void check_input_kinds(const std::vector<Input>& inputs, Task task) {
 }
 
 /// Whether the input is a segmented volume, which must then be the only one, since it names all materials.
-/// What a .vdb file holds is known only once it has been read: its labels are put into `vdb_labels`.
+/// The kind of a .vdb file is known only once it has been read: its labels are put into `vdb_labels`.
 bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
                std::optional<LabelVolume>& vdb_labels) {
   bool volume = std::any_of(inputs.begin(), inputs.end(),
@@ -92,7 +92,7 @@ LabelChoice label_choice(const LabelOptions& options) {
   return choice;
 }
 
-/// Those of the file itself. No two labels have one name there, nor that of the outside.
+/// Takes the names in the file itself. No two labels have one name there, nor that of the outside.
 void take_names(const LabelVolume& volume, LabelChoice& choice) {
   UniqueNames unique(printable_name);
   (void)unique.add("outside");

@@ -12,8 +12,8 @@ namespace tetwright {
 /// valid, and reports how many; else does nothing.
 void make_second_order(const TetMesh& result, const SurfaceToFollow& surface, PrepareRun& run);
 
-/// What the second-order elements made of a tet mesh follow: its interfaces, which are copied. Nothing unless
-/// order 2 asks for them.
+/// Returns the surface that second-order elements of a tet mesh follow: its interfaces, which are copied.
+/// Nothing unless order 2 asks for them.
 std::optional<SurfaceToFollow> followed_interfaces(const TetMesh& input, const PrepareRun& run);
 
 }  // namespace tetwright

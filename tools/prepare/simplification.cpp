@@ -13,7 +13,7 @@ namespace tetwright {
 
 namespace {
 
-/// Of the diagonal: a hundred times what distances are exact to, and what floats hold.
+/// Fraction of the diagonal: a hundred times the accuracy of distances and of floats.
 constexpr double min_tolerance_share = 100 * tolerance::deviation_share;
 
 }  // namespace
@@ -65,7 +65,7 @@ TetMesh simplify_to_target(TetMesh mesh, const ReferenceSurface* reference, cons
   options.name = run.report.inputs.front();
   run.report.simplify.emplace();
   TetMesh result = simplify(std::move(mesh), options, &*run.report.simplify, &run.progress);
-  // What follows belongs to this mesh.
+  // The deadline has done its work: all that follows belongs to this mesh.
   run.progress.set_deadline(Progress::no_deadline);
   run.report.deviation = run.report.simplify->deviation;
   return result;

@@ -19,7 +19,7 @@ namespace tetwright {
 
 /// A command that is being carried out, and how it ended.
 struct CommandRun {
-  /// What it is given must outlive it. Inputs are moved out of `in_memory` as they are read. The memory of
+  /// All arguments must outlive it. Inputs are moved out of `in_memory` as they are read. The memory of
   /// --memory-limit is that of its life, on the thread that makes it.
   CommandRun(const CommandLine& line, Progress& progress, NamedInputs* in_memory = nullptr);
 
