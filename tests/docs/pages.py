@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads the Markdown pages of README and guide: fenced blocks, links, anchors, and what stands in code."""
 import dataclasses
 import os

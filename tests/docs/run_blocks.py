@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs the code blocks of Markdown pages in order, as a reader does who copies them.
 
     run_blocks.py --program TETWRIGHT [--python-path FOLDER] [--prefix FOLDER] PAGE...
@@ -19,6 +20,7 @@ import argparse
 import importlib.util
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -27,7 +29,7 @@ import time
 import pages
 
 PYTHON = "/usr/bin/python3"  # another one on the path may not see Debian's modules
-SECONDS = 120  # for a block
+SECONDS = 500  # for a block, on a machine with much else to do
 
 
 def is_there(need):
@@ -78,15 +80,18 @@ class Runner:
         command = {"sh": ["bash", "-euo", "pipefail", "-c", block.text], "python": [PYTHON, "-c", block.text]}.get(block.language)
         if command is None:
             return ""
-        try:
-            done = subprocess.run(command, cwd=self._folder, env=self._environment, stdin=subprocess.DEVNULL,
-                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=SECONDS, check=False)
-        except subprocess.TimeoutExpired:
-            return f"it took more than {SECONDS} s"
+        # A group of its own, so that nothing that a block has started outlives it.
+        with subprocess.Popen(command, cwd=self._folder, env=self._environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True, start_new_session=True) as process:
+            try:
+                output, _ = process.communicate(timeout=SECONDS)
+            except subprocess.TimeoutExpired:
+                os.killpg(process.pid, signal.SIGKILL)
+                return f"it took more than {SECONDS} s"
         right = int(block.attributes.get("status", 0))
-        if done.returncode == right:
+        if process.returncode == right:
             return ""
-        return f"status {done.returncode} instead of {right}\n{block.text}\n{done.stdout[-4000:]}"
+        return f"status {process.returncode} instead of {right}\n{block.text}\n{output[-4000:]}"
 
 
 def run_page(path, options):

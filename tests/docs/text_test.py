@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What README and guide say exists: options, commands, links, anchors, pictures and files.
 
     text_test.py TETWRIGHT
@@ -13,11 +14,9 @@ import pages
 PROGRAM = ""
 MAX_README_LINES = 150
 MAX_PICTURE_BYTES = 200_000
-GENERATED = ("options.md", "formats.md", "statistics.md")
 
 # Options of other programs, which the text names beside ours.
-OTHERS = {"--no-build-isolation", "--no-deps", "--build", "--install", "--prefix", "--user", "--check", "--write",
-          "--compare", "--ci", "--suite"}
+OTHERS = {"--build", "--install", "--ml", "--no-build-isolation", "--no-deps", "--prefix", "--target"}
 
 
 def run(*arguments):
