@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/parallel/host_threads.h"
 #include "common/parallel/tbb_loop.h"
 
 namespace tetwright {
@@ -68,6 +69,17 @@ void run_loop(std::size_t count, const std::function<void(std::size_t)>& body) {
       &loop);
 }
 
+/// `threads` within what is sensible; 0: those of the machine.
+unsigned sensible_threads(unsigned threads) {
+  return threads ? std::min(threads, max_threads()) : hardware_threads();
+}
+
+void call_within(const std::function<void()>& work) {
+  tbb_within(
+      thread_count(), [](const void* context) { (*static_cast<const std::function<void()>*>(context))(); },
+      &work);
+}
+
 }  // namespace
 
 struct ThreadLimit::Impl {
@@ -81,8 +93,7 @@ unsigned hardware_threads() { return tbb_concurrency(); }
 unsigned max_threads() { return std::max(16u, 4 * hardware_threads()); }
 
 ThreadLimit::ThreadLimit(unsigned threads) {
-  const unsigned limit = threads ? std::min(threads, max_threads()) : hardware_threads();
-  impl_ = std::make_unique<Impl>(limit);
+  impl_ = std::make_unique<Impl>(sensible_threads(threads));
 }
 
 ThreadLimit::~ThreadLimit() = default;
@@ -91,9 +102,12 @@ unsigned thread_count() { return thread_limit ? thread_limit : hardware_threads(
 
 void with_threads(unsigned threads, const std::function<void()>& work) {
   const ThreadLimit limit(threads);
-  tbb_within(
-      thread_count(), [](const void* context) { (*static_cast<const std::function<void()>*>(context))(); },
-      &work);
+  call_within(work);
+}
+
+void with_threads_of_host(unsigned threads, const std::function<void()>& work) {
+  const LimitHere limit(sensible_threads(threads));
+  call_within(work);
 }
 
 void parallel_for(std::size_t begin, std::size_t end, std::size_t grain,

@@ -233,9 +233,12 @@ class Preparation {
     const Vec3 index(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
     return result_.origin + result_.directions * index;
   }
-  void add(const std::string& what, std::size_t count, const std::optional<Vec3>& at,
+  void add(DiagnosticCode code, const std::string& what, std::size_t count, const std::optional<Vec3>& at,
            const std::string& done) {
-    if (count > 0) result_.findings.push_back({result_.file, {what, count, at, done}});
+    if (count == 0) return;
+    result_.findings.push_back(
+        {.code = code, .file = result_.file, .what = what, .count = count, .done = done});
+    if (at) result_.findings.back().places.push_back(*at);
   }
   void report(const std::vector<Loss>& losses);
   void drop_lost(const std::vector<Loss>& losses);
@@ -246,12 +249,14 @@ class Preparation {
 
 void Preparation::merge(std::size_t outside, const Progress* progress) {
   if (outside == 0)
-    add("voxels, none of them outside (label " + std::to_string(choice_.outside_label) + ")",
+    add(DiagnosticCode::no_outside,
+        "voxels, none of them outside (label " + std::to_string(choice_.outside_label) + ")",
         result_.voxel_count(), std::nullopt, "all meshed, up to the border of the volume");
   const IslandMerging merging =
       merge_small_islands(result_.regions, result_.size, choice_.min_voxels, progress);
   if (merging.none_reaches)
-    add("islands of voxels, none of which has " + std::to_string(choice_.min_voxels), merging.islands,
+    add(DiagnosticCode::islands_all_small,
+        "islands of voxels, none of which has " + std::to_string(choice_.min_voxels), merging.islands,
         std::nullopt, "kept as they are");
   std::vector<Loss> losses(result_.materials.size() + 1);
   for (const MergedIsland& m : merging.merged) {
@@ -287,22 +292,25 @@ void Preparation::report(const std::vector<Loss>& losses) {
     if (loss.islands == 0) continue;
     const std::string voxels = " (" + counted(loss.voxels, "voxel") + ")";
     if (region == outside_region) {
-      add("islands of outside" + voxels, loss.islands, place(loss.first_voxel), done);
+      add(DiagnosticCode::islands_merged, "islands of outside" + voxels, loss.islands,
+          place(loss.first_voxel), done);
       continue;
     }
     const LabelMaterial& m = result_.materials[region - 1];
     if (m.voxels == 0) {
-      add("islands of '" + m.name + "'" + voxels + ", all there is of it", loss.islands,
-          place(loss.first_voxel), done + "; this label is lost");
+      add(DiagnosticCode::islands_merged, "islands of '" + m.name + "'" + voxels + ", all there is of it",
+          loss.islands, place(loss.first_voxel), done + "; this label is lost");
     } else if (named++ < max_named) {
-      add("islands of '" + m.name + "'" + voxels, loss.islands, place(loss.first_voxel), done);
+      add(DiagnosticCode::islands_merged, "islands of '" + m.name + "'" + voxels, loss.islands,
+          place(loss.first_voxel), done);
     } else {
       if (others++ == 0) rest.first_voxel = loss.first_voxel;
       rest.islands += loss.islands;
       rest.voxels += loss.voxels;
     }
   }
-  add("islands of " + counted(others, "other label") + " (" + counted(rest.voxels, "voxel") + ")",
+  add(DiagnosticCode::islands_merged,
+      "islands of " + counted(others, "other label") + " (" + counted(rest.voxels, "voxel") + ")",
       rest.islands, place(rest.first_voxel), done);
 }
 

@@ -70,7 +70,7 @@ struct LabelInput {
   /// Parts of the outside that do not reach the border of the volume. Parts are not counted in volumes of
   /// 2^32 voxels or more.
   LabelParts outside_parts;
-  std::vector<InputFinding> findings;  ///< changes to the input, for the user
+  std::vector<Diagnostic> findings;  ///< changes to the input, for the user
 
   std::size_t voxel_count() const { return regions.size(); }
 };

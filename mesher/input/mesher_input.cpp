@@ -91,7 +91,10 @@ void add_bodies(std::vector<MaterialSurface> surfaces, std::set<MaterialTag> tag
     SurfaceRepair repaired = repair_surface(s.surface, s.file, nested);
     const std::vector<SurfaceRegion> groups = std::move(s.surface.groups);
     s.surface = {};
-    for (SurfaceFinding& f : repaired.findings) input.findings.push_back({s.file, std::move(f)});
+    for (Diagnostic& f : repaired.findings) {
+      f.file = s.file;
+      input.findings.push_back(std::move(f));
+    }
     input.bodies.push_back({s.name, s.tag, s.file, std::move(repaired.surface), groups});
     for (std::size_t k = 0; k < repaired.nested.size(); ++k) {
       while (!tags.insert(next_tag).second) ++next_tag;

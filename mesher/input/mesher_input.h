@@ -42,7 +42,7 @@ struct MesherInput {
   };
   std::vector<Body> bodies;           ///< later bodies carve earlier ones
   std::vector<MaterialLayer> layers;  ///< of the first body, outermost first
-  std::vector<InputFinding> findings;
+  std::vector<Diagnostic> findings;
   std::vector<Group> groups;  ///< groups with triangles, ascending; repair may leave nothing of them
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< bounding box of all bodies, input units
 };

@@ -343,16 +343,18 @@ std::vector<SurfaceComponent> Patches::components() const {
 
 }  // namespace
 
-void add_finding(std::vector<SurfaceFinding>& findings, const std::string& what, std::size_t count,
-                 const std::optional<Vec3>& place, const std::string& done) {
-  if (count > 0) findings.push_back({what, count, place, done});
+void add_finding(std::vector<Diagnostic>& findings, DiagnosticCode code, const std::string& what,
+                 std::size_t count, const std::optional<Vec3>& place, const std::string& done) {
+  if (count == 0) return;
+  findings.push_back({.code = code, .what = what, .count = count, .done = done});
+  if (place) findings.back().places.push_back(*place);
 }
 
 std::vector<SurfaceComponent> split_into_components(const std::vector<Vec3>& points,
                                                     std::vector<Triangle>& triangles,
                                                     const std::vector<char>& two_sided,
                                                     const std::string& file,
-                                                    std::vector<SurfaceFinding>& findings) {
+                                                    std::vector<Diagnostic>& findings) {
   const std::vector<EdgeSide> sides = sorted_sides(triangles);
   Patches patches(points, triangles, sides, file);
   patches.arrange(two_sided);
@@ -378,11 +380,13 @@ std::vector<SurfaceComponent> split_into_components(const std::vector<Vec3>& poi
       std::swap(triangles[t][1], triangles[t][2]);
     }
   }
-  add_finding(findings, "edges of more than two triangles", crowded, crowded_place,
-              "kept; the surface may touch or cross itself there");
-  add_finding(findings, "triangles of inner walls and fins", walls, wall_place, "left out");
-  add_finding(findings, "triangles wound against their neighbours", turned, turned_place, "turned over");
-  add_finding(findings, "boundary edges of holes", free, free_place,
+  add_finding(findings, DiagnosticCode::edges_non_manifold, "edges of more than two triangles", crowded,
+              crowded_place, "kept; the surface may touch or cross itself there");
+  add_finding(findings, DiagnosticCode::inner_walls_dropped, "triangles of inner walls and fins", walls,
+              wall_place, "left out");
+  add_finding(findings, DiagnosticCode::triangles_turned, "triangles wound against their neighbours", turned,
+              turned_place, "turned over");
+  add_finding(findings, DiagnosticCode::holes_closed, "boundary edges of holes", free, free_place,
               "holes are closed where the winding number is 1/2");
   return patches.components();
 }

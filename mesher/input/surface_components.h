@@ -16,8 +16,8 @@ struct SurfaceComponent {
 };
 
 /// Appends a finding unless `count` is 0.
-void add_finding(std::vector<SurfaceFinding>& findings, const std::string& what, std::size_t count,
-                 const std::optional<Vec3>& place, const std::string& done);
+void add_finding(std::vector<Diagnostic>& findings, DiagnosticCode code, const std::string& what,
+                 std::size_t count, const std::optional<Vec3>& place, const std::string& done);
 
 /// Orients neighbouring triangles consistently, by the majority of each patch, and returns the components in
 /// the order of their first triangles. Inner walls and fins belong to no component.
@@ -40,6 +40,6 @@ std::vector<SurfaceComponent> split_into_components(const std::vector<Vec3>& poi
                                                     std::vector<Triangle>& triangles,
                                                     const std::vector<char>& two_sided,
                                                     const std::string& file,
-                                                    std::vector<SurfaceFinding>& findings);
+                                                    std::vector<Diagnostic>& findings);
 
 }  // namespace tetwright

@@ -177,7 +177,7 @@ Pairs intersecting(const std::vector<SurfaceComponent>& components, std::size_t 
 
 ArrangedComponents arrange_components(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                                       const std::vector<SurfaceComponent>& components, const Pairs& crossing,
-                                      NestedRule nested, std::vector<SurfaceFinding>& findings) {
+                                      NestedRule nested, std::vector<Diagnostic>& findings) {
   const std::size_t n = components.size();
   const std::vector<Shape> shape = shapes(points, triangles, components);
   std::vector<std::vector<Index>> enclosers(n);
@@ -238,17 +238,19 @@ ArrangedComponents arrange_components(const std::vector<Vec3>& points, const std
     if (!against && toggles) cavities.add(place);
     if (!against && !toggles) alike.add(place);
   }
-  add_finding(findings, "components turned inside out", outwards.count, outwards.place,
-              "turned outwards, each with what it encloses");
-  add_finding(findings, "open components whose outside is unclear", unclear.count, unclear.place,
-              "kept as most of their triangles are wound");
-  add_finding(findings, "enclosed components wound like their enclosers", alike.count, alike.place,
-              "part of what surrounds them");
-  add_finding(findings, "enclosed components wound like their enclosers", cavities.count, cavities.place,
+  add_finding(findings, DiagnosticCode::components_turned, "components turned inside out", outwards.count,
+              outwards.place, "turned outwards, each with what it encloses");
+  add_finding(findings, DiagnosticCode::components_unclear, "open components whose outside is unclear",
+              unclear.count, unclear.place, "kept as most of their triangles are wound");
+  add_finding(findings, DiagnosticCode::components_alike, "enclosed components wound like their enclosers",
+              alike.count, alike.place, "part of what surrounds them");
+  add_finding(findings, DiagnosticCode::components_alternate,
+              "enclosed components wound like their enclosers", cavities.count, cavities.place,
               "solid and cavity take turns, as asked for");
-  add_finding(findings, "cavities", filled.count, filled.place, "filled, as asked for");
-  add_finding(findings, "enclosed components", materials.count, materials.place,
-              "each a material of its own, as asked for");
+  add_finding(findings, DiagnosticCode::cavities_filled, "cavities", filled.count, filled.place,
+              "filled, as asked for");
+  add_finding(findings, DiagnosticCode::components_separated, "enclosed components", materials.count,
+              materials.place, "each a material of its own, as asked for");
   return result;
 }
 

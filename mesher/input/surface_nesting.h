@@ -34,6 +34,6 @@ struct ArrangedComponents {
 ArrangedComponents arrange_components(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                                       const std::vector<SurfaceComponent>& components,
                                       const std::vector<std::pair<Index, Index>>& crossing, NestedRule nested,
-                                      std::vector<SurfaceFinding>& findings);
+                                      std::vector<Diagnostic>& findings);
 
 }  // namespace tetwright

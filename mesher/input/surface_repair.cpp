@@ -73,7 +73,7 @@ struct Cleaned {
 
 /// Merges equal points, drops unused ones and triangles with equal corners, and keeps one of each set of
 /// triangles with the same corners: wound like the majority, in the group of the first one in the file.
-Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<SurfaceFinding>& findings) {
+Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<Diagnostic>& findings) {
   if (surface.triangles.empty()) throw InputError(file, 0, "there are no triangles");
   for (const Vec3& p : surface.points)
     if (!p.allFinite()) throw InputError(file, 0, "a point has a coordinate that is not finite");
@@ -143,12 +143,16 @@ Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<
   result.points = keep_used(surface.points, result.triangles);
   if (flats == result.triangles.size())
     throw InputError(file, 0, "all triangles are flat, without any area; write the surface again");
-  add_finding(findings, "points at the place of another one", merged, merged_place, "merged");
-  add_finding(findings, "points that no triangle uses", unused, unused_place, "left out");
-  add_finding(findings, "triangles with equal corners", collapsed, collapsed_place, "left out");
-  add_finding(findings, "repeated triangles", repeated, repeated_place, "one of each kept");
-  add_finding(findings, "triangles with all corners on a line", flats, flat_place,
-              "kept, they join their neighbours");
+  add_finding(findings, DiagnosticCode::points_merged, "points at the place of another one", merged,
+              merged_place, "merged");
+  add_finding(findings, DiagnosticCode::points_unused, "points that no triangle uses", unused, unused_place,
+              "left out");
+  add_finding(findings, DiagnosticCode::triangles_collapsed, "triangles with equal corners", collapsed,
+              collapsed_place, "left out");
+  add_finding(findings, DiagnosticCode::triangles_repeated, "repeated triangles", repeated, repeated_place,
+              "one of each kept");
+  add_finding(findings, DiagnosticCode::triangles_flat, "triangles with all corners on a line", flats,
+              flat_place, "kept, they join their neighbours");
   return result;
 }
 
@@ -197,8 +201,8 @@ SurfaceRepair repair_surface(const TriangleMesh& surface, const std::string& fil
       split_into_components(cleaned.points, cleaned.triangles, cleaned.two_sided, file, result.findings);
   const auto crossing = self_intersections(cleaned.points, cleaned.triangles);
   if (!crossing.empty())
-    add_finding(result.findings, "pairs of triangles that intersect", crossing.size(),
-                cleaned.points[cleaned.triangles[crossing[0].first][0]],
+    add_finding(result.findings, DiagnosticCode::surface_self_intersects, "pairs of triangles that intersect",
+                crossing.size(), cleaned.points[cleaned.triangles[crossing[0].first][0]],
                 "kept; what is inside any part is inside");
   const ArrangedComponents arranged =
       arrange_components(cleaned.points, cleaned.triangles, components, crossing, nested, result.findings);

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "common/diagnostic.h"
 #include "common/triangle_mesh.h"
 #include "common/types.h"
 
@@ -38,26 +38,12 @@ struct RepairedSurface {
   double volume = 0;
 };
 
-/// A defect found in an input, and its treatment.
-struct SurfaceFinding {
-  std::string what;           ///< plural, for example "boundary edges of holes"
-  std::size_t count = 0;      ///< at least 1
-  std::optional<Vec3> place;  ///< of the first one, input units
-  std::string done;           ///< the treatment
-};
-
-/// A finding and the file that it is about.
-struct InputFinding {
-  std::string file;
-  SurfaceFinding finding;
-};
-
 struct SurfaceRepair {
   RepairedSurface surface;
   /// With NestedRule::material the enclosed components, oriented outwards; enclosers come first, so that
   /// later surfaces carve earlier ones.
   std::vector<RepairedSurface> nested;
-  std::vector<SurfaceFinding> findings;
+  std::vector<Diagnostic> findings;  ///< without the file
 };
 
 /// Repairs a surface and reports every change, so that a clean closed surface has no findings. Steps, in this

@@ -11,7 +11,7 @@ namespace tetwright {
 
 /// The count of a finding; 0 if it is not listed.
 inline std::size_t found(const SurfaceRepair& input, const std::string& what) {
-  for (const SurfaceFinding& f : input.findings)
+  for (const Diagnostic& f : input.findings)
     if (f.what == what) return f.count;
   return 0;
 }
@@ -19,7 +19,7 @@ inline std::size_t found(const SurfaceRepair& input, const std::string& what) {
 /// All findings, for messages of failed tests.
 inline std::string findings_text(const SurfaceRepair& input) {
   std::string text;
-  for (const SurfaceFinding& f : input.findings) text += std::to_string(f.count) + " " + f.what + "; ";
+  for (const Diagnostic& f : input.findings) text += std::to_string(f.count) + " " + f.what + "; ";
   return text;
 }
 

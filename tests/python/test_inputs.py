@@ -38,6 +38,17 @@ def test_one_file_cannot_be_two(tmp_path, cube_mesh):
     assert (tmp_path / "a.vtu").exists() and (tmp_path / "a.ply").exists()
 
 
+def test_diagnostics_have_codes_and_severities(cube_mesh):
+    assert cube_mesh.diagnostics == []
+    with pytest.warns(tetwright.ShortfallWarning):
+        made = tetwright.prepare((CUBE_POINTS, CUBE_TRIANGLES[1:]), target_tets=300, min_solid_angle=0.55)
+    codes = {d.code: d for d in made.diagnostics}
+    assert codes["holes-closed"].severity == "note" and codes["holes-closed"].file == "surface"
+    assert codes["angle-missed"].severity == "shortfall" and codes["angle-missed"].asked == 0.55
+    assert codes["angle-missed"].reached == made.stats["result"]["min_solid_angle"]
+    assert [d.message for d in made.diagnostics if d.severity == "shortfall"] == made.shortfall
+
+
 def test_second_order_needs_a_format_that_holds_it(tmp_path):
     mesh = tetwright.prepare(CUBE, target_tets=300, order=2)
     with pytest.raises(tetwright.UsageError, match=r"without ten-node tets; write one of .*\.xdmf"):

@@ -123,6 +123,19 @@ bool parse_arguments(CLI::App& app, int argc, char** argv) {
 
 }  // namespace
 
+bool makes_mesh(Command command) {
+  return command == Command::prepare || command == Command::mesh || command == Command::simplify ||
+         command == Command::improve;
+}
+
+Task task_of(Command command) {
+  TETWRIGHT_CHECK(makes_mesh(command));
+  return command == Command::prepare    ? Task::prepare
+         : command == Command::mesh     ? Task::mesh
+         : command == Command::simplify ? Task::simplify
+                                        : Task::improve;
+}
+
 const char* name_of(Command command) {
   switch (command) {
     case Command::prepare:
@@ -184,7 +197,7 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
   const CLI::App& chosen = *app.get_subcommands().front();
   for (const CommandEntry& entry : commands)
     if (chosen.get_name() == name_of(entry.command)) out.command = entry.command;
-  complete_command_line(chosen, out);
+  complete_command_line(out);
   for (int i = 1; i < argc; ++i) out.arguments += " " + std::string(argv[i]);
   out.call = argv[0] + out.arguments;
   return true;

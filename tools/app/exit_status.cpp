@@ -30,6 +30,23 @@ ExitStatus exit_status(const std::exception& error) {
   return ExitStatus::bad_input;
 }
 
+DiagnosticCode error_code(ExitStatus status) {
+  switch (status) {
+    case ExitStatus::usage:
+      return DiagnosticCode::usage;
+    case ExitStatus::bad_input:
+      return DiagnosticCode::input;
+    case ExitStatus::nothing_to_mesh:
+      return DiagnosticCode::nothing_to_mesh;
+    case ExitStatus::output_failed:
+      return DiagnosticCode::output;
+    case ExitStatus::interrupted:
+      return DiagnosticCode::interrupted;
+    default:
+      return DiagnosticCode::internal;
+  }
+}
+
 std::string failure_message(const std::exception& error) {
   if (dynamic_cast<const std::bad_alloc*>(&error))
     return "not enough memory; free some, or ask for less (of surfaces: a smaller --resolution)";

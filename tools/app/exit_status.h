@@ -4,6 +4,8 @@
 #include <exception>
 #include <string>
 
+#include "common/diagnostic.h"
+
 namespace tetwright {
 
 /// The exit statuses of the program.
@@ -21,6 +23,9 @@ enum class ExitStatus : int {
 /// The status with which the program ends when `error` reaches main(), and what it says then.
 ExitStatus exit_status(const std::exception& error);
 std::string failure_message(const std::exception& error);
+
+/// The code of an error with this status.
+DiagnosticCode error_code(ExitStatus status);
 
 /// What follows a message about a bug here.
 inline constexpr const char* report_this =

@@ -60,8 +60,9 @@ int main(int argc, char** argv) {
     const ExitStatus status = tetwright::run_command(line);
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
       return fail(ExitStatus::output_failed,
-                  "cannot write to standard output" +
-                      (line.output.empty() || line.output == "-" ? "" : "; " + line.output + " is written"));
+                  "cannot write to standard output" + (line.outputs.mesh.empty() || line.outputs.mesh == "-"
+                                                           ? ""
+                                                           : "; " + line.outputs.mesh + " is written"));
     tetwright::log_line("exit status " + std::to_string(static_cast<int>(status)));
     return static_cast<int>(status);
   } catch (const std::exception& e) {

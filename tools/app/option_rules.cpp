@@ -10,6 +10,7 @@
 #include "common/io/formats.h"
 #include "common/lower_case.h"
 #include "tools/app/commands/output_paths.h"
+#include "tools/prepare/carry_out.h"
 
 namespace tetwright {
 
@@ -22,14 +23,14 @@ void check_no_stream(const CommandLine& out) {
       throw UsageError(std::string(option) +
                        " is no stream; give it a file (- is for the input, -o, --boundary and --stats)");
   };
-  check("--write-sdf", out.write_sdf);
-  check("--report", out.report);
-  check("--log-file", out.log_file);
-  check("--results", out.results);
-  check("--label-names", out.label_names);
-  check("--size-field", out.size_field);
-  check("--before", out.before);
-  for (const std::string& file : out.surfaces) check("--surface", file);
+  check("--write-sdf", out.outputs.distances);
+  check("--report", out.outputs.report);
+  check("--log-file", out.console.log_file);
+  check("--results", out.batch.results);
+  check("--label-names", out.options.labels.names_file);
+  if (out.options.sizes.field) check("--size-field", out.options.sizes.field->name);
+  check("--before", out.check.before);
+  for (const std::string& file : out.check.surfaces) check("--surface", file);
   for (const NamedValue& m : out.materials) check("--material", m.value);
   if (out.command == Command::batch) check("the file of jobs", out.inputs.front());
 }
@@ -59,19 +60,19 @@ void complete_input_stream(CommandLine& out) {
 
 void complete_output_stream(CommandLine& out) {
   std::vector<const char*> streams;
-  for (const auto& [option, file] : {std::pair<const char*, const std::string*>{"-o", &out.output},
-                                     {"--boundary", &out.boundary},
-                                     {"--stats", &out.stats}})
+  for (const auto& [option, file] : {std::pair<const char*, const std::string*>{"-o", &out.outputs.mesh},
+                                     {"--boundary", &out.outputs.boundary},
+                                     {"--stats", &out.outputs.stats}})
     if (*file == "-") streams.push_back(option);
   if (streams.size() > 1)
     throw UsageError(std::string(streams[0]) + " - and " + streams[1] +
                      " - both print to standard output; give one of them a file");
-  if (streams.empty() || out.stats == "-") return;
-  if (out.output_format.empty())
+  if (streams.empty() || out.outputs.stats == "-") return;
+  if (out.outputs.format.empty())
     throw UsageError("standard output (" + std::string(streams[0]) +
                      " -) has no extension; give --output-format");
-  if (out.boundary == "-")
-    out.boundary_format = std::exchange(out.output_format, {});
+  if (out.outputs.boundary == "-")
+    out.outputs.boundary_format = std::exchange(out.outputs.format, {});
   else if (out.command != Command::sample)  // samples are of several kinds
     check_tet_stream(out);
 }
@@ -93,40 +94,19 @@ void check_holds_second_order(const std::string& output, const std::string& form
                    extensions);
 }
 
-void complete_command_line(const CLI::App& chosen, CommandLine& out) {
+void complete_command_line(CommandLine& out) {
   complete_streams(out);
   const bool meshes_scans = out.command == Command::prepare || out.command == Command::mesh;
-  if (out.command == Command::prepare || out.command == Command::simplify || out.command == Command::improve)
-    out.min_solid_angle_given = chosen.count("--min-solid-angle") > 0;
-  if (meshes_scans) {
-    if (out.inputs.empty() && out.materials.empty())
-      throw UsageError(
-          "there is no input; name a surface or a segmented volume, or give --material NAME=FILE");
-    out.outside_label_given = chosen.count("--outside-label") > 0;
-    out.min_voxels_given = chosen.count("--min-voxels") > 0;
-  }
-  if ((out.command == Command::prepare || out.command == Command::simplify) && out.target_tets == 0 &&
-      out.tolerance.value == 0 && out.size_field.empty())
-    throw UsageError(
-        "--target-tets is required; give the number of tets to reach, --tolerance, or --size-field");
-  if (out.command == Command::prepare || out.command == Command::simplify) {
-    if (chosen.count("--grading") > 0 && out.size_field.empty())
-      throw UsageError("--grading is for the edge lengths of a size field; give --size-field FILE");
-    if (out.schedule == Schedule::paper &&
-        (!out.size_field.empty() || out.min_edge.value > 0 || out.max_edge.value > 0))
-      throw UsageError(
-          "--schedule paper bounds no edges; leave out --size-field, --min-edge and --max-edge, or "
-          "--schedule");
-  }
-  if (out.tolerance.value > 0 && out.schedule == Schedule::paper)
-    throw UsageError("--schedule paper bounds no distances; leave out --tolerance, or --schedule");
-  if (out.command == Command::check && out.tolerance.value > 0 && out.surfaces.empty())
+  if (meshes_scans && out.inputs.empty() && out.materials.empty())
+    throw UsageError("there is no input; name a surface or a segmented volume, or give --material NAME=FILE");
+  if (makes_mesh(out.command)) check_options(task_of(out.command), out.options);
+  if (out.command == Command::check && out.options.target.tolerance && out.check.surfaces.empty())
     throw UsageError("--tolerance needs the surfaces that the mesh is compared with; give --surface FILE");
-  if (out.order > 1 && !out.output.empty()) check_holds_second_order(out.output, out.output_format);
-  if (out.json && out.stats == "-")
+  if (out.options.order > 1 && !out.outputs.mesh.empty())
+    check_holds_second_order(out.outputs.mesh, out.outputs.format);
+  if (out.check.json && out.outputs.stats == "-")
     throw UsageError(
         "--json and --stats - both print to standard output; give --stats a file, or leave one out");
-  if (out.resolution && out.voxel_size > 0) throw UsageError("give --resolution or --voxel-size, not both");
 }
 
 }  // namespace tetwright

@@ -42,27 +42,20 @@ std::string short_text(double value) {
   return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
 }
 
-CLI::Option* add_number(CLI::App& app, const std::string& name, double& to, const Range& range,
+CLI::Option* add_length(CLI::App& app, const std::string& name, std::optional<Length>& to,
                         const std::string& description) {
-  return add_parsed<double>(
-      app, name, to, "NUMBER",
-      [name, range](const std::string& text) { return parse_number(name, text, range); }, description);
-}
-
-CLI::Option* add_length(CLI::App& app, const std::string& name, LengthOption& to,
-                        const std::string& description) {
-  const auto parse = [name](const std::string& text) {
+  const auto parse = [name](const std::string& text) -> std::optional<Length> {
     constexpr Range length{0, max_number, false,
                            "a length above 0 in input units, or in percent of the diagonal, such as 0.2%"};
     constexpr Range share{0, 100, false, "a share above 0 % and at most 100 % of the diagonal"};
-    if (!text.ends_with('%')) return LengthOption{parse_number(name, text, length), false};
+    if (!text.ends_with('%')) return Length{parse_number(name, text, length), false};
     try {
-      return LengthOption{parse_number(name, text.substr(0, text.size() - 1), share), true};
+      return Length{parse_number(name, text.substr(0, text.size() - 1), share), true};
     } catch (const CLI::ValidationError&) {
       throw CLI::ValidationError(name, "'" + text + "' is not " + share.text);
     }
   };
-  return add_parsed<LengthOption>(app, name, to, "LENGTH", parse, description);
+  return add_parsed<std::optional<Length>>(app, name, to, "LENGTH", parse, description);
 }
 
 CLI::Option* add_feature_angle(CLI::App& app, FeatureAngle& to) {

@@ -7,7 +7,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "tools/app/command_line.h"
@@ -56,26 +55,40 @@ CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& to, const
       ->type_name(type);
 }
 
+/// The type of an option's value, which may be one that need not be there.
+template <class Value>
+struct PlainOf {
+  using Type = Value;
+};
+template <class Value>
+struct PlainOf<std::optional<Value>> {
+  using Type = Value;
+};
+template <class Value>
+using Plain = typename PlainOf<Value>::Type;
+
 /// An option whose value is a whole number from `low` to `high`.
 template <class Whole>
 CLI::Option* add_whole_number(CLI::App& app, const std::string& name, Whole& to, std::uint64_t low,
                               std::uint64_t high, const std::string& description) {
-  const auto parse = [name, low, high](const std::string& text) {
-    const std::uint64_t value = parse_whole_number(name, text, low, high);
-    if constexpr (std::is_same_v<Whole, std::optional<int>>)
-      return Whole(static_cast<int>(value));
-    else
-      return static_cast<Whole>(value);
+  const auto parse = [name, low, high](const std::string& text) -> Whole {
+    return static_cast<Plain<Whole>>(parse_whole_number(name, text, low, high));
   };
   return add_parsed<Whole>(app, name, to, "N", parse, description);
 }
 
-/// An option whose value is a number within `range`.
-CLI::Option* add_number(CLI::App& app, const std::string& name, double& to, const Range& range,
-                        const std::string& description);
+/// An option whose value is a number within `range`, a double or one that need not be there.
+template <class Number>
+CLI::Option* add_number(CLI::App& app, const std::string& name, Number& to, const Range& range,
+                        const std::string& description) {
+  return add_parsed<Number>(
+      app, name, to, "NUMBER",
+      [name, range](const std::string& text) -> Number { return parse_number(name, text, range); },
+      description);
+}
 
 /// An option whose value is a length, in input units or as a share of the diagonal.
-CLI::Option* add_length(CLI::App& app, const std::string& name, LengthOption& to,
+CLI::Option* add_length(CLI::App& app, const std::string& name, std::optional<Length>& to,
                         const std::string& description);
 
 /// --feature-angle.

@@ -85,7 +85,7 @@ std::string patches_line(const std::vector<PatchComparison>& patches) {
 
 }  // namespace
 
-void print_report(const CommandLine& line, const RunReport& run) {
+void print_report(const CommandLine& line, const PrepareReport& run) {
   const MeshStatistics* columns[2] = {run.dense ? &*run.dense : nullptr, run.result ? &*run.result : nullptr};
   const char* heads[2] = {line.command == Command::prepare ? "dense" : "before", "result"};
   if (line.command == Command::mesh) columns[0] = nullptr;  // the dense mesh is the result
@@ -105,7 +105,7 @@ void print_report(const CommandLine& line, const RunReport& run) {
   row("volume", [](const MeshStatistics& m) { return text("%.6g", m.volume); });
   row("smallest solid angle, sr", [](const MeshStatistics& m) { return text("%.4f", m.min_solid_angle); });
   row("mean solid angle, sr", [](const MeshStatistics& m) { return text("%.4f", m.mean_solid_angle); });
-  row(text("tets below %.3g sr, %%", line.min_solid_angle).c_str(),
+  row(text("tets below %.3g sr, %%", line.options.shapes.bound()).c_str(),
       [](const MeshStatistics& m) { return text("%.3f", m.below_percent); });
   row("dihedral angles, degrees",
       [](const MeshStatistics& m) { return text("%.1f - %.1f", m.min_dihedral, m.max_dihedral); });
@@ -159,61 +159,6 @@ void print_report(const CommandLine& line, const RunReport& run) {
   }
   std::printf(", write %.2f; peak memory %.0f MB\n", run.seconds_write,
               static_cast<double>(peak_bytes()) / 1e6);
-}
-
-std::vector<std::string> notes_of(const RunReport& run) {
-  std::vector<std::string> notes;
-  std::string line, file;
-  for (const InputFinding& f : run.findings) {
-    line += line.empty() ? "" : "; ";
-    if (f.file != file) line += f.file + ": ";
-    file = f.file;
-    line += std::to_string(f.finding.count) + " " + f.finding.what + " (" + f.finding.done + ")";
-  }
-  if (!line.empty()) notes.push_back(line);
-  for (const RunNote& note : further_notes(run)) notes.push_back(note.text);
-  return notes;
-}
-
-std::vector<RunNote> further_notes(const RunReport& run) {
-  std::vector<RunNote> notes;
-  for (const FeatureReport& f : run.features)
-    if (f.found.dropped > 0)
-      notes.push_back(
-          {"'" + f.name + "' has " + std::to_string(f.found.dropped) +
-               " patches between sharp edges smaller than eight faces of a cell (their edges are not kept; a "
-               "higher resolution keeps them)",
-           {}});
-  if (!run.mesher) return notes;
-  if (run.mesher->isolated_vertices > 0)
-    notes.push_back(
-        {std::to_string(run.mesher->isolated_vertices) +
-             " parts or cavities of a single lattice point (left out; a higher resolution keeps them)",
-         {}});
-  for (const std::string& name : run.mesher->unknown)
-    notes.push_back(
-        {"'" + name +
-             "' was not compared with its input: its surface is open, intersects itself or meets another, "
-             "and cells of this size do not show it",
-         {}});
-  for (const ThinPartReport& t : run.mesher->thin_parts)
-    notes.push_back({(t.name.empty() ? "a gap" : "'" + t.name + "'") + " is thinner than " +
-                         (t.refined ? "the smallest cells can hold" : "two cells") + " at " +
-                         std::to_string(t.places) + " places, the first at " + place_text(t.first) +
-                         ": parts may tear or join there; a higher resolution keeps them",
-                     t.first});
-  return notes;
-}
-
-double RunReport::lost_area() const {
-  if (!deviation || !mesher || mesher->expected.empty() || !mesher->unknown.empty()) return 0;
-  const bool all_shown = std::all_of(mesher->expected.begin(), mesher->expected.end(),
-                                     [](const ExpectedSolid& s) { return s.by_surface; });
-  return all_shown ? deviation->hidden_area : 0;
-}
-
-std::string patch_name(const SurfaceRegion& group) {
-  return group.name.empty() ? std::to_string(group.number) : group.name;
 }
 
 void print_notes(const std::vector<std::string>& notes) {

@@ -72,9 +72,9 @@ void ProgressReport::clear() {
 }
 
 ProgressStyle progress_style(const CommandLine& line) {
-  if (line.no_progress) return ProgressStyle::none;
-  if (line.progress != ProgressStyle::automatic) return line.progress;
-  return !line.quiet && isatty(STDERR_FILENO) ? ProgressStyle::bar : ProgressStyle::none;
+  if (line.console.no_progress) return ProgressStyle::none;
+  if (line.console.progress != ProgressStyle::automatic) return line.console.progress;
+  return !line.console.quiet && isatty(STDERR_FILENO) ? ProgressStyle::bar : ProgressStyle::none;
 }
 
 }  // namespace tetwright

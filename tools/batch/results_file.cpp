@@ -83,7 +83,7 @@ bool ResultsFile::read_line(const std::string& text) {
 
 void ResultsFile::write_whole(const std::string& text) {
   for (std::size_t done = 0; done < text.size();) {
-    const ssize_t written = write(file_, text.data() + done, text.size() - done);
+    const ssize_t written = ::write(file_, text.data() + done, text.size() - done);
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail(path_, std::strerror(errno));
     done += static_cast<std::size_t>(written);

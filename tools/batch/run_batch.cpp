@@ -26,6 +26,7 @@
 #include "tools/batch/child_process.h"
 #include "tools/batch/jobs.h"
 #include "tools/batch/results_file.h"
+#include "tools/prepare/notes.h"
 #include "tools/report/stats_json.h"
 
 namespace tetwright {
@@ -57,10 +58,11 @@ CommandLine parse(const Job& job) {
   if (line.command == Command::batch || line.command == Command::sample)
     throw UsageError(std::string(name_of(line.command)) +
                      " is no job; jobs are prepare, mesh, simplify, improve and check");
-  if (!line.log_file.empty()) throw UsageError("--log-file is of the whole batch; give it there");
-  if (!line.input_format.empty() || line.output == "-" || line.boundary == "-")
+  if (!line.console.log_file.empty()) throw UsageError("--log-file is of the whole batch; give it there");
+  if (!line.input_format.empty() || line.outputs.mesh == "-" || line.outputs.boundary == "-")
     throw UsageError("a job has no standard input and output; give it files");
-  if (line.stats == "-") throw UsageError("--stats - is of a single run; the results have the statistics");
+  if (line.outputs.stats == "-")
+    throw UsageError("--stats - is of a single run; the results have the statistics");
   return line;
 }
 
@@ -78,7 +80,7 @@ void check_jobs_are_independent(const CommandLine& batch, const std::vector<Job>
       continue;  // its result will say so
     }
     for (const std::string& path : written_files(line)) {
-      for (const std::string& of_batch : {file, results_file_of(batch), batch.log_file})
+      for (const std::string& of_batch : {file, results_file_of(batch), batch.console.log_file})
         if (!of_batch.empty() && real_path(path) == real_path(of_batch))
           throw InputError(
               file, 0,
@@ -103,16 +105,16 @@ void check_jobs_are_independent(const CommandLine& batch, const std::vector<Job>
 void carry_out(CommandRun& run, Ended& ended) {
   if (run.line.command == Command::check) {
     const CheckReport check = make_check(run);
-    ended.stats = nlohmann::json::parse(check_json(run.line, run.report, check));
+    ended.stats = nlohmann::json::parse(check_json(run, check));
   } else {
     check_output_paths(run.line);
-    CommandResult result = make_result(run);
+    Prepared result = make_result(run);
     write_result(result, run);
-    ended.stats = nlohmann::json::parse(stats_json(run.line, run.report));
+    ended.stats = nlohmann::json::parse(stats_json(run));
   }
   ended.messages = notes_of(run.report);
-  for (const Shortfall& s : run.report.shortfall) ended.messages.push_back(s.message);
-  ended.status = run.report.status;
+  for (std::string& line : shortfalls_of(run.report)) ended.messages.push_back(std::move(line));
+  ended.status = run.status;
 }
 
 /// All that a job throws becomes its status: another one may do better.
@@ -122,10 +124,10 @@ Ended run_job(const Job& job, unsigned threads, double memory) {
   Ended ended;
   try {
     CommandLine line = parse(job);
-    if (line.threads == 0) line.threads = threads;
+    if (line.options.limits.threads == 0) line.options.limits.threads = threads;
     check_stats_path(line);
     ProgressReport progress(ProgressStyle::none);  // knows its stage, for messages and the log
-    with_threads(line.threads, [&] {
+    with_threads(line.options.limits.threads, [&] {
       const MemoryLimit share(memory);
       CommandRun run(line, progress);
       try {
@@ -224,7 +226,7 @@ class Recorder {
     char numbers[80];
     std::snprintf(numbers, sizeof numbers, ": status %d, %.2f s", static_cast<int>(ended.status),
                   ended.seconds);
-    if (ended.status != ExitStatus::done || !run_.line.quiet) {
+    if (ended.status != ExitStatus::done || !run_.line.console.quiet) {
       print_line(
           "job '" + job.id + "'" + numbers +
           (ended.status == ExitStatus::done || ended.messages.empty() ? "" : "; " + ended.messages.back()));
@@ -319,7 +321,7 @@ void carry_out_waiting(const std::vector<const Job*>& jobs, JobStates& states,
   Batch batch(jobs, states, recorder);
   batch.carry_out(suspects, 1);
   batch.carry_out(jobs_that_are(JobState::waiting, states),
-                  run.line.jobs > 0 ? run.line.jobs : thread_count());
+                  run.line.batch.jobs > 0 ? run.line.batch.jobs : thread_count());
   run.progress.finish();
 }
 
@@ -331,7 +333,7 @@ void run_batch(CommandRun& run) {
   check_jobs_are_independent(line, jobs);
   ResultsFile results(results_file_of(line));
   say_when_interrupted("tetwright: interrupted; the same call goes on with the jobs that are left\n");
-  const std::vector<const Job*> left = unfinished_jobs(jobs, results, line.retry);
+  const std::vector<const Job*> left = unfinished_jobs(jobs, results, line.batch.retry);
   JobStates states(left.size());
   Recorder recorder(left, states, results, run);
   std::vector<std::size_t> suspects;
@@ -353,7 +355,7 @@ void run_batch(CommandRun& run) {
     // A process that ends itself within a job, as where no thread can be started, has died of it, too.
     const bool interrupted = end.status == static_cast<int>(ExitStatus::interrupted);
     if (end.signal == 0 && (running.empty() || interrupted)) {
-      run.report.status = static_cast<ExitStatus>(end.status);
+      run.status = static_cast<ExitStatus>(end.status);
       break;
     }
     for (const std::vector<std::size_t>& jobs_then : {running, recorded})
@@ -375,11 +377,11 @@ void run_batch(CommandRun& run) {
         next.push_back(job);
     suspects = std::move(next);
   }
-  if (run.report.status != ExitStatus::done) return;
+  if (run.status != ExitStatus::done) return;
   const auto done = static_cast<std::size_t>(
       std::count_if(jobs.begin(), jobs.end(), [&](const Job& job) { return results.status_of(job) == 0; }));
   if (done < jobs.size()) {
-    run.report.status = ExitStatus::short_of_request;
+    run.status = ExitStatus::short_of_request;
     print_line(std::to_string(jobs.size() - done) + " of " + std::to_string(jobs.size()) +
                " jobs did not end with status 0; " + results_file_of(line) + " says why");
   }

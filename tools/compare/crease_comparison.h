@@ -34,7 +34,7 @@ struct CreaseComparison {
 CreaseComparison compare_creases(const CreaseCurves& expected, const std::vector<CreaseCurves>& found,
                                  std::span<const Vec3> points, double diagonal);
 
-/// The same with the creases and junctions of a mesh and the points of its boundary. `mesh` has its
+/// Compares them with the creases and junctions of a mesh and the points of its boundary. `mesh` has its
 /// interfaces with their patches; where it has no creases the diagonal stands for their distance.
 CreaseComparison compare_creases(const CreaseCurves& expected, const TetMesh& mesh);
 

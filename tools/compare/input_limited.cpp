@@ -85,7 +85,7 @@ double narrowest_wedge(double solid_angle) {
 std::size_t input_limited_tets(const TetMesh& mesh, const CreaseCurves& creases, double threshold) {
   if (creases.segments.empty()) return 0;
   const InputCreases input(creases, mesh);
-  // Of each material, radians and steradians.
+  // For each material, radians and steradians.
   std::map<EdgeOfMaterial, double> wedges;
   std::map<PointOfMaterial, double> cones;
   std::vector<Index> bad;

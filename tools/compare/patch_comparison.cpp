@@ -36,6 +36,10 @@ FacesByGroup faces_by_group(const TetMesh& mesh) {
 
 }  // namespace
 
+std::string patch_name(const SurfaceRegion& group) {
+  return group.name.empty() ? std::to_string(group.number) : group.name;
+}
+
 std::vector<PatchComparison> patches_of_input(const MesherInput& input) {
   std::vector<PatchComparison> patches;
   patches.reserve(input.groups.size());

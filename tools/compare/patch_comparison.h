@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "common/surface_region.h"
@@ -19,6 +20,9 @@ struct PatchComparison {
 
   bool lost() const { return triangles == 0; }
 };
+
+/// The name of a group, or its number.
+std::string patch_name(const SurfaceRegion& group);
 
 /// The patches of an input, by their numbers and names.
 std::vector<PatchComparison> patches_of_input(const MesherInput& input);

@@ -13,9 +13,10 @@ namespace {
 
 /// Relative change of a volume from which on a solid counts as another one.
 constexpr double same_volume = 0.01;
-/// The same for shells that may stand for each other.
+/// Max relative difference in volume of shells that may stand for each other.
 constexpr double alike_volume = 0.1;
-/// The same of labels, but for those of few voxels: how far their surface may move, voxels, were they cubes.
+/// Max relative difference in volume of labels; for labels of few voxels, how far the surface of a cube of
+/// that volume may move, voxels.
 constexpr double label_volume = 0.02, label_shift = 0.06, cube_sides = 6;
 
 using Solids = std::unordered_map<MaterialTag, std::vector<Triangle>>;

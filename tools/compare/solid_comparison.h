@@ -10,7 +10,7 @@
 
 namespace tetwright {
 
-/// What is compared of a solid.
+/// The numbers of a solid that are compared.
 struct SolidNumbers {
   double volume = 0;  ///< input units cubed
   std::size_t components = 0, cavities = 0;
@@ -28,8 +28,8 @@ struct SolidComparison {
   std::size_t max_components = 0;
   /// "256 handles instead of 0, volume 3.1 % less"; empty where the solid is the same.
   std::string difference;
-  /// Of the largest shell without a counterpart, input units. By voxels: of the smallest component, of the
-  /// mesh where it has too many, else of the volume.
+  /// A point of the largest shell without a counterpart, input units. By voxels: a point of the smallest
+  /// component, of the mesh where it has too many, else of the volume.
   std::optional<Vec3> place;
 
   bool same() const { return difference.empty(); }

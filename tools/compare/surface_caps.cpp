@@ -14,10 +14,10 @@ namespace tetwright {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Of an edge's length: nearer to another open edge it is one side of a crack.
+/// An open edge that is nearer to another one than this fraction of its length is one side of a crack.
 constexpr double crack_share = 0.25;
-/// Of the diagonal: the largest piece of a cap, and the smallest pieces that are cut further, where some
-/// place of them is on a cap and where none is.
+/// Fractions of the diagonal: the largest piece of a cap, and the smallest pieces that are cut further, where
+/// some place of them is on a cap and where none is.
 constexpr double cap_piece = 0.02, cut_piece = 5e-4, cap_free_piece = 5e-3;
 /// The rounding of two distances of the same point, of the distance and of the diagonal.
 constexpr double same_distance = 1e-9, same_place = 1e-12;

@@ -13,8 +13,8 @@ namespace tetwright {
 /// Where surfaces are open.
 struct OpenEdges {
   std::size_t count = 0;  ///< edges with one triangle
-  /// Those beyond which there is nothing: not those of cracks, where another one runs along within a quarter
-  /// of the edge's length.
+  /// Open edges beyond which there is nothing. Edges of cracks, where another one runs along within a quarter
+  /// of the edge's length, are left out.
   ProjectionTree rims;
 };
 

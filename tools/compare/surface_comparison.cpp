@@ -30,10 +30,10 @@ namespace {
 
 /// Creases of a mesh are looked for where those of its surface were found: find_patches(), automatic.
 constexpr double crease_degrees = 35;
-/// What turns that far is as good as a crease on the other side: none is lost for a degree.
+/// An edge that turns that far counts as the counterpart of a crease: none is lost for a degree.
 constexpr double counterpart_degrees = crease_degrees / 2;
 
-/// Of the mesh's area: more is no cap over a hole, and the surface no scan of the mesh's body.
+/// Max fraction of the mesh's area that caps over holes cover; with more the surface is no scan of this body.
 constexpr double max_cap_share = 0.5;
 
 /// The tets that stand for something: without the outside, and turned if all of them are inverted.

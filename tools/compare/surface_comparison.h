@@ -34,7 +34,7 @@ struct SurfaceComparison {
     double area = 0, share = 0;  ///< and of all of the mesh's area that is compared
   };
   std::optional<Caps> caps;
-  /// Of one closed surface: volume, components, handles and cavities beside those of the mesh's boundary.
+  /// Volume, components, handles and cavities of one closed surface beside those of the mesh's boundary.
   std::optional<SolidComparison> solid;
   /// Where the surfaces have any: their creases beside the mesh's edges that turn at least half as far as a
   /// crease does, and the mesh's creases beside such edges of the surfaces.
@@ -42,9 +42,9 @@ struct SurfaceComparison {
   bool intersecting = false;      ///< some surface intersects itself
   bool creases_left_out = false;  ///< and such a one has creases, which are not compared
 
-  /// What is proven: no point of one is farther from the other than this, no place of a crease of the
-  /// surfaces from such an edge of the mesh, no corner of them from a point of it. Creases of the mesh are
-  /// not among them: where tets are large a round face has some.
+  /// Distances that are proven: no point of one is farther from the other than this, no place of a crease of
+  /// the surfaces from such an edge of the mesh, no corner of them from a point of it. Creases of the mesh
+  /// are not among them: where tets are large a round face has some.
   std::vector<Bound> bounds() const;
   /// The largest one.
   double upper() const;

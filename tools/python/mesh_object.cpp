@@ -17,8 +17,8 @@
 #include "tools/app/commands/output_paths.h"
 #include "tools/app/commands/unwritten.h"
 #include "tools/app/option_rules.h"
-#include "tools/app/printed_report.h"
 #include "tools/compare/patch_comparison.h"
+#include "tools/prepare/notes.h"
 #include "tools/python/text.h"
 
 namespace tetwright::python {
@@ -105,10 +105,10 @@ void write_mesh_files(Mesh& mesh, const std::string& path, const std::string& fo
   const py::gil_scoped_release release;
   CommandLine line;  // for the program's rules
   line.command = Command::improve;
-  line.output = path;
-  line.output_format = format;
-  line.boundary = boundary;
-  line.no_boundary = no_boundary;
+  line.outputs.mesh = path;
+  line.outputs.format = format;
+  line.outputs.boundary = boundary;
+  line.outputs.no_boundary = no_boundary;
   check_no_standard_output(line);
   check_output_paths(line);
   if (mesh.midside) check_holds_second_order(path, format);
@@ -124,7 +124,7 @@ void write_mesh_files(Mesh& mesh, const std::string& path, const std::string& fo
   }
   if (!boundary.empty()) write_interfaces(mesh.mesh, boundary, &files);
   files.commit();
-  RunReport report;
+  PrepareReport report;
   report.patches = patches_of_input(mesh.mesh);
   find_unwritten(line, mesh.mesh, report);
   for (std::string& note : notes_of(report)) mesh.notes.push_back(std::move(note));
@@ -133,7 +133,7 @@ void write_mesh_files(Mesh& mesh, const std::string& path, const std::string& fo
 }  // namespace
 
 void check_no_standard_output(const CommandLine& line) {
-  if (line.output == "-" || line.boundary == "-")
+  if (line.outputs.mesh == "-" || line.outputs.boundary == "-")
     throw UsageError("standard output is the host's; give output and boundary names of files");
 }
 

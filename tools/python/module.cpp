@@ -19,11 +19,11 @@
 #include "common/error.h"
 #include "common/io/formats.h"
 #include "common/io/names/label_groups.h"
-#include "common/parallel/parallel.h"
+#include "common/parallel/host_threads.h"
 #include "tools/app/commands/commands.h"
 #include "tools/app/commands/output_paths.h"
 #include "tools/app/commands/result.h"
-#include "tools/app/printed_report.h"
+#include "tools/prepare/notes.h"
 #include "tools/python/arrays.h"
 #include "tools/python/mesh_object.h"
 #include "tools/python/option_types.h"
@@ -116,14 +116,15 @@ CommandLine parse(std::vector<std::string> arguments) {
   line.in_memory = true;
   if (!parse_command_line(static_cast<int>(argv.size()), argv.data(), line))
     throw UsageError("help and version are not options here; see help(tetwright)");
-  if (line.output.empty() &&
-      !(line.boundary.empty() && line.write_sdf.empty() && line.report.empty() && line.stats.empty()) &&
+  if (line.outputs.mesh.empty() &&
+      !(line.outputs.boundary.empty() && line.outputs.distances.empty() && line.outputs.report.empty() &&
+        line.outputs.stats.empty()) &&
       line.command != Command::check)
     throw UsageError(
         "boundary, write_sdf, report and stats are written beside an output; give output too, or call "
         "write()");
   check_no_standard_output(line);
-  if (!line.log_file.empty())
+  if (!line.console.log_file.empty())
     throw UsageError(
         "log_file is the program's; leave it out: notes, shortfall, stats and progress say what it would");
   return line;
@@ -139,34 +140,34 @@ void with_stats_of_failure(CommandRun& run, const std::function<void()>& work) {
   }
 }
 
-std::shared_ptr<Mesh> run(std::vector<std::string> arguments, InputObjects& inputs,
+std::shared_ptr<Mesh> run(std::vector<std::string> arguments, NamedInputs& inputs,
                           const py::object& callback) {
   const CommandLine line = parse(std::move(arguments));
   auto made = std::make_shared<Mesh>();
   SharedProgress progress;
   run_in_background(
       [&] {
-        with_threads(line.threads, [&] {
-          if (!line.output.empty()) check_stats_path(line);
+        with_threads_of_host(line.options.limits.threads, [&] {
+          if (!line.outputs.mesh.empty()) check_stats_path(line);
           CommandRun run(line, progress, &inputs);
-          CommandResult result;
+          Prepared result;
           with_stats_of_failure(run, [&] {
-            if (!line.output.empty()) check_output_paths(line);
+            if (!line.outputs.mesh.empty()) check_output_paths(line);
             result = make_result(run);
-            if (!line.output.empty()) write_result(result, run);
+            if (!line.outputs.mesh.empty()) write_result(result, run);
           });
-          made->stats = stats_json(line, run.report);
+          made->stats = stats_json(run);
           made->notes = notes_of(run.report);
-          for (const Shortfall& s : run.report.shortfall) made->shortfall.push_back(s.message);
+          made->shortfall = shortfalls_of(run.report);
           made->mesh = std::move(result.mesh);
-          made->midside = std::move(run.midside);
+          made->midside = std::move(result.midside);
         });
       },
       progress, callback);
   return made;
 }
 
-py::tuple check(std::vector<std::string> arguments, InputObjects& inputs, const py::object& callback) {
+py::tuple check(std::vector<std::string> arguments, NamedInputs& inputs, const py::object& callback) {
   const CommandLine line = parse(std::move(arguments));
   SharedProgress progress;
   std::string json;
@@ -174,12 +175,12 @@ py::tuple check(std::vector<std::string> arguments, InputObjects& inputs, const 
   bool passed = false;
   run_in_background(
       [&] {
-        with_threads(line.threads, [&] {
+        with_threads_of_host(line.options.limits.threads, [&] {
           check_stats_path(line);
           CommandRun run(line, progress, &inputs);
           CheckReport found;
           with_stats_of_failure(run, [&] { found = make_check(run); });
-          json = check_json(line, run.report, found);
+          json = check_json(run, found);
           notes = notes_of(run.report);
           passed = found.valid() && found.topology_kept() && found.within_tolerance();
         });
@@ -266,37 +267,38 @@ PYBIND11_MODULE(_core, module) {
     }
   });
 
-  py::class_<InputObjects>(module, "Inputs")
+  py::class_<NamedInputs>(module, "Inputs")
       .def(py::init<>())
       .def("add_surface",
-           [](InputObjects& to, const std::string& name, const Points& points,
+           [](NamedInputs& to, const std::string& name, const Points& points,
               const GroupedTriangles& triangles, const DroppedItems& dropped) {
-             to.surfaces[name] = to_surface(name, points, triangles);
-             to.dropped[name] = to_dropped(dropped);
+             to.values[name] = InputSurface{to_surface(name, points, triangles), to_dropped(dropped)};
            })
-      .def("add_mesh",
-           [](InputObjects& to, const std::string& name, const Points& points, const Cells& tets,
-              const std::optional<Tags>& materials, const std::map<MaterialTag, std::string>& names,
-              const Fields& point_fields, const Fields& cell_fields, const DroppedItems& dropped,
-              const GroupedTriangles& triangles) {
-             const ReadTetMesh& read = to.meshes[name] =
-                 to_mesh(name, points, tets, materials, names, point_fields, cell_fields, dropped);
-             to.triangles[name] = to_triangles(name, read.mesh.points.size(), triangles);
-           })
+      .def(
+          "add_mesh",
+          [](NamedInputs& to, const std::string& name, const Points& points, const Cells& tets,
+             const std::optional<Tags>& materials, const std::map<MaterialTag, std::string>& names,
+             const Fields& point_fields, const Fields& cell_fields, const DroppedItems& dropped,
+             const GroupedTriangles& triangles) {
+            InputMesh mesh{to_mesh(name, points, tets, materials, names, point_fields, cell_fields, dropped)};
+            mesh.triangles = to_triangles(name, mesh.read.mesh.points.size(), triangles);
+            to.values[name] = std::move(mesh);
+          })
       .def("add_own_mesh",
-           [](InputObjects& to, const std::string& name, const Mesh& mesh) {
-             ReadTetMesh& read = to.meshes[name] = {mesh.mesh, "material", {}};
+           [](NamedInputs& to, const std::string& name, const Mesh& mesh) {
+             InputMesh input{{mesh.mesh, "material", {}}};
              if (mesh.midside)
-               read.dropped.push_back({"midside nodes; tets of ten nodes are taken by their corners",
-                                       mesh.midside->points.size()});
+               input.read.dropped.push_back({"midside nodes; tets of ten nodes are taken by their corners",
+                                             mesh.midside->points.size()});
+             to.values[name] = std::move(input);
            })
       .def("add_sizes",
-           [](InputObjects& to, const std::string& name, const Points& points, const Cells& cells,
+           [](NamedInputs& to, const std::string& name, const Points& points, const Cells& cells,
               const Values& lengths) { to.sizes[name] = to_sizes(name, points, cells, lengths); })
       .def("add_volume",
-           [](InputObjects& to, const std::string& name, const Labels& labels,
+           [](NamedInputs& to, const std::string& name, const Labels& labels,
               const std::array<double, 3>& origin, const std::array<std::array<double, 3>, 3>& directions) {
-             to.volumes[name] = to_volume(name, labels, origin, directions);
+             to.values[name] = to_volume(name, labels, origin, directions);
            });
 
   bind_mesh(module);

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/parallel/parallel.h"
-#include "tools/app/printed_report.h"
+#include "tools/prepare/notes.h"
 
 namespace tetwright {
 
@@ -174,18 +174,84 @@ nlohmann::json mesh_json(const MeshStatistics& m, const std::map<MaterialTag, st
           {"histogram", m.histogram.counts}};
 }
 
-nlohmann::json input_json(const RunReport& run) {
+nlohmann::json input_json(const PrepareReport& run) {
   nlohmann::json j = {
       {"files", run.inputs}, {"triangles", run.input_triangles}, {"points", run.input_points}};
   if (!run.material_field.empty()) j["material_field"] = run.material_field;
   if (run.volume) j["volume"] = volume_json(*run.volume, run.material_colours);
   j["findings"] = nlohmann::json::array();
-  for (const InputFinding& f : run.findings) {
+  for (const Diagnostic& d : run.diagnostics) {
+    if (d.severity != Severity::note || d.file.empty()) continue;
     nlohmann::json finding = {
-        {"file", f.file}, {"what", f.finding.what}, {"count", f.finding.count}, {"done", f.finding.done}};
-    if (f.finding.place) finding["place"] = place_json(*f.finding.place);
+        {"file", d.file}, {"what", d.what}, {"count", std::max<std::size_t>(1, d.count)}, {"done", d.done}};
+    if (!d.places.empty()) finding["place"] = place_json(d.places.front());
     j["findings"].push_back(finding);
   }
+  return j;
+}
+
+nlohmann::json diagnostics_json(const std::vector<Diagnostic>& all) {
+  nlohmann::json j = nlohmann::json::array();
+  for (const Diagnostic& d : all) {
+    nlohmann::json places = nlohmann::json::array();
+    for (const Vec3& p : d.places) places.push_back(place_json(p));
+    j.push_back({{"code", kind_of(d.code).name},
+                 {"severity", name_of(d.severity)},
+                 {"message", diagnostic_text(d)},
+                 {"places", places}});
+    if (!d.file.empty()) j.back()["file"] = d.file;
+    if (d.count > 0) j.back()["count"] = d.count;
+    if (d.asked) j.back()["asked"] = *d.asked;
+    if (d.reached) j.back()["reached"] = *d.reached;
+    if (!d.limited_by.empty()) j.back()["limited_by"] = d.limited_by;
+  }
+  return j;
+}
+
+/// What "shortfall" calls a request that was not met. Codes are newer and say the same.
+const char* request_name(DiagnosticCode code) {
+  switch (code) {
+    case DiagnosticCode::target_missed:
+      return "target_tets";
+    case DiagnosticCode::angle_missed:
+      return "min_solid_angle";
+    case DiagnosticCode::tolerance_missed:
+      return "tolerance";
+    case DiagnosticCode::surface_not_shown:
+      return "surface_shown";
+    case DiagnosticCode::edges_too_long:
+      return "max_edge";
+    case DiagnosticCode::edges_too_short:
+      return "min_edge";
+    case DiagnosticCode::sizes_missed:
+      return "size_field";
+    case DiagnosticCode::solid_changed:
+      return "fidelity";
+    case DiagnosticCode::thin_walls_changed:
+      return "thin_walls";
+    case DiagnosticCode::creases_changed:
+      return "creases";
+    case DiagnosticCode::patches_lost:
+      return "patches";
+    case DiagnosticCode::labels_lost:
+      return "labels";
+    case DiagnosticCode::time_limit_reached:
+      return "time_limit";
+    case DiagnosticCode::cells_enlarged:
+      return "memory_limit";
+    default:
+      return "notes";
+  }
+}
+
+nlohmann::json shortfall_json(const std::vector<Diagnostic>& all) {
+  nlohmann::json j = nlohmann::json::array();
+  for (const Diagnostic& d : all)
+    if (d.severity == Severity::shortfall)
+      j.push_back({{"what", request_name(d.code)},
+                   {"asked", d.asked.value_or(0)},
+                   {"reached", d.reached.value_or(0)},
+                   {"held_back_by", d.limited_by}});
   return j;
 }
 
@@ -324,7 +390,7 @@ void add_mesher_json(const MesherReport& m, nlohmann::json& dense) {
                                     {"place", place_json(g.place)}});
 }
 
-nlohmann::json seconds_json(const RunReport& run) {
+nlohmann::json seconds_json(const PrepareReport& run) {
   nlohmann::json seconds = {
       {"read", run.seconds_read}, {"write", run.seconds_write}, {"total", run.seconds_total}};
   if (run.mesher) {
@@ -343,6 +409,13 @@ nlohmann::json seconds_json(const RunReport& run) {
   return seconds;
 }
 
+/// Those of the report, and why there is no result.
+std::vector<Diagnostic> diagnostics_of(const CommandRun& ended) {
+  std::vector<Diagnostic> all = ended.report.diagnostics;
+  if (!ended.error.empty()) all.push_back({.code = error_code(ended.status), .what = ended.error});
+  return all;
+}
+
 }  // namespace
 
 std::size_t peak_bytes() {
@@ -351,29 +424,31 @@ std::size_t peak_bytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
 }
 
-std::string stats_json(const CommandLine& line, const RunReport& run) {
+std::string stats_json(const CommandRun& ended) {
+  const CommandLine& line = ended.line;
+  const PrepareReport& run = ended.report;
   nlohmann::json j;
   j["version"] = TETWRIGHT_VERSION;
   j["command"] = name_of(line.command);
-  j["status"] = static_cast<int>(run.status);
-  if (!run.error.empty()) j["error"] = {{"message", run.error}, {"stage", run.stage}};
+  j["status"] = static_cast<int>(ended.status);
+  if (!ended.error.empty()) j["error"] = {{"message", ended.error}, {"stage", ended.stage}};
   j["notes"] = notes_of(run);
   j["threads"] = thread_count();
-  j["seed"] = line.seed;
+  j["seed"] = line.options.seed;
   if (run.simplify) {
-    j["objective"] = name_of(line.objective);
+    j["objective"] = name_of(line.options.shapes.objective);
     if (line.command == Command::improve) {
-      j["only_below"] = line.only_below;
-      j["free_count"] = line.free_count;
+      j["only_below"] = line.options.shapes.only_below.value_or(0);
+      j["free_count"] = line.options.shapes.free_count;
     } else {
-      j["schedule"] = name_of(line.schedule);
+      j["schedule"] = name_of(line.options.schedule.kind);
     }
   }
   j["input"] = input_json(run);
-  if (run.dense) j["dense"] = mesh_json(*run.dense, run.material_names, line.min_solid_angle);
+  if (run.dense) j["dense"] = mesh_json(*run.dense, run.material_names, line.options.shapes.bound());
   if (run.mesher) add_mesher_json(*run.mesher, j["dense"]);
   j["result"] =
-      run.result ? mesh_json(*run.result, run.material_names, line.min_solid_angle) : nlohmann::json();
+      run.result ? mesh_json(*run.result, run.material_names, line.options.shapes.bound()) : nlohmann::json();
   if (run.simplify) j["result"]["held_by_input"] = run.input_limited;
   if (run.mesher) j["fidelity"] = solids_json(run.solids);
   if (!run.features.empty()) j["features"] = features_json(run.features);
@@ -397,14 +472,14 @@ std::string stats_json(const CommandLine& line, const RunReport& run) {
     for (const IterationReport& it : run.simplify->iterations) j["iterations"].push_back(iteration_json(it));
   j["seconds"] = seconds_json(run);
   j["peak_bytes"] = peak_bytes();
-  j["shortfall"] = nlohmann::json::array();
-  for (const Shortfall& s : run.shortfall)
-    j["shortfall"].push_back(
-        {{"what", s.what}, {"asked", s.asked}, {"reached", s.reached}, {"held_back_by", s.limited_by}});
+  j["shortfall"] = shortfall_json(run.diagnostics);
+  j["diagnostics"] = diagnostics_json(diagnostics_of(ended));
   return json_text(j);
 }
 
-std::string check_json(const CommandLine& line, const RunReport& run, const CheckReport& check) {
+std::string check_json(const CommandRun& ended, const CheckReport& check) {
+  const CommandLine& line = ended.line;
+  const PrepareReport& run = ended.report;
   nlohmann::json j = {{"valid", check.valid()}, {"findings", nlohmann::json::array()}};
   for (const MeshFinding& f : check.findings) {
     nlohmann::json places = nlohmann::json::array();
@@ -419,8 +494,9 @@ std::string check_json(const CommandLine& line, const RunReport& run, const Chec
                              {"count", f.count},
                              {"places", places}});
   }
+  j["diagnostics"] = diagnostics_json(diagnostics_of(check));
   if (check.measurable) {
-    j["mesh"] = mesh_json(*run.result, run.material_names, line.min_solid_angle);
+    j["mesh"] = mesh_json(*run.result, run.material_names, line.options.shapes.bound());
     j["topology"] = topology_json(*check.topology, run.material_names);
   }
   if (check.topology_before) j["topology_before"] = topology_json(*check.topology_before, run.material_names);

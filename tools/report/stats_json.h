@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <string>
 
-#include "tools/app/command_line.h"
-#include "tools/prepare/run_report.h"
+#include "tools/app/commands/command_run.h"
+#include "tools/compare/check_report.h"
 
 namespace tetwright {
 
@@ -14,9 +14,9 @@ std::size_t peak_bytes();
 
 /// The JSON text that --stats writes, with the keys of data/stats.schema.json. Bytes that are not UTF-8,
 /// which names may contain, become replacement characters.
-std::string stats_json(const CommandLine& line, const RunReport& run);
+std::string stats_json(const CommandRun& run);
 
-/// The JSON text that `check --json` prints. The statistics are those of run.result.
-std::string check_json(const CommandLine& line, const RunReport& run, const CheckReport& check);
+/// The JSON text that `check --json` prints. The statistics are those of the result.
+std::string check_json(const CommandRun& run, const CheckReport& check);
 
 }  // namespace tetwright

@@ -40,9 +40,9 @@ std::string refusal(const std::vector<MaterialTag>& labels, const LabelChoice& c
 
 std::vector<std::string> findings_of(const LabelInput& prepared) {
   std::vector<std::string> all;
-  for (const InputFinding& f : prepared.findings) {
+  for (const Diagnostic& f : prepared.findings) {
     EXPECT_EQ(f.file, "scan.nrrd");
-    all.push_back(std::to_string(f.finding.count) + " " + f.finding.what + ": " + f.finding.done);
+    all.push_back(std::to_string(f.count) + " " + f.what + ": " + f.done);
   }
   return all;
 }
@@ -214,8 +214,8 @@ TEST(LabelInput, IslandsAreMergedAndReported) {
                    "label is lost",
                    "1 islands of 'label_8' (2 voxels), all there is of it: merged into what they touch most; "
                    "this label is lost"}));
-  EXPECT_EQ(p.findings[0].finding.place, Vec3(10, 48, 30));
-  EXPECT_EQ(p.findings[1].finding.place, Vec3(10, 56, 30));
+  EXPECT_EQ(p.findings[0].places.at(0), Vec3(10, 48, 30));
+  EXPECT_EQ(p.findings[1].places.at(0), Vec3(10, 56, 30));
 }
 
 TEST(LabelInput, ManyLabelsWithIslandsShareAFinding) {

@@ -84,7 +84,7 @@ TEST(SurfaceRepair, FindingsNameTheFirstPlace) {
   sphere.points.emplace_back(7, 8, 9);
   const SurfaceRepair input = repair_surface(sphere, "");
   ASSERT_EQ(input.findings.size(), 1u);
-  EXPECT_EQ(input.findings[0].place, Vec3(7, 8, 9));
+  EXPECT_EQ(input.findings[0].places.at(0), Vec3(7, 8, 9));
   EXPECT_NE(input.findings[0].done, "");
 }
 

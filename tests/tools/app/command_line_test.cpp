@@ -29,21 +29,20 @@ void expect_refused(const std::vector<std::string>& arguments, const std::string
 TEST(CommandLine, DefaultsForSegmentedVolumes) {
   const CommandLine line = parse({});
   EXPECT_EQ(line.inputs, std::vector<std::string>{"scan.nrrd"});
-  EXPECT_TRUE(line.labels.empty());
-  EXPECT_EQ(line.label_names, "");
-  EXPECT_EQ(line.outside_label, 0);
-  EXPECT_FALSE(line.outside_label_given);
-  EXPECT_EQ(line.min_voxels, 8u);
-  EXPECT_FALSE(line.min_voxels_given);
+  EXPECT_TRUE(line.options.labels.meshed.empty());
+  EXPECT_EQ(line.options.labels.names_file, "");
+  EXPECT_FALSE(line.options.labels.outside);
+  EXPECT_FALSE(line.options.labels.min_voxels);
 }
 
 TEST(CommandLine, Labels) {
-  EXPECT_EQ(parse({"--labels", "1,5-9"}).labels, (Ranges{{1, 1}, {5, 9}}));
-  EXPECT_EQ(parse({"--labels", "-3"}).labels, (Ranges{{-3, -3}}));
-  EXPECT_EQ(parse({"--labels", "-3--1,7"}).labels, (Ranges{{-3, -1}, {7, 7}}));
-  EXPECT_EQ(parse({"--labels=-3-4"}).labels, (Ranges{{-3, 4}}));
-  EXPECT_EQ(parse({"--labels", "2-2", "--labels", "4"}).labels, (Ranges{{2, 2}, {4, 4}}));
-  EXPECT_EQ(parse({"--labels", "-2147483648-2147483647"}).labels, (Ranges{{-2147483648, 2147483647}}));
+  EXPECT_EQ(parse({"--labels", "1,5-9"}).options.labels.meshed, (Ranges{{1, 1}, {5, 9}}));
+  EXPECT_EQ(parse({"--labels", "-3"}).options.labels.meshed, (Ranges{{-3, -3}}));
+  EXPECT_EQ(parse({"--labels", "-3--1,7"}).options.labels.meshed, (Ranges{{-3, -1}, {7, 7}}));
+  EXPECT_EQ(parse({"--labels=-3-4"}).options.labels.meshed, (Ranges{{-3, 4}}));
+  EXPECT_EQ(parse({"--labels", "2-2", "--labels", "4"}).options.labels.meshed, (Ranges{{2, 2}, {4, 4}}));
+  EXPECT_EQ(parse({"--labels", "-2147483648-2147483647"}).options.labels.meshed,
+            (Ranges{{-2147483648, 2147483647}}));
   expect_refused({"--labels="}, "has no value");
   for (const char* wrong : {",", "1,", "a", "1-", "--1", "1-2-3", "1.5", "1 2", "+1", "1-+2", "2147483648",
                             "1--2147483649", "0x1"})
@@ -55,13 +54,11 @@ TEST(CommandLine, Labels) {
 TEST(CommandLine, OtherOptionsOfSegmentedVolumes) {
   const CommandLine line =
       parse({"--label-names", "names.ctbl", "--outside-label", "-7", "--min-voxels", "0"});
-  EXPECT_EQ(line.label_names, "names.ctbl");
-  EXPECT_EQ(line.outside_label, -7);
-  EXPECT_TRUE(line.outside_label_given);
-  EXPECT_EQ(line.min_voxels, 0u);
-  EXPECT_TRUE(line.min_voxels_given);
-  EXPECT_TRUE(parse({"--outside-label", "0"}).outside_label_given);
-  EXPECT_TRUE(parse({"--min-voxels", "8"}).min_voxels_given);
+  EXPECT_EQ(line.options.labels.names_file, "names.ctbl");
+  EXPECT_EQ(line.options.labels.outside, -7);
+  EXPECT_EQ(line.options.labels.min_voxels, 0u);
+  EXPECT_EQ(parse({"--outside-label", "0"}).options.labels.outside, 0);
+  EXPECT_EQ(parse({"--min-voxels", "8"}).options.labels.min_voxels, 8u);
   for (const char* wrong : {"a", "1.5", "2147483648", "-2147483649", "1-2"})
     expect_refused({std::string("--outside-label=") + wrong}, "is not a whole number from -2147483648");
   for (const char* wrong : {"-1", "a", "1.5"})
@@ -119,11 +116,11 @@ TEST(CommandLine, NumbersOutOfRangeNameOptionValueAndRange) {
 }
 
 TEST(CommandLine, NumbersAreDecimal) {
-  EXPECT_EQ(parse({"--resolution", "0100"}).resolution, 100);
-  EXPECT_EQ(parse({"--seed", "18446744073709551615"}).seed, 18446744073709551615u);
-  EXPECT_EQ(parse({"--voxel-size", "1.5e-3"}).voxel_size, 0.0015);
-  EXPECT_EQ(parse({"--adaptivity", "0"}).adaptivity, 0);
-  EXPECT_EQ(parse({"--threads", "1024"}).threads, 1024u);
+  EXPECT_EQ(parse({"--resolution", "0100"}).options.cells.resolution, 100);
+  EXPECT_EQ(parse({"--seed", "18446744073709551615"}).options.seed, 18446744073709551615u);
+  EXPECT_EQ(parse({"--voxel-size", "1.5e-3"}).options.cells.size, 0.0015);
+  EXPECT_EQ(parse({"--adaptivity", "0"}).options.cells.adaptivity, 0);
+  EXPECT_EQ(parse({"--threads", "1024"}).options.limits.threads, 1024u);
 }
 
 }  // namespace

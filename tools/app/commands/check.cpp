@@ -10,13 +10,14 @@
 #include "common/memory.h"
 #include "common/mesh/interfaces.h"
 #include "common/mesh/topology.h"
+#include "mesher/distance/vdb_files.h"
 #include "tools/app/commands/command_run.h"
 #include "tools/app/commands/commands.h"
 #include "tools/app/commands/output_paths.h"
 #include "tools/app/commands/report_file.h"
-#include "tools/app/commands/scan_input.h"
-#include "tools/app/commands/simplification.h"
 #include "tools/app/printed_report.h"
+#include "tools/prepare/notes.h"
+#include "tools/prepare/simplification.h"
 #include "tools/report/stats_json.h"
 
 namespace tetwright {
@@ -29,12 +30,15 @@ constexpr double program_bytes = 40e6;
 constexpr double bytes_per_tet = 180;
 
 /// Reads a mesh to be checked or compared with; `field_found` becomes true if it has --material-field.
-TetMesh read_checked(const std::string& file, CommandRun& run, bool& field_found) {
+TetMesh read_checked(Input input, CommandRun& run, bool& field_found) {
+  const std::string& file = input.name;
   // Of two meshes one may have the field under the name `material`, if it was made from the other.
-  ReadTetMesh read = take_tet_mesh(run, file, {run.line.material_field, run.line.before.empty()});
-  field_found |= read.material_field == run.line.material_field;
+  double waited = 0;
+  ReadTetMesh read =
+      take_tet_mesh(input, {run.line.options.material_field, run.line.check.before.empty()}, waited);
+  field_found |= read.material_field == run.line.options.material_field;
   if (file == run.line.inputs.front()) run.report.material_field = read.material_field;
-  report_dropped(read.dropped, file, run.report, !run.line.json);
+  report_dropped(read.dropped, file, run.report, !run.line.check.json);
   return std::move(read.mesh);
 }
 
@@ -45,15 +49,16 @@ CheckReport examine(TetMesh& mesh, CommandRun& run) {
   for (const MeshFinding& f : check.findings) check.measurable &= f.fault > MeshFault::coordinates_not_finite;
   if (!check.measurable) return check;
   mesh.interfaces = find_interfaces(mesh);
-  run.report.result = mesh_statistics(mesh, run.line.min_solid_angle);
+  run.report.result = mesh_statistics(mesh, run.line.options.shapes.bound());
   run.report.material_names = mesh.material_names;
   return check;
 }
 
 /// The surfaces of --surface, by file.
 void read_surfaces(CommandRun& run, std::vector<TriangleMesh>& surfaces, std::vector<std::string>& names) {
-  for (const std::string& file : run.line.surfaces) {
-    if (!is_object(run, file) && is_vdb(file)) {
+  for (const std::string& file : run.line.check.surfaces) {
+    Input input = input_named(file, run.line, run.in_memory);
+    if (input.is_vdb_file()) {
       for (NamedSurface& s : read_level_sets(file)) {
         surfaces.push_back(std::move(s.surface));
         names.push_back(file);
@@ -61,9 +66,10 @@ void read_surfaces(CommandRun& run, std::vector<TriangleMesh>& surfaces, std::ve
       continue;
     }
     std::vector<Dropped> dropped;
-    surfaces.push_back(take_surface(run, file, &dropped));
+    double waited = 0;
+    surfaces.push_back(take_surface(input, &dropped, waited));
     names.push_back(file);
-    report_dropped(dropped, file, run.report, !run.line.json);
+    report_dropped(dropped, file, run.report, !run.line.check.json);
   }
 }
 
@@ -83,7 +89,8 @@ void compare_with_surfaces(TetMesh& mesh, CommandRun& run, CheckReport& check) {
   read_surfaces(run, surfaces, names);
   check.surface = compare_with_surfaces(mesh, surfaces, names);
   measure_distances(mesh, joined(surfaces), "the surfaces", run);
-  if (run.line.tolerance.value > 0) check.tolerance = tolerance_of(run.line, check.surface->diagonal);
+  const std::optional<Length>& tolerance = run.line.options.target.tolerance;
+  if (tolerance) check.tolerance = tolerance_of(*tolerance, check.surface->diagonal);
 }
 
 const char* verdict(const CheckReport& check) {
@@ -123,7 +130,10 @@ CheckReport make_check(CommandRun& run) {
   check_output_paths(line);
   bool field_found = false;
   run.progress.begin_stage("read");
-  TetMesh mesh = read_checked(line.inputs.front(), run, field_found);
+  Input input = input_named(line.inputs.front(), line, run.in_memory);
+  // The error of the reader lists the fields that there are. Streams and values cannot be read twice.
+  const bool read_once = !std::holds_alternative<InputFile>(input.value);
+  TetMesh mesh = read_checked(std::move(input), run, field_found);
   require_memory(program_bytes + bytes_per_tet * static_cast<double>(mesh.tets.size()),
                  line.inputs.front() + ": checking its " + std::to_string(mesh.tets.size()) + " tets",
                  "free some, or give a larger --memory-limit");
@@ -131,27 +141,26 @@ CheckReport make_check(CommandRun& run) {
   run.report.input_points = mesh.points.size();
   run.report.seconds_read = run.since_start.seconds();
   CheckReport check = examine(mesh, run);
-  if (!line.before.empty()) check.topology_differences.emplace();
+  if (!line.check.before.empty()) check.topology_differences.emplace();
   if (check.measurable) {
     check.topology = topology(mesh);
-    if (!line.before.empty()) {
-      check.topology_before = topology(read_checked(line.before, run, field_found));
+    if (!line.check.before.empty()) {
+      check.topology_before =
+          topology(read_checked(input_named(line.check.before, line, run.in_memory), run, field_found));
       check.topology_differences = topology_differences(*check.topology_before, *check.topology);
     }
   }
-  if (check.measurable && !line.surfaces.empty()) {
+  if (check.measurable && !line.check.surfaces.empty()) {
     run.progress.begin_stage("compare");
     compare_with_surfaces(mesh, run, check);
   }
-  // The error of the reader lists the fields that there are. Streams and objects cannot be read twice.
-  const bool read_once = !line.input_format.empty() || is_object(run, line.inputs.front());
-  if (!line.material_field.empty() && !field_found && read_once)
+  if (!line.options.material_field.empty() && !field_found && read_once)
     throw InputError(line.inputs.front(), 0,
-                     "it has no whole-number cell field '" + line.material_field + "'");
-  if (!line.material_field.empty() && !field_found)
-    (void)read_tet_mesh(line.inputs.front(), {line.material_field});
+                     "it has no whole-number cell field '" + line.options.material_field + "'");
+  if (!line.options.material_field.empty() && !field_found)
+    (void)read_tet_mesh(line.inputs.front(), {line.options.material_field});
   if (!(check.valid() && check.topology_kept() && check.within_tolerance()))
-    run.report.status = ExitStatus::short_of_request;
+    run.status = ExitStatus::short_of_request;
   run.report.seconds_total = run.since_start.seconds();
   OutputFiles files(&run.progress);
   if (check.measurable) write_report(mesh, run, files, &check);
@@ -164,11 +173,11 @@ void run_check(CommandRun& run) {
   const CommandLine& line = run.line;
   const CheckReport check = make_check(run);
   run.progress.finish();
-  if (!line.quiet) print_notes(notes_of(run.report));
-  if (line.stats == "-") std::printf("%s\n", stats_json(line, run.report).c_str());
-  if (line.json)
-    std::printf("%s\n", check_json(line, run.report, check).c_str());
-  else if (line.quiet || line.stats == "-")
+  if (!line.console.quiet) print_notes(notes_of(run.report));
+  if (line.outputs.stats == "-") std::printf("%s\n", stats_json(run).c_str());
+  if (line.check.json)
+    std::printf("%s\n", check_json(run, check).c_str());
+  else if (line.console.quiet || line.outputs.stats == "-")
     print_shortfalls(check);
   else
     print_check(check, run);

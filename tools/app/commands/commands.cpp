@@ -7,12 +7,15 @@
 #include <cstdio>
 
 #include "common/error.h"
-#include "common/message_text.h"
 #include "common/parallel/parallel.h"
 #include "tools/app/commands/output_paths.h"
+#include "tools/app/commands/report_file.h"
 #include "tools/app/commands/result.h"
+#include "tools/app/commands/unwritten.h"
 #include "tools/app/printed_report.h"
 #include "tools/app/progress_report.h"
+#include "tools/prepare/acceptance.h"
+#include "tools/prepare/carry_out.h"
 #include "tools/report/stats_json.h"
 
 namespace tetwright {
@@ -24,7 +27,7 @@ constexpr double max_gigabytes = 1e9;
 
 void run_meshing(CommandRun& run) {
   check_output_paths(run.line);
-  CommandResult result = make_result(run);
+  Prepared result = make_result(run);
   write_result(result, run);
   print_result(run);
 }
@@ -34,45 +37,45 @@ void limit_process_memory(const CommandLine& line) {
   // The system counts what is reserved, too: the stacks of threads, and what their heaps may grow into.
   constexpr double reserved = 64 << 20, reserved_by_thread = 16 << 20;
   rlimit limit;
-  if (line.memory_limit == 0 || getrlimit(RLIMIT_DATA, &limit) != 0) return;
-  const double bytes = std::min(line.memory_limit, max_gigabytes) * (1 << 30) + reserved +
-                       reserved_by_thread * (line.threads > 0 ? line.threads : thread_count());
+  if (!line.options.limits.memory || getrlimit(RLIMIT_DATA, &limit) != 0) return;
+  const double bytes =
+      std::min(*line.options.limits.memory, max_gigabytes) * gigabyte + reserved +
+      reserved_by_thread * (line.options.limits.threads > 0 ? line.options.limits.threads : thread_count());
   limit.rlim_cur = static_cast<rlim_t>(std::min(static_cast<double>(limit.rlim_max), bytes));
   setrlimit(RLIMIT_DATA, &limit);
 }
 
 }  // namespace
 
-CommandResult make_result(CommandRun& run) {
-  CommandResult result;
-  try {
-    result = run.line.command == Command::prepare    ? run_prepare(run)
-             : run.line.command == Command::mesh     ? run_mesh(run)
-             : run.line.command == Command::simplify ? run_simplify(run)
-                                                     : run_improve(run);
-  } catch (const OutOfTime&) {
-    const bool cells = run.line.command == Command::prepare || run.line.command == Command::mesh;
-    throw OutOfTime("out of time: after the " + short_number(run.line.time_limit) +
-                    " s of --time-limit there was no mesh yet (in stage '" + run.progress.stage() +
-                    "'), and nothing was written; give more time" +
-                    (cells ? ", or larger cells by --resolution" : ""));
-  }
-  // What there is, is compared and written.
-  run.progress.set_deadline(Progress::no_deadline);
-  assess(result.mesh, run);
+Prepared make_result(CommandRun& run) {
+  const CommandLine& line = run.line;
+  PrepareOptions options = line.options;
+  if (run.in_memory) take_sizes(*run.in_memory, options.sizes);
+  options.keep.reference = !line.outputs.report.empty();
+  options.keep.field = !line.outputs.distances.empty();
+  // Measured: the text of a file, which is held in memory beside the mesh.
+  constexpr double text_bytes = 130;
+  if (!line.outputs.mesh.ends_with(".vtu")) options.limits.later_bytes_per_tet = text_bytes;
+  PrepareRun preparing(task_of(line.command), options, run.progress, run.report);
+  Prepared result = carry_out(inputs_of(line, run.in_memory), preparing);
+  if (!line.outputs.mesh.empty()) find_unwritten(line, result.mesh, run.report);
+  decide_severities(options.acceptance, run.report);
+  run.status = run.report.falls_short() ? ExitStatus::short_of_request : ExitStatus::done;
+  if (result.reference) measure_distances(result.mesh, *result.reference, result.reference_name, run);
+  result.reference.reset();  // memory that writing the mesh needs
   return result;
 }
 
 void report_failure(const std::exception& error, CommandRun& run) {
-  run.report.status = exit_status(error);
-  run.report.error = error.what();
-  run.report.stage = run.progress.stage();
+  run.status = exit_status(error);
+  run.error = error.what();
+  run.stage = run.progress.stage();
   run.report.seconds_total = run.since_start.seconds();
   try {
     OutputFiles files;
     write_stats(run, files);
     files.commit();
-    if (run.line.stats == "-") std::printf("%s\n", stats_json(run.line, run.report).c_str());
+    if (run.line.outputs.stats == "-") std::printf("%s\n", stats_json(run).c_str());
   } catch (const std::exception& of_stats) {
     run.progress.finish();
     print_line(of_stats.what());
@@ -85,7 +88,7 @@ ExitStatus run_command(const CommandLine& line) {
   CommandRun run(line, progress);
   limit_process_memory(line);
   try {
-    with_threads(line.threads, [&] {
+    with_threads(line.options.limits.threads, [&] {
       if (line.command == Command::check)
         run_check(run);
       else if (line.command == Command::batch)
@@ -99,7 +102,7 @@ ExitStatus run_command(const CommandLine& line) {
     report_failure(e, run);
     throw;
   }
-  return run.report.status;
+  return run.status;
 }
 
 }  // namespace tetwright

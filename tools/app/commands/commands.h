@@ -2,12 +2,12 @@
 #pragma once
 
 #include <exception>
-#include <memory>
 
-#include "mesher/mesher.h"
 #include "tools/app/command_line.h"
 #include "tools/app/commands/command_run.h"
 #include "tools/app/exit_status.h"
+#include "tools/compare/check_report.h"
+#include "tools/prepare/prepare.h"
 
 namespace tetwright {
 
@@ -15,24 +15,13 @@ namespace tetwright {
 /// early.
 ExitStatus run_command(const CommandLine& line);
 
-/// What a command that makes a mesh made, before anything is written.
-struct CommandResult {
-  TetMesh mesh;
-  std::shared_ptr<const MaterialField> field;  ///< for --write-sdf; may be null without it
-};
-
 /// Carries out prepare, mesh, simplify or improve; `run.report` says all of the result. Neither writes nor
 /// prints. Throws as run_command() does.
-CommandResult make_result(CommandRun& run);
+Prepared make_result(CommandRun& run);
 
 /// Writes the statistics of a run that failed. That they cannot be written either is said, and the run's own
 /// error matters more.
 void report_failure(const std::exception& error, CommandRun& run);
-
-CommandResult run_prepare(CommandRun& run);
-CommandResult run_mesh(CommandRun& run);
-CommandResult run_simplify(CommandRun& run);
-CommandResult run_improve(CommandRun& run);
 
 /// `check`, without printing: writes the files that `run.line` asks for. Throws as run_command() does.
 CheckReport make_check(CommandRun& run);

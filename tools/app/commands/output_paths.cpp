@@ -9,7 +9,6 @@
 #include "common/io/formats.h"
 #include "common/lower_case.h"
 #include "tools/app/commands/command_run.h"
-#include "tools/app/commands/scan_input.h"
 #include "tools/app/log_file.h"
 
 namespace tetwright {
@@ -26,8 +25,9 @@ bool same_file(const std::string& a, const std::string& b) {
 /// All files that the call reads.
 std::vector<std::string> files_read(const CommandLine& line) {
   std::vector<std::string> files = input_files(line);
-  files.insert(files.end(), {line.label_names, line.before, line.size_field});
-  files.insert(files.end(), line.surfaces.begin(), line.surfaces.end());
+  files.insert(files.end(), {line.options.labels.names_file, line.check.before});
+  if (line.options.sizes.field) files.push_back(line.options.sizes.field->name);
+  files.insert(files.end(), line.check.surfaces.begin(), line.check.surfaces.end());
   return files;
 }
 
@@ -39,25 +39,25 @@ struct Written {
 std::vector<Written> files_written(const CommandLine& line) {
   std::vector<Written> files;
   if (line.command == Command::sample)
-    files.push_back({"-o", line.output});
+    files.push_back({"-o", line.outputs.mesh});
   else if (line.command == Command::batch)
     files.push_back({"--results", results_file_of(line)});
   else if (line.command != Command::check)
-    for (const std::string& file : files_of_tet_mesh(line.output, line.output_format))
+    for (const std::string& file : files_of_tet_mesh(line.outputs.mesh, line.outputs.format))
       files.push_back({"-o", file});
-  for (const Written& more : {Written{"--boundary", line.boundary},
-                              {"--write-sdf", line.write_sdf},
-                              {"--report", line.report},
-                              {"--stats", line.stats},
-                              {"--log-file", line.log_file}})
+  for (const Written& more : {Written{"--boundary", line.outputs.boundary},
+                              {"--write-sdf", line.outputs.distances},
+                              {"--report", line.outputs.report},
+                              {"--stats", line.outputs.stats},
+                              {"--log-file", line.console.log_file}})
     if (!more.file.empty() && more.file != "-") files.push_back(more);
   return files;
 }
 
 /// How many of them are --stats and --log-file, which come last.
 std::size_t report_count(const CommandLine& line) {
-  return static_cast<std::size_t>(!line.stats.empty() && line.stats != "-") +
-         static_cast<std::size_t>(!line.log_file.empty());
+  return static_cast<std::size_t>(!line.outputs.stats.empty() && line.outputs.stats != "-") +
+         static_cast<std::size_t>(!line.console.log_file.empty());
 }
 
 /// Which of the written files: those that say how the run went, or all.
@@ -84,20 +84,20 @@ void check_files_are_different(const CommandLine& line, Which which) {
 }
 
 void check_sdf_path(const CommandLine& line) {
-  if (line.write_sdf.empty()) return;
-  if (!is_vdb(line.write_sdf))
-    throw UsageError("--write-sdf " + line.write_sdf +
+  if (line.outputs.distances.empty()) return;
+  if (!is_vdb(line.outputs.distances))
+    throw UsageError("--write-sdf " + line.outputs.distances +
                      ": signed distances are written for OpenVDB; give a name that ends in .vdb");
-  check_output_file(line.write_sdf);
+  check_output_file(line.outputs.distances);
 }
 
 void check_report_path(const CommandLine& line) {
-  if (line.report.empty()) return;
-  const std::string extension = lower_case(std::filesystem::path(line.report).extension().string());
+  if (line.outputs.report.empty()) return;
+  const std::string extension = lower_case(std::filesystem::path(line.outputs.report).extension().string());
   if (extension != ".html" && extension != ".htm")
-    throw UsageError("--report " + line.report +
+    throw UsageError("--report " + line.outputs.report +
                      ": the report is a page for browsers; give a name that ends in .html");
-  check_output_file(line.report);
+  check_output_file(line.outputs.report);
 }
 
 }  // namespace
@@ -118,33 +118,36 @@ std::vector<std::string> read_files(const CommandLine& line) {
 }
 
 std::string results_file_of(const CommandLine& line) {
-  return line.results.empty()
+  return line.batch.results.empty()
              ? std::filesystem::path(line.inputs.front()).replace_extension(".results.jsonl").string()
-             : line.results;
+             : line.batch.results;
 }
 
 void check_stats_path(const CommandLine& line) {
-  const bool to_file = !line.stats.empty() && line.stats != "-";
-  if (to_file && std::filesystem::path(line.stats).extension() != ".json")
-    throw UsageError("--stats " + line.stats + ": the statistics are JSON; give a name that ends in .json");
+  const bool to_file = !line.outputs.stats.empty() && line.outputs.stats != "-";
+  if (to_file && std::filesystem::path(line.outputs.stats).extension() != ".json")
+    throw UsageError("--stats " + line.outputs.stats +
+                     ": the statistics are JSON; give a name that ends in .json");
   check_files_are_different(line, Which::reports);
-  if (to_file) check_output_file(line.stats);
-  if (line.log_file.empty()) return;
-  check_output_file(line.log_file);
-  open_log(line.log_file);
+  if (to_file) check_output_file(line.outputs.stats);
+  if (line.console.log_file.empty()) return;
+  check_output_file(line.console.log_file);
+  open_log(line.console.log_file);
   log_line(line.call);
 }
 
 void check_tet_stream(const CommandLine& line) {
-  if (line.output == "-" && files_of_tet_mesh(line.output, line.output_format).size() > 1)
-    throw UsageError("--output-format " + line.output_format +
+  if (line.outputs.mesh == "-" && files_of_tet_mesh(line.outputs.mesh, line.outputs.format).size() > 1)
+    throw UsageError("--output-format " + line.outputs.format +
                      " is several files, which standard output is not; "
                      "give -o a name, or another format");
 }
 
 void check_output_paths(const CommandLine& line) {
-  if (line.command != Command::check) check_output_path(line.output, FileKind::tet_mesh, line.output_format);
-  if (!line.boundary.empty()) check_output_path(line.boundary, FileKind::surface, line.boundary_format);
+  if (line.command != Command::check)
+    check_output_path(line.outputs.mesh, FileKind::tet_mesh, line.outputs.format);
+  if (!line.outputs.boundary.empty())
+    check_output_path(line.outputs.boundary, FileKind::surface, line.outputs.boundary_format);
   check_sdf_path(line);
   check_report_path(line);
   check_files_are_different(line, Which::all);

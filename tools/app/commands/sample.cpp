@@ -19,14 +19,14 @@ FileKind kind_of(const TetMesh&) { return FileKind::tet_mesh; }
 FileKind kind_of(const LabelVolume&) { return FileKind::volume; }
 
 void write(const TriangleMesh& surface, const CommandLine& line, OutputFiles& files) {
-  write_surface(surface, line.output, &files, line.output_format);
+  write_surface(surface, line.outputs.mesh, &files, line.outputs.format);
 }
 void write(const TetMesh& mesh, const CommandLine& line, OutputFiles& files) {
   check_tet_stream(line);
-  write_tet_mesh(mesh, line.output, &files, line.output_format);
+  write_tet_mesh(mesh, line.outputs.mesh, &files, line.outputs.format);
 }
 void write(const LabelVolume& volume, const CommandLine& line, OutputFiles& files) {
-  write_label_volume(volume, line.output, &files, line.output_format);
+  write_label_volume(volume, line.outputs.mesh, &files, line.outputs.format);
 }
 
 }  // namespace
@@ -34,14 +34,14 @@ void write(const LabelVolume& volume, const CommandLine& line, OutputFiles& file
 void run_sample(CommandRun& run) {
   const CommandLine& line = run.line;
   const Sample sample = make_sample(line.inputs.front());
-  check_output_path(line.output, std::visit([](const auto& made) { return kind_of(made); }, sample),
-                    line.output_format);
+  check_output_path(line.outputs.mesh, std::visit([](const auto& made) { return kind_of(made); }, sample),
+                    line.outputs.format);
   OutputFiles files;
   std::visit([&](const auto& made) { write(made, line, files); }, sample);
   run.report.seconds_total = run.since_start.seconds();
   write_stats(run, files);
   files.commit();
-  if (line.stats == "-") std::printf("%s\n", stats_json(line, run.report).c_str());
+  if (line.outputs.stats == "-") std::printf("%s\n", stats_json(run).c_str());
 }
 
 }  // namespace tetwright

@@ -3,12 +3,12 @@
 
 #include "common/tet_mesh.h"
 #include "tools/app/command_line.h"
-#include "tools/prepare/run_report.h"
+#include "tools/prepare/report.h"
 
 namespace tetwright {
 
-/// Adds to the findings what the format of -o has no place for, and no other file that is written, and the
+/// Adds to the diagnostics what the format of -o has no place for, and no other file that is written, and the
 /// tags, numbers and names that it cannot hold as they are.
-void find_unwritten(const CommandLine& line, const TetMesh& mesh, RunReport& report);
+void find_unwritten(const CommandLine& line, const TetMesh& mesh, PrepareReport& report);
 
 }  // namespace tetwright

@@ -17,14 +17,15 @@ are: polygons become triangles, curved cells are taken by their corners, numbers
 one may be the material, other volumes than tets are refused, and what is left out is in `TetMesh.notes`.
 
 What ends a call early is an exception, a subclass of `tetwright.Error` with the program's message. What falls short of
-what was asked is a `ShortfallWarning` and in `TetMesh.shortfall`. Calls release the interpreter's lock, and Ctrl-C
-cancels them. Several may run at a time, each with its own `threads`.
+what was asked is a `ShortfallWarning` and in `TetMesh.shortfall`; `TetMesh.diagnostics` has the codes of all notes and
+shortfalls. Calls release the interpreter's lock, and Ctrl-C cancels them. Several may run at a time, each with its own
+`threads`.
 """
 from ._commands import check, improve, mesh, prepare, read, simplify
 from ._core import (Error, InputError, InternalError, NothingToMeshError, OutputError, UsageError,
                     version as __version__)
-from ._mesh import CheckResult, Interfaces, ShortfallWarning, TetMesh
+from ._mesh import CheckResult, Diagnostic, Interfaces, ShortfallWarning, TetMesh
 
-__all__ = ["prepare", "mesh", "simplify", "improve", "check", "read", "TetMesh", "Interfaces", "CheckResult",
+__all__ = ["prepare", "mesh", "simplify", "improve", "check", "read", "TetMesh", "Interfaces", "CheckResult", "Diagnostic",
            "ShortfallWarning", "Error", "UsageError", "InputError", "NothingToMeshError", "OutputError",
            "InternalError", "__version__"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Mapping, Optional
+from typing import Any, Mapping, NamedTuple, Optional
 
 import numpy as np
 
@@ -14,6 +14,18 @@ from ._text import file_name, plain_text
 
 class ShortfallWarning(UserWarning):
     """The result is there, but short of what was asked; the program's status would be 1."""
+
+
+class Diagnostic(NamedTuple):
+    """Something to know about an input or a result; data/guide/messages.md lists the codes with causes and remedies."""
+    code: str  # stays the same from version to version
+    severity: str  # "note" or "shortfall"
+    message: str
+    places: list[tuple[float, float, float]]  # the first ones
+    file: Optional[str]  # that it is about; None: the result
+    asked: Optional[float]
+    reached: Optional[float]
+    limited_by: Optional[str]
 
 
 class Interfaces:
@@ -127,6 +139,13 @@ class TetMesh:
         if midside is None:
             return None
         return np.hstack([self.tets.astype(np.int64), midside.astype(np.int64) + len(self.points)])
+
+    @property
+    def diagnostics(self) -> list[Diagnostic]:
+        """All that was found in the inputs and falls short, by code; empty for a mesh that was only read."""
+        return [Diagnostic(d["code"], d["severity"], d["message"], [tuple(p) for p in d["places"]],
+                           *(d.get(key) for key in ("file", "asked", "reached", "limited_by")))
+                for d in self.stats.get("diagnostics", [])]
 
     @property
     def stats(self) -> dict[str, Any]:

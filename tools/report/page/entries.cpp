@@ -9,7 +9,6 @@
 #include "common/geometry/predicates.h"
 #include "common/geometry/quality.h"
 #include "common/parallel/parallel.h"
-#include "tools/app/printed_report.h"
 #include "tools/report/page/html_text.h"
 
 namespace tetwright {
@@ -18,22 +17,17 @@ namespace {
 
 constexpr double no_value = std::numeric_limits<double>::infinity();
 
-PageEntry entry_of(const InputFinding& f) {
-  PageEntry entry{f.file + ": " + std::to_string(f.finding.count) + " " + f.finding.what, f.finding.done, {}};
-  if (f.finding.place) entry.places.push_back(*f.finding.place);
-  return entry;
+PageEntry entry_of(const Diagnostic& d) {
+  std::string text = d.count > 0 ? std::to_string(d.count) + " " + d.what : d.what;
+  if (d.severity == Severity::note && !d.file.empty()) text.insert(0, d.file + ": ");
+  return {std::move(text), d.done.empty() ? d.remedy : d.done, d.places, kind_of(d.code).name};
 }
 
-void add_check(const CheckReport& check, PageEntries& entries) {
-  for (const MeshFinding& f : check.findings) {
-    PageEntry entry{mesh_finding_line(f), "", {}};
-    for (const MeshPlace& place : f.places)
-      if (place.at) entry.places.push_back(*place.at);
-    (is_warning(f.fault) ? entries.found : entries.short_of).push_back(std::move(entry));
+void add(const std::vector<Diagnostic>& diagnostics, PageEntries& entries) {
+  for (const Diagnostic& d : diagnostics) {
+    const bool is_found = d.severity == Severity::note || d.severity == Severity::warning;
+    (is_found ? entries.found : entries.short_of).push_back(entry_of(d));
   }
-  if (check.topology_differences)
-    for (const std::string& difference : *check.topology_differences)
-      entries.short_of.push_back({"topology differs: " + difference, "", {}});
 }
 
 /// The smallest value of any tet, and the first tet that has it.
@@ -74,23 +68,21 @@ void add_worst(const TetMesh& mesh, PageEntries& entries) {
   constexpr int angle_decimals = 4;
   entries.worst.push_back({"The smallest solid angle, " + fixed_number(solid, angle_decimals) + " sr",
                            "",
-                           {centre(mesh, of_solid)}});
+                           {centre(mesh, of_solid)},
+                           ""});
   if (std::isfinite(largest))
     entries.worst.push_back({"The largest dihedral angle, " + fixed_number(-largest, 1) + " degrees",
                              "",
-                             {centre(mesh, of_largest)}});
+                             {centre(mesh, of_largest)},
+                             ""});
 }
 
 }  // namespace
 
-PageEntries page_entries(const RunReport& run, const TetMesh& mesh, const CheckReport* check) {
+PageEntries page_entries(const PrepareReport& run, const TetMesh& mesh, const CheckReport* check) {
   PageEntries entries;
-  for (const Shortfall& s : run.shortfall) entries.short_of.push_back({s.message, "", s.places});
-  for (const InputFinding& f : run.findings) entries.found.push_back(entry_of(f));
-  for (const RunNote& note : further_notes(run))
-    entries.found.push_back(
-        {note.text, "", note.place ? std::vector<Vec3>{*note.place} : std::vector<Vec3>{}});
-  if (check) add_check(*check, entries);
+  add(run.diagnostics, entries);
+  if (check) add(diagnostics_of(*check), entries);
   if (!mesh.tets.empty()) add_worst(mesh, entries);
   return entries;
 }

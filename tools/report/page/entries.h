@@ -5,15 +5,17 @@
 #include <vector>
 
 #include "common/types.h"
-#include "tools/prepare/run_report.h"
+#include "tools/compare/check_report.h"
+#include "tools/prepare/report.h"
 
 namespace tetwright {
 
 /// Something that the page lists, and shows in the mesh where its places are known.
 struct PageEntry {
   std::string text;          ///< what it is
-  std::string detail;        ///< what was done about it, or held it back; may be empty
+  std::string detail;        ///< what was done about it, or can be; may be empty
   std::vector<Vec3> places;  ///< input units
+  std::string code;          ///< of the diagnostic; empty: it is none
 };
 
 struct PageEntries {
@@ -24,6 +26,6 @@ struct PageEntries {
 
 /// What a run reports; of `check` with what it found in the mesh. Parallel; the result does not depend on the
 /// threads.
-PageEntries page_entries(const RunReport& run, const TetMesh& mesh, const CheckReport* check);
+PageEntries page_entries(const PrepareReport& run, const TetMesh& mesh, const CheckReport* check);
 
 }  // namespace tetwright

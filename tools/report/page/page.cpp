@@ -33,7 +33,7 @@ std::string filled_in(std::string_view text, const std::map<std::string_view, st
   }
 }
 
-std::vector<ChartMesh> chart_meshes(const CommandLine& line, const RunReport& run) {
+std::vector<ChartMesh> chart_meshes(const CommandLine& line, const PrepareReport& run) {
   std::vector<ChartMesh> meshes;
   const bool changed = line.command != Command::mesh && line.command != Command::check;
   if (changed && run.dense)
@@ -42,7 +42,7 @@ std::vector<ChartMesh> chart_meshes(const CommandLine& line, const RunReport& ru
   return meshes;
 }
 
-nlohmann::json materials_json(const PageMesh& page, const RunReport& run) {
+nlohmann::json materials_json(const PageMesh& page, const PrepareReport& run) {
   nlohmann::json materials = nlohmann::json::array();
   for (const MaterialTag tag : page.materials) {
     const auto name = run.material_names.find(tag);
@@ -62,7 +62,7 @@ void add_marks(const std::vector<PageEntry>& entries, nlohmann::json& marks) {
 }
 
 /// All that the script has to know beside the arrays.
-std::string description(const PageMesh& page, const RunReport& run, const PageEntries& entries) {
+std::string description(const PageMesh& page, const PrepareReport& run, const PageEntries& entries) {
   nlohmann::json marks = nlohmann::json::array();
   add_marks(entries.short_of, marks);
   add_marks(entries.found, marks);
@@ -137,15 +137,15 @@ std::string lists(const PageEntries& entries) {
   return out;
 }
 
-std::string title_of(const CommandLine& line, const RunReport& run) {
-  const bool named = !line.output.empty() && line.output != "-";
-  const std::string& file = named || run.inputs.empty() ? line.output : run.inputs.front();
+std::string title_of(const CommandLine& line, const PrepareReport& run) {
+  const bool named = !line.outputs.mesh.empty() && line.outputs.mesh != "-";
+  const std::string& file = named || run.inputs.empty() ? line.outputs.mesh : run.inputs.front();
   return file.substr(file.find_last_of('/') + 1);
 }
 
 }  // namespace
 
-std::string report_page(const CommandLine& line, const RunReport& run, const TetMesh& mesh,
+std::string report_page(const CommandLine& line, const PrepareReport& run, const TetMesh& mesh,
                         const SurfaceDistances* distances, const CheckReport* check,
                         const PageLimits& limits) {
   const PageMesh page = page_mesh(mesh, distances, limits);
@@ -157,7 +157,7 @@ std::string report_page(const CommandLine& line, const RunReport& run, const Tet
                     {"version", TETWRIGHT_VERSION},
                     {"not_shown", not_shown(page, mesh)},
                     {"lists", lists(entries)},
-                    {"figures", meshes.empty() ? "" : figures_table(meshes, line.min_solid_angle)},
+                    {"figures", meshes.empty() ? "" : figures_table(meshes, line.options.shapes.bound())},
                     {"materials", run.result ? materials_table(run) : ""},
                     {"quality", quality_charts(meshes)},
                     {"angles", solid_angle_chart(meshes) + dihedral_chart(meshes)},

@@ -58,7 +58,7 @@ std::string figures_table(std::span<const ChartMesh> meshes, double threshold) {
   return out + "</tbody></table>";
 }
 
-std::string materials_table(const RunReport& run) {
+std::string materials_table(const PrepareReport& run) {
   std::string out =
       "<table><thead><tr><th scope=\"col\">material</th><th scope=\"col\">tag</th><th "
       "scope=\"col\">tets</th><th scope=\"col\">volume</th></tr></thead><tbody>";
@@ -76,6 +76,7 @@ std::string entries_list(const std::vector<PageEntry>& entries, std::size_t& fir
   std::string out = "<ul class=\"entries\">";
   for (const PageEntry& entry : entries) {
     out += "<li>" + html_text(entry.text);
+    if (!entry.code.empty()) out += " <code>" + html_text(entry.code) + "</code>";
     if (!entry.detail.empty()) out += " <span class=\"detail\">" + html_text(entry.detail) + "</span>";
     for (const Vec3& place : entry.places) out += mark_button(first_mark++, place);
     out += "</li>";

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/prepare/run_report.h"
+#include "tools/prepare/report.h"
 #include "tools/report/page/charts.h"
 #include "tools/report/page/entries.h"
 
@@ -15,7 +15,7 @@ namespace tetwright {
 std::string figures_table(std::span<const ChartMesh> meshes, double threshold);
 
 /// The materials of the result, with their tets and volumes.
-std::string materials_table(const RunReport& run);
+std::string materials_table(const PrepareReport& run);
 
 /// The list, with a button for each place; `first_mark` is the number of the first of them and becomes that
 /// of the next list.

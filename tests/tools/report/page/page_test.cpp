@@ -37,7 +37,7 @@ std::string page_of(const TetMesh& mesh, const PageLimits& limits = {}) {
   CommandLine line;
   line.command = Command::check;
   line.inputs = {"mesh.vtu"};
-  RunReport run;
+  PrepareReport run;
   run.inputs = line.inputs;
   run.result = mesh_statistics(mesh);
   return report_page(line, run, mesh, nullptr, nullptr, limits);
@@ -88,14 +88,26 @@ TEST(ReportPage, NamesOfTheUserAreNoMarkup) {
   ASSERT_FALSE(mesh.material_names.empty());
   CommandLine line;
   line.command = Command::improve;
-  line.output = evil + ".vtu";
+  line.outputs.mesh = evil + ".vtu";
   line.arguments = " improve " + evil;
-  RunReport run;
+  PrepareReport run;
   run.inputs = {evil};
   run.material_names = mesh.material_names;
   run.dense = run.result = mesh_statistics(mesh);
-  run.findings.push_back({evil, {evil, 3, Vec3::Zero(), evil}});
-  run.shortfall.push_back({evil, 1, 2, evil, evil, {Vec3::Zero()}});
+  run.diagnostics.push_back({.code = DiagnosticCode::points_merged,
+                             .file = evil,
+                             .what = evil,
+                             .count = 3,
+                             .done = evil,
+                             .places = {Vec3::Zero()}});
+  run.diagnostics.push_back({.code = DiagnosticCode::target_missed,
+                             .file = evil,
+                             .what = evil,
+                             .remedy = evil,
+                             .asked = 1,
+                             .reached = 2,
+                             .limited_by = evil,
+                             .places = {Vec3::Zero()}});
   const SurfaceDistances distances{evil, std::vector<float>(mesh.points.size(), 1)};
   const std::string page = report_page(line, run, mesh, &distances);
   EXPECT_EQ(page.find("<script>x()"), std::string::npos);

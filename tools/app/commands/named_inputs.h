@@ -6,12 +6,10 @@
 #include <variant>
 #include <vector>
 
-#include "common/io/contents/dropped.h"
-#include "common/io/contents/read_tet_mesh_result.h"
-#include "common/io/tets/file_triangles.h"
-#include "common/label_volume.h"
 #include "common/tet_mesh.h"
 #include "common/triangle_mesh.h"
+#include "tools/app/command_line.h"
+#include "tools/prepare/inputs.h"
 
 namespace tetwright {
 
@@ -24,15 +22,19 @@ struct SizesObject {
 
 /// Inputs that a host program has in memory, by what stands for them in a CommandLine where a file's name
 /// would: it names them in messages, and materials, whole. What is not among them is a file.
-struct InputObjects {
-  std::map<std::string, TriangleMesh> surfaces;
-  /// As the reader of a file leaves them before it chooses the material.
-  std::map<std::string, ReadTetMesh> meshes;
-  std::map<std::string, FileTriangles> triangles;  ///< that the host lists beside the tets of `meshes`
-  std::map<std::string, LabelVolume> volumes;
+struct NamedInputs {
+  std::map<std::string, Input::Value> values;
   std::map<std::string, SizesObject> sizes;  ///< of --size-field
-  /// What the host's surfaces had beside points and triangles.
-  std::map<std::string, std::vector<Dropped>> dropped;
 };
+
+/// The input that a name on the command line stands for: standard input, a file, or what `in_memory` (may be
+/// null) has, which is moved out of.
+Input input_named(const std::string& name, const CommandLine& line, NamedInputs* in_memory);
+
+/// The positional inputs, then those of --material.
+std::vector<Input> inputs_of(const CommandLine& line, NamedInputs* in_memory);
+
+/// Makes a size field in memory the source of the sizes in `options`.
+void take_sizes(NamedInputs& in_memory, SizeOptions& options);
 
 }  // namespace tetwright

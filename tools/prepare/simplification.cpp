@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/app/commands/simplification.h"
+#include "tools/prepare/simplification.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -13,7 +13,7 @@ namespace tetwright {
 
 namespace {
 
-/// Of the diagonal: a hundred times what distances are exact to, and what floats hold.
+/// Fraction of the diagonal: a hundred times the accuracy of distances and of floats.
 constexpr double min_tolerance_share = 100 * tolerance::deviation_share;
 
 }  // namespace
@@ -24,8 +24,8 @@ double diagonal_of(const TetMesh& mesh) {
   return (box.high - box.low).norm();
 }
 
-double tolerance_of(const CommandLine& line, double diagonal) {
-  const double value = line.tolerance.in_input_units(diagonal);
+double tolerance_of(const Length& asked, double diagonal) {
+  const double value = asked.in_input_units(diagonal);
   const double smallest = min_tolerance_share * diagonal;
   if (value < smallest) {
     char text[160];
@@ -39,19 +39,20 @@ double tolerance_of(const CommandLine& line, double diagonal) {
 }
 
 TetMesh simplify_to_target(TetMesh mesh, const ReferenceSurface* reference, const TriangleMesh* surface,
-                           CommandRun& run) {
+                           PrepareRun& run) {
   SimplifyOptions options;
-  options.target_tets = run.line.target_tets;
+  const PrepareOptions& asked = run.options;
+  options.target_tets = asked.target.tets.value_or(0);
   // Fewer tets than fill thin walls would be flat.
   if (run.report.mesher && options.target_tets > 0)
     options.target_tets =
         std::max(options.target_tets, std::min(run.report.mesher->filling_tets, mesh.tets.size()));
-  options.min_solid_angle = run.line.min_solid_angle;
-  options.beta = run.line.beta;
-  options.gamma = run.line.gamma;
-  options.max_iterations = run.line.max_iterations;
-  options.schedule = run.line.schedule;
-  options.objective = run.line.objective;
+  options.min_solid_angle = asked.shapes.bound();
+  options.beta = asked.schedule.beta;
+  options.gamma = asked.schedule.gamma;
+  options.max_iterations = asked.shapes.max_iterations;
+  options.schedule = asked.schedule.kind;
+  options.objective = asked.shapes.objective;
   options.reference = reference;
   options.surface = surface;
   options.tolerance = run.report.tolerance;
@@ -59,12 +60,12 @@ TetMesh simplify_to_target(TetMesh mesh, const ReferenceSurface* reference, cons
   options.sizes = sizes.target_length.get();
   options.min_edge = sizes.limits.min_edge;
   options.max_edge = sizes.limits.max_edge;
-  options.fix_boundary = run.line.fix_boundary;
-  options.seed = run.line.seed;
+  options.fix_boundary = asked.shapes.fix_boundary;
+  options.seed = asked.seed;
   options.name = run.report.inputs.front();
   run.report.simplify.emplace();
   TetMesh result = simplify(std::move(mesh), options, &*run.report.simplify, &run.progress);
-  // What follows belongs to this mesh.
+  // The deadline has done its work: all that follows belongs to this mesh.
   run.progress.set_deadline(Progress::no_deadline);
   run.report.deviation = run.report.simplify->deviation;
   return result;

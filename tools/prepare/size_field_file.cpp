@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/app/commands/size_field_file.h"
+#include "tools/prepare/size_field_file.h"
 
 #include "common/files/file_names.h"
 #include "common/io/size_files.h"

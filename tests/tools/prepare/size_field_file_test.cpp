@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/app/commands/size_field_file.h"
+#include "tools/prepare/size_field_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/diagnostic.h"
+#include "common/mesh/mesh_check.h"
+#include "common/mesh/topology.h"
+#include "tools/compare/surface_comparison.h"
+
+namespace tetwright {
+
+/// Findings of `check` in a mesh.
+struct CheckReport {
+  std::vector<MeshFinding> findings;
+  /// False if indices or coordinates are unsound: then there are no statistics and no topology.
+  bool measurable = true;
+  std::optional<Topology> topology, topology_before;             ///< of the mesh, and of that of --before
+  std::optional<std::vector<std::string>> topology_differences;  ///< from the mesh of --before, if given
+  std::optional<SurfaceComparison> surface;                      ///< with --surface
+  double tolerance = 0;                                          ///< input units; 0: none
+
+  bool valid() const { return is_valid(findings); }
+  bool within_tolerance() const { return tolerance == 0 || (surface && surface->upper() <= tolerance); }
+  bool topology_kept() const { return !topology_differences || topology_differences->empty(); }
+};
+
+/// The findings, and the requests that the mesh does not meet, as diagnostics.
+std::vector<Diagnostic> diagnostics_of(const CheckReport& check);
+
+}  // namespace tetwright

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/prepare/acceptance.h"
+
+#include <algorithm>
+
+#include "tools/prepare/notes.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Why a shortfall is a note; null if it is none.
+const char* reason_to_accept(const Diagnostic& d, const AcceptanceOptions& acceptance, bool on_purpose) {
+  const Yields yields = kind_of(d.code).yields;
+  if (yields == Yields::never) return nullptr;
+  if (acceptance.accept_changes) return "accepted";
+  return yields == Yields::to_acceptance_or_purpose && on_purpose ? "as --min-gap and --min-thickness ask"
+                                                                  : nullptr;
+}
+
+}  // namespace
+
+bool changed_on_purpose(const PrepareReport& report) {
+  return report.mesher && std::any_of(report.mesher->closed_gaps.begin(), report.mesher->closed_gaps.end(),
+                                      [](const ClosedGapReport& g) { return g.on_purpose; });
+}
+
+void decide_severities(const AcceptanceOptions& acceptance, PrepareReport& report) {
+  std::erase_if(report.diagnostics,
+                [](const Diagnostic& d) { return d.code == DiagnosticCode::notes_not_allowed; });
+  const bool on_purpose = changed_on_purpose(report);
+  for (Diagnostic& d : report.diagnostics) {
+    d.severity = kind_of(d.code).severity;
+    const char* reason = reason_to_accept(d, acceptance, on_purpose);
+    if (!reason) continue;
+    d.severity = Severity::note;
+    d.done = reason;
+  }
+  const std::vector<std::string> notes = notes_of(report);
+  if (!acceptance.strict || notes.empty()) return;
+  report.diagnostics.push_back({.code = DiagnosticCode::notes_not_allowed,
+                                .what = "--strict: " + std::to_string(notes.size()) +
+                                        (notes.size() == 1 ? " note: " : " notes, the first: ") +
+                                        notes.front(),
+                                .asked = 0,
+                                .reached = static_cast<double>(notes.size()),
+                                .limited_by = "--strict"});
+}
+
+}  // namespace tetwright

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/prepare/input_changes.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "common/message_text.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Lost labels that are named one by one.
+constexpr std::size_t max_lost_named = 5;
+
+/// Labels that were to be meshed and are not in the mesh.
+void find_lost_labels(PrepareRun& run) {
+  const PrepareOptions& options = run.options;
+  PrepareReport& report = run.report;
+  if (!report.volume || report.volume->lost.empty()) return;
+  const std::vector<LostLabel>& lost = report.volume->lost;
+  const std::size_t kept = report.volume->labels.size(), all = kept + lost.size();
+  std::string names;
+  std::vector<Vec3> places;
+  for (std::size_t i = 0; i < std::min(lost.size(), max_lost_named); ++i) {
+    names += (i ? ", " : "") + std::to_string(lost[i].tag) + " '" + lost[i].name + "' (" +
+             std::to_string(lost[i].voxels) +
+             (lost[i].voxels == 1 ? " voxel at " : " voxels, the first at ") + place_text(lost[i].place) +
+             ")";
+    places.push_back(lost[i].place);
+  }
+  if (lost.size() > max_lost_named) names += ", ...";
+  const std::string rule =
+      "--min-voxels " + std::to_string(options.labels.min_voxels.value_or(default_min_voxels));
+  report.diagnostics.push_back({.code = DiagnosticCode::labels_lost,
+                                .what = "lost " + std::to_string(lost.size()) + " of " + std::to_string(all) +
+                                        " labels: " + names + "; all their islands have fewer voxels than " +
+                                        rule + " keeps",
+                                .remedy = "give a smaller number",
+                                .asked = static_cast<double>(all),
+                                .reached = static_cast<double>(kept),
+                                .limited_by = rule + ": " + names,
+                                .places = places});
+}
+
+/// Materials that are not the solid they are meant to be.
+void find_changed_solids(const TetMesh& mesh, PrepareRun& run) {
+  const PrepareOptions& options = run.options;
+  PrepareReport& report = run.report;
+  if (!report.mesher) return;
+  if (const std::optional<VolumeReport>& volume = report.volume)
+    report.solids = compare_labels(
+        volume->labels, options.cells.keep_outside ? std::nullopt : std::optional(volume->outside_parts),
+        std::abs(volume->directions.determinant()), mesh);
+  else
+    report.solids = compare_solids(report.mesher->expected, mesh);
+  std::string text;
+  std::vector<Vec3> places;
+  std::size_t same = 0;
+  bool dense_was_same = report.simplify.has_value();  // but for its counts, which simplifying keeps
+  for (const SolidComparison& f : report.solids) {
+    if (f.same()) {
+      ++same;
+      continue;
+    }
+    const auto dense = report.dense->materials.find(f.tag);
+    dense_was_same &= f.same_counts() && dense != report.dense->materials.end() &&
+                      is_same_volume(dense->second.volume, f.expected.volume);
+    text += (text.empty() ? "" : "; ") + std::string("'") + f.name + "' has " + f.difference +
+            (f.place ? ", the first at " + place_text(*f.place) : "") +
+            (f.against == SolidComparison::Against::distances
+                 ? " (by the distances: the surface is open, intersects itself or meets another)"
+                 : "");
+    if (f.place) places.push_back(*f.place);
+  }
+  if (text.empty()) return;
+  const std::size_t all = report.solids.size();
+  std::string thin;
+  for (const ThinPartReport& t : report.mesher->thin_parts)
+    thin += (thin.empty() ? "" : ", ") + (t.name.empty() ? "a gap" : "'" + t.name + "'") + " at " +
+            place_text(t.first);
+  report.diagnostics.push_back({.code = DiagnosticCode::solid_changed,
+                                .file = report.inputs.front(),
+                                .what = "not the solid of the input: " + text,
+                                .remedy = std::string("raise ") +
+                                          (dense_was_same ? "--target-tets" : "--resolution") +
+                                          ", or take it as it is with --accept-changes",
+                                .asked = static_cast<double>(all),
+                                .reached = static_cast<double>(same),
+                                .limited_by = dense_was_same ? "the number of tets"
+                                              : thin.empty() ? "the size of the cells"
+                                                             : "what is thin for the cells: " + thin,
+                                .places = places});
+}
+
+/// Walls that are too thick and gaps that are closed because cells are too large, and those that were changed
+/// on purpose.
+void find_thin_walls(PrepareRun& run) {
+  const PrepareOptions& options = run.options;
+  PrepareReport& report = run.report;
+  if (!report.mesher) return;
+  std::string text;
+  std::vector<Vec3> places;
+  for (const ClosedGapReport& g : report.mesher->closed_gaps) {
+    char numbers[120];
+    std::snprintf(numbers, sizeof numbers, "%.3g wide, over an area of %.3g, narrowest at ", g.width, g.area);
+    const std::string what = "'" + g.name + "' " + numbers + place_text(g.place);
+    if (g.on_purpose) {
+      report.diagnostics.push_back(
+          {.code = g.gap ? DiagnosticCode::gap_closed : DiagnosticCode::wall_left_out,
+           .file = report.inputs.front(),
+           .what = (g.gap ? "gap of " : "wall of ") + what,
+           .count = 1,
+           .done = g.gap ? "closed by --min-gap" : "left out by --min-thickness",
+           .places = {g.place}});
+      continue;
+    }
+    text += (text.empty() ? "" : "; ") + std::string("a gap of ") + what + " is closed";
+    places.push_back(g.place);
+  }
+  const ThickenedWallsReport& t = report.mesher->thickened;
+  if (t.points > 0) {
+    char factor[120];
+    std::snprintf(factor, sizeof factor, "walls are up to %.3g times too thick (%.3g, not %.3g) at ",
+                  (t.thickness + 2 * t.offset) / t.thickness, t.thickness + 2 * t.offset, t.thickness);
+    text += (text.empty() ? "" : "; ") + std::string(factor) + std::to_string(t.points) +
+            " points of the boundary, most at " + place_text(t.place);
+    places.push_back(t.place);
+  }
+  if (text.empty()) return;
+  const bool finer = !options.cells.uniform && options.cells.max_refinement.value_or(0) < max_wall_refinement;
+  report.diagnostics.push_back({.code = DiagnosticCode::thin_walls_changed,
+                                .file = report.inputs.front(),
+                                .what = "too thin for cells: " + text,
+                                .remedy = std::string("raise --resolution") +
+                                          (finer ? " or --max-refinement" : "") +
+                                          ", or take it as it is with --accept-changes",
+                                .asked = 0,
+                                .reached = static_cast<double>(report.mesher->closed_gaps.size() + t.points),
+                                .limited_by = "the size of the cells",
+                                .places = places});
+}
+
+/// Creases and corners that are not where they are in the input.
+void find_changed_creases(const TetMesh& mesh, PrepareRun& run) {
+  PrepareReport& report = run.report;
+  if (report.creases.segments.empty()) return;
+  report.crease_comparison = compare_creases(report.creases, mesh);
+  const CreaseComparison& c = *report.crease_comparison;
+  if (c.same()) return;
+  char distance[80];
+  std::snprintf(distance, sizeof distance, "%.3g (%.3g %% of the diagonal)", c.max_distance,
+                100 * c.max_distance / c.diagonal);
+  std::string text = std::string("creases are off by up to ") + distance + " at " + place_text(c.place);
+  if (c.lost_corners > 0)
+    text += ", and " + std::to_string(c.lost_corners) + " of " + std::to_string(c.corners) +
+            " corners are lost, the first at " + place_text(c.lost_corner);
+  const bool of_tets = !report.mesher;
+  std::vector<Vec3> places{c.place};
+  if (c.lost_corners > 0) places.push_back(c.lost_corner);
+  report.diagnostics.push_back(
+      {.code = DiagnosticCode::creases_changed,
+       .file = report.inputs.front(),
+       .what = text,
+       .remedy = std::string(run.task == Task::improve ? ""
+                             : report.simplify         ? "raise --target-tets, or "
+                                                       : "raise --resolution, or ") +
+                 (of_tets ? "leave sharp edges alone with --feature-angle off"
+                          : "take it as it is with --accept-changes"),
+       .asked = 0,
+       .reached = c.max_distance,
+       .limited_by = report.simplify ? "the number of tets" : "the size of the cells",
+       .places = places});
+}
+
+/// Patches of the user of which the mesh has nothing.
+void find_lost_patches(const TetMesh& mesh, PrepareRun& run) {
+  PrepareReport& report = run.report;
+  compare_patches(mesh, report.patches);
+  std::string text;
+  std::size_t lost = 0;
+  std::vector<Vec3> places;
+  for (const PatchComparison& p : report.patches) {
+    if (!p.lost() || lost++ >= max_lost_named) continue;
+    text += (text.empty() ? "" : ", ") + ("'" + patch_name(p.group)) + "' at " + place_text(p.place);
+    places.push_back(p.place);
+  }
+  if (lost == 0) return;
+  if (lost > max_lost_named) text += ", ...";
+  const std::size_t all = report.patches.size();
+  report.diagnostics.push_back(
+      {.code = DiagnosticCode::patches_lost,
+       .file = report.inputs.front(),
+       .what = "lost " + std::to_string(lost) + " of " + std::to_string(all) + " named patches: " + text,
+       .remedy = "they are smaller than cells, within the solid, or on triangles that are there twice: raise "
+                 "--resolution, or leave them out",
+       .asked = static_cast<double>(all),
+       .reached = static_cast<double>(all - lost),
+       .limited_by = "the size of the cells",
+       .places = places});
+}
+
+/// Parts that are small or thin for the cells.
+void find_small_parts(PrepareReport& report) {
+  for (const FeatureReport& f : report.features)
+    if (f.found.dropped > 0)
+      report.diagnostics.push_back({.code = DiagnosticCode::crease_patches_dropped,
+                                    .what = "'" + f.name + "' has " + std::to_string(f.found.dropped) +
+                                            " patches between sharp edges smaller than eight faces of a cell",
+                                    .done = "their edges are not kept; a higher resolution keeps them"});
+  if (!report.mesher) return;
+  if (report.mesher->isolated_vertices > 0)
+    report.diagnostics.push_back({.code = DiagnosticCode::specks_dropped,
+                                  .what = "parts or cavities of a single lattice point",
+                                  .count = report.mesher->isolated_vertices,
+                                  .done = "left out; a higher resolution keeps them"});
+  for (const std::string& name : report.mesher->unknown)
+    report.diagnostics.push_back(
+        {.code = DiagnosticCode::not_compared,
+         .what =
+             "'" + name +
+             "' was not compared with its input: its surface is open, intersects itself or meets another, "
+             "and cells of this size do not show it"});
+  for (const ThinPartReport& t : report.mesher->thin_parts)
+    report.diagnostics.push_back(
+        {.code = DiagnosticCode::thin_parts,
+         .what = (t.name.empty() ? "a gap" : "'" + t.name + "'") + " is thinner than " +
+                 (t.refined ? "the smallest cells can hold" : "two cells") + " at " +
+                 std::to_string(t.places) + " places, the first at " + place_text(t.first) +
+                 ": parts may tear or join there; a higher resolution keeps them",
+         .places = {t.first}});
+}
+
+}  // namespace
+
+void find_input_changes(const TetMesh& mesh, PrepareRun& run) {
+  find_lost_labels(run);
+  find_changed_solids(mesh, run);
+  find_thin_walls(run);
+  find_changed_creases(mesh, run);
+  find_lost_patches(mesh, run);
+  find_small_parts(run.report);
+}
+
+}  // namespace tetwright

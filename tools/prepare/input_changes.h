@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/tet_mesh.h"
+#include "tools/prepare/run.h"
+
+namespace tetwright {
+
+/// Compares the result with the input: labels, solids, thin walls, creases and patches. Adds diagnostics to
+/// `run.report`. `mesh` has its interfaces.
+void find_input_changes(const TetMesh& mesh, PrepareRun& run);
+
+}  // namespace tetwright

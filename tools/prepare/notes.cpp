@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/prepare/notes.h"
+
+namespace tetwright {
+
+std::vector<std::string> notes_of(const PrepareReport& report) {
+  std::vector<std::string> notes;
+  std::string line, file;
+  for (const Diagnostic& d : report.diagnostics) {
+    if (d.severity != Severity::note || d.file.empty()) continue;
+    line += line.empty() ? "" : "; ";
+    if (d.file != file) line += d.file + ": ";
+    file = d.file;
+    line += diagnostic_text(d);
+  }
+  if (!line.empty()) notes.push_back(line);
+  for (const Diagnostic& d : report.diagnostics)
+    if (d.severity == Severity::note && d.file.empty()) notes.push_back(diagnostic_text(d));
+  return notes;
+}
+
+std::vector<std::string> shortfalls_of(const PrepareReport& report) {
+  std::vector<std::string> lines;
+  for (const Diagnostic& d : report.diagnostics)
+    if (d.severity == Severity::shortfall) lines.push_back(diagnostic_text(d));
+  return lines;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/prepare/prepare.h"
+
+#include <utility>
+
+#include "common/error.h"
+#include "common/mesh/field_transfer.h"
+#include "common/mesh/interfaces.h"
+#include "common/message_text.h"
+#include "common/parallel/host_threads.h"
+#include "simplify/simplify.h"
+#include "tools/prepare/assess.h"
+#include "tools/prepare/carry_out.h"
+#include "tools/prepare/dense_mesh.h"
+#include "tools/prepare/improve.h"
+#include "tools/prepare/scan_input.h"
+#include "tools/prepare/second_order.h"
+#include "tools/prepare/simplification.h"
+#include "tools/prepare/tet_input.h"
+
+namespace tetwright {
+
+namespace {
+
+/// The boundary and the interfaces of a mesh as a surface.
+TriangleMesh surface_of(const TetMesh& mesh) {
+  TriangleMesh surface;
+  std::vector<Index> number(mesh.points.size(), no_index);
+  for (const InterfaceTriangle& t : mesh.interfaces.empty() ? find_interfaces(mesh) : mesh.interfaces) {
+    for (const Index p : t.ids) {
+      if (number[p] != no_index) continue;
+      number[p] = static_cast<Index>(surface.points.size());
+      surface.points.push_back(mesh.points[p]);
+    }
+    surface.triangles.push_back({number[t.ids[0]], number[t.ids[1]], number[t.ids[2]]});
+  }
+  return surface;
+}
+
+/// Makes the mesh's own surface, as it is now, the reference, if that is to be kept.
+void refer_to(const TetMesh& mesh, const char* name, const PrepareRun& run, Prepared& result) {
+  if (!run.options.keep.reference) return;
+  result.reference = std::make_shared<const TriangleMesh>(surface_of(mesh));
+  result.reference_name = name;
+}
+
+Prepared mesh_from_scans(std::vector<Input> inputs, PrepareRun& run) {
+  Prepared result;
+  DenseMesh dense = make_dense_mesh(read_scan(std::move(inputs), run), run);
+  // The shapes of a segmented volume are compared with its dense mesh.
+  if (!dense.surface) refer_to(dense.mesh, "the dense mesh", run, result);
+  result.mesh = simplify_to_target(std::move(dense.mesh), dense.reference.get(), dense.surface.get(), run);
+  make_second_order(result.mesh, follow(*dense.reference), run);
+  dense.reference.reset();  // memory that comparing and writing the mesh need
+  if (dense.surface && run.options.keep.reference) {
+    result.reference = std::move(dense.surface);
+    result.reference_name = "the input";
+  }
+  if (run.options.keep.field) result.field = std::move(dense.field);
+  return result;
+}
+
+Prepared dense_mesh_from_scans(std::vector<Input> inputs, PrepareRun& run) {
+  Prepared result;
+  DenseMesh dense = make_dense_mesh(read_scan(std::move(inputs), run), run);
+  if (run.report.tolerance > 0) {
+    run.progress.begin_stage("compare");
+    run.report.deviation = deviation(dense.mesh, *dense.surface, &run.progress);
+  }
+  if (dense.reference) make_second_order(dense.mesh, follow(*dense.reference), run);
+  if (dense.surface && run.options.keep.reference) {
+    result.reference = std::move(dense.surface);
+    result.reference_name = "the input";
+  }
+  result.mesh = std::move(dense.mesh);
+  result.field = std::move(dense.field);
+  return result;
+}
+
+Prepared mesh_from_tets(std::vector<Input> inputs, PrepareRun& run) {
+  Prepared result;
+  TetInput input = read_tets(std::move(inputs.front()), run);
+  inputs.clear();
+  const std::optional<SurfaceToFollow> surface = followed_interfaces(input.mesh, run);
+  refer_to(input.mesh, "the mesh before", run, result);
+  result.mesh = run.task == Task::improve ? improve_shapes(std::move(input.mesh), run)
+                                          : simplify_to_target(std::move(input.mesh), nullptr, nullptr, run);
+  if (surface) make_second_order(result.mesh, *surface, run);
+  if (input.with_fields) transfer_fields(*input.with_fields, result.mesh);
+  return result;
+}
+
+Prepared carry_out_within(Task task, std::vector<Input> inputs, const PrepareOptions& options,
+                          Progress* progress) {
+  Progress silent;
+  Prepared result;
+  with_threads_of_host(options.limits.threads, [&] {
+    PrepareReport report;
+    PrepareRun run(task, options, progress ? *progress : silent, report);
+    result = carry_out(std::move(inputs), run);
+    result.report = std::move(report);
+  });
+  return result;
+}
+
+}  // namespace
+
+Prepared carry_out(std::vector<Input> inputs, PrepareRun& run) {
+  check_options(run.task, run.options);
+  if (inputs.empty()) throw UsageError("there is no input; give at least one");
+  run.report.inputs.clear();
+  for (const Input& input : inputs) run.report.inputs.push_back(input.name);
+  Prepared result;
+  const bool of_scans = run.task == Task::prepare || run.task == Task::mesh;
+  try {
+    result = run.task == Task::prepare ? mesh_from_scans(std::move(inputs), run)
+             : run.task == Task::mesh  ? dense_mesh_from_scans(std::move(inputs), run)
+                                       : mesh_from_tets(std::move(inputs), run);
+  } catch (const OutOfTime&) {
+    throw OutOfTime("out of time: after the " + short_number(run.options.limits.seconds.value_or(0)) +
+                    " s of --time-limit there was no mesh yet (in stage '" + run.progress.stage() +
+                    "'), and nothing was written; give more time" +
+                    (of_scans ? ", or larger cells by --resolution" : ""));
+  }
+  // The mesh that there is, is compared and handed out.
+  run.progress.set_deadline(Progress::no_deadline);
+  assess(result.mesh, run);
+  result.midside = std::move(run.midside);
+  run.progress.throw_if_stopped();
+  return result;
+}
+
+Prepared prepare(std::vector<Input> scans, const PrepareOptions& options, Progress* progress) {
+  return carry_out_within(Task::prepare, std::move(scans), options, progress);
+}
+
+Prepared mesh_scans(std::vector<Input> scans, const PrepareOptions& options, Progress* progress) {
+  return carry_out_within(Task::mesh, std::move(scans), options, progress);
+}
+
+Prepared simplify_mesh(Input mesh, const PrepareOptions& options, Progress* progress) {
+  std::vector<Input> one;
+  one.push_back(std::move(mesh));
+  return carry_out_within(Task::simplify, std::move(one), options, progress);
+}
+
+Prepared improve_mesh(Input mesh, const PrepareOptions& options, Progress* progress) {
+  std::vector<Input> one;
+  one.push_back(std::move(mesh));
+  return carry_out_within(Task::improve, std::move(one), options, progress);
+}
+
+void check_options(Task task, const PrepareOptions& options) {
+  const SizeOptions& sizes = options.sizes;
+  const TargetOptions& target = options.target;
+  const bool simplifies = task == Task::prepare || task == Task::simplify;
+  if (simplifies && !target.tets && !target.tolerance && !sizes.field)
+    throw UsageError(
+        "--target-tets is required; give the number of tets to reach, --tolerance, or --size-field");
+  if (simplifies) {
+    if (sizes.grading && !sizes.field)
+      throw UsageError("--grading is for the edge lengths of a size field; give --size-field FILE");
+    if (options.schedule.kind == Schedule::paper && (sizes.field || sizes.min_edge || sizes.max_edge))
+      throw UsageError(
+          "--schedule paper bounds no edges; leave out --size-field, --min-edge and --max-edge, or "
+          "--schedule");
+  }
+  if (target.tolerance && options.schedule.kind == Schedule::paper)
+    throw UsageError("--schedule paper bounds no distances; leave out --tolerance, or --schedule");
+  if (options.order != 1 && options.order != 2) throw UsageError("the order of elements is 1 or 2");
+  if (options.cells.resolution && options.cells.size)
+    throw UsageError("give --resolution or --voxel-size, not both");
+}
+
+}  // namespace tetwright

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/tet_mesh.h"
+#include "tools/prepare/run.h"
+
+namespace tetwright {
+
+/// Compares the result with what was asked of it: count, shapes, edge lengths, tolerance, and limits on time
+/// and memory. Adds diagnostics to `run.report`, which has the statistics of the meshes.
+void find_request_shortfalls(const TetMesh& mesh, PrepareRun& run);
+
+}  // namespace tetwright

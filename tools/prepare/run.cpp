@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/prepare/run.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace tetwright {
+
+namespace {
+
+/// A clock cannot count to more seconds than these; more are no limit.
+constexpr double max_seconds = 1e9;
+/// Share of the time that is kept at least for comparing and writing the mesh.
+constexpr double min_reserve = 0.1;
+
+}  // namespace
+
+const char* name_of(Task task) {
+  switch (task) {
+    case Task::prepare:
+      return "prepare";
+    case Task::mesh:
+      return "mesh";
+    case Task::simplify:
+      return "simplify";
+    case Task::improve:
+      return "improve";
+  }
+  return "";
+}
+
+PrepareRun::PrepareRun(Task what, const PrepareOptions& of, Progress& shown, PrepareReport& to)
+    : task(what),
+      options(of),
+      memory_limit(of.limits.memory.value_or(0) * gigabyte),
+      progress(shown),
+      report(to) {
+  reserve_time(min_reserve * seconds_left());
+}
+
+double PrepareRun::seconds_left() const {
+  if (!options.limits.seconds) return std::numeric_limits<double>::infinity();
+  return std::max(0.0, std::min(*options.limits.seconds, max_seconds) - since_start.seconds());
+}
+
+void PrepareRun::reserve_time(double seconds) {
+  if (!options.limits.seconds) return;
+  const std::chrono::duration<double> left(seconds_left() - seconds);
+  const auto end = Progress::Clock::now() + std::chrono::duration_cast<Progress::Clock::duration>(left);
+  progress.set_deadline(std::min(progress.deadline(), end));
+}
+
+void report_dropped(const std::vector<Dropped>& dropped, const std::string& file, PrepareReport& report,
+                    bool with_restored) {
+  for (const Dropped& d : dropped)
+    if (with_restored || !d.restored)
+      report.diagnostics.push_back(
+          {.code = d.restored ? DiagnosticCode::input_restored : DiagnosticCode::input_dropped,
+           .file = file,
+           .what = d.what,
+           .count = d.count,
+           .done = d.restored ? "found again from the materials" : "dropped"});
+}
+
+}  // namespace tetwright

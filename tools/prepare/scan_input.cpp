@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/prepare/scan_input.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "common/error.h"
+#include "common/io/formats.h"
+#include "common/io/names/unique_names.h"
+#include "common/io/volumes/label_names.h"
+#include "common/utf8.h"
+#include "mesher/distance/vdb_files.h"
+#include "mesher/input/split_solids.h"
+#include "tools/compare/patch_comparison.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Refuses files that cannot be scans by their extension.
+void check_input_kinds(const std::vector<Input>& inputs, Task task) {
+  for (const Input& input : inputs) {
+    const std::string& file = input.name;
+    const FileKind kind = input.kind();
+    if (kind == FileKind::surface || kind == FileKind::volume || is_vdb(file) ||
+        may_hold_surface(input.typed_name()))
+      continue;
+    std::string read = name_of(task);
+    read.append(" reads surfaces (").append(known_extensions(FileKind::surface));
+    read.append("), level sets (.vdb) and segmented volumes (").append(known_extensions(FileKind::volume));
+    read.append(" .vdb)");
+    if (kind == FileKind::tet_mesh)
+      throw UsageError(
+          std::string(file)
+              .append(" is a tet mesh, which 'tetwright simplify' and 'tetwright improve' take; ")
+              .append(read));
+    const std::string extension = std::filesystem::path(file).extension().string();
+    const std::string what = extension.empty() ? "no extension" : "unknown extension '" + extension + "'";
+    throw UsageError(std::string(file).append(": ").append(what).append("; ").append(read));
+  }
+}
+
+/// Whether the input is a segmented volume, which must then be the only one, since it names all materials.
+/// The kind of a .vdb file is known only once it has been read: its labels are put into `vdb_labels`.
+bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
+               std::optional<LabelVolume>& vdb_labels) {
+  bool volume = std::any_of(inputs.begin(), inputs.end(),
+                            [](const Input& input) { return input.kind() == FileKind::volume; });
+  for (const Input& input : inputs) {
+    if (!input.material.empty() || !input.is_vdb_file()) continue;
+    vdb_labels = read_label_grid(input.name);
+    volume |= vdb_labels.has_value();
+  }
+  const LabelOptions& labels = options.labels;
+  if (!volume) {
+    if (!labels.meshed.empty() || !labels.names_file.empty() || labels.outside || labels.min_voxels)
+      throw UsageError(
+          "--labels, --label-names, --outside-label and --min-voxels are for segmented volumes, and no "
+          "input is one");
+    return false;
+  }
+  if (inputs.size() > 1 || !inputs.front().material.empty())
+    throw UsageError("a segmented volume must be the only input; leave out the others");
+  const CellOptions& cells = options.cells;
+  const BodyOptions& bodies = options.bodies;
+  if (!bodies.layers.empty())
+    throw UsageError("--layer is for surfaces, and the input is a segmented volume");
+  if (cells.max_refinement || cells.min_gap || cells.min_thickness)
+    throw UsageError(
+        "--max-refinement, --min-gap and --min-thickness are for surfaces, and the input is a segmented "
+        "volume");
+  if (options.feature_angle.rule != FeatureAngle::Rule::automatic)
+    throw UsageError("--feature-angle is for surfaces and tet meshes, and the input is a segmented volume");
+  if (bodies.split_solids)
+    throw UsageError("--split-solids is for surfaces, and the input is a segmented volume");
+  if (bodies.nested != NestedRule::automatic)
+    throw UsageError("--nested is for surfaces, and the input is a segmented volume");
+  return true;
+}
+
+LabelChoice label_choice(const LabelOptions& options) {
+  LabelChoice choice;
+  choice.labels = options.meshed;
+  choice.outside_label = options.outside.value_or(0);
+  choice.min_voxels = options.min_voxels.value_or(default_min_voxels);
+  if (!options.names_file.empty()) {
+    choice.names = read_label_names(options.names_file, &choice.name_lines);
+    choice.names_file = options.names_file;
+  }
+  return choice;
+}
+
+/// Takes the names in the file itself. No two labels have one name there, nor that of the outside.
+void take_names(const LabelVolume& volume, LabelChoice& choice) {
+  UniqueNames unique(printable_name);
+  (void)unique.add("outside");
+  for (const auto& [tag, name] : volume.names)
+    if (tag != choice.outside_label) choice.names[tag] = unique.add(name);
+}
+
+LabelInput read_labels(std::optional<LabelVolume> vdb_labels, Input& input, PrepareRun& run) {
+  // Before the volume, which takes longer to read.
+  LabelChoice choice = label_choice(run.options.labels);
+  LabelVolume volume = vdb_labels ? std::move(*vdb_labels) : take_label_volume(input, run.seconds_waited);
+  if (run.options.labels.names_file.empty()) take_names(volume, choice);
+  run.report.material_colours = volume.colours;
+  LabelInput labels = make_label_input(std::move(volume), input.name, choice, &run.progress);
+  run.report.diagnostics = labels.findings;
+  run.report.volume.emplace(labels);
+  return labels;
+}
+
+/// The level set of an input that names its material.
+TriangleMesh read_one_level_set(const Input& input) {
+  std::vector<NamedSurface> level_sets = read_level_sets(input.name);
+  if (level_sets.size() > 1)
+    throw InputError(input.name, 0,
+                     "holds " + std::to_string(level_sets.size()) + " level sets, but --material " +
+                         input.material +
+                         " is one; give the file as an input, and its grids name the materials");
+  return std::move(level_sets[0].surface);
+}
+
+/// One material for each surface and level set, or with --split-solids for each solid of a surface, with tags
+/// from 1 in the order of the inputs.
+std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs, PrepareRun& run) {
+  PrepareReport& report = run.report;
+  const bool split_solids_asked = run.options.bodies.split_solids;
+  std::vector<MaterialSurface> surfaces;
+  const auto add = [&](const std::string& name, const std::string& file, TriangleMesh surface) {
+    surfaces.push_back({name, static_cast<MaterialTag>(surfaces.size() + 1), std::move(surface), file});
+  };
+  const auto count = [&](TriangleMesh surface) {
+    report.input_triangles += surface.triangles.size();
+    report.input_points += surface.points.size();
+    return surface;
+  };
+  const auto read = [&](Input& input) {
+    std::vector<Dropped> dropped;
+    TriangleMesh surface = take_surface(input, &dropped, run.seconds_waited);
+    report_dropped(dropped, input.name, report);
+    return count(std::move(surface));
+  };
+  bool split = false;
+  for (Input& input : inputs) {
+    const std::string& file = input.name;
+    if (!input.material.empty()) {
+      add(input.material, file, input.is_vdb_file() ? count(read_one_level_set(input)) : read(input));
+    } else if (input.is_vdb_file()) {
+      for (NamedSurface& s : read_level_sets(file))
+        add(s.name.empty() ? file_stem(file) : s.name, file, count(std::move(s.surface)));
+    } else if (split_solids_asked) {
+      std::vector<NamedSurface> solids = split_solids(read(input), input.material_name());
+      split |= solids.size() > 1;
+      for (NamedSurface& s : solids)
+        add(s.name, solids.size() > 1 ? file + ", '" + s.name + "'" : file, std::move(s.surface));
+    } else {
+      add(input.material_name(), file, read(input));
+    }
+  }
+  if (split_solids_asked && !split)
+    throw InputError(inputs.front().name, 0,
+                     "--split-solids finds no solids, groups or labels that tell its parts apart; leave the "
+                     "option out (it does not split what --material names)");
+  return surfaces;
+}
+
+MesherInput read_surfaces(std::vector<Input>& inputs, PrepareRun& run) {
+  const BodyOptions& options = run.options.bodies;
+  std::vector<MaterialSurface> surfaces = read_material_surfaces(inputs, run);
+  std::vector<MaterialLayer> layers;
+  for (const Layer& l : options.layers)
+    layers.push_back({l.name, static_cast<MaterialTag>(surfaces.size() + layers.size() + 1), l.thickness});
+  run.progress.throw_if_stopped();
+  MesherInput input = make_mesher_input(std::move(surfaces), std::move(layers), options.nested);
+  std::vector<Diagnostic>& all = run.report.diagnostics;
+  all.insert(all.end(), input.findings.begin(), input.findings.end());
+  run.report.patches = patches_of_input(input);
+  return input;
+}
+
+}  // namespace
+
+ScanInput read_scan(std::vector<Input> inputs, PrepareRun& run) {
+  const Stopwatch watch;
+  run.progress.begin_stage("read");
+  check_input_kinds(inputs, run.task);
+  std::optional<LabelVolume> vdb_labels;
+  ScanInput input = is_volume(inputs, run.options, vdb_labels)
+                        ? ScanInput(read_labels(std::move(vdb_labels), inputs.front(), run))
+                        : ScanInput(read_surfaces(inputs, run));
+  run.report.seconds_read = watch.seconds();
+  return input;
+}
+
+}  // namespace tetwright

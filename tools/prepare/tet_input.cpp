@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/prepare/tet_input.h"
+
+#include <utility>
+
+#include "common/error.h"
+#include "common/io/formats.h"
+#include "common/mesh/import_cleanup.h"
+#include "tools/prepare/edge_sizes_input.h"
+#include "tools/prepare/simplification.h"
+
+namespace tetwright {
+
+namespace {
+
+void check_input_kind(const Input& input, Task task) {
+  const std::string& file = input.name;
+  const FileKind kind = input.kind();
+  if (kind == FileKind::surface || kind == FileKind::volume || is_vdb(file))
+    throw UsageError(file + " is a " + (kind == FileKind::surface ? "surface" : "volume") +
+                     ", which 'tetwright prepare' and 'tetwright mesh' take; " + name_of(task) +
+                     " reads tet meshes (" + known_extensions(FileKind::tet_mesh) + ")");
+}
+
+/// Other programs list tets in the opposite orientation or repeat points for each tet.
+void repair(TetMesh& mesh, const std::string& file, PrepareReport& report) {
+  const ImportCleanupReport found = make_coherent(mesh);
+  const auto add = [&](DiagnosticCode code, std::size_t count, const char* what, const char* done,
+                       std::vector<Vec3> places = {}) {
+    if (count > 0)
+      report.diagnostics.push_back({.code = code,
+                                    .file = file,
+                                    .what = what,
+                                    .count = count,
+                                    .done = done,
+                                    .places = std::move(places)});
+  };
+  using enum DiagnosticCode;
+  add(tet_points_merged, found.merged_points, "points repeated for each tet",
+      "merged where coordinates are equal");
+  add(tets_collapsed, found.removed_tets, "tets with a vertex twice", "left out");
+  add(tets_turned, found.turned_tets, "tets listed the other way round", "turned");
+  std::vector<Vec3> first;
+  if (!found.first_inverted.empty()) first.push_back(mesh.points[mesh.tets[found.first_inverted.front()][0]]);
+  add(tets_inverted, found.inverted_tets, "flat or negative tets", "kept unless the work puts them right",
+      first);
+  add(patch_faces_lost, found.lost_faces, "faces of named patches between tets that were merged",
+      "no longer of the boundary, or of another patch from their other side");
+  if (mesh.tets.empty()) throw InputError(file, 0, "all its tets have a vertex twice; nothing is left of it");
+}
+
+}  // namespace
+
+TetInput read_tets(Input from, PrepareRun& run) {
+  const Stopwatch watch;
+  const std::string& file = from.name;
+  run.progress.begin_stage("read");
+  check_input_kind(from, run.task);
+  ReadTetMesh read = take_tet_mesh(from, {run.options.material_field}, run.seconds_waited);
+  run.report.material_field = read.material_field;
+  run.report.input_points = read.mesh.points.size();
+  run.progress.throw_if_stopped();
+  report_dropped(read.dropped, file, run.report);
+  TetInput input{std::move(read.mesh), {}};
+  repair(input.mesh, file, run.report);
+  run.progress.throw_if_stopped();
+  if (!input.mesh.point_fields.empty() || !input.mesh.cell_fields.empty()) {
+    input.with_fields = input.mesh;
+    input.mesh.point_fields.clear();
+    input.mesh.cell_fields.clear();
+  }
+  run.report.patches = patches_of_input(input.mesh);
+  if (run.options.feature_angle.rule != FeatureAngle::Rule::off) {
+    run.report.features.push_back(
+        {from.material_name(), find_mesh_patches(input.mesh, run.options.feature_angle, file)});
+    run.report.features.back().found.patches = {};
+  }
+  run.progress.throw_if_stopped();
+  run.report.creases = mesh_creases(input.mesh);
+  run.report.seconds_read = watch.seconds();
+  // Comparing and writing a mesh take as long as reading it (5 s each of the 4.3 million tets of
+  // dragon_vrip_res2.ply at --resolution 200); what simplifying leaves of it takes less.
+  const double finishing = run.report.seconds_read - run.seconds_waited;
+  run.reserve_time(run.task == Task::improve ? finishing : std::min(finishing, run.seconds_left() / 2));
+  const TargetOptions& target = run.options.target;
+  if (target.tets && *target.tets > input.mesh.tets.size())
+    throw UsageError("--target-tets " + std::to_string(*target.tets) + " is above the " +
+                     std::to_string(input.mesh.tets.size()) + " tets of " + file + "; give fewer");
+  Box3 box;
+  for (const Vec3& p : input.mesh.points) box.add(p);
+  read_sizes(run, box);
+  require_sizes_at(run, input.mesh.points);
+  run.report.dense = mesh_statistics(input.mesh, run.options.shapes.bound());
+  if (target.tolerance) run.report.tolerance = tolerance_of(*target.tolerance, diagonal_of(input.mesh));
+  return input;
+}
+
+}  // namespace tetwright
