@@ -74,15 +74,16 @@ struct ClosedGapReport {
   Vec3 place = Vec3::Zero();  ///< where it is smallest, input units
 };
 
-/// The solid that a material is meant to be.
+/// The solid that a material is meant to be. It is certain where the surfaces have no flaw; else `shape` is
+/// an estimate.
 struct ExpectedSolid {
   std::string name;
   MaterialTag tag = 0;
-  SolidShape shape;  ///< input units
-  /// True: by the surfaces as they were given. False: by the distances, where surfaces are open, intersect
-  /// or meet those of other materials.
-  bool by_surface = true;
-  /// Shells smaller than this (input units cubed) say nothing: by the distances, those of less than a cell.
+  SurfaceFlaw flaw = SurfaceFlaw::none;
+  SolidShape shape;  ///< input units; by the surfaces as they were given, with a flaw by the distances
+  /// Another estimate: by the surfaces, where these are closed, manifold and do not meet each other.
+  std::optional<SolidShape> by_flawed_surface;
+  /// Shells smaller than this (input units cubed) say nothing: with a flaw, those of less than a cell.
   double min_volume = 0;
   /// How far the volume may be off beside that, input units cubed: distances chamfer creases that the mesh
   /// has.

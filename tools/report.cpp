@@ -41,8 +41,8 @@ std::string volume_line(const VolumeReport& v) {
 std::string feature_line(const FeatureReport& f) {
   using Verdict = SurfacePatches::Verdict;
   const auto loose = [&] {
-    return text("%.3g %% of the edges over 15 degrees and ", 100 * f.found.loose_ends_low) +
-           text("%.3g %% of those over 35 are loose ends", 100 * f.found.loose_ends_high);
+    return text("%.3g loose ends per 100 edges over 15 degrees, ", 100 * f.found.loose_ends_low) +
+           text("%.3g per 100 over 35", 100 * f.found.loose_ends_high);
   };
   std::string line = "features of '" + f.name + "': ";
   switch (f.found.verdict) {
@@ -80,6 +80,53 @@ std::string patches_line(const std::vector<PatchFidelity>& patches) {
         (i > 0 ? ", " : "") + patch_name(patches[i].group) + text(" (%zu triangles)", patches[i].triangles);
   if (patches.size() > max_named) line += text(" and %zu more", patches.size() - max_named);
   return printable(line);
+}
+
+/// Materials that are not as an estimate of them says.
+void add_uncertain_changes(const RunReport& run, std::vector<RunNote>& notes) {
+  for (const MaterialFidelity& f : run.fidelity)
+    if (!f.same() && !f.certain)
+      notes.push_back({"'" + f.name + "' has " + f.difference +
+                           (f.place ? ", the first at " + place_text(*f.place) : "") +
+                           ", by the distances (not certain, since " + flaw_text(f.flaw) + ")",
+                       f.place, false});
+}
+
+/// What the comparison with the input says of changes of a material.
+enum class Change : std::uint8_t { none, none_by_estimate, possible };
+
+Change change_of(const RunReport& run, MaterialTag tag) {
+  const auto f = std::find_if(run.fidelity.begin(), run.fidelity.end(),
+                              [&](const MaterialFidelity& m) { return m.tag == tag; });
+  if (f == run.fidelity.end() || !f->same() || !f->counted || f->against == MaterialFidelity::Against::voxels)
+    return Change::possible;
+  return f->certain ? Change::none : Change::none_by_estimate;
+}
+
+/// The worst change of the materials beside a thin part: of its own material, or of all where it is a gap.
+Change change_beside(const RunReport& run, const ThinPartReport& thin) {
+  std::optional<Change> worst;
+  for (const auto& [tag, material] : run.dense->materials) {
+    const auto name = run.material_names.find(tag);
+    if (tag == outside_tag ||
+        (!thin.name.empty() && (name == run.material_names.end() || name->second != thin.name)))
+      continue;
+    worst = std::max(worst.value_or(Change::none), change_of(run, tag));
+  }
+  return worst.value_or(Change::possible);
+}
+
+/// Nothing where the material is certainly kept.
+void add_thin_part(const RunReport& run, const ThinPartReport& thin, std::vector<RunNote>& notes) {
+  const Change change = change_beside(run, thin);
+  if (change == Change::none) return;
+  notes.push_back({(thin.name.empty() ? "a gap" : "'" + thin.name + "'") + " is thinner than " +
+                       (thin.refined ? "the smallest cells can hold" : "two cells") + " at " +
+                       std::to_string(thin.places) + " places, the first at " + place_text(thin.first) +
+                       (change == Change::none_by_estimate
+                            ? ": by the distances nothing is torn or joined there"
+                            : ": parts may be torn or joined there; a higher resolution keeps them"),
+                   thin.first, change == Change::possible});
 }
 
 }  // namespace
@@ -160,7 +207,7 @@ void print_report(const CommandLine& line, const RunReport& run) {
               static_cast<double>(peak_bytes()) / 1e6);
 }
 
-std::vector<std::string> notes_of(const RunReport& run) {
+std::vector<std::string> notes_of(const RunReport& run, NotesOf which) {
   std::vector<std::string> notes;
   std::string line, file;
   for (const InputFinding& f : run.findings) {
@@ -170,7 +217,8 @@ std::vector<std::string> notes_of(const RunReport& run) {
     line += std::to_string(f.finding.count) + " " + f.finding.what + " (" + f.finding.done + ")";
   }
   if (!line.empty()) notes.push_back(line);
-  for (const RunNote& note : further_notes(run)) notes.push_back(note.text);
+  for (const RunNote& note : further_notes(run))
+    if (note.certain || which == NotesOf::all) notes.push_back(note.text);
   return notes;
 }
 
@@ -195,20 +243,23 @@ std::vector<RunNote> further_notes(const RunReport& run) {
              "' was not compared with its input: its surface is open, intersects itself or meets another, "
              "and cells of this size do not show it",
          {}});
-  for (const ThinPartReport& t : run.mesher->thin_parts)
-    notes.push_back({(t.name.empty() ? "a gap" : "'" + t.name + "'") + " is thinner than " +
-                         (t.refined ? "the smallest cells can hold" : "two cells") + " at " +
-                         std::to_string(t.places) + " places, the first at " + place_text(t.first) +
-                         ": parts may tear or join there; a higher resolution keeps them",
-                     t.first});
+  add_uncertain_changes(run, notes);
+  for (const ThinPartReport& t : run.mesher->thin_parts) add_thin_part(run, t, notes);
   return notes;
 }
 
 double RunReport::lost_area() const {
   if (!deviation || !mesher || mesher->expected.empty() || !mesher->unknown.empty()) return 0;
   const bool all_shown = std::all_of(mesher->expected.begin(), mesher->expected.end(),
-                                     [](const ExpectedSolid& s) { return s.by_surface; });
+                                     [](const ExpectedSolid& s) { return s.flaw == SurfaceFlaw::none; });
   return all_shown ? deviation->hidden_area : 0;
+}
+
+const char* flaw_text(SurfaceFlaw flaw) {
+  static constexpr const char* texts[] = {
+      "", "its surface or one that carves it is open", "its surface or one that carves it touches itself",
+      "its surface or one that carves it intersects itself", "its surface meets another one"};
+  return texts[static_cast<std::size_t>(flaw)];
 }
 
 std::string patch_name(const FaceGroup& group) {

@@ -207,7 +207,8 @@ nlohmann::json fidelity_json(const std::vector<MaterialFidelity>& all) {
                  {"against", against[static_cast<std::size_t>(f.against)]},
                  {"expected", solid_json(f.expected)},
                  {"result", solid_json(f.result)},
-                 {"same", f.same()}});
+                 {"same", f.same()},
+                 {"certain", f.certain}});
     if (f.against == MaterialFidelity::Against::voxels) {
       nlohmann::json &expected = j.back()["expected"], &result = j.back()["result"];
       expected = {{"components", parts_json(f.expected.components, f.max_components)}};

@@ -21,8 +21,9 @@ constexpr double degree = 3.14159265358979323846 / 180;
 constexpr double automatic_angle = 35;   ///< degrees
 constexpr double low_share = 15.0 / 35;  ///< of the angle: edges that turn less never are borders
 constexpr double min_sharp_share = 0.5;  ///< of a border's length turns by more than the angle
-constexpr double max_loose_low = 0.09;   ///< parts have up to 0.07, scans that pass the other test 0.10
-constexpr double max_loose_high = 0.2;   ///< parts have up to 0.10, scans that pass the other test 0.43
+constexpr double max_loose_low =
+    0.09;  ///< parts have up to 0.07, scans that pass the other test 0.10
+constexpr double max_loose_high = 0.2;  ///< parts have up to 0.10, scans that pass the other test 0.43
 /// A staircase has many patches, each of few triangles; or its sharp edges are those of equal boxes.
 constexpr std::size_t min_staircase_patches = 256;
 constexpr std::size_t max_staircase_triangles = 4;
@@ -46,8 +47,8 @@ std::vector<std::uint8_t> points_between(const std::vector<EdgeUse>& uses, std::
   return between;
 }
 
-/// The share of the edges that turn by more than the angle at which a chain of such edges ends, other than at
-/// the points of `ends`.
+/// Points at which a chain of edges ends that turn by more than the angle, other than those of `ends`, over
+/// the number of such edges: at most 2.
 double loose_ends(const std::vector<InnerEdge>& edges, const std::vector<std::uint8_t>& ends, double angle) {
   std::vector<std::uint32_t> degrees(ends.size(), 0);
   std::size_t sharp = 0;

@@ -47,7 +47,8 @@ struct SurfacePatches {
   std::vector<std::uint16_t> patches;
   std::size_t count = 1;
   std::size_t dropped = 0;  ///< smaller than PatchOptions::min_area: they went to neighbours
-  /// Shares of the edges that turn by more than 15 and 35 degrees at which a chain of them ends.
+  /// Points at which a chain of edges ends that turn by more than 15 and 35 degrees, for each such edge; 2
+  /// where no two of them meet.
   double loose_ends_low = 0, loose_ends_high = 0;
 
   bool any() const { return count > 1; }
@@ -59,7 +60,7 @@ struct SurfacePatches {
 /// threshold, after which patches leak through every edge that turns a little less.
 ///
 /// Automatic: the creases of a part end at other creases, those of noise end anywhere. It is a part unless
-/// loose ends are more than 9 % of the edges that turn by 15 degrees or 20 % of those that turn by 35.
+/// there are more than 9 loose ends per 100 edges that turn by 15 degrees or 20 per 100 that turn by 35.
 ///
 /// `options.min_area` is the square of the surface's unit. `groups`: empty, or a number for each triangle:
 /// patches never cross from one to another, even where the angle is off. Edges at which a group has other

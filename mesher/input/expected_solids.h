@@ -8,10 +8,15 @@
 
 namespace tetwright {
 
-/// The solid of each body's material, in input units: the body without all later ones. Nothing where the
-/// surfaces alone do not say it: where the body or one that may carve it is open or intersects itself, where
-/// their surfaces meet, where edges have not just two triangles or points more than one fan of them, and of
-/// the first body where layers are cut from it.
-std::vector<std::optional<SolidShape>> expected_solids(const MesherInput& input);
+/// The solid of a material by its surface and those that carve it.
+struct SurfaceSolid {
+  /// Input units. Nothing for SurfaceFlaw::open and meeting, and where edges have not just two triangles.
+  std::optional<SolidShape> shape;
+  SurfaceFlaw flaw = SurfaceFlaw::none;  ///< the first one that is found; none: `shape` is certain
+};
+
+/// The solid of each body's material: the body without all later ones. Nothing for the first body where
+/// layers are cut from it.
+std::vector<std::optional<SurfaceSolid>> expected_solids(const MesherInput& input);
 
 }  // namespace tetwright

@@ -240,6 +240,7 @@ bool changed_on_purpose(const RunReport& report) {
 }
 
 /// Materials that are not the solid they are meant to be: a shortfall, or with --accept-changes a finding.
+/// Differences from an estimate are a note, see further_notes().
 void find_changed_solids(const CommandLine& line, const TetMesh& mesh, RunReport& report) {
   if (!report.mesher) return;
   if (const std::optional<VolumeReport>& volume = report.volume)
@@ -253,7 +254,7 @@ void find_changed_solids(const CommandLine& line, const TetMesh& mesh, RunReport
   std::size_t same = 0;
   bool dense_was_same = report.simplify.has_value();  // but for its counts, which simplifying keeps
   for (const MaterialFidelity& f : report.fidelity) {
-    if (f.same()) {
+    if (f.same() || !f.certain) {
       ++same;
       continue;
     }
@@ -262,8 +263,8 @@ void find_changed_solids(const CommandLine& line, const TetMesh& mesh, RunReport
                       is_same_volume(dense->second.volume, f.expected.volume);
     text += (text.empty() ? "" : "; ") + std::string("'") + f.name + "' has " + f.difference +
             (f.place ? ", the first at " + place_text(*f.place) : "") +
-            (f.against == MaterialFidelity::Against::distances
-                 ? " (by the distances: the surface is open, intersects itself or meets another)"
+            (f.flaw != SurfaceFlaw::none
+                 ? " (" + std::string(flaw_text(f.flaw)) + ", but the distances say the same)"
                  : "");
     if (f.place) places.push_back(*f.place);
   }
@@ -397,9 +398,11 @@ void find_lost_patches(const CommandLine& line, const TetMesh& mesh, RunReport& 
        places});
 }
 
-/// With --strict whatever is noted.
-void find_notes(const CommandLine& line, const std::vector<std::string>& notes, RunReport& report) {
-  if (!line.strict || notes.empty()) return;
+/// With --strict whatever is noted and certain.
+void find_notes(const CommandLine& line, RunReport& report) {
+  if (!line.strict) return;
+  const std::vector<std::string> notes = notes_of(report, NotesOf::certain);
+  if (notes.empty()) return;
   report.shortfall.push_back({"notes", 0, static_cast<double>(notes.size()), "--strict",
                               "--strict: " + std::to_string(notes.size()) +
                                   (notes.size() == 1 ? " note: " : " notes, the first: ") + notes.front()});
@@ -442,7 +445,7 @@ void assess(const TetMesh& mesh, CommandRun& run) {
   find_changed_creases(run.line, mesh, report);
   find_lost_patches(run.line, mesh, report);
   if (!run.line.output.empty()) find_unwritten(run.line, mesh, report);
-  find_notes(run.line, notes_of(report), report);
+  find_notes(run.line, report);
   report.status = report.shortfall.empty() ? ExitStatus::done : ExitStatus::short_of_request;
   report.seconds_total = run.since_start.seconds();
 }
