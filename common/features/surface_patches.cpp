@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/features/surface_patches.h"
 
 #include <algorithm>
@@ -21,9 +22,8 @@ constexpr double degree = 3.14159265358979323846 / 180;
 constexpr double automatic_angle = 35;   ///< degrees
 constexpr double low_share = 15.0 / 35;  ///< of the angle: edges that turn less never are borders
 constexpr double min_sharp_share = 0.5;  ///< of a border's length turns by more than the angle
-constexpr double max_loose_low =
-    0.09;  ///< parts have up to 0.07, scans that pass the other test 0.10
-constexpr double max_loose_high = 0.2;  ///< parts have up to 0.10, scans that pass the other test 0.43
+constexpr double max_loose_low = 0.09;   ///< parts have up to 0.07, scans that pass the other test 0.10
+constexpr double max_loose_high = 0.2;   ///< parts have up to 0.10, scans that pass the other test 0.43
 /// A staircase has many patches, each of few triangles; or its sharp edges are those of equal boxes.
 constexpr std::size_t min_staircase_patches = 256;
 constexpr std::size_t max_staircase_triangles = 4;
@@ -287,7 +287,7 @@ SurfacePatches find_mesh_patches(TetMesh& mesh, const FeatureAngle& angle, const
   }
   FoundParts found = find_parts(mesh.points, triangles, {angle, 0}, groups);
   std::map<MaterialPair, std::map<Index, std::uint16_t>> of_pair;
-  const std::map<InterfacePatch, FaceGroup> given = std::move(mesh.patch_groups);
+  const std::map<InterfacePatch, SurfaceRegion> given = std::move(mesh.patch_groups);
   mesh.patch_groups.clear();
   found.found.count = 0;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
