@@ -48,7 +48,9 @@ enum class DiagnosticCode : std::uint8_t {
   crease_patches_dropped,
   specks_dropped,
   not_compared,
+  solid_uncertain,
   thin_parts,
+  thin_parts_uncertain,
   not_written,
   names_changed,
   // Surfaces.
@@ -118,6 +120,9 @@ struct DiagnosticKind {
   Severity severity;
   Yields yields;
   const char* title;  ///< a few words for lists
+  /// False: the result differs from an estimate, which may be what is wrong. Never counts as a note for
+  /// --strict.
+  bool certain = true;
 };
 
 /// All kinds, in the order of DiagnosticCode.

@@ -75,16 +75,16 @@ struct ClosedGapReport {
   Vec3 place = Vec3::Zero();  ///< where it is narrowest, input units
 };
 
-/// The solid expected of a material.
+/// The solid expected of a material: certain if the surfaces have no flaw, else an estimate.
 struct ExpectedSolid {
   std::string name;
   MaterialTag tag = 0;
-  SolidShape shape;  ///< input units
-  /// True: derived from the surfaces as given. False: from the distances, because surfaces are open,
-  /// intersect themselves or meet those of other materials.
-  bool by_surface = true;
-  /// Shells smaller than this (input units cubed) are not significant; for solids from distances, those of
-  /// less than a cell.
+  SurfaceFlaw flaw = SurfaceFlaw::none;
+  SolidShape shape;  ///< input units; derived from the surfaces as given, with a flaw from the distances
+  /// A second estimate, derived from the surfaces if they are closed, manifold and do not meet each other.
+  std::optional<SolidShape> by_flawed_surface;
+  /// Shells smaller than this (input units cubed) are not significant; with a flaw, those of less than a
+  /// cell.
   double min_volume = 0;
   /// Additional tolerance of the volume, input units cubed: distances chamfer creases that the mesh has.
   double volume_slack = 0;

@@ -96,19 +96,19 @@ void validate_materials_left(const MesherInput& input, const MaterialField& fiel
   }
 }
 
-/// Determines the expected solids: from the surfaces where they suffice, else from the distances if the
+/// Determines the expected solids: from the surfaces if they have no flaw, else from the distances if the
 /// voxels resolve all of them.
 void expect_materials(const MesherInput& input, const MaterialField& field,
                       const std::vector<MortonKey>& interface_voxels, bool refined, MesherReport& report) {
-  std::vector<std::optional<SolidShape>> solids = expected_solids(input);
+  std::vector<std::optional<SurfaceSolid>> solids = expected_solids(input);
   const double cell = field.voxels().cell_size, cell_volume = cell * cell * cell;
   for (std::size_t i = 0; i < solids.size(); ++i) {
     const MesherInput::Body& body = input.bodies[i];
-    if (solids[i]) {
-      report.expected.push_back({body.name, body.tag, std::move(*solids[i]), true, 0});
+    if (!solids[i]) continue;
+    if (solids[i]->flaw == SurfaceFlaw::none) {
+      report.expected.push_back({.name = body.name, .tag = body.tag, .shape = std::move(*solids[i]->shape)});
       continue;
     }
-    if (i == 0 && !input.layers.empty()) continue;
     const auto region = std::find_if(field.regions().begin() + 1, field.regions().end(),
                                      [&](const FieldRegion& r) { return r.tag == body.tag; });
     SolidShape solid;
@@ -119,7 +119,12 @@ void expect_materials(const MesherInput& input, const MaterialField& field,
                      [&](const SolidShell& s) { return s.volume >= cell_volume; }))
       report.unknown.push_back(body.name);
     else
-      report.expected.push_back({body.name, body.tag, std::move(solid), false, cell_volume});
+      report.expected.push_back({.name = body.name,
+                                 .tag = body.tag,
+                                 .flaw = solids[i]->flaw,
+                                 .shape = std::move(solid),
+                                 .by_flawed_surface = std::move(solids[i]->shape),
+                                 .min_volume = cell_volume});
   }
 }
 
@@ -294,7 +299,7 @@ void allow_for_chamfers(MesherReport& report) {
   for (const auto& [a, b] : report.creases.segments)
     length += (report.creases.points[b] - report.creases.points[a]).norm();
   for (ExpectedSolid& e : report.expected)
-    if (!e.by_surface) e.volume_slack = 0.5 * length * report.cell_size * report.cell_size;
+    if (e.flaw != SurfaceFlaw::none) e.volume_slack = 0.5 * length * report.cell_size * report.cell_size;
 }
 
 /// Measures thickened walls again, since fitting creases has moved them too.

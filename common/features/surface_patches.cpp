@@ -48,7 +48,7 @@ std::vector<std::uint8_t> points_between(const std::vector<EdgeUse>& uses, std::
 }
 
 /// Loose ends: points other than `ends` at which a chain of edges that turn by more than the angle ends, over
-/// the number of these edges.
+/// the number of these edges: at most 2.
 double loose_ends(const std::vector<InnerEdge>& edges, const std::vector<std::uint8_t>& ends, double angle) {
   std::vector<std::uint32_t> degrees(ends.size(), 0);
   std::size_t sharp = 0;

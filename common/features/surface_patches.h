@@ -50,7 +50,7 @@ struct SurfacePatches {
   std::size_t count = 1;
   std::size_t dropped = 0;  ///< patches below PatchOptions::min_area, merged with neighbours
   /// Loose ends: chain ends of edges that turn by more than 15 and 35 degrees, over the number of these
-  /// edges.
+  /// edges; 2 if no two of them meet.
   double loose_ends_low = 0, loose_ends_high = 0;
 
   bool any() const { return count > 1; }
@@ -62,7 +62,8 @@ struct SurfacePatches {
 /// through every edge that turns a little less.
 ///
 /// Automatic: creases of a mechanical part end at other creases, those of noise end anywhere. A surface is a
-/// part unless loose ends exceed 9 % of the edges that turn by 15 degrees or 20 % of those that turn by 35.
+/// part unless there are more than 9 loose ends per 100 edges that turn by 15 degrees or 20 per 100 that turn
+/// by 35.
 ///
 /// Edges at which a group has other than two triangles are borders, as are edges between triangles of
 /// opposite orientation. Triangles without area belong to a neighbour's patch. O(n log n); the result does

@@ -32,16 +32,23 @@ class Inside {
   std::optional<SurfaceTree> tree_;
 };
 
-/// Whether surfaces meet each other.
+/// Whether surfaces meet each other; they may intersect themselves.
 bool meet(const RepairedSurface& body, const std::vector<const RepairedSurface*>& later) {
   std::vector<Vec3> points = body.points;
   std::vector<Triangle> triangles = body.triangles;
+  std::vector<std::size_t> ends{triangles.size()};  // of each surface's triangles
   for (const RepairedSurface* l : later) {
     const auto first = static_cast<Index>(points.size());
     points.insert(points.end(), l->points.begin(), l->points.end());
     for (const Triangle& t : l->triangles) triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    ends.push_back(triangles.size());
   }
-  return !self_intersections(points, triangles).empty();
+  const auto surface_of = [&](Index triangle) {
+    return std::upper_bound(ends.begin(), ends.end(), triangle);
+  };
+  const std::vector<std::pair<Index, Index>> pairs = self_intersections(points, triangles);
+  return std::any_of(pairs.begin(), pairs.end(),
+                     [&](const auto& pair) { return surface_of(pair.first) != surface_of(pair.second); });
 }
 
 /// The solid of a body without `later` ones, whose surfaces do not meet. Consists of the body's shells that
@@ -72,38 +79,49 @@ SolidShape carved_solid(const RepairedSurface& body, const SolidShape& solid,
   return carved;
 }
 
-/// Nothing where edges have not just two triangles, or points more than one fan of them.
-std::optional<SolidShape> clear_solid(const RepairedSurface& s) {
-  if (s.closed != s.triangles.size() || s.intersects_itself) return {};
+/// The solid of a surface that nothing carves.
+SurfaceSolid own_solid(const RepairedSurface& s) {
+  if (s.closed != s.triangles.size()) return {{}, SurfaceFlaw::open};
   SolidShape solid = solid_shape(s.points, s.triangles);
-  if (!solid.manifold || solid.touches_itself) return {};
+  if (!solid.manifold) return {{}, SurfaceFlaw::touching};
+  const SurfaceFlaw flaw = s.intersects_itself    ? SurfaceFlaw::intersecting
+                           : solid.touches_itself ? SurfaceFlaw::touching
+                                                  : SurfaceFlaw::none;
+  return {std::move(solid), flaw};
+}
+
+/// The solid of a body that all later ones carve; `own`: the solids of all bodies by themselves.
+SurfaceSolid solid_of(const MesherInput& input, std::size_t number, const std::vector<SurfaceSolid>& own) {
+  const RepairedSurface& body = input.bodies[number].surface;
+  SurfaceSolid solid = own[number];
+  std::vector<const RepairedSurface*> later;
+  std::vector<SolidShape> later_solids;
+  for (std::size_t k = number + 1; k < input.bodies.size() && solid.shape; ++k) {
+    const RepairedSurface& other = input.bodies[k].surface;
+    if (!boxes_meet(body, other)) continue;
+    if (solid.flaw == SurfaceFlaw::none) solid.flaw = own[k].flaw;
+    if (!own[k].shape) {
+      solid.shape.reset();
+      break;
+    }
+    later.push_back(&other);
+    later_solids.push_back(*own[k].shape);
+  }
+  if (!solid.shape || later.empty()) return solid;
+  if (meet(body, later)) return {{}, solid.flaw == SurfaceFlaw::none ? SurfaceFlaw::meeting : solid.flaw};
+  solid.shape = carved_solid(body, *own[number].shape, later, later_solids);
   return solid;
 }
 
 }  // namespace
 
-std::vector<std::optional<SolidShape>> expected_solids(const MesherInput& input) {
-  std::vector<std::optional<SolidShape>> own;
+std::vector<std::optional<SurfaceSolid>> expected_solids(const MesherInput& input) {
+  std::vector<SurfaceSolid> own;
   own.reserve(input.bodies.size());
-  for (const MesherInput::Body& body : input.bodies) own.push_back(clear_solid(body.surface));
-  std::vector<std::optional<SolidShape>> solids(input.bodies.size());
-  for (std::size_t i = 0; i < input.bodies.size(); ++i) {
-    const RepairedSurface& body = input.bodies[i].surface;
-    if ((i == 0 && !input.layers.empty()) || !own[i]) continue;
-    std::vector<const RepairedSurface*> later;
-    std::vector<SolidShape> later_solids;
-    bool clear = true;
-    for (std::size_t k = i + 1; k < input.bodies.size() && clear; ++k) {
-      const RepairedSurface& other = input.bodies[k].surface;
-      if (!boxes_meet(body, other)) continue;
-      clear = own[k].has_value();
-      if (!clear) break;
-      later.push_back(&other);
-      later_solids.push_back(*own[k]);
-    }
-    if (!clear || (!later.empty() && meet(body, later))) continue;
-    solids[i] = carved_solid(body, *own[i], later, later_solids);
-  }
+  for (const MesherInput::Body& body : input.bodies) own.push_back(own_solid(body.surface));
+  std::vector<std::optional<SurfaceSolid>> solids(input.bodies.size());
+  for (std::size_t i = input.layers.empty() ? 0 : 1; i < input.bodies.size(); ++i)
+    solids[i] = solid_of(input, i, own);
   return solids;
 }
 

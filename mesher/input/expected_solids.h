@@ -9,12 +9,16 @@
 
 namespace tetwright {
 
-/// The solid of each body's material, in input units: the body without all later ones. Nothing where the
-/// surfaces alone do not determine it:
-/// - the body, or one that may carve it, is open or intersects itself;
-/// - their surfaces meet;
-/// - an edge does not have exactly two triangles, or a point has more than one fan of them;
-/// - layers are cut from it (the first body).
-std::vector<std::optional<SolidShape>> expected_solids(const MesherInput& input);
+/// The solid of a material, derived from its surface and those that carve it.
+struct SurfaceSolid {
+  /// Input units. Nothing for SurfaceFlaw::open and meeting, and if an edge does not have exactly two
+  /// triangles or a point has more than one fan of them.
+  std::optional<SolidShape> shape;
+  SurfaceFlaw flaw = SurfaceFlaw::none;  ///< the first one found; none: `shape` is certain
+};
+
+/// The solid of each body's material: the body without all later ones. Nothing for the first body if layers
+/// are cut from it.
+std::vector<std::optional<SurfaceSolid>> expected_solids(const MesherInput& input);
 
 }  // namespace tetwright

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,16 @@ struct MesherInput {
   std::vector<Diagnostic> findings;
   std::vector<Group> groups;  ///< groups with triangles, ascending; repair may leave nothing of them
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< bounding box of all bodies, input units
+};
+
+/// Why surfaces do not define the solid of a material for certain: a flaw of its own surface or of one that
+/// carves it.
+enum class SurfaceFlaw : std::uint8_t {
+  none,
+  open,
+  touching,      ///< edges have not just two triangles, or points more than one fan of them
+  intersecting,  ///< itself
+  meeting        ///< the surface of another material
 };
 
 /// Validates and repairs the surfaces, see repair_surface(). With NestedRule::material every enclosed

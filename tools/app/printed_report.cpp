@@ -42,8 +42,8 @@ std::string volume_line(const VolumeReport& v) {
 std::string feature_line(const FeatureReport& f) {
   using Verdict = SurfacePatches::Verdict;
   const auto loose = [&] {
-    return text("%.3g %% of the edges over 15 degrees and ", 100 * f.found.loose_ends_low) +
-           text("%.3g %% of those over 35 are loose ends", 100 * f.found.loose_ends_high);
+    return text("%.3g loose ends per 100 edges over 15 degrees, ", 100 * f.found.loose_ends_low) +
+           text("%.3g per 100 over 35", 100 * f.found.loose_ends_high);
   };
   std::string line = "features of '" + f.name + "': ";
   switch (f.found.verdict) {

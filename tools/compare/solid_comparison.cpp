@@ -88,27 +88,43 @@ std::optional<Vec3> first_difference(const std::vector<SolidShell>& expected,
   return result[static_cast<std::size_t>(extra - found.begin())].place;
 }
 
-SolidComparison compare(const ExpectedSolid& expected, const SolidShape& result) {
+bool is_same_volume(double volume, double meant, double slack) {
+  return is_same_volume(volume, meant) || std::fabs(volume - meant) <= slack;
+}
+
+/// Compares a material with one `shape` of those that it may be meant to have.
+SolidComparison compare(const ExpectedSolid& expected, const SolidShape& shape, const SolidShape& result) {
   SolidComparison f;
   f.name = expected.name;
   f.tag = expected.tag;
-  if (!expected.by_surface) f.against = SolidComparison::Against::distances;
-  const std::vector<SolidShell> was = shells_of(expected.shape, expected.min_volume),
+  f.flaw = expected.flaw;
+  const std::vector<SolidShell> was = shells_of(shape, expected.min_volume),
                                 is = shells_of(result, expected.min_volume);
-  f.expected = numbers_of(expected.shape, was);
+  f.expected = numbers_of(shape, was);
   f.result = numbers_of(result, is);
   // A material may touch itself in an edge where others meet: then its counts mean nothing.
-  const bool countable = expected.shape.manifold && result.manifold;
-  if (countable)
+  f.counted = shape.manifold && result.manifold;
+  if (f.counted) {
     add_difference(f.difference, f.result.components, f.expected.components, "component", "components");
-  if (countable) add_difference(f.difference, f.result.handles, f.expected.handles, "handle", "handles");
-  if (countable) add_difference(f.difference, f.result.cavities, f.expected.cavities, "cavity", "cavities");
-  if (!is_same_volume(f.result.volume, f.expected.volume) &&
-      std::fabs(f.result.volume - f.expected.volume) > expected.volume_slack) {
-    add_volume(f);
+    add_difference(f.difference, f.result.handles, f.expected.handles, "handle", "handles");
+    add_difference(f.difference, f.result.cavities, f.expected.cavities, "cavity", "cavities");
   }
-  if (countable && !f.same_counts()) f.place = first_difference(was, is);
+  if (!is_same_volume(f.result.volume, f.expected.volume, expected.volume_slack)) add_volume(f);
+  if (f.counted && !f.same_counts()) f.place = first_difference(was, is);
   return f;
+}
+
+SolidComparison compare(const ExpectedSolid& expected, const SolidShape& result) {
+  SolidComparison f = compare(expected, expected.shape, result);
+  if (expected.flaw == SurfaceFlaw::none) return f;
+  f.against = SolidComparison::Against::distances;
+  f.certain = false;
+  if (!expected.by_flawed_surface) return f;
+  SolidComparison by_surface = compare(expected, *expected.by_flawed_surface, result);
+  by_surface.certain = f.certain =
+      f.expected.same_counts(by_surface.expected) &&
+      is_same_volume(f.expected.volume, by_surface.expected.volume, expected.volume_slack);
+  return !f.same() && by_surface.same() ? by_surface : f;
 }
 
 /// "12 components instead of 2 to 4".

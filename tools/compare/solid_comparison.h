@@ -15,6 +15,10 @@ struct SolidNumbers {
   double volume = 0;  ///< input units cubed
   std::size_t components = 0, cavities = 0;
   std::ptrdiff_t handles = 0;
+
+  bool same_counts(const SolidNumbers& other) const {
+    return components == other.components && handles == other.handles && cavities == other.cavities;
+  }
 };
 
 /// A material of a mesh beside the solid that it is meant to be.
@@ -22,6 +26,13 @@ struct SolidComparison {
   std::string name;
   MaterialTag tag = 0;
   enum class Against { surface, distances, voxels } against = Against::surface;
+  SurfaceFlaw flaw = SurfaceFlaw::none;  ///< of the surfaces that define the material
+  /// False where `expected` is only an estimate: the surfaces have a flaw, and what they say and what the
+  /// distances say is not the same, or only one of them says anything.
+  bool certain = true;
+  /// False where components, handles and cavities are not compared: an edge of the material is shared by more
+  /// than two of its faces. By voxels handles are never compared.
+  bool counted = true;
   /// By voxels only volumes and components are known.
   SolidNumbers expected, result;
   /// By voxels as many components are possible as expected or more, up to this.
@@ -36,8 +47,7 @@ struct SolidComparison {
   bool same_counts() const {
     if (against == Against::voxels)
       return expected.components <= result.components && result.components <= max_components;
-    return expected.components == result.components && expected.handles == result.handles &&
-           expected.cavities == result.cavities;
+    return expected.same_counts(result);
   }
 };
 
@@ -45,7 +55,8 @@ struct SolidComparison {
 bool is_same_volume(double volume, double meant);
 
 /// Compares materials with what they are meant to be: components, handles and cavities must be equal, volumes
-/// within 1 %. `mesh` has its interfaces.
+/// within 1 %. Where surfaces have a flaw and the mesh differs from the distances, it may be as the surfaces
+/// say. `mesh` has its interfaces.
 std::vector<SolidComparison> compare_solids(const std::vector<ExpectedSolid>& expected, const TetMesh& mesh);
 
 /// Compares labels with their voxels: volumes, and components with the parts that voxels may mean. What is

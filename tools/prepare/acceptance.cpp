@@ -36,7 +36,7 @@ void decide_severities(const AcceptanceOptions& acceptance, PrepareReport& repor
     d.severity = Severity::note;
     d.done = reason;
   }
-  const std::vector<std::string> notes = notes_of(report);
+  const std::vector<std::string> notes = notes_of(report, NotesOf::certain);
   if (!acceptance.strict || notes.empty()) return;
   report.diagnostics.push_back({.code = DiagnosticCode::notes_not_allowed,
                                 .what = "--strict: " + std::to_string(notes.size()) +

@@ -2,7 +2,9 @@
 #include "tools/prepare/input_changes.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
+#include <optional>
 
 #include "common/message_text.h"
 
@@ -43,7 +45,27 @@ void find_lost_labels(PrepareRun& run) {
                                 .places = places});
 }
 
-/// Materials that are not the solid they are meant to be.
+/// "its surface is open", for any flaw but SurfaceFlaw::none.
+const char* flaw_text(SurfaceFlaw flaw) {
+  static constexpr const char* texts[] = {
+      "", "its surface or one that carves it is open", "its surface or one that carves it touches itself",
+      "its surface or one that carves it intersects itself", "its surface meets another one"};
+  return texts[static_cast<std::size_t>(flaw)];
+}
+
+/// Notes materials that differ from an estimate of their solid.
+void find_uncertain_changes(PrepareReport& report) {
+  for (const SolidComparison& f : report.solids)
+    if (!f.same() && !f.certain)
+      report.diagnostics.push_back({.code = DiagnosticCode::solid_uncertain,
+                                    .what = "'" + f.name + "' has " + f.difference +
+                                            (f.place ? ", the first at " + place_text(*f.place) : "") +
+                                            ", by the distances (not certain, since " + flaw_text(f.flaw) +
+                                            ")",
+                                    .places = f.place ? std::vector<Vec3>{*f.place} : std::vector<Vec3>{}});
+}
+
+/// Materials that are certainly not the solid of the input.
 void find_changed_solids(const TetMesh& mesh, PrepareRun& run) {
   const PrepareOptions& options = run.options;
   PrepareReport& report = run.report;
@@ -59,7 +81,7 @@ void find_changed_solids(const TetMesh& mesh, PrepareRun& run) {
   std::size_t same = 0;
   bool dense_was_same = report.simplify.has_value();  // but for its counts, which simplifying keeps
   for (const SolidComparison& f : report.solids) {
-    if (f.same()) {
+    if (f.same() || !f.certain) {
       ++same;
       continue;
     }
@@ -68,8 +90,8 @@ void find_changed_solids(const TetMesh& mesh, PrepareRun& run) {
                       is_same_volume(dense->second.volume, f.expected.volume);
     text += (text.empty() ? "" : "; ") + std::string("'") + f.name + "' has " + f.difference +
             (f.place ? ", the first at " + place_text(*f.place) : "") +
-            (f.against == SolidComparison::Against::distances
-                 ? " (by the distances: the surface is open, intersects itself or meets another)"
+            (f.flaw != SurfaceFlaw::none
+                 ? " (" + std::string(flaw_text(f.flaw)) + ", but the distances say the same)"
                  : "");
     if (f.place) places.push_back(*f.place);
   }
@@ -200,6 +222,45 @@ void find_lost_patches(const TetMesh& mesh, PrepareRun& run) {
        .places = places});
 }
 
+/// Says whether the comparison with the input rules out changes of a material.
+enum class Change : std::uint8_t { none, none_by_estimate, possible };
+
+Change change_of(const PrepareReport& report, MaterialTag tag) {
+  const auto f = std::find_if(report.solids.begin(), report.solids.end(),
+                              [&](const SolidComparison& m) { return m.tag == tag; });
+  if (f == report.solids.end() || !f->same() || !f->counted || f->against == SolidComparison::Against::voxels)
+    return Change::possible;
+  return f->certain ? Change::none : Change::none_by_estimate;
+}
+
+/// The worst change of the materials beside a thin part: of its own material, or of all for a gap.
+Change change_beside(const PrepareReport& report, const ThinPartReport& thin) {
+  std::optional<Change> worst;
+  for (const auto& [tag, material] : report.dense->materials) {
+    const auto name = report.material_names.find(tag);
+    if (tag == outside_tag ||
+        (!thin.name.empty() && (name == report.material_names.end() || name->second != thin.name)))
+      continue;
+    worst = std::max(worst.value_or(Change::none), change_of(report, tag));
+  }
+  return worst.value_or(Change::possible);
+}
+
+/// Notes a thin part unless the comparison shows that its material was kept.
+void find_thin_part(const ThinPartReport& thin, PrepareReport& report) {
+  const Change change = change_beside(report, thin);
+  if (change == Change::none) return;
+  const bool by_estimate = change == Change::none_by_estimate;
+  report.diagnostics.push_back(
+      {.code = by_estimate ? DiagnosticCode::thin_parts_uncertain : DiagnosticCode::thin_parts,
+       .what = (thin.name.empty() ? "a gap" : "'" + thin.name + "'") + " is thinner than " +
+               (thin.refined ? "the smallest cells can hold" : "two cells") + " at " +
+               std::to_string(thin.places) + " places, the first at " + place_text(thin.first) +
+               (by_estimate ? ": by the distances nothing is torn or joined there"
+                            : ": parts may be torn or joined there; a higher resolution keeps them"),
+       .places = {thin.first}});
+}
+
 /// Parts that are small or thin for the cells.
 void find_small_parts(PrepareReport& report) {
   for (const FeatureReport& f : report.features)
@@ -221,14 +282,7 @@ void find_small_parts(PrepareReport& report) {
              "'" + name +
              "' was not compared with its input: its surface is open, intersects itself or meets another, "
              "and cells of this size do not show it"});
-  for (const ThinPartReport& t : report.mesher->thin_parts)
-    report.diagnostics.push_back(
-        {.code = DiagnosticCode::thin_parts,
-         .what = (t.name.empty() ? "a gap" : "'" + t.name + "'") + " is thinner than " +
-                 (t.refined ? "the smallest cells can hold" : "two cells") + " at " +
-                 std::to_string(t.places) + " places, the first at " + place_text(t.first) +
-                 ": parts may tear or join there; a higher resolution keeps them",
-         .places = {t.first}});
+  for (const ThinPartReport& t : report.mesher->thin_parts) find_thin_part(t, report);
 }
 
 }  // namespace
@@ -236,6 +290,7 @@ void find_small_parts(PrepareReport& report) {
 void find_input_changes(const TetMesh& mesh, PrepareRun& run) {
   find_lost_labels(run);
   find_changed_solids(mesh, run);
+  find_uncertain_changes(run.report);
   find_thin_walls(run);
   find_changed_creases(mesh, run);
   find_lost_patches(mesh, run);

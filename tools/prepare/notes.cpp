@@ -3,11 +3,14 @@
 
 namespace tetwright {
 
-std::vector<std::string> notes_of(const PrepareReport& report) {
+std::vector<std::string> notes_of(const PrepareReport& report, NotesOf which) {
   std::vector<std::string> notes;
   std::string line, file;
+  const auto noted = [&](const Diagnostic& d) {
+    return d.severity == Severity::note && (which == NotesOf::all || kind_of(d.code).certain);
+  };
   for (const Diagnostic& d : report.diagnostics) {
-    if (d.severity != Severity::note || d.file.empty()) continue;
+    if (!noted(d) || d.file.empty()) continue;
     line += line.empty() ? "" : "; ";
     if (d.file != file) line += d.file + ": ";
     file = d.file;
@@ -15,7 +18,7 @@ std::vector<std::string> notes_of(const PrepareReport& report) {
   }
   if (!line.empty()) notes.push_back(line);
   for (const Diagnostic& d : report.diagnostics)
-    if (d.severity == Severity::note && d.file.empty()) notes.push_back(diagnostic_text(d));
+    if (noted(d) && d.file.empty()) notes.push_back(diagnostic_text(d));
   return notes;
 }
 

@@ -8,7 +8,7 @@ namespace tetwright {
 double PrepareReport::lost_area() const {
   if (!deviation || !mesher || mesher->expected.empty() || !mesher->unknown.empty()) return 0;
   const bool all_shown = std::all_of(mesher->expected.begin(), mesher->expected.end(),
-                                     [](const ExpectedSolid& s) { return s.by_surface; });
+                                     [](const ExpectedSolid& s) { return s.flaw == SurfaceFlaw::none; });
   return all_shown ? deviation->hidden_area : 0;
 }
 

@@ -274,7 +274,8 @@ nlohmann::json solids_json(const std::vector<SolidComparison>& all) {
                  {"against", against[static_cast<std::size_t>(f.against)]},
                  {"expected", solid_json(f.expected)},
                  {"result", solid_json(f.result)},
-                 {"same", f.same()}});
+                 {"same", f.same()},
+                 {"certain", f.certain}});
     if (f.against == SolidComparison::Against::voxels) {
       nlohmann::json &expected = j.back()["expected"], &result = j.back()["result"];
       expected = {{"components", parts_json(f.expected.components, f.max_components)}};

@@ -11,13 +11,21 @@ namespace {
 
 const TriangleMesh large = make_box(Vec3(0, 0, 0), Vec3(10, 10, 10));
 
-void expect_solid(const std::optional<SolidShape>& solid, double volume, std::size_t components,
-                  std::ptrdiff_t handles, std::size_t cavities) {
+void expect_solid(const std::optional<SurfaceSolid>& solid, double volume, std::size_t components,
+                  std::ptrdiff_t handles, std::size_t cavities, SurfaceFlaw flaw = SurfaceFlaw::none) {
   ASSERT_TRUE(solid.has_value());
-  EXPECT_NEAR(solid->volume(), volume, 1e-9 * volume);
-  EXPECT_EQ(solid->components(), components);
-  EXPECT_EQ(solid->handles(), handles);
-  EXPECT_EQ(solid->cavities(), cavities);
+  EXPECT_EQ(solid->flaw, flaw);
+  ASSERT_TRUE(solid->shape.has_value());
+  EXPECT_NEAR(solid->shape->volume(), volume, 1e-9 * volume);
+  EXPECT_EQ(solid->shape->components(), components);
+  EXPECT_EQ(solid->shape->handles(), handles);
+  EXPECT_EQ(solid->shape->cavities(), cavities);
+}
+
+void expect_none(const std::optional<SurfaceSolid>& solid, SurfaceFlaw flaw) {
+  ASSERT_TRUE(solid.has_value());
+  EXPECT_EQ(solid->flaw, flaw);
+  EXPECT_FALSE(solid->shape.has_value());
 }
 
 TEST(ExpectedSolids, OfOneSurface) {
@@ -60,13 +68,35 @@ TEST(ExpectedSolids, LaterBodiesCoverPartsAndCavities) {
 }
 
 TEST(ExpectedSolids, NothingWhereSurfacesDoNotSay) {
-  EXPECT_FALSE(expected_solids(make_input({punctured(make_sphere(1), 40)}))[0]);
-  EXPECT_FALSE(expected_solids(make_input({joined(make_sphere(1), make_sphere(1, Vec3(1, 0, 0)))}))[0]);
+  expect_none(expected_solids(make_input({punctured(make_sphere(1), 40)}))[0], SurfaceFlaw::open);
   const auto crossing = expected_solids(make_input({large, make_box(Vec3(5, 5, 5), Vec3(15, 6, 6))}));
-  EXPECT_FALSE(crossing[0]);
-  EXPECT_TRUE(crossing[1]);
+  expect_none(crossing[0], SurfaceFlaw::meeting);
+  expect_solid(crossing[1], 10, 1, 0, 0);
+  // Two boxes with an edge in common.
+  const TriangleMesh beside = make_box(Vec3(10, 10, 0), Vec3(20, 20, 10));
+  expect_none(expected_solids(make_input({joined(large, beside)}))[0], SurfaceFlaw::touching);
+  // An open surface carves the first body.
+  const auto carved =
+      expected_solids(make_input({large, punctured(make_sphere(1, Vec3(5, 5, 5)), 40), make_sphere(1)}));
+  expect_none(carved[0], SurfaceFlaw::open);
   MesherInput layered = make_input({large}, {1.0});
   EXPECT_FALSE(expected_solids(layered)[0]);
+}
+
+TEST(ExpectedSolids, AnEstimateWhereAClosedSurfaceIntersectsItself) {
+  const TriangleMesh crossing = joined(make_torus(3, 1), make_torus(3, 1, 40)),
+                     inner = make_box(Vec3(2.8, -0.2, -0.2), Vec3(3.2, 0.2, 0.2));
+  const double volume = enclosed_volume(crossing);
+  expect_solid(expected_solids(make_input({crossing}))[0], volume, 2, 2, 0, SurfaceFlaw::intersecting);
+  // Others that do not meet it carve it, and are certain by themselves.
+  const auto carved = expected_solids(make_input({crossing, inner}));
+  expect_solid(carved[0], volume - 0.064, 2, 2, 1, SurfaceFlaw::intersecting);
+  expect_solid(carved[1], 0.064, 1, 0, 0);
+  const auto outer = expected_solids(make_input({make_box(Vec3(-9, -9, -9), Vec3(9, 9, 9)), crossing}));
+  expect_solid(outer[0], 5832 - volume, 1, 2, 2, SurfaceFlaw::intersecting);
+  // Points with two fans of triangles.
+  const TriangleMesh corner = make_box(Vec3(10, 10, 10), Vec3(11, 11, 11));
+  expect_solid(expected_solids(make_input({joined(large, corner)}))[0], 1001, 2, 0, 0, SurfaceFlaw::touching);
 }
 
 }  // namespace

@@ -5,10 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "common/mesh/interfaces.h"
+#include "tests/mesher/test_surfaces.h"
 #include "tests/tools/program.h"
 
 namespace tetwright::solid_comparison_test {
@@ -52,6 +54,33 @@ TEST(SolidComparison, NamesThePlaceAndLeavesOutWhatSaysNothing) {
   e.min_volume = 0.01 * v;
   EXPECT_TRUE(compare_solids({e}, one_tet()).at(0).same());
   EXPECT_FALSE(compare_solids({e}, one_tet()).at(0).place);
+}
+
+TEST(SolidComparison, WhatAFlawedSurfaceSaysIsAnEstimateOfTwo) {
+  constexpr double v = 1.0 / 6;
+  ExpectedSolid e = expected({{.volume = v, .handles = 1}});
+  EXPECT_TRUE(compare_solids({e}, one_tet()).at(0).certain);
+  // By the distances alone nothing is certain.
+  e.flaw = SurfaceFlaw::intersecting;
+  const auto compared = [&] { return compare_solids({e}, one_tet()).at(0); };
+  EXPECT_FALSE(compared().same());
+  EXPECT_FALSE(compared().certain);
+  EXPECT_EQ(compared().against, SolidComparison::Against::distances);
+  // As the surface says.
+  e.by_flawed_surface.emplace().shells = {{.volume = v}};
+  EXPECT_TRUE(compared().same());
+  EXPECT_FALSE(compared().certain);
+  EXPECT_EQ(compared().against, SolidComparison::Against::surface);
+  // As neither of them says.
+  e.by_flawed_surface->shells = {{.volume = v, .handles = 2}};
+  EXPECT_EQ(compared().difference, "0 handles instead of 1");
+  EXPECT_FALSE(compared().certain);
+  // As both of them do not say.
+  e.by_flawed_surface->shells = {{.volume = v * 1.005, .handles = 1}};
+  EXPECT_EQ(compared().difference, "0 handles instead of 1");
+  EXPECT_TRUE(compared().certain);
+  e.by_flawed_surface->shells = {{.volume = v * 1.05, .handles = 1}};
+  EXPECT_FALSE(compared().certain);
 }
 
 void write_box(std::ofstream& out, std::size_t& first, const Vec3& low, const Vec3& high) {
@@ -116,6 +145,86 @@ void write_plate(const std::string& path, double thickness) {
   std::ofstream out(path);
   std::size_t first = 1;
   write_box(out, first, Vec3(0, 0, 0), Vec3(10, 10, thickness));
+}
+
+void write_surface(const std::string& path, const TriangleMesh& surface) {
+  std::ofstream out(path);
+  out.precision(17);
+  for (const Vec3& p : surface.points) out << "v " << p.x() << " " << p.y() << " " << p.z() << "\n";
+  for (const Triangle& t : surface.triangles)
+    out << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+}
+
+/// Has narrow dents, and intersects itself where a point is beyond its neighbour.
+TriangleMesh dented_ball() {
+  TriangleMesh ball = make_sphere(1, Vec3::Zero(), 5);
+  for (Vec3& p : ball.points)
+    p *= 1 + 0.35 * std::sin(12 * p.x()) * std::sin(12 * p.y() + 1) * std::sin(12 * p.z() + 2);
+  const Vec3 neighbour = ball.points[ball.triangles[0][1]];
+  Vec3& beyond = ball.points[ball.triangles[0][0]];
+  beyond += 1.5 * (neighbour - beyond);
+  return ball;
+}
+
+TEST(SolidComparison, AMeshAsAClosedSurfaceSaysIsRightWhateverTheDistancesSay) {
+  const TemporaryFolder f;
+  write_surface(f / "ball.obj", dented_ball());
+  const Answer a = run("mesh " + (f / "ball.obj") + " -o " + (f / "o.vtu") +
+                       " --uniform --resolution 26 --stats " + (f / "s.json"));
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_NE(a.err.find("triangles that intersect"), std::string::npos) << a.err;
+  EXPECT_EQ(a.err.find("instead of"), std::string::npos) << a.err;
+  const auto j = nlohmann::json::parse(contents(f / "s.json"))["fidelity"].at(0);
+  EXPECT_EQ(j["against"], "surface");
+  EXPECT_EQ(j["result"]["handles"], 0);
+  EXPECT_TRUE(j["same"]);
+  EXPECT_FALSE(j["certain"]);
+}
+
+TEST(SolidComparison, ADifferenceFromAnEstimateIsANoteAndNoStatus) {
+  const TemporaryFolder f;
+  {
+    std::ofstream body(f / "body.obj"), later(f / "later.obj");
+    std::size_t first = 1;
+    write_box(body, first, Vec3(0, 0, 0), Vec3(10, 10, 10));
+    first = 1;
+    // Leaves a plate thinner than a cell and a thick one.
+    write_box(later, first, Vec3(0.5, -1, -1), Vec3(7, 11, 11));
+  }
+  const std::string call = "mesh " + (f / "body.obj") + " " + (f / "later.obj") + " -o " + (f / "o.vtu") +
+                           " --uniform --resolution 18 --stats " + (f / "s.json");
+  for (const char* strict : {"", " --strict"}) {
+    const Answer a = run(call + strict);
+    EXPECT_EQ(a.status, 0) << a.err;
+    EXPECT_NE(a.err.find("note: 'body' has 2 components instead of 1"), std::string::npos) << a.err;
+    EXPECT_NE(a.err.find("by the distances (not certain, since its surface meets another one)"),
+              std::string::npos)
+        << a.err;
+  }
+  const auto j = nlohmann::json::parse(contents(f / "s.json"));
+  EXPECT_FALSE(j["fidelity"].at(0)["same"]);
+  EXPECT_FALSE(j["fidelity"].at(0)["certain"]);
+  EXPECT_TRUE(j["shortfall"].empty());
+}
+
+TEST(SolidComparison, ThinPartsAreNamedOnlyWhereTheyMayHaveChanged) {
+  const TemporaryFolder f;
+  std::string call = "mesh";
+  for (const int radius : {40, 37, 34}) {
+    const std::string path = f / ("shell" + std::to_string(radius) + ".obj");
+    write_surface(path, make_sphere(radius));
+    call += " " + path;
+  }
+  call += " -o " + (f / "o.vtu") + " --uniform --strict --stats " + (f / "s.json") + " --resolution ";
+  const auto stats = [&] { return nlohmann::json::parse(contents(f / "s.json")); };
+  Answer a = run(call + "28");
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_EQ(a.err.find("is thinner than"), std::string::npos) << a.err;
+  EXPECT_FALSE(stats()["dense"]["thin_parts"].empty());
+  a = run(call + "20");
+  EXPECT_EQ(a.status, 1) << a.err;
+  EXPECT_NE(a.err.find("'shell37' is thinner than two cells at "), std::string::npos) << a.err;
+  EXPECT_NE(a.err.find("'shell37' has "), std::string::npos) << a.err;
 }
 
 TEST(SolidComparison, ATargetThatCannotFillAPlateIsMissedAndNotThePlate) {
