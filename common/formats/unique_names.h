@@ -20,8 +20,11 @@ class UniqueNames {
 
   std::string add(const std::string& name);
 
-  /// The same for the name of a pair of materials, which has the largest suffix of those with its name: so
-  /// readers tell it from the user's. Those of the user must be there.
+  /// Whether this name has been given.
+  bool has(const std::string& name) const { return used_.contains(key(form_(name))); }
+
+  /// The same as add() for the name of a pair of materials, which has the largest suffix of those with its
+  /// name: so readers tell it from the user's. Those of the user must be there.
   std::string add_pair(const std::string& name);
 
  private:

@@ -48,12 +48,13 @@ struct MesherInput {
 
 /// Validates and repairs the surfaces, see repair_surface(). With NestedRule::material every enclosed
 /// component becomes a body that directly follows its encloser and gets the smallest free tag from 1 up.
-/// Non-empty names must differ, and so must tags. Where more than one surface has groups of triangles, those
-/// that have only a number are named after their surface.
+/// Non-empty names must differ, and so must tags. Where more than one surface has groups of triangles, no two
+/// of these keep one name: see qualify_names(), and a group that has only a number is named after its
+/// surface.
 ///
 /// Throws InputError (see repair_surface(); coordinates too large or a size too small for areas and volumes
-/// in double precision; two groups that have one name) and UsageError (no surface, two materials
-/// of one name or tag, a layer whose thickness is not above 0, more than 60,000 materials).
+/// in double precision) and UsageError (no surface, two materials of one name or tag, a layer whose thickness
+/// is not above 0, more than 60,000 materials).
 MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers = {},
                               NestedRule nested = NestedRule::automatic);
 

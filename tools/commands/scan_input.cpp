@@ -13,6 +13,7 @@
 #include "common/formats/unique_names.h"
 #include "common/memory.h"
 #include "common/utf8.h"
+#include "mesher/input/qualified_names.h"
 #include "mesher/input/split_solids.h"
 #include "mesher/mesh_estimate.h"
 #include "tools/commands/edge_sizes_input.h"
@@ -124,6 +125,30 @@ TriangleMesh read_one_level_set(const NamedValue& material) {
   return std::move(level_sets[0].surface);
 }
 
+/// A file whose solids are materials.
+struct SplitFile {
+  NamesOfBody names;
+  std::vector<std::size_t> surfaces;  ///< its solids, among all
+};
+
+/// Qualifies names of solids that other materials have, too.
+void name_solids(std::vector<SplitFile> files, const CommandLine& line,
+                 std::vector<MaterialSurface>& surfaces, RunReport& report) {
+  UniqueNames taken([](const std::string& name) { return name; });
+  std::vector<bool> solid(surfaces.size(), false);
+  std::vector<NamesOfBody> names;
+  for (SplitFile& file : files) {
+    for (const std::size_t i : file.surfaces) solid[i] = true;
+    names.push_back(std::move(file.names));
+  }
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    if (!solid[i]) (void)taken.add(surfaces[i].name);
+  for (const NamedValue& layer : line.layers) (void)taken.add(layer.name);
+  qualify_names("names of materials", names, taken, report.findings);
+  for (std::size_t f = 0; f < files.size(); ++f)
+    for (const std::size_t i : files[f].surfaces) surfaces[i].name = names[f].names.at(surfaces[i].name);
+}
+
 /// One material for each surface and level set, or with --split-solids for each solid of a surface, with tags
 /// from 1 in the order of the call.
 std::vector<MaterialSurface> read_material_surfaces(CommandRun& run) {
@@ -144,27 +169,35 @@ std::vector<MaterialSurface> read_material_surfaces(CommandRun& run) {
     report_dropped(dropped, file, report);
     return count(std::move(surface));
   };
-  bool split = false;
+  std::vector<SplitFile> split;
   for (const std::string& file : line.inputs) {
     if (!is_object(run, file) && is_vdb(file)) {
       for (NamedSurface& s : read_level_sets(file))
         add(s.name.empty() ? file_stem(file) : s.name, file, count(std::move(s.surface)));
     } else if (line.split_solids) {
       std::vector<NamedSurface> solids = split_solids(read(file), material_name_of(run, file));
-      split |= solids.size() > 1;
-      for (NamedSurface& s : solids)
-        add(s.name, solids.size() > 1 ? file + ", '" + s.name + "'" : file, std::move(s.surface));
+      if (solids.size() == 1) {
+        add(solids[0].name, file, std::move(solids[0].surface));
+        continue;
+      }
+      SplitFile& parts = split.emplace_back(SplitFile{{material_name_of(run, file), file, {}}, {}});
+      for (NamedSurface& s : solids) {
+        parts.names.names[s.name] = s.name;
+        parts.surfaces.push_back(surfaces.size());
+        add(s.name, file + ", '" + s.name + "'", std::move(s.surface));
+      }
     } else {
       add(material_name_of(run, file), file, read(file));
     }
   }
-  if (line.split_solids && !split)
+  if (line.split_solids && split.empty())
     throw InputError(line.inputs.empty() ? line.materials.front().value : line.inputs.front(), 0,
                      "--split-solids finds no solids, groups or labels that tell its parts apart; leave the "
                      "option out (it does not split what --material names)");
   for (const NamedValue& m : line.materials)
     add(m.name, m.value,
         !is_object(run, m.value) && is_vdb(m.value) ? count(read_one_level_set(m)) : read(m.value));
+  name_solids(std::move(split), line, surfaces, report);
   return surfaces;
 }
 
