@@ -1,5 +1,5 @@
 // Every hot stage on inputs that are made here: what tools/bench --ci measures and --compare compares.
-// tools/bench.py reads the counters: peak_MB, poor_% (tets under 0.1 sr) and those that end in _s, seconds of
+// benchmarks/bench.py reads the counters: peak_MB, poor_% (tets under 0.1 sr) and those that end in _s, seconds of
 // a stage.
 #include <benchmark/benchmark.h>
 

@@ -16,7 +16,7 @@
 #include "common/tet_mesh.h"
 #include "common/triangle_mesh.h"
 #include "common/types.h"
-#include "tools/commands/input_objects.h"
+#include "tools/app/commands/input_objects.h"
 
 // What the Python package makes of arrays of numpy. `name` is what messages call the input; all throw
 // InputError.

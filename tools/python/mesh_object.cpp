@@ -13,12 +13,12 @@
 #include "common/formats/mesh_parts.h"
 #include "common/formats/mesh_to_write.h"
 #include "common/mesh/boundary_groups.h"
-#include "tools/commands/output_paths.h"
-#include "tools/commands/unwritten.h"
-#include "tools/option_rules.h"
-#include "tools/patch_fidelity.h"
+#include "tools/app/commands/output_paths.h"
+#include "tools/app/commands/unwritten.h"
+#include "tools/app/option_rules.h"
+#include "tools/app/printed_report.h"
+#include "tools/compare/patch_comparison.h"
 #include "tools/python/text.h"
-#include "tools/report.h"
 
 namespace tetwright::python {
 

@@ -8,7 +8,7 @@
 
 #include "common/mesh/midside_nodes.h"
 #include "common/tet_mesh.h"
-#include "tools/command_line.h"
+#include "tools/app/command_line.h"
 
 namespace tetwright::python {
 

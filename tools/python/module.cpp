@@ -18,15 +18,15 @@
 #include "common/formats/formats.h"
 #include "common/formats/label_groups.h"
 #include "common/parallel/parallel.h"
-#include "tools/commands/commands.h"
-#include "tools/commands/output_paths.h"
-#include "tools/commands/result.h"
+#include "tools/app/commands/commands.h"
+#include "tools/app/commands/output_paths.h"
+#include "tools/app/commands/result.h"
+#include "tools/app/printed_report.h"
 #include "tools/python/arrays.h"
 #include "tools/python/mesh_object.h"
 #include "tools/python/option_types.h"
 #include "tools/python/text.h"
-#include "tools/report.h"
-#include "tools/stats_json.h"
+#include "tools/report/stats_json.h"
 
 namespace tetwright::python {
 

@@ -2,8 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "tools/command_line.h"
-#include "tools/command_options.h"
+#include "tools/app/command_line.h"
+#include "tools/app/command_options.h"
 
 namespace tetwright::python {
 

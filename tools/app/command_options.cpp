@@ -1,0 +1,430 @@
+#include "tools/app/command_options.h"
+
+#include <CLI/CLI.hpp>
+#include <limits>
+#include <map>
+
+#include "common/formats/formats.h"
+#include "common/samples.h"
+#include "tools/app/command_line.h"
+#include "tools/app/label_ranges.h"
+#include "tools/app/option_values.h"
+
+namespace tetwright {
+
+namespace {
+
+/// The simplifier numbers the four corners of its tets in 32 bits.
+constexpr std::uint64_t max_target_tets = std::uint64_t{1} << 30;
+constexpr std::uint64_t max_rounds = 10'000;
+constexpr std::uint64_t max_threads_option = 1024;
+constexpr std::uint64_t max_jobs = 64;
+/// More voxels than any volume has.
+constexpr std::uint64_t max_min_voxels = 1'000'000'000'000'000'000;
+
+/// An option whose value is the name of one of `values`.
+template <class Value>
+void add_choice(CLI::App& app, const char* option, Value& to, std::initializer_list<Value> values,
+                const char* description) {
+  std::map<std::string, Value> words;
+  std::string known;
+  for (const Value value : values) {
+    words[name_of(value)] = value;
+    known += (known.empty() ? "" : ", ") + std::string(name_of(value));
+  }
+  app.add_option_function<std::string>(
+         option,
+         [option, words, known, &to](const std::string& text) {
+           const auto found = words.find(text);
+           if (found == words.end()) throw CLI::ValidationError(option, "'" + text + "' is none of " + known);
+           to = found->second;
+         },
+         description)
+      ->type_name("NAME")
+      ->default_str(name_of(to));
+}
+
+void add_stats(CLI::App& app, CommandLine& c) {
+  app.add_option("--stats", c.stats,
+                 "Write statistics of the run to this .json file, also of one that fails; -: to standard "
+                 "output, instead of the report")
+      ->type_name("FILE");
+}
+
+void add_common(CLI::App& app, CommandLine& c) {
+  add_whole_number(app, "--threads", c.threads, 1, max_threads_option,
+                   "Max number of threads, 1 to 1024 (default: all of the machine); more than four for each "
+                   "processor, or 16, are never used");
+  add_number(app, "--memory-limit", c.memory_limit, positive,
+             "Use at most so many GB (2^30 bytes) of memory: cells that would not fit become larger where no "
+             "option decides them (status 1), and what still does not fit is refused");
+  app.add_flag("--quiet", c.quiet, "Print only errors and what falls short");
+  add_choice(
+      app, "--progress", c.progress,
+      {ProgressStyle::automatic, ProgressStyle::bar, ProgressStyle::json, ProgressStyle::none},
+      "How far the work is, on stderr: a bar, or lines of JSON for each stage and percent; auto: a bar "
+      "on a terminal");
+  app.add_flag("--no-progress", c.no_progress, "The same as --progress none");
+  app.add_option("--log-file", c.log_file,
+                 "Append the call, its stages, all messages and the exit status to this file, with times")
+      ->type_name("FILE");
+}
+
+void add_time_limit(CLI::App& app, CommandLine& c) {
+  add_number(app, "--time-limit", c.time_limit, positive,
+             "End after so many seconds with the best mesh so far (status 1), or, where there is none yet, "
+             "without one. Results then depend on the machine");
+}
+
+void add_report(CLI::App& app, CommandLine& c) {
+  app.add_option(
+         "--report", c.report,
+         "Write a page to look at, .html: the mesh in 3D with a cut, its histograms and figures, what "
+         "was found and what falls short; needs nothing but a browser")
+      ->type_name("FILE");
+}
+
+void add_seed(CLI::App& app, CommandLine& c) {
+  add_whole_number(app, "--seed", c.seed, 0, std::numeric_limits<std::uint64_t>::max(),
+                   "Seed of the random numbers; the same seed gives the same bytes")
+      ->default_str(std::to_string(c.seed));
+}
+
+void add_output(CLI::App& app, CommandLine& c, const char* formats) {
+  app.add_option("-o,--output", c.output, formats)->required(!c.in_memory)->type_name("FILE");
+}
+
+/// Options of commands that write a tet mesh.
+void add_mesh_output(CLI::App& app, CommandLine& c) {
+  add_output(app, c, ("The mesh to write: " + known_extensions(FileKind::tet_mesh, FileUse::write)).c_str());
+  std::string formats;
+  for (const TetFormatInfo& format : written_tet_formats())
+    formats += (formats.empty() ? "" : " ") + format.name;
+  app.add_option("--output-format", c.output_format,
+                 "Format of the mesh instead of its extension's first, or of -o -: " + formats +
+                     "; of --boundary -: an extension of a surface without its dot")
+      ->type_name("NAME");
+  add_whole_number(app, "--order", c.order, 1, 2,
+                   "2: ten-node tets, with nodes in the middle of the edges; not in .mesh .meshb .node")
+      ->default_str(std::to_string(c.order));
+  app.add_option("--boundary", c.boundary,
+                 "Write the boundary and the interfaces between materials as a surface, too (- is standard "
+                 "output): " +
+                     known_extensions(FileKind::surface, FileUse::write))
+      ->type_name("FILE");
+  app.add_flag(
+      "--no-boundary", c.no_boundary,
+      "Leave the triangles of the boundary and of interfaces out of the mesh, for programs that take "
+      "every element for a tet");
+  add_report(app, c);
+}
+
+/// Options of segmented volumes.
+void add_labels(CLI::App& app, CommandLine& c) {
+  app.add_option_function<std::vector<std::string>>(
+         "--labels",
+         [&c](const std::vector<std::string>& all) {
+           for (const std::string& text : all)
+             for (const LabelRange& range : parse_label_ranges("--labels", text)) c.labels.push_back(range);
+         },
+         "Labels of a segmented volume to mesh, such as 1,5-9; all others become outside (default: all)")
+      ->type_name("LIST")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--label-names", c.label_names,
+                 "Text file with the names of labels: lines TAG NAME, or a colour table of 3D Slicer, "
+                 "FreeSurfer or ITK-SNAP")
+      ->type_name("FILE");
+  app.add_option_function<std::string>(
+         "--outside-label",
+         [&c](const std::string& text) { c.outside_label = parse_label("--outside-label", text); },
+         "Label of a segmented volume that means outside")
+      ->type_name("LABEL")
+      ->default_str(std::to_string(c.outside_label));
+  add_whole_number(app, "--min-voxels", c.min_voxels, 0, max_min_voxels,
+                   "Min size of an island of a label: smaller ones are merged into the neighbour they touch "
+                   "most; 0: keep all")
+      ->default_str(std::to_string(c.min_voxels));
+}
+
+void add_material_options(CLI::App& app, CommandLine& c) {
+  app.add_option_function<std::vector<std::string>>(
+         "--material",
+         [&c](const std::vector<std::string>& all) {
+           for (const std::string& text : all) c.materials.push_back(split_named(text, "--material", "FILE"));
+         },
+         "Another surface, as the material NAME; repeatable. Later materials carve earlier ones")
+      ->expected(1)
+      ->type_name("NAME=FILE")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_flag("--split-solids", c.split_solids,
+               "Each solid, group or label of a surface's triangles is a material by its name, instead of a "
+               "patch of its boundary; later ones carve earlier ones");
+  app.add_option_function<std::vector<std::string>>(
+         "--layer",
+         [&c](const std::vector<std::string>& all) {
+           for (const std::string& text : all) {
+             c.layers.push_back(split_named(text, "--layer", "THICKNESS"));
+             (void)parse_number("--layer", c.layers.back().value, positive);
+           }
+         },
+         "A layer under the first surface, a material of this thickness in input units; repeatable, the "
+         "outermost one first")
+      ->expected(1)
+      ->type_name("NAME=THICKNESS")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  static const std::map<std::string, NestedRule> nested_rules{{"auto", NestedRule::automatic},
+                                                              {"cavity", NestedRule::cavity},
+                                                              {"solid", NestedRule::solid},
+                                                              {"material", NestedRule::material}};
+  app.add_option_function<std::string>(
+         "--nested",
+         [&c](const std::string& text) {
+           const auto rule = nested_rules.find(text);
+           if (rule == nested_rules.end())
+             throw CLI::ValidationError("--nested",
+                                        "'" + text + "' is none of auto, cavity, solid, material");
+           c.nested = rule->second;
+         },
+         "What closed parts inside others are: cavity, solid, material (a separate one), or auto (cavities "
+         "if wound the other way round, else solid)")
+      ->type_name("RULE")
+      ->default_str("auto");
+}
+
+void add_strict(CLI::App& app, CommandLine& c) {
+  app.add_flag("--strict", c.strict, "Status 1 where there is anything to note");
+}
+
+void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) {
+  add_whole_number(app, "--resolution", c.resolution, 4, 4096,
+                   std::string("Number of finest cells along the longest side, 4 to 4096 (default: ") +
+                       default_resolution + ")");
+  add_number(app, "--voxel-size", c.voxel_size, positive,
+             "Edge length of the finest cells in input units, instead of --resolution");
+  app.add_flag("--uniform", c.uniform, "Use the finest cells everywhere: a plain grid instead of an octree");
+  add_number(app, "--adaptivity", c.adaptivity, not_negative,
+             "Max displacement of a surface by coarser cells, in finest cells; 0: finest cells along all "
+             "surfaces")
+      ->default_str(short_text(c.adaptivity));
+  add_whole_number(app, "--max-refinement", c.max_refinement, 0, max_wall_refinement,
+                   "How many times cells are halved where walls and gaps of a surface are thin, 0 to 8 "
+                   "(default: 3, more where that takes few cells)");
+  add_length(app, "--min-gap", c.min_gap,
+             "Close gaps, tunnels and cavities of a surface that are narrower, input units or percent of the "
+             "diagonal");
+  add_length(app, "--min-thickness", c.min_thickness,
+             "Leave out walls and bridges of a surface that are thinner, input units or percent of the "
+             "diagonal");
+  add_material_options(app, c);
+  add_feature_angle(app, c.feature_angle);
+  app.add_flag("--keep-outside", c.keep_outside,
+               "Mesh the outside too, up to a box, as the material 'outside' with tag 0");
+  app.add_flag("--accept-changes", c.accept_changes,
+               "Where the mesh has not the volume, components, handles or cavities of the surfaces: a note "
+               "instead of status 1");
+  add_strict(app, c);
+  app.add_option(
+         "--write-sdf", c.write_sdf,
+         "Write the meshed signed distances to this .vdb file, thin walls as thick as cells show them")
+      ->type_name("FILE");
+}
+
+/// Options of both simplification and improvement.
+void add_shaping(CLI::App& app, CommandLine& c, const char* iterations) {
+  add_number(app, "--min-solid-angle", c.min_solid_angle, solid_angle,
+             "Improve tets with a smaller solid angle (steradians); if given and some are left, status 1")
+      ->default_str(short_text(c.min_solid_angle));
+  add_choice(app, "--objective", c.objective,
+             {ShapeObjective::both, ShapeObjective::solid_angle, ShapeObjective::dihedral},
+             "Measure of a tet's shape: its min solid-angle, its min and max dihedral angle, or both");
+  add_whole_number(app, "--max-iterations", c.max_iterations, 1, max_rounds, iterations)
+      ->default_str(std::to_string(c.max_iterations));
+}
+
+void add_tolerance(CLI::App& app, CommandLine& c) {
+  add_length(
+      app, "--tolerance", c.tolerance,
+      "How far any point of the mesh's surface and of the input's may be from the other, input units or "
+      "percent of the diagonal; status 1 unless that is proven of the result");
+}
+
+void add_simplifying(CLI::App& app, CommandLine& c) {
+  add_whole_number(app, "--target-tets", c.target_tets, 1, max_target_tets,
+                   "Number of tets to reach; with --tolerance it may be left out: as few as hold it. With "
+                   "--size-field the sizes decide");
+  add_tolerance(app, c);
+  app.add_option(
+         "--size-field", c.size_field,
+         "Edge lengths wanted, input units: the point field of a tet or surface mesh, or a float grid "
+         "(.vdb)")
+      ->type_name("FILE");
+  add_length(app, "--max-edge", c.max_edge,
+             "Max length of edges, input units or percent of the diagonal; longer ones are split");
+  add_length(app, "--min-edge", c.min_edge,
+             "Min length of edges, input units or percent of the diagonal; shorter ones are collapsed where "
+             "surfaces and shapes allow");
+  add_number(app, "--grading", c.grading, positive,
+             "How much the edge lengths of --size-field may grow from one place to another, over their "
+             "distance; where it says more they are made smaller")
+      ->default_str(short_text(c.grading));
+  add_shaping(app, c, "Max number of block iterations, 1 to 10000");
+  add_choice(app, "--schedule", c.schedule, {Schedule::tuned, Schedule::paper},
+             "tuned: fast, ends with improvement; paper: operations in the order of Cutler et al. 2004");
+  add_number(app, "--beta", c.beta, positive,
+             "Max edge length, in ideal edges, that quality does not penalise")
+      ->default_str(short_text(c.beta));
+  add_number(app, "--gamma", c.gamma, not_negative,
+             "Weight of the surface error; larger values keep more detail")
+      ->default_str(short_text(c.gamma));
+}
+
+void add_material_field(CLI::App& app, CommandLine& c) {
+  app.add_option("--material-field", c.material_field,
+                 "Integer cell field with the materials, instead of the first of material, medit:ref, "
+                 "physical groups, MaterialID, attribute")
+      ->type_name("NAME");
+}
+
+/// Of commands whose input may be a stream.
+void add_input_format(CLI::App& app, CommandLine& c) {
+  app.add_option("--input-format", c.input_format,
+                 "Format of standard input, which the input - is: " + streamed_extensions())
+      ->type_name("NAME");
+}
+
+std::string scans() {
+  return "Surfaces (" + known_extensions(FileKind::surface) +
+         ") and level sets (.vdb), each a material, of which later ones carve earlier ones; or one segmented "
+         "volume (" +
+         known_extensions(FileKind::volume) + ", .vdb of whole numbers)";
+}
+std::string meshes() { return "Tet mesh: " + known_extensions(FileKind::tet_mesh); }
+
+void add_fix_boundary(CLI::App& app, CommandLine& c) {
+  app.add_flag("--fix-boundary", c.fix_boundary,
+               "Keep the points and faces of the boundary and of interfaces between materials as they are");
+}
+
+}  // namespace
+
+void add_prepare(CLI::App& app, CommandLine& c) {
+  app.add_option("INPUT", c.inputs, scans());
+  add_input_format(app, c);
+  add_mesh_output(app, c);
+  add_simplifying(app, c);
+  add_meshing(app, c, "what the target needs");
+  add_labels(app, c);
+  add_stats(app, c);
+  add_common(app, c);
+  add_time_limit(app, c);
+  add_seed(app, c);
+}
+
+void add_mesh(CLI::App& app, CommandLine& c) {
+  app.add_option("INPUT", c.inputs, scans());
+  add_input_format(app, c);
+  add_mesh_output(app, c);
+  add_meshing(app, c, "128, or with --tolerance what that needs; for segmented volumes one cell to a voxel");
+  add_tolerance(app, c);
+  add_labels(app, c);
+  add_stats(app, c);
+  add_common(app, c);
+  add_time_limit(app, c);
+  add_seed(app, c);
+}
+
+void add_simplify(CLI::App& app, CommandLine& c) {
+  app.add_option("MESH", c.inputs, meshes())->required()->expected(1);
+  add_input_format(app, c);
+  add_mesh_output(app, c);
+  add_simplifying(app, c);
+  add_fix_boundary(app, c);
+  add_feature_angle(app, c.feature_angle);
+  add_strict(app, c);
+  add_material_field(app, c);
+  add_stats(app, c);
+  add_common(app, c);
+  add_time_limit(app, c);
+  add_seed(app, c);
+}
+
+void add_improve(CLI::App& app, CommandLine& c) {
+  app.add_option("MESH", c.inputs, meshes())->required()->expected(1);
+  add_input_format(app, c);
+  add_mesh_output(app, c);
+  add_number(
+      app, "--only-below", c.only_below, solid_angle,
+      "Work only on tets with a smaller solid angle (steradians) and their neighbours; 0: on all. Tets "
+      "that stay below it are reported")
+      ->default_str(short_text(c.only_below));
+  app.add_flag("--free-count", c.free_count,
+               "Let the number of tets become what good shapes need, instead of keeping it within 5 %");
+  add_shaping(app, c, "Max number of rounds, 1 to 10000");
+  add_fix_boundary(app, c);
+  add_feature_angle(app, c.feature_angle);
+  add_strict(app, c);
+  add_material_field(app, c);
+  add_stats(app, c);
+  add_common(app, c);
+  add_time_limit(app, c);
+  add_seed(app, c);
+}
+
+void add_check(CLI::App& app, CommandLine& c) {
+  app.add_option("MESH", c.inputs, meshes())->required()->expected(1);
+  add_input_format(app, c);
+  app.add_option("--before", c.before, "Another mesh, whose topology MESH must have")->type_name("FILE");
+  app.add_option(
+         "--surface", c.surfaces,
+         "Surfaces (as prepare reads them) that MESH is compared with, whatever it was made from: the "
+         "largest distances both ways, proven, and creases; of one closed surface also volume and "
+         "topology. With several, interfaces between materials count, too")
+      ->type_name("FILE");
+  add_length(app, "--tolerance", c.tolerance,
+             "Status 1 unless MESH and the surfaces are proven to be within this of each other everywhere, "
+             "input units or percent of the surfaces' diagonal");
+  app.add_flag("--json", c.json, "Print JSON");
+  add_report(app, c);
+  add_material_field(app, c);
+  add_stats(app, c);
+  add_common(app, c);
+}
+
+void add_batch(CLI::App& app, CommandLine& c) {
+  app.add_option("JOBS", c.inputs,
+                 "File with a line of JSON for each job, the arguments as they would be given to tetwright: "
+                 R"({"id": "a", "args": ["prepare", "a.ply", "-o", "a.vtu", "--target-tets", "10000"]})")
+      ->required()
+      ->expected(1);
+  app.add_option(
+         "--results", c.results,
+         "File that gets a line of JSON for each job that ended: id, args, status, seconds, messages, "
+         "stats. Jobs that it has are not done again, unless they ended with status 5, 70 or 130 "
+         "(default: the name of JOBS with .results.jsonl)")
+      ->type_name("FILE");
+  add_whole_number(
+      app, "--jobs", c.jobs, 1, max_jobs,
+      "Max number of jobs at the same time, 1 to 64; they share the threads (default: one for each "
+      "thread)");
+  app.add_flag("--retry", c.retry, "Do all jobs again that did not end with status 0");
+  add_common(app, c);
+}
+
+void add_sample(CLI::App& app, CommandLine& c) {
+  app.add_option("NAME", c.inputs, "One of: " + comma_separated(sample_names()))->required()->expected(1);
+  add_output(app, c,
+             ("Surfaces: " + known_extensions(FileKind::surface, FileUse::write) +
+              "; tet meshes: " + known_extensions(FileKind::tet_mesh, FileUse::write) +
+              "; segmented volumes: " + known_extensions(FileKind::volume, FileUse::write))
+                 .c_str());
+  app.add_option(
+         "--output-format", c.output_format,
+         "Format in place of the extension, and of standard output (-o -): as for other commands' meshes, "
+         "or an extension of a surface or volume without its dot")
+      ->type_name("NAME");
+  add_stats(app, c);
+  add_common(app, c);
+}
+
+}  // namespace tetwright

@@ -1,0 +1,152 @@
+#include "tools/app/commands/output_paths.h"
+
+#include <cctype>
+#include <filesystem>
+
+#include "common/error.h"
+#include "common/formats/atomic_file.h"
+#include "common/formats/formats.h"
+#include "common/lower_case.h"
+#include "tools/app/commands/command_run.h"
+#include "tools/app/commands/scan_input.h"
+#include "tools/app/log_file.h"
+
+namespace tetwright {
+
+namespace {
+
+/// True if both names lead to the same file, which need not exist.
+bool same_file(const std::string& a, const std::string& b) {
+  if (a.empty() || b.empty()) return false;
+  std::error_code not_there;
+  return real_path(a) == real_path(b) || std::filesystem::equivalent(a, b, not_there);
+}
+
+/// All files that the call reads.
+std::vector<std::string> files_read(const CommandLine& line) {
+  std::vector<std::string> files = input_files(line);
+  files.insert(files.end(), {line.label_names, line.before, line.size_field});
+  files.insert(files.end(), line.surfaces.begin(), line.surfaces.end());
+  return files;
+}
+
+/// A file that the call writes, and the option that asks for it.
+struct Written {
+  std::string option, file;
+};
+
+std::vector<Written> files_written(const CommandLine& line) {
+  std::vector<Written> files;
+  if (line.command == Command::sample)
+    files.push_back({"-o", line.output});
+  else if (line.command == Command::batch)
+    files.push_back({"--results", results_file_of(line)});
+  else if (line.command != Command::check)
+    for (const std::string& file : files_of_tet_mesh(line.output, line.output_format))
+      files.push_back({"-o", file});
+  for (const Written& more : {Written{"--boundary", line.boundary},
+                              {"--write-sdf", line.write_sdf},
+                              {"--report", line.report},
+                              {"--stats", line.stats},
+                              {"--log-file", line.log_file}})
+    if (!more.file.empty() && more.file != "-") files.push_back(more);
+  return files;
+}
+
+/// How many of them are --stats and --log-file, which come last.
+std::size_t report_count(const CommandLine& line) {
+  return static_cast<std::size_t>(!line.stats.empty() && line.stats != "-") +
+         static_cast<std::size_t>(!line.log_file.empty());
+}
+
+/// Which of the written files: those that say how the run went, or all.
+enum class Which { reports, all };
+
+void check_files_are_different(const CommandLine& line, Which which) {
+  // These may replace what they read.
+  const bool in_place = line.command == Command::simplify || line.command == Command::improve;
+  const std::vector<Written> written = files_written(line);
+  // Those that say how the run went come last, so that each is compared with all others.
+  const std::size_t first =
+      which == Which::all || line.command == Command::batch ? 0 : written.size() - report_count(line);
+  for (std::size_t i = first; i < written.size(); ++i) {
+    const auto& [option, file] = written[i];
+    std::string message = option;
+    message.append(" ").append(file);
+    for (const std::string& input : files_read(line))
+      if (same_file(input, file) && !(in_place && option == "-o"))
+        throw UsageError(message + " is also an input; give it a name of its own");
+    for (std::size_t j = 0; j < i; ++j)
+      if (same_file(written[j].file, file))
+        throw UsageError(message + " is also the file of " + written[j].option + "; give each its own");
+  }
+}
+
+void check_sdf_path(const CommandLine& line) {
+  if (line.write_sdf.empty()) return;
+  if (!is_vdb(line.write_sdf))
+    throw UsageError("--write-sdf " + line.write_sdf +
+                     ": signed distances are written for OpenVDB; give a name that ends in .vdb");
+  check_output_file(line.write_sdf);
+}
+
+void check_report_path(const CommandLine& line) {
+  if (line.report.empty()) return;
+  const std::string extension = lower_case(std::filesystem::path(line.report).extension().string());
+  if (extension != ".html" && extension != ".htm")
+    throw UsageError("--report " + line.report +
+                     ": the report is a page for browsers; give a name that ends in .html");
+  check_output_file(line.report);
+}
+
+}  // namespace
+
+std::vector<std::string> written_files(const CommandLine& line) {
+  std::vector<std::string> names;
+  for (const Written& written : files_written(line)) names.push_back(written.file);
+  return names;
+}
+
+std::vector<std::string> read_files(const CommandLine& line) {
+  std::vector<std::string> names;
+  for (const std::string& file : files_read(line)) {
+    if (file.empty()) continue;
+    for (const std::string& part : files_of_input(file)) names.push_back(part);
+  }
+  return names;
+}
+
+std::string results_file_of(const CommandLine& line) {
+  return line.results.empty()
+             ? std::filesystem::path(line.inputs.front()).replace_extension(".results.jsonl").string()
+             : line.results;
+}
+
+void check_stats_path(const CommandLine& line) {
+  const bool to_file = !line.stats.empty() && line.stats != "-";
+  if (to_file && std::filesystem::path(line.stats).extension() != ".json")
+    throw UsageError("--stats " + line.stats + ": the statistics are JSON; give a name that ends in .json");
+  check_files_are_different(line, Which::reports);
+  if (to_file) check_output_file(line.stats);
+  if (line.log_file.empty()) return;
+  check_output_file(line.log_file);
+  open_log(line.log_file);
+  log_line(line.call);
+}
+
+void check_tet_stream(const CommandLine& line) {
+  if (line.output == "-" && files_of_tet_mesh(line.output, line.output_format).size() > 1)
+    throw UsageError("--output-format " + line.output_format +
+                     " is several files, which standard output is not; "
+                     "give -o a name, or another format");
+}
+
+void check_output_paths(const CommandLine& line) {
+  if (line.command != Command::check) check_output_path(line.output, FileKind::tet_mesh, line.output_format);
+  if (!line.boundary.empty()) check_output_path(line.boundary, FileKind::surface, line.boundary_format);
+  check_sdf_path(line);
+  check_report_path(line);
+  check_files_are_different(line, Which::all);
+}
+
+}  // namespace tetwright

@@ -1,0 +1,227 @@
+#include "tools/app/printed_report.h"
+
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+#include <functional>
+
+#include "common/message_text.h"
+#include "tools/app/log_file.h"
+#include "tools/report/stats_json.h"
+
+namespace tetwright {
+
+namespace {
+
+/// printf into a string of at most 63 bytes.
+std::string text(const char* format, ...) {
+  char buffer[64];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(buffer, sizeof buffer, format, arguments);
+  va_end(arguments);
+  return buffer;
+}
+
+/// "volume 40 x 30 x 20 voxels of 1 x 1 x 2.5, space unknown; 2 labels: 1 'bone', 2 'skin'".
+std::string volume_line(const VolumeReport& v) {
+  constexpr std::size_t max_labels = 8;
+  const Vec3 spacing = v.spacing();
+  std::string line = text("volume %d x %d x %d voxels of ", v.size[0], v.size[1], v.size[2]) +
+                     text("%.6g x %.6g x %.6g", spacing[0], spacing[1], spacing[2]) + ", space " +
+                     (v.space.empty() ? "unknown" : v.space) + "; " + text("%zu label", v.labels.size()) +
+                     (v.labels.size() == 1 ? ": " : "s: ");
+  for (std::size_t i = 0; i < std::min(max_labels, v.labels.size()); ++i)
+    line += (i ? ", " : "") + std::to_string(v.labels[i].tag) + " '" + v.labels[i].name + "'";
+  if (v.labels.size() > max_labels) line += ", ...";
+  return printable(line);
+}
+
+/// "features of 'part': 12 patches, since edges turn like those of a part".
+std::string feature_line(const FeatureReport& f) {
+  using Verdict = SurfacePatches::Verdict;
+  const auto loose = [&] {
+    return text("%.3g %% of the edges over 15 degrees and ", 100 * f.found.loose_ends_low) +
+           text("%.3g %% of those over 35 are loose ends", 100 * f.found.loose_ends_high);
+  };
+  std::string line = "features of '" + f.name + "': ";
+  switch (f.found.verdict) {
+    case Verdict::off:
+      line += "not looked for";
+      break;
+    case Verdict::smooth:
+      line += f.found.any() ? "no edge turns far enough within the named patches"
+                            : "none; no edge turns far enough";
+      break;
+    case Verdict::scan:
+      line += "none; its edges look like those of a scan (" + loose() + ")";
+      break;
+    case Verdict::intersecting:
+      line += "not looked for; the surface intersects itself";
+      break;
+    case Verdict::meeting:
+      line += "none kept; the surface meets another one, or gaps of it are closed";
+      break;
+    case Verdict::staircase:
+      line += "none; its edges look like those of voxels (--feature-angle DEGREES keeps them)";
+      break;
+    case Verdict::part:
+      line += text("%zu patches with sharp edges between them", f.found.count);
+      break;
+  }
+  return printable(line);
+}
+
+std::string patches_line(const std::vector<PatchComparison>& patches) {
+  constexpr std::size_t max_named = 8;
+  std::string line = "named patches: ";
+  for (std::size_t i = 0; i < std::min(max_named, patches.size()); ++i)
+    line +=
+        (i > 0 ? ", " : "") + patch_name(patches[i].group) + text(" (%zu triangles)", patches[i].triangles);
+  if (patches.size() > max_named) line += text(" and %zu more", patches.size() - max_named);
+  return printable(line);
+}
+
+}  // namespace
+
+void print_report(const CommandLine& line, const RunReport& run) {
+  const MeshStatistics* columns[2] = {run.dense ? &*run.dense : nullptr, run.result ? &*run.result : nullptr};
+  const char* heads[2] = {line.command == Command::prepare ? "dense" : "before", "result"};
+  if (line.command == Command::mesh) columns[0] = nullptr;  // the dense mesh is the result
+  const auto row = [&](const char* name, const std::function<std::string(const MeshStatistics&)>& value) {
+    std::printf("%-26s", name);
+    for (const MeshStatistics* m : columns)
+      if (m) std::printf("%16s", value(*m).c_str());
+    std::printf("\n");
+  };
+  std::printf("%-26s", "");
+  for (int i = 0; i < 2; ++i)
+    if (columns[i]) std::printf("%16s", heads[i]);
+  std::printf("\n");
+  row("tets", [](const MeshStatistics& m) { return text("%zu", m.tets); });
+  row("points", [](const MeshStatistics& m) { return text("%zu", m.points); });
+  row("materials", [](const MeshStatistics& m) { return text("%zu", m.materials.size()); });
+  row("volume", [](const MeshStatistics& m) { return text("%.6g", m.volume); });
+  row("smallest solid angle, sr", [](const MeshStatistics& m) { return text("%.4f", m.min_solid_angle); });
+  row("mean solid angle, sr", [](const MeshStatistics& m) { return text("%.4f", m.mean_solid_angle); });
+  row(text("tets below %.3g sr, %%", line.min_solid_angle).c_str(),
+      [](const MeshStatistics& m) { return text("%.3f", m.below_percent); });
+  row("dihedral angles, degrees",
+      [](const MeshStatistics& m) { return text("%.1f - %.1f", m.min_dihedral, m.max_dihedral); });
+  std::printf("\n");
+  if (run.volume) std::printf("%s\n", volume_line(*run.volume).c_str());
+  for (const FeatureReport& f : run.features) std::printf("%s\n", feature_line(f).c_str());
+  if (!run.patches.empty()) std::printf("%s\n", patches_line(run.patches).c_str());
+  if (run.crease_comparison) {
+    const CreaseComparison& c = *run.crease_comparison;
+    std::printf("creases within %.3g %% of the diagonal, 99 %% of them within %.3g %%; %zu of %zu corners\n",
+                100 * c.max_distance / c.diagonal, 100 * c.p99_distance / c.diagonal,
+                c.corners - c.lost_corners, c.corners);
+  }
+  if (run.deviation) {
+    const DeviationReport& d = *run.deviation;
+    std::printf(
+        "distances: at most %.4g from the mesh to the surface, %.4g from the surface to the mesh; %.4g "
+        "asked\n",
+        d.from_mesh.upper, d.from_surface.upper, run.tolerance);
+    if (d.apart_area > 0)
+      std::printf(
+          "compared with the dense mesh, as it is far from the surface (caps, layers, a box): area %.4g\n",
+          d.apart_area);
+    if (d.hidden_area > 0)
+      std::printf("not compared, as the mesh does not show it (inner walls): area %.4g of the surface\n",
+                  d.hidden_area);
+  }
+  if (run.edge_lengths && run.edge_lengths->wished > 0)
+    std::printf(
+        "edge lengths: %.1f %% within %.3g times the wanted ones (%s), median %.2f times; %.4g to %.4g\n",
+        100 * run.edge_lengths->within_share(), edge_length_factor,
+        in_quotes(run.sizes.source->field()).c_str(), run.edge_lengths->median, run.edge_lengths->shortest,
+        run.edge_lengths->longest);
+  else if (run.edge_lengths)
+    std::printf("edge lengths: %.4g to %.4g\n", run.edge_lengths->shortest, run.edge_lengths->longest);
+  if (run.second_order)
+    std::printf(
+        "second order: of %zu edges on surfaces %zu follow them, %zu part of the way, %zu are straight\n",
+        run.second_order->edges, run.second_order->on_surface, run.second_order->part_way,
+        run.second_order->straight);
+  if (run.mesher)
+    std::printf("resolution %d (cells of %.4g), ", run.mesher->resolution, run.mesher->cell_size);
+  std::printf("%.2f s: read %.2f", run.seconds_total, run.seconds_read);
+  if (run.mesher) std::printf(", mesh %.2f", run.seconds_mesh);
+  if (run.simplify) {
+    const SimplifyReport& s = *run.simplify;
+    if (line.command == Command::improve)
+      std::printf(", improve %.2f", s.seconds_build + s.seconds_simplify + s.seconds_close);
+    else
+      std::printf(", simplify %.2f, improve %.2f", s.seconds_build + s.seconds_simplify, s.seconds_close);
+  }
+  std::printf(", write %.2f; peak memory %.0f MB\n", run.seconds_write,
+              static_cast<double>(peak_bytes()) / 1e6);
+}
+
+std::vector<std::string> notes_of(const RunReport& run) {
+  std::vector<std::string> notes;
+  std::string line, file;
+  for (const InputFinding& f : run.findings) {
+    line += line.empty() ? "" : "; ";
+    if (f.file != file) line += f.file + ": ";
+    file = f.file;
+    line += std::to_string(f.finding.count) + " " + f.finding.what + " (" + f.finding.done + ")";
+  }
+  if (!line.empty()) notes.push_back(line);
+  for (const RunNote& note : further_notes(run)) notes.push_back(note.text);
+  return notes;
+}
+
+std::vector<RunNote> further_notes(const RunReport& run) {
+  std::vector<RunNote> notes;
+  for (const FeatureReport& f : run.features)
+    if (f.found.dropped > 0)
+      notes.push_back(
+          {"'" + f.name + "' has " + std::to_string(f.found.dropped) +
+               " patches between sharp edges smaller than eight faces of a cell (their edges are not kept; a "
+               "higher resolution keeps them)",
+           {}});
+  if (!run.mesher) return notes;
+  if (run.mesher->isolated_vertices > 0)
+    notes.push_back(
+        {std::to_string(run.mesher->isolated_vertices) +
+             " parts or cavities of a single lattice point (left out; a higher resolution keeps them)",
+         {}});
+  for (const std::string& name : run.mesher->unknown)
+    notes.push_back(
+        {"'" + name +
+             "' was not compared with its input: its surface is open, intersects itself or meets another, "
+             "and cells of this size do not show it",
+         {}});
+  for (const ThinPartReport& t : run.mesher->thin_parts)
+    notes.push_back({(t.name.empty() ? "a gap" : "'" + t.name + "'") + " is thinner than " +
+                         (t.refined ? "the smallest cells can hold" : "two cells") + " at " +
+                         std::to_string(t.places) + " places, the first at " + place_text(t.first) +
+                         ": parts may tear or join there; a higher resolution keeps them",
+                     t.first});
+  return notes;
+}
+
+double RunReport::lost_area() const {
+  if (!deviation || !mesher || mesher->expected.empty() || !mesher->unknown.empty()) return 0;
+  const bool all_shown = std::all_of(mesher->expected.begin(), mesher->expected.end(),
+                                     [](const ExpectedSolid& s) { return s.by_surface; });
+  return all_shown ? deviation->hidden_area : 0;
+}
+
+std::string patch_name(const FaceGroup& group) {
+  return group.name.empty() ? std::to_string(group.number) : group.name;
+}
+
+void print_notes(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) print_line("note: " + note);
+}
+
+void print_line(const std::string& text) {
+  std::fprintf(stderr, "tetwright: %s\n", printable(text).c_str());
+  log_line(text);
+}
+
+}  // namespace tetwright

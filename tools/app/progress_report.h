@@ -1,0 +1,39 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "common/progress.h"
+#include "tools/app/command_line.h"
+
+namespace tetwright {
+
+/// Tells on stderr how far a command is: a bar on a terminal, redrawn at most ten times a second, or lines of
+/// JSON, one for each stage and percent. Stages go to the log, too. The destructor clears the bar.
+class ProgressReport : public Progress {
+ public:
+  explicit ProgressReport(ProgressStyle style) : style_(style) {}
+  ~ProgressReport() override { clear(); }
+  void begin_stage(std::string_view name) override;
+  void update(double fraction) override;
+  void finish() override;
+  std::string stage() const override { return stage_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void show(double fraction);
+  void draw_bar(double fraction, double seconds);
+  void clear();
+
+  ProgressStyle style_;
+  std::string stage_;
+  Clock::time_point start_ = Clock::now(), stage_start_{}, last_drawn_{};
+  int last_percent_ = 0;
+  bool drawn_ = false;
+};
+
+/// The style that `line` asks for: by default a bar where stderr is a terminal.
+ProgressStyle progress_style(const CommandLine& line);
+
+}  // namespace tetwright

@@ -1,0 +1,132 @@
+#include "tools/compare/crease_comparison.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "common/geometry/projection_tree.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr double max_crease_share = 0.005, max_corner_share = 0.001;
+constexpr double places_to_diagonal = 2000;
+/// How near to each other the largest distance and its bound are: a share of it, or of the diagonal.
+constexpr double bound_share = 0.01, bound_diagonals = 1e-9;
+
+/// A bound of the distance of any place between p and q from the items, at most `known`, or a little more
+/// than that, where no place is farther than `known`. The distance from one item is convex along the way.
+double bound_between(const Vec3& p, const Vec3& q, const ProjectionTree& items, double known,
+                     double accuracy) {
+  double bound = 0;
+  std::vector<std::array<Vec3, 2>> open{{p, q}};
+  while (!open.empty()) {
+    const auto [a, b] = open.back();
+    open.pop_back();
+    const Vec3 middle = (a + b) / 2;
+    const auto on = items.nearest_of(middle, std::numeric_limits<double>::infinity(),
+                                     [](const ProjectionTree::Item&) { return true; });
+    if (!on) return std::numeric_limits<double>::infinity();
+    const double upper =
+        std::max((items.closest_on(on->item, a) - a).norm(), (items.closest_on(on->item, b) - b).norm());
+    if (upper <= std::max(known, bound) + accuracy || (b - a).norm() <= accuracy) {
+      bound = std::max(bound, upper);
+      continue;
+    }
+    open.push_back({a, middle});
+    open.push_back({middle, b});
+  }
+  return bound;
+}
+
+}  // namespace
+
+bool CreaseComparison::same() const {
+  return max_distance <= max_crease_share * diagonal && lost_corners == 0;
+}
+
+CreaseComparison compare_creases(const CreaseCurves& expected, const std::vector<CreaseCurves>& found,
+                                 std::span<const Vec3> points, double diagonal) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  CreaseComparison result;
+  result.diagonal = diagonal;
+  std::vector<ProjectionTree::Item> items;
+  std::vector<Vec3> ends;
+  for (const CreaseCurves& curves : found) {
+    const auto first = static_cast<Index>(ends.size());
+    ends.insert(ends.end(), curves.points.begin(), curves.points.end());
+    for (const auto& [a, b] : curves.segments) items.push_back({{first + a, first + b, first + b}, {}});
+  }
+  const ProjectionTree creases(std::move(ends), std::move(items));
+  std::vector<double> distances;
+  for (const auto& [a, b] : expected.segments) {
+    const Vec3 &p = expected.points[a], &q = expected.points[b];
+    const double length = (q - p).norm();
+    result.length += length;
+    const auto steps =
+        std::max(1, static_cast<int>(std::ceil(length / result.diagonal * places_to_diagonal)));
+    for (int k = 0; k <= steps; ++k) {
+      const Vec3 at = p + (q - p) * (static_cast<double>(k) / steps);
+      const auto on = creases.nearest(at, {}, infinity);
+      distances.push_back(on ? (*on - at).norm() : infinity);
+      if (distances.back() > result.max_distance) {
+        result.max_distance = distances.back();
+        result.place = at;
+      }
+    }
+  }
+  const double accuracy = std::max(bound_share * result.max_distance, bound_diagonals * result.diagonal);
+  const double known = result.max_distance;
+  if (std::isfinite(known))
+    for (const auto& [a, b] : expected.segments)
+      result.max_distance =
+          std::max(result.max_distance,
+                   bound_between(expected.points[a], expected.points[b], creases, known, accuracy));
+  if (!distances.empty()) {
+    const auto at =
+        distances.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(distances.size() - 1));
+    std::nth_element(distances.begin(), at, distances.end());
+    result.p99_distance = *at;
+  }
+  result.corners = expected.corners.size();
+  items.clear();
+  for (Index p = 0; p < points.size(); ++p) items.push_back({{p, p, p}, {}});
+  const ProjectionTree near_corners({points.begin(), points.end()}, std::move(items));
+  for (const Vec3& corner : expected.corners) {
+    const auto on = near_corners.nearest(corner, {}, infinity);
+    const double distance = on ? (*on - corner).norm() : infinity;
+    if (distance > result.max_corner_distance) {
+      result.max_corner_distance = distance;
+      result.corner_place = corner;
+    }
+    if (distance <= max_corner_share * result.diagonal) continue;
+    if (result.lost_corners++ == 0) result.lost_corner = corner;
+  }
+  return result;
+}
+
+CreaseComparison compare_creases(const CreaseCurves& expected, const TetMesh& mesh) {
+  std::vector<char> used(mesh.points.size(), 0);
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    for (const Index p : t.ids) used[p] = 1;
+  Box3 box;
+  std::vector<Vec3> points;
+  for (std::size_t p = 0; p < used.size(); ++p)
+    if (used[p]) {
+      box.add(mesh.points[p]);
+      points.push_back(mesh.points[p]);
+    }
+  if (points.empty()) return {};
+  // A crease may run along a curve where three regions meet.
+  CreaseComparison result = compare_creases(expected, {mesh_creases(mesh), mesh_junctions(mesh)}, points,
+                                            (box.high - box.low).norm());
+  for (double* distance : {&result.max_distance, &result.p99_distance})
+    if (!std::isfinite(*distance)) *distance = result.diagonal;
+  return result;
+}
+
+}  // namespace tetwright

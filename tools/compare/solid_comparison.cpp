@@ -1,0 +1,190 @@
+#include "tools/compare/solid_comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <unordered_map>
+#include <utility>
+
+namespace tetwright {
+
+namespace {
+
+/// Relative change of a volume from which on a solid counts as another one.
+constexpr double same_volume = 0.01;
+/// The same for shells that may stand for each other.
+constexpr double alike_volume = 0.1;
+/// The same of labels, but for those of few voxels: how far their surface may move, voxels, were they cubes.
+constexpr double label_volume = 0.02, label_shift = 0.06, cube_sides = 6;
+
+using Solids = std::unordered_map<MaterialTag, std::vector<Triangle>>;
+
+/// The faces of each material to others and to outside, wound outwards.
+Solids solids_of(const TetMesh& mesh) {
+  Solids solids;
+  for (const InterfaceTriangle& t : mesh.interfaces) {
+    solids[t.material].push_back(t.ids);
+    if (t.other) solids[*t.other].push_back({t.ids[0], t.ids[2], t.ids[1]});
+  }
+  return solids;
+}
+
+/// The shells that count, the largest first.
+std::vector<SolidShell> shells_of(const SolidShape& solid, double min_volume) {
+  std::vector<SolidShell> shells = solid.shells;
+  std::erase_if(shells, [&](const SolidShell& s) { return std::fabs(s.volume) < min_volume; });
+  std::stable_sort(shells.begin(), shells.end(), [](const SolidShell& a, const SolidShell& b) {
+    return std::fabs(a.volume) > std::fabs(b.volume);
+  });
+  return shells;
+}
+
+SolidNumbers numbers_of(const SolidShape& solid, const std::vector<SolidShell>& shells) {
+  SolidNumbers numbers{.volume = solid.volume()};
+  for (const SolidShell& s : shells) {
+    ++(s.volume > 0 ? numbers.components : numbers.cavities);
+    numbers.handles += s.handles;
+  }
+  return numbers;
+}
+
+template <class Count>
+void add_difference(std::string& to, Count is, Count should, const char* one, const char* many) {
+  if (is == should) return;
+  to += (to.empty() ? "" : ", ") + std::to_string(is) + " " + (is == 1 ? one : many) + " instead of " +
+        std::to_string(should);
+}
+
+void add_volume(SolidComparison& f) {
+  const double change = f.result.volume / f.expected.volume - 1;
+  char text[80];
+  if (f.expected.volume > 0)
+    std::snprintf(text, sizeof text, "volume %.3g %% %s", 100 * std::fabs(change),
+                  change > 0 ? "more" : "less");
+  else
+    std::snprintf(text, sizeof text, "volume %.6g instead of %.6g", f.result.volume, f.expected.volume);
+  f.difference += (f.difference.empty() ? "" : ", ") + std::string(text);
+}
+
+/// Whether one may stand for the other.
+bool alike(const SolidShell& a, const SolidShell& b) {
+  return a.handles == b.handles && std::fabs(a.volume - b.volume) <= alike_volume * std::fabs(a.volume);
+}
+
+/// A shell, the largest first, that only one of the solids has.
+std::optional<Vec3> first_difference(const std::vector<SolidShell>& expected,
+                                     const std::vector<SolidShell>& result) {
+  std::vector<char> found(result.size(), 0);
+  for (const SolidShell& shell : expected) {
+    std::size_t i = 0;
+    while (i < result.size() && (found[i] || !alike(shell, result[i]))) ++i;
+    if (i == result.size()) return shell.place;
+    found[i] = 1;
+  }
+  const auto extra = std::find(found.begin(), found.end(), 0);
+  if (extra == found.end()) return {};
+  return result[static_cast<std::size_t>(extra - found.begin())].place;
+}
+
+SolidComparison compare(const ExpectedSolid& expected, const SolidShape& result) {
+  SolidComparison f;
+  f.name = expected.name;
+  f.tag = expected.tag;
+  if (!expected.by_surface) f.against = SolidComparison::Against::distances;
+  const std::vector<SolidShell> was = shells_of(expected.shape, expected.min_volume),
+                                is = shells_of(result, expected.min_volume);
+  f.expected = numbers_of(expected.shape, was);
+  f.result = numbers_of(result, is);
+  // A material may touch itself in an edge where others meet: then its counts mean nothing.
+  const bool countable = expected.shape.manifold && result.manifold;
+  if (countable)
+    add_difference(f.difference, f.result.components, f.expected.components, "component", "components");
+  if (countable) add_difference(f.difference, f.result.handles, f.expected.handles, "handle", "handles");
+  if (countable) add_difference(f.difference, f.result.cavities, f.expected.cavities, "cavity", "cavities");
+  if (!is_same_volume(f.result.volume, f.expected.volume) &&
+      std::fabs(f.result.volume - f.expected.volume) > expected.volume_slack) {
+    add_volume(f);
+  }
+  if (countable && !f.same_counts()) f.place = first_difference(was, is);
+  return f;
+}
+
+/// "12 components instead of 2 to 4".
+void add_components(SolidComparison& f, const char* one, const char* many) {
+  add_difference(f.difference, f.result.components, f.expected.components, one, many);
+  if (f.max_components > f.expected.components) f.difference += " to " + std::to_string(f.max_components);
+}
+
+SolidComparison compare(const LabelMaterial& label, double voxel_volume, const SolidShape& result) {
+  SolidComparison f;
+  f.name = label.name;
+  f.tag = label.tag;
+  f.against = SolidComparison::Against::voxels;
+  f.expected = {.volume = voxel_volume * static_cast<double>(label.voxels),
+                .components = label.parts.touching};
+  f.max_components = label.parts.by_faces;
+  const std::vector<SolidShell> shells = shells_of(result, 0);
+  f.result = numbers_of(result, shells);
+  // A label may touch itself in an edge where others meet: then its count means nothing.
+  if (result.manifold && !f.same_counts()) {
+    add_components(f, "component", "components");
+    f.place = label.parts.smallest_place;
+    if (f.result.components > f.expected.components)
+      f.place = std::find_if(shells.rbegin(), shells.rend(), [](const SolidShell& s) {
+                  return s.volume > 0;
+                })->place;
+  }
+  const auto voxels = static_cast<double>(label.voxels);
+  const double slack = std::max(label_volume * voxels, label_shift * cube_sides * std::cbrt(voxels * voxels));
+  if (std::fabs(f.result.volume - f.expected.volume) > slack * voxel_volume) add_volume(f);
+  return f;
+}
+
+}  // namespace
+
+bool is_same_volume(double volume, double meant) {
+  return std::fabs(volume - meant) <= same_volume * std::fabs(meant);
+}
+
+std::vector<SolidComparison> compare_solids(const std::vector<ExpectedSolid>& expected, const TetMesh& mesh) {
+  std::vector<SolidComparison> all;
+  all.reserve(expected.size());
+  Solids solids = solids_of(mesh);
+  for (const ExpectedSolid& e : expected) all.push_back(compare(e, solid_shape(mesh.points, solids[e.tag])));
+  return all;
+}
+
+std::vector<SolidComparison> compare_labels(const std::vector<LabelMaterial>& labels,
+                                            const std::optional<LabelParts>& outside, double voxel_volume,
+                                            const TetMesh& mesh) {
+  std::vector<SolidComparison> all;
+  all.reserve(labels.size() + 1);
+  Solids solids = solids_of(mesh);
+  for (const LabelMaterial& label : labels)
+    all.push_back(compare(label, voxel_volume, solid_shape(mesh.points, solids[label.tag])));
+
+  std::vector<Triangle> boundary;
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    if (!t.other) boundary.push_back(t.ids);
+  const SolidShape domain = solid_shape(mesh.points, boundary);
+  if (!outside || !domain.manifold) return all;
+  SolidComparison f;
+  f.name = outside_name;
+  f.tag = outside_tag;
+  f.against = SolidComparison::Against::voxels;
+  f.expected.components = outside->touching;
+  f.max_components = outside->by_faces;
+  f.result.components = domain.cavities();
+  if (!f.same_counts()) {
+    f.place = outside->smallest_place;
+    add_components(f, "part within the labels", "parts within the labels");
+    if (f.result.components > f.expected.components)
+      f.place = std::find_if(domain.shells.begin(), domain.shells.end(), [](const SolidShell& s) {
+                  return s.volume < 0;
+                })->place;
+  }
+  all.push_back(std::move(f));
+  return all;
+}
+
+}  // namespace tetwright

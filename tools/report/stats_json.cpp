@@ -1,0 +1,433 @@
+#include "tools/report/stats_json.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "common/parallel/parallel.h"
+#include "tools/app/printed_report.h"
+
+namespace tetwright {
+
+namespace {
+
+nlohmann::json iteration_json(const IterationReport& it) {
+  nlohmann::json operations = nlohmann::json::object(), rejections = nlohmann::json::object();
+  for (std::size_t o = 0; o < operation_count; ++o) {
+    const auto operation = static_cast<Operation>(o);
+    const std::string name(operation_names[o]);
+    operations[name] = {{"tried", it.counts.tried(operation)},
+                        {"done", it.counts.of(operation, Outcome::done)}};
+    nlohmann::json reasons = nlohmann::json::object();
+    for (std::size_t r = 1; r < outcome_count; ++r)  // 0 is done
+      if (const auto n = it.counts.of(operation, static_cast<Outcome>(r)))
+        reasons[std::string(outcome_names[r])] = n;
+    rejections[name] = reasons;
+  }
+  return {{"kind", it.kind},
+          {"tets_before", it.tets_before},
+          {"tets_after", it.tets_after},
+          {"cutoff", it.cutoff},
+          {"percent", it.percent},
+          {"largest_error", it.max_error},
+          {"operations", operations},
+          {"rejections", rejections},
+          {"lock_conflicts", it.conflicts},
+          {"repeats", it.repeats},
+          {"batches", it.batches},
+          {"skipped", 0},  // a key of the schema: no item is given up
+          {"seconds", it.seconds}};
+}
+
+nlohmann::json place_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+nlohmann::json volume_json(const VolumeReport& v,
+                           const std::map<MaterialTag, std::array<double, 3>>& colours) {
+  nlohmann::json directions = nlohmann::json::array();
+  for (int a = 0; a < 3; ++a) directions.push_back(place_json(v.directions.col(a)));
+  const double voxel = std::abs(v.directions.determinant());
+  nlohmann::json labels = nlohmann::json::array(), lost = nlohmann::json::array();
+  for (const LabelMaterial& l : v.labels) {
+    labels.push_back({{"tag", l.tag},
+                      {"name", l.name},
+                      {"voxels", l.voxels},
+                      {"voxels_in_file", l.voxels_in_file},
+                      {"volume", voxel * static_cast<double>(l.voxels)}});
+    if (const auto colour = colours.find(l.tag); colour != colours.end())
+      labels.back()["color"] = colour->second;
+  }
+  for (const LostLabel& l : v.lost) lost.push_back({{"tag", l.tag}, {"name", l.name}, {"voxels", l.voxels}});
+  return {{"size", v.size},
+          {"spacing", place_json(v.spacing())},
+          {"directions", directions},
+          {"origin", place_json(v.origin)},
+          {"space", v.space.empty() ? "unknown" : v.space},
+          {"labels", labels},
+          {"lost", lost},
+          {"merged_islands", v.merged_islands},
+          {"merged_voxels", v.merged_voxels}};
+}
+
+bool is_flat(const nlohmann::json& json) {
+  return std::none_of(json.begin(), json.end(),
+                      [](const nlohmann::json& item) { return item.is_structured(); });
+}
+
+/// The text of a document, an indented line for each value, but lists of plain values in one line: histograms
+/// have hundreds of numbers. Bytes that are not UTF-8 become replacement characters.
+void append_json(const nlohmann::json& json, std::size_t indent, std::string& out) {
+  if (!json.is_structured() || json.empty() || (json.is_array() && is_flat(json))) {
+    out += json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    return;
+  }
+  const bool object = json.is_object();
+  out += object ? '{' : '[';
+  bool first = true;
+  for (const auto& [key, value] : json.items()) {
+    out += first ? "\n" : ",\n";
+    first = false;
+    out.append(indent + 1, ' ');
+    if (object) {
+      append_json(key, 0, out);
+      out += ": ";
+    }
+    append_json(value, indent + 1, out);
+  }
+  out += '\n';
+  out.append(indent, ' ');
+  out += object ? '}' : ']';
+}
+
+std::string json_text(const nlohmann::json& json) {
+  std::string out;
+  append_json(json, 0, out);
+  return out;
+}
+
+std::string name_of(MaterialTag tag, const std::map<MaterialTag, std::string>& names) {
+  const auto name = names.find(tag);
+  return name == names.end() ? "" : name->second;
+}
+
+/// Null for the outside.
+nlohmann::json pair_json(const MaterialPair& pair) {
+  nlohmann::json other;
+  if (pair.second) other = *pair.second;
+  return nlohmann::json::array({pair.first, other});
+}
+
+nlohmann::json topology_json(const Topology& t, const std::map<MaterialTag, std::string>& names) {
+  const auto solid = [](const Topology::Solid& s) {
+    return nlohmann::json{{"components", s.components},
+                          {"euler", s.euler},
+                          {"boundary_components", s.boundary_components},
+                          {"boundary_euler", s.boundary_euler}};
+  };
+  nlohmann::json j{{"domain", solid(t.domain)},
+                   {"materials", nlohmann::json::array()},
+                   {"interfaces", nlohmann::json::array()}};
+  for (const auto& [tag, of_tag] : t.materials) {
+    j["materials"].push_back(solid(of_tag));
+    j["materials"].back()["tag"] = tag;
+    j["materials"].back()["name"] = name_of(tag, names);
+  }
+  for (const auto& [pair, surface] : t.interfaces)
+    j["interfaces"].push_back(
+        {{"materials", pair_json(pair)}, {"components", surface.components}, {"euler", surface.euler}});
+  if (t.touching_fans) j["touching_fans"] = *t.touching_fans;
+  if (t.junction_curves)
+    j["junction_curves"] = {{"components", t.junction_curves->components},
+                            {"euler", t.junction_curves->euler},
+                            {"branch_points", t.junction_curves->branch_points}};
+  return j;
+}
+
+/// `names` are those of the materials that have one; `threshold` is the solid angle that the statistics were
+/// made with, steradians.
+nlohmann::json mesh_json(const MeshStatistics& m, const std::map<MaterialTag, std::string>& names,
+                         double threshold) {
+  nlohmann::json materials = nlohmann::json::array();
+  for (const auto& [tag, material] : m.materials) {
+    materials.push_back(
+        {{"tag", tag}, {"name", name_of(tag, names)}, {"tets", material.tets}, {"volume", material.volume}});
+  }
+  nlohmann::json interfaces = nlohmann::json::array();
+  for (const auto& [pair, interface] : m.interfaces) {
+    interfaces.push_back(
+        {{"materials", pair_json(pair)}, {"triangles", interface.triangles}, {"area", interface.area}});
+  }
+  return {{"tets", m.tets},
+          {"points", m.points},
+          {"interfaces", interfaces},
+          {"junction_edges", m.junction_edges},
+          {"materials", materials},
+          {"volume", m.volume},
+          {"min_solid_angle", m.min_solid_angle},
+          {"mean_solid_angle", m.mean_solid_angle},
+          {"threshold", threshold},
+          {"percent_below_threshold", m.below_percent},
+          {"min_dihedral", m.min_dihedral},
+          {"max_dihedral", m.max_dihedral},
+          {"histogram", m.histogram.counts}};
+}
+
+nlohmann::json input_json(const RunReport& run) {
+  nlohmann::json j = {
+      {"files", run.inputs}, {"triangles", run.input_triangles}, {"points", run.input_points}};
+  if (!run.material_field.empty()) j["material_field"] = run.material_field;
+  if (run.volume) j["volume"] = volume_json(*run.volume, run.material_colours);
+  j["findings"] = nlohmann::json::array();
+  for (const InputFinding& f : run.findings) {
+    nlohmann::json finding = {
+        {"file", f.file}, {"what", f.finding.what}, {"count", f.finding.count}, {"done", f.finding.done}};
+    if (f.finding.place) finding["place"] = place_json(*f.finding.place);
+    j["findings"].push_back(finding);
+  }
+  return j;
+}
+
+nlohmann::json parts_json(std::size_t touching, std::size_t by_faces) {
+  if (by_faces == LabelParts().by_faces) return nullptr;
+  return {touching, by_faces};
+}
+
+nlohmann::json solid_json(const SolidNumbers& s) {
+  return {
+      {"volume", s.volume}, {"components", s.components}, {"handles", s.handles}, {"cavities", s.cavities}};
+}
+
+nlohmann::json fidelity_json(const std::vector<SolidComparison>& all) {
+  nlohmann::json j = nlohmann::json::array();
+  static constexpr const char* against[] = {"surface", "distances", "voxels"};
+  for (const SolidComparison& f : all) {
+    j.push_back({{"name", f.name},
+                 {"tag", f.tag},
+                 {"against", against[static_cast<std::size_t>(f.against)]},
+                 {"expected", solid_json(f.expected)},
+                 {"result", solid_json(f.result)},
+                 {"same", f.same()}});
+    if (f.against == SolidComparison::Against::voxels) {
+      nlohmann::json &expected = j.back()["expected"], &result = j.back()["result"];
+      expected = {{"components", parts_json(f.expected.components, f.max_components)}};
+      result = {{"components", f.result.components}};
+      if (f.expected.volume > 0) expected["volume"] = f.expected.volume, result["volume"] = f.result.volume;
+    }
+    if (f.place) j.back()["place"] = place_json(*f.place);
+  }
+  return j;
+}
+
+nlohmann::json features_json(const std::vector<FeatureReport>& all) {
+  static constexpr const char* verdicts[] = {"off",     "smooth",    "scan", "intersecting",
+                                             "meeting", "staircase", "part"};
+  nlohmann::json j = nlohmann::json::array();
+  for (const FeatureReport& f : all)
+    j.push_back({{"name", f.name},
+                 {"verdict", verdicts[static_cast<std::size_t>(f.found.verdict)]},
+                 {"patches", f.found.count},
+                 {"dropped_patches", f.found.dropped},
+                 {"loose_ends", {f.found.loose_ends_low, f.found.loose_ends_high}}});
+  return j;
+}
+
+nlohmann::json creases_json(const CreaseComparison& c) {
+  return {{"length", c.length},
+          {"max_distance", c.max_distance},
+          {"p99_distance", c.p99_distance},
+          {"place", place_json(c.place)},
+          {"corners", c.corners},
+          {"lost_corners", c.lost_corners},
+          {"max_corner_distance", c.max_corner_distance},
+          {"same", c.same()}};
+}
+
+nlohmann::json edge_lengths_json(const EdgeLengthReport& e, const RequestedSizes& sizes) {
+  nlohmann::json j{{"edges", e.edges},
+                   {"shortest", e.shortest},
+                   {"longest", e.longest},
+                   {"above_max", e.above_max.count},
+                   {"below_min", e.below_min.count}};
+  if (e.wished > 0) {
+    j["field"] = sizes.source->field();
+    j["within_percent"] = 100 * e.within_share();
+    j["median_ratio"] = e.median;
+  }
+  return j;
+}
+
+nlohmann::json deviation_json(const SurfaceDeviation& d) {
+  return {{"lower", d.lower}, {"upper", d.upper}, {"place", place_json(d.place)}, {"rms", d.rms}};
+}
+
+nlohmann::json surface_json(const SurfaceComparison& c) {
+  nlohmann::json j = {{"diagonal", c.diagonal},
+                      {"outside_tets", c.outside_tets},
+                      {"inverted", c.inverted},
+                      {"open_edges", c.open_edges},
+                      {"from_mesh", deviation_json(c.from_mesh)},
+                      {"from_surface", deviation_json(c.from_surfaces)}};
+  if (c.caps) {
+    j["caps"] = deviation_json(c.caps->from_mesh);
+    j["caps"]["area"] = c.caps->area;
+    j["caps"]["share"] = c.caps->share;
+  }
+  if (c.solid)
+    j["solid"] = {{"expected", solid_json(c.solid->expected)},
+                  {"result", solid_json(c.solid->result)},
+                  {"same", c.solid->same()}};
+  // A distance from nothing is null.
+  if (c.creases) j["creases"] = creases_json(*c.creases);
+  if (c.mesh_creases) j["mesh_creases"] = creases_json(*c.mesh_creases);
+  return j;
+}
+
+nlohmann::json patches_json(const std::vector<PatchComparison>& all) {
+  nlohmann::json j = nlohmann::json::array();
+  for (const PatchComparison& p : all)
+    j.push_back({{"name", p.group.name},
+                 {"number", p.group.number},
+                 {"input_area", p.input_area},
+                 {"area", p.area},
+                 {"triangles", p.triangles}});
+  return j;
+}
+
+/// Adds to the statistics of the dense mesh how it was made.
+void add_mesher_json(const MesherReport& m, nlohmann::json& dense) {
+  dense["cell_size"] = m.cell_size;
+  dense["resolution"] = m.resolution;
+  dense["cells"] = m.cells;
+  dense["lattice_tets"] = m.lattice_tets;
+  dense["refinement"] = m.refinement;
+  dense["specks"] = m.isolated_vertices;
+  dense["thin_parts"] = nlohmann::json::array();
+  for (const ThinPartReport& t : m.thin_parts)
+    dense["thin_parts"].push_back({{"name", t.name.empty() ? "outside" : t.name},
+                                   {"places", t.places},
+                                   {"first", place_json(t.first)},
+                                   {"refined", t.refined}});
+  dense["filling_tets"] = m.filling_tets;
+  dense["thickened_walls"] = {{"points", m.thickened.points},
+                              {"offset", m.thickened.offset},
+                              {"thickness", m.thickened.thickness},
+                              {"place", place_json(m.thickened.place)}};
+  dense["closed_gaps"] = nlohmann::json::array();
+  for (const ClosedGapReport& g : m.closed_gaps)
+    dense["closed_gaps"].push_back({{"material", g.name},
+                                    {"kind", g.gap ? "gap" : "wall"},
+                                    {"on_purpose", g.on_purpose},
+                                    {"width", g.width},
+                                    {"area", g.area},
+                                    {"place", place_json(g.place)}});
+}
+
+nlohmann::json seconds_json(const RunReport& run) {
+  nlohmann::json seconds = {
+      {"read", run.seconds_read}, {"write", run.seconds_write}, {"total", run.seconds_total}};
+  if (run.mesher) {
+    seconds["mesh"] = run.seconds_mesh;
+    seconds["sdf"] = run.mesher->seconds_sdf;
+    seconds["octree"] = run.mesher->seconds_octree;
+    seconds["lattice"] = run.mesher->seconds_lattice;
+    seconds["move"] = run.mesher->seconds_move;
+    seconds["cut"] = run.mesher->seconds_cut;
+  }
+  if (run.simplify) {
+    seconds["build"] = run.simplify->seconds_build;
+    seconds["simplify"] = run.simplify->seconds_simplify;
+    seconds["close"] = run.simplify->seconds_close;
+  }
+  return seconds;
+}
+
+}  // namespace
+
+std::size_t peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
+}
+
+std::string stats_json(const CommandLine& line, const RunReport& run) {
+  nlohmann::json j;
+  j["version"] = TETWRIGHT_VERSION;
+  j["command"] = name_of(line.command);
+  j["status"] = static_cast<int>(run.status);
+  if (!run.error.empty()) j["error"] = {{"message", run.error}, {"stage", run.stage}};
+  j["notes"] = notes_of(run);
+  j["threads"] = thread_count();
+  j["seed"] = line.seed;
+  if (run.simplify) {
+    j["objective"] = name_of(line.objective);
+    if (line.command == Command::improve) {
+      j["only_below"] = line.only_below;
+      j["free_count"] = line.free_count;
+    } else {
+      j["schedule"] = name_of(line.schedule);
+    }
+  }
+  j["input"] = input_json(run);
+  if (run.dense) j["dense"] = mesh_json(*run.dense, run.material_names, line.min_solid_angle);
+  if (run.mesher) add_mesher_json(*run.mesher, j["dense"]);
+  j["result"] =
+      run.result ? mesh_json(*run.result, run.material_names, line.min_solid_angle) : nlohmann::json();
+  if (run.simplify) j["result"]["held_by_input"] = run.input_limited;
+  if (run.mesher) j["fidelity"] = fidelity_json(run.solids);
+  if (!run.features.empty()) j["features"] = features_json(run.features);
+  if (!run.patches.empty()) j["patches"] = patches_json(run.patches);
+  if (run.deviation)
+    j["tolerance"] = {{"distance", run.tolerance},
+                      {"held", run.deviation->upper() <= run.tolerance && run.lost_area() == 0},
+                      {"from_mesh", deviation_json(run.deviation->from_mesh)},
+                      {"from_surface", deviation_json(run.deviation->from_surface)},
+                      {"apart_area", run.deviation->apart_area},
+                      {"hidden_area", run.deviation->hidden_area}};
+  if (run.second_order)
+    j["second_order"] = {{"surface_edges", run.second_order->edges},
+                         {"on_surface", run.second_order->on_surface},
+                         {"part_way", run.second_order->part_way},
+                         {"straight", run.second_order->straight}};
+  if (run.edge_lengths) j["edge_lengths"] = edge_lengths_json(*run.edge_lengths, run.sizes);
+  if (run.crease_comparison) j["creases"] = creases_json(*run.crease_comparison);
+  j["iterations"] = nlohmann::json::array();
+  if (run.simplify)
+    for (const IterationReport& it : run.simplify->iterations) j["iterations"].push_back(iteration_json(it));
+  j["seconds"] = seconds_json(run);
+  j["peak_bytes"] = peak_bytes();
+  j["shortfall"] = nlohmann::json::array();
+  for (const Shortfall& s : run.shortfall)
+    j["shortfall"].push_back(
+        {{"what", s.what}, {"asked", s.asked}, {"reached", s.reached}, {"held_back_by", s.limited_by}});
+  return json_text(j);
+}
+
+std::string check_json(const CommandLine& line, const RunReport& run, const CheckReport& check) {
+  nlohmann::json j = {{"valid", check.valid()}, {"findings", nlohmann::json::array()}};
+  for (const MeshFinding& f : check.findings) {
+    nlohmann::json places = nlohmann::json::array();
+    for (const MeshPlace& place : f.places) {
+      places.push_back({{"text", place.text}, {"points", place.points}});
+      if (place.at) places.back()["at"] = place_json(*place.at);
+    }
+    j["findings"].push_back({{"number", static_cast<int>(f.fault)},
+                             {"name", mesh_fault_name(f.fault)},
+                             {"severity", is_warning(f.fault) ? "warning" : "error"},
+                             {"what", mesh_fault_text(f.fault)},
+                             {"count", f.count},
+                             {"places", places}});
+  }
+  if (check.measurable) {
+    j["mesh"] = mesh_json(*run.result, run.material_names, line.min_solid_angle);
+    j["topology"] = topology_json(*check.topology, run.material_names);
+  }
+  if (check.topology_before) j["topology_before"] = topology_json(*check.topology_before, run.material_names);
+  if (check.topology_differences) j["topology_differences"] = *check.topology_differences;
+  if (check.surface) j["surface"] = surface_json(*check.surface);
+  if (check.tolerance > 0)
+    j["tolerance"] = {{"distance", check.tolerance}, {"held", check.within_tolerance()}};
+  return json_text(j);
+}
+
+}  // namespace tetwright
