@@ -1,6 +1,6 @@
 """Reads what tetwright writes with meshio and Gmsh, and compares points, tets, materials, surfaces and their names.
 
-usage: read_back.py TETWRIGHT    (Debian's python3 with meshio, h5py and numpy; gmsh where it is installed)
+usage: read_back.py TETWRIGHT    (Debian's python3 with meshio, h5py and numpy, and gmsh)
 """
 import pathlib
 import shutil
@@ -12,7 +12,6 @@ import meshio
 import numpy as np
 
 TETWRIGHT = sys.argv[1]
-GMSH = shutil.which("gmsh")
 # Format: file, names of materials, names of surfaces (or none), as meshio sees them.
 FORMATS = {
     "vtu": "m.vtu",
@@ -136,11 +135,9 @@ def main():
                     check(format_name, f"node sets {sets}", set(sets) == {"left_outside", "left_right", "right_outside"})
                 elif format_name in ("vtk", "msh22", "msh41", "msh41-binary"):
                     check(format_name, f"surfaces {names}", names.get("left|right", 0) > 0)
-                if GMSH and format_name.startswith("msh"):
+                if format_name.startswith("msh"):
                     saved_again_by_gmsh(out, format_name, names)
         outside_is_kept_by_gmsh(folder)
-        if not GMSH:
-            print("gmsh is not installed: nothing was saved again by it")
     finally:
         shutil.rmtree(folder)
     sys.exit(1 if failures else 0)
@@ -148,7 +145,7 @@ def main():
 
 def saved_again_by_gmsh(file, format_name, names):
     again = file.with_name("again.msh")
-    subprocess.run([GMSH, "-save", "-format", "msh41", "-o", again, file], check=True, capture_output=True)
+    subprocess.run(["gmsh", "-save", "-format", "msh41", "-o", again, file], check=True, capture_output=True)
     check(format_name, "names after Gmsh saved it", names_of("msh41", meshio.read(again)) == names)
     back = run("simplify", again, "-o", file.with_name("back.msh"), "--target-tets", 150, "--quiet", "--no-progress")
     check(format_name, f"read again after Gmsh: {back.stderr}", back.returncode in (0, 1))
@@ -162,8 +159,7 @@ def outside_is_kept_by_gmsh(folder):
     run("mesh", surface, "-o", mesh, "--resolution", 8, "--keep-outside", "--output-format", "msh41", "--quiet")
     names = names_of("msh41", meshio.read(mesh))
     check("msh41", f"names with --keep-outside: {names}", "outside" in names and names["outside"] > 0)
-    if GMSH:
-        saved_again_by_gmsh(mesh, "msh41", names)
+    saved_again_by_gmsh(mesh, "msh41", names)
 
 
 main()

@@ -309,24 +309,28 @@ TEST(BlockRunner, ATurnGoesOnWithTheNextStage) {
 // one.
 TEST(BlockRunner, WorkersDecideSideBySide) {
   const ThreadLimit four(4);
-  Block b(grid_mesh(4), 64);
-  std::mutex mutex;
-  std::condition_variable another;
-  std::set<const Workspace*> seen;
-  bool waited = false;
-  b.in_order(b.live_points(), [&](Workspace& ws, const ListedTet&, int) {
-    std::unique_lock lock(mutex);
-    seen.insert(&ws);
-    another.notify_all();
-    if (!std::exchange(waited, true))
-      another.wait_for(lock, std::chrono::seconds(2), [&] { return seen.size() > 1; });
-    return Outcome::no_candidate;
-  });
-  // oneTBB promises no second thread, whatever is free.
-  if (seen.size() == 1) GTEST_SKIP() << "one thread did everything: this run shows nothing";
-  const std::vector<std::uint64_t> decided = b.runner.take_totals().decided;
-  EXPECT_EQ(decided.size(), 4u);
-  EXPECT_GT(std::count_if(decided.begin(), decided.end(), [](std::uint64_t n) { return n > 0; }), 1);
+  // oneTBB promises no second thread in any one loop, whatever is free.
+  constexpr int max_loops = 30;
+  std::int64_t workers = 0;
+  for (int loop = 0; loop < max_loops && workers < 2; ++loop) {
+    Block b(grid_mesh(4), 64);
+    std::mutex mutex;
+    std::condition_variable another;
+    std::set<const Workspace*> seen;
+    bool waited = false;
+    b.in_order(b.live_points(), [&](Workspace& ws, const ListedTet&, int) {
+      std::unique_lock lock(mutex);
+      seen.insert(&ws);
+      another.notify_all();
+      if (!std::exchange(waited, true))
+        another.wait_for(lock, std::chrono::seconds(2), [&] { return seen.size() > 1; });
+      return Outcome::no_candidate;
+    });
+    const std::vector<std::uint64_t> decided = b.runner.take_totals().decided;
+    EXPECT_EQ(decided.size(), 4u);
+    workers = std::count_if(decided.begin(), decided.end(), [](std::uint64_t n) { return n > 0; });
+  }
+  EXPECT_GT(workers, 1);
 }
 
 TEST(BlockRunner, EveryItemOfAShuffledBlockIsDecided) {

@@ -2,7 +2,7 @@
 #   cmake -DOUTPUT=FILE -DNAMES=page_html;... -DFILES=page.html;... -P embed.cmake
 # Raw string literals compile in no time, however long they are; the delimiter is in none of the files.
 set(delimiter "embedded_file")
-set(text "#include \"tools/report_page/embedded.h\"\n\nnamespace tetwright::embedded {\n\n")
+set(text "#include \"tools/report/page/embedded.h\"\n\nnamespace tetwright::embedded {\n\n")
 foreach(name file IN ZIP_LISTS NAMES FILES)
   file(READ "${file}" content)
   string(FIND "${content}" ")${delimiter}\"" found)

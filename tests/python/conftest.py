@@ -1,0 +1,9 @@
+"""A test that is skipped is a failure: tools/setup test installs all that these tests need."""
+
+
+def pytest_sessionfinish(session, exitstatus):
+    skipped = session.config.pluginmanager.get_plugin("terminalreporter").stats.get("skipped", [])
+    for report in skipped:
+        print(f"\nFAILED: {report.nodeid} was skipped: {report.longrepr}")
+    if skipped and exitstatus == 0:
+        session.exitstatus = 1
