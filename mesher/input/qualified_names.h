@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <map>
 #include <string>
 #include <vector>
 
-#include "common/formats/unique_names.h"
+#include "common/io/names/unique_names.h"
 #include "mesher/input/surface_repair.h"
 
 namespace tetwright {

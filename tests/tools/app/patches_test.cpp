@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Named patches and solids, from file to file.
 #include <gtest/gtest.h>
 
@@ -6,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "common/formats/formats.h"
+#include "common/io/formats.h"
 #include "common/mesh/mesh_statistics.h"
 #include "tests/tools/program.h"
 
@@ -213,7 +215,7 @@ TEST(Patches, OfOneNameInSeveralFilesAreQualifiedByTheirBody) {
   }
   EXPECT_EQ(in_stats, names);
   std::set<std::string> in_boundary;
-  for (const FaceGroup& group : read_surface(f / "b.vtp").groups) in_boundary.insert(group.name);
+  for (const SurfaceRegion& group : read_surface(f / "b.vtp").groups) in_boundary.insert(group.name);
   EXPECT_EQ(in_boundary, names);
 
   const Answer b =
