@@ -16,10 +16,10 @@ namespace tetwright {
 
 namespace {
 
-/// A region's number has 16 bits, and a few are reserved.
+/// Regions have numbers of 16 bits, a few of them reserved.
 constexpr std::size_t max_materials = 60000;
 
-/// The tags that the caller gave out. Throws UsageError for a layer without a thickness.
+/// The tags assigned by the caller. Throws UsageError for a layer without a thickness.
 std::set<MaterialTag> tags_in_use(const std::vector<MaterialSurface>& surfaces,
                                   const std::vector<MaterialLayer>& layers) {
   std::set<MaterialTag> tags;
@@ -33,8 +33,8 @@ std::set<MaterialTag> tags_in_use(const std::vector<MaterialSurface>& surfaces,
   return tags;
 }
 
-/// Makes the names of groups differ from surface to surface, see qualify_names(). Those that have only a
-/// number are called after their surface.
+/// Makes the names of groups differ between surfaces, see qualify_names(). Groups that have only a number are
+/// named after their surface.
 void name_groups(std::vector<MaterialSurface>& surfaces, std::vector<InputFinding>& findings) {
   const auto with_groups = std::count_if(surfaces.begin(), surfaces.end(),
                                          [](const MaterialSurface& s) { return !s.surface.groups.empty(); });
@@ -55,7 +55,7 @@ void name_groups(std::vector<MaterialSurface>& surfaces, std::vector<InputFindin
         group = {0, unique.add(surfaces[i].name + "_" + std::to_string(group.number))};
 }
 
-/// The groups that have triangles of which the points are there.
+/// The area and centre of each group with triangles, ignoring triangles with missing points.
 std::vector<MesherInput::Group> measure_groups(const std::vector<MaterialSurface>& surfaces) {
   std::map<SurfaceRegion, MesherInput::Group> measured;
   std::map<SurfaceRegion, double> largest;
