@@ -90,6 +90,8 @@ constexpr std::array kinds = std::to_array<DiagnosticKind>({
     {DiagnosticCode::cavities_filled, "cavities-filled", Severity::note, Yields::never, "cavities filled"},
     {DiagnosticCode::components_separated, "components-separated", Severity::note, Yields::never,
      "enclosed components as materials of their own"},
+    {DiagnosticCode::names_qualified, "names-qualified", Severity::note, Yields::never,
+     "names that several bodies have"},
     {DiagnosticCode::no_outside, "no-outside", Severity::note, Yields::never, "volume without outside"},
     {DiagnosticCode::islands_merged, "islands-merged", Severity::note, Yields::never, "small islands merged"},
     {DiagnosticCode::islands_all_small, "islands-all-small", Severity::note, Yields::never,

@@ -70,6 +70,7 @@ enum class DiagnosticCode : std::uint8_t {
   components_alternate,
   cavities_filled,
   components_separated,
+  names_qualified,
   // Segmented volumes.
   no_outside,
   islands_merged,

@@ -10,6 +10,7 @@
 #include "common/error.h"
 #include "common/geometry/measurable.h"
 #include "common/message_text.h"
+#include "mesher/input/qualified_names.h"
 
 namespace tetwright {
 
@@ -32,29 +33,26 @@ std::set<MaterialTag> tags_in_use(const std::vector<MaterialSurface>& surfaces,
   return tags;
 }
 
-/// Makes the names of groups differ between surfaces. Throws InputError where files share a name, and where a
-/// name made from a number is that of another group.
-void name_groups(std::vector<MaterialSurface>& surfaces) {
+/// Makes the names of groups differ between surfaces, see qualify_names(). Groups that have only a number are
+/// named after their surface.
+void name_groups(std::vector<MaterialSurface>& surfaces, std::vector<Diagnostic>& findings) {
   const auto with_groups = std::count_if(surfaces.begin(), surfaces.end(),
                                          [](const MaterialSurface& s) { return !s.surface.groups.empty(); });
   if (with_groups < 2) return;
-  std::map<std::string, const MaterialSurface*> known;
-  for (MaterialSurface& s : surfaces)
-    for (SurfaceRegion& group : s.surface.groups) {
-      if (!group) continue;
-      const std::int64_t number = group.number;
-      const bool numbered = group.name.empty();
-      if (numbered) group = {0, s.name + "_" + std::to_string(number)};
-      const auto [other, added] = known.emplace(group.name, &s);
-      if (!added && numbered)
-        throw InputError(s.file, 0,
-                         "its patch " + std::to_string(number) + " would be called '" + group.name +
-                             "' like one of " + other->second->file + "; give that another name");
-      if (!added)
-        throw InputError(s.file, 0,
-                         "a patch is called '" + group.name + "' like one of " + other->second->file +
-                             "; give one of them another name");
-    }
+  std::vector<NamesOfBody> bodies;
+  for (const MaterialSurface& s : surfaces) {
+    bodies.push_back({s.name, s.file, {}});
+    for (const SurfaceRegion& group : s.surface.groups)
+      if (!group.name.empty()) bodies.back().names[group.name] = group.name;
+  }
+  UniqueNames unique([](const std::string& name) { return name; });
+  qualify_names("names of patches", bodies, unique, findings);
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    for (SurfaceRegion& group : surfaces[i].surface.groups)
+      if (!group.name.empty())
+        group.name = bodies[i].names.at(group.name);
+      else if (group)
+        group = {0, unique.add(surfaces[i].name + "_" + std::to_string(group.number))};
 }
 
 /// The area and centre of each group with triangles, ignoring triangles with missing points.
@@ -144,7 +142,7 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
                               NestedRule nested) {
   if (surfaces.empty()) throw UsageError("there is no surface to mesh");
   MesherInput input;
-  name_groups(surfaces);
+  name_groups(surfaces, input.findings);
   input.groups = measure_groups(surfaces);
   std::set<MaterialTag> tags = tags_in_use(surfaces, layers);
   add_bodies(std::move(surfaces), std::move(tags), nested, input);

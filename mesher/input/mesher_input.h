@@ -60,11 +60,12 @@ enum class SurfaceFlaw : std::uint8_t {
 
 /// Validates and repairs the surfaces, see repair_surface(). With NestedRule::material every enclosed
 /// component becomes a body directly after its encloser, with the smallest free tag from 1 up. Where more
-/// than one surface has groups of triangles, groups that have only a number are named after their surface.
+/// than one surface has groups of triangles, names that several have are qualified, see qualify_names(), and
+/// groups that have only a number are named after their surface.
 ///
 /// \pre non-empty names differ, and so do tags
 /// \throws InputError as repair_surface() does; for coordinates too large or a size too small for areas and
-///   volumes in double precision; for two groups of one name
+///   volumes in double precision
 /// \throws UsageError for no surface, two materials of one name or tag, a layer whose thickness is not above
 ///   0, or more than 60,000 materials
 MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers = {},

@@ -10,7 +10,6 @@
 #include "mesher/input/split_solids.h"
 #include "mesher/mesher.h"
 #include "tests/common/features/parts.h"
-#include "tests/common/io/expect_error.h"
 #include "tests/mesher/test_surfaces.h"
 
 namespace tetwright::surface_regions_test {
@@ -99,19 +98,61 @@ TEST(SurfaceRegions, DivideASmoothSurface) {
   EXPECT_NEAR(areas.at("above") / areas.at("below"), 1, 0.01);
 }
 
-TEST(SurfaceRegions, OfTwoSurfacesMustDifferInName) {
-  const auto named = [](const SurfaceRegion& group) {
-    return grouped(unit_cube(), {{}, group}, [](const Vec3& p) { return p.z() > 0.9 ? 1U : 0U; });
-  };
-  TriangleMesh apart = named({0, "top"});
-  const std::string message = error_of<InputError>([&] {
-    make_mesher_input({{"a", 1, named({0, "top"}), "a.stl"}, {"b", 2, apart, "b.stl"}});
-  });
-  EXPECT_NE(message.find("b.stl: a patch is called 'top' like one of a.stl"), std::string::npos) << message;
-  const MesherInput input =
-      make_mesher_input({{"a", 1, named({3, ""}), "a.ply"}, {"b", 2, named({3, ""}), "b.ply"}});
-  EXPECT_EQ(input.bodies[0].groups[1], (SurfaceRegion{0, "a_3"}));
-  EXPECT_EQ(input.bodies[1].groups[1], (SurfaceRegion{0, "b_3"}));
+/// A cube whose upper side is a group, and the others another one.
+MaterialSurface cube_with_groups(const std::string& name, MaterialTag tag, const SurfaceRegion& sides,
+                                 const SurfaceRegion& top) {
+  return {name, tag, grouped(unit_cube(), {sides, top}, [](const Vec3& p) { return p.z() > 0.9 ? 1U : 0U; }),
+          name + ".stl"};
+}
+
+std::vector<std::string> said_of(const MesherInput& input) {
+  std::vector<std::string> lines;
+  for (const Diagnostic& d : input.findings) lines.push_back(d.file + ": " + diagnostic_text(d));
+  return lines;
+}
+
+TEST(SurfaceRegions, OfOneNameInTwoSurfacesAreQualified) {
+  const MesherInput input = make_mesher_input({cube_with_groups("a", 1, {0, "side"}, {7, "top"}),
+                                               cube_with_groups("b", 2, {0, "wall"}, {7, "top"}),
+                                               cube_with_groups("c", 3, {0, "side"}, {2, "top"})});
+  EXPECT_EQ(input.bodies[0].groups, (std::vector<SurfaceRegion>{{0, "a:side"}, {7, "a:top"}}));
+  EXPECT_EQ(input.bodies[1].groups, (std::vector<SurfaceRegion>{{0, "wall"}, {7, "b:top"}}));
+  EXPECT_EQ(input.bodies[2].groups, (std::vector<SurfaceRegion>{{0, "c:side"}, {2, "c:top"}}));
+  EXPECT_EQ(said_of(input),
+            (std::vector<std::string>{
+                "a.stl: 2 names of patches (changed, as others have them, too; the first: \"side\" -> "
+                "\"a:side\")",
+                "b.stl: 1 names of patches (changed, as others have it, too: \"top\" -> \"b:top\")",
+                "c.stl: 2 names of patches (changed, as others have them, too; the first: \"side\" -> "
+                "\"c:side\")"}));
+  ASSERT_EQ(input.groups.size(), 6u);
+  for (const MesherInput::Group& g : input.groups) EXPECT_GT(g.area, 0.9) << g.group.name;
+}
+
+TEST(SurfaceRegions, OfOtherNamesStayAsTheyAre) {
+  const MesherInput one = make_mesher_input({cube_with_groups("a", 1, {1, "top"}, {2, "top"})});
+  EXPECT_EQ(one.bodies[0].groups, (std::vector<SurfaceRegion>{{1, "top"}, {2, "top"}}));
+  const MesherInput two = make_mesher_input(
+      {cube_with_groups("a", 1, {1, "top"}, {2, "top"}), cube_with_groups("b", 2, {3, "Top"}, {4, "lid"})});
+  EXPECT_EQ(two.bodies[0].groups, (std::vector<SurfaceRegion>{{1, "top"}, {2, "top"}}));
+  EXPECT_EQ(two.bodies[1].groups, (std::vector<SurfaceRegion>{{3, "Top"}, {4, "lid"}}));
+  EXPECT_EQ(said_of(two), (std::vector<std::string>{}));
+}
+
+TEST(SurfaceRegions, OfAQualifiedNameStayApart) {
+  const MesherInput input = make_mesher_input({cube_with_groups("a", 1, {0, "b:top"}, {0, "top"}),
+                                               cube_with_groups("b", 2, {0, "b:top_2"}, {0, "top"}),
+                                               cube_with_groups("", 3, {0, "x"}, {0, "top"})});
+  EXPECT_EQ(input.bodies[0].groups, (std::vector<SurfaceRegion>{{0, "b:top"}, {0, "a:top"}}));
+  EXPECT_EQ(input.bodies[1].groups, (std::vector<SurfaceRegion>{{0, "b:top_2"}, {0, "b:top_3"}}));
+  EXPECT_EQ(input.bodies[2].groups, (std::vector<SurfaceRegion>{{0, "x"}, {0, "top"}}));
+}
+
+TEST(SurfaceRegions, WithoutANameAreCalledAfterTheirSurface) {
+  const MesherInput input = make_mesher_input(
+      {cube_with_groups("a", 1, {0, "b_3"}, {3, ""}), cube_with_groups("b", 2, {0, "side"}, {3, ""})});
+  EXPECT_EQ(input.bodies[0].groups, (std::vector<SurfaceRegion>{{0, "b_3"}, {0, "a_3"}}));
+  EXPECT_EQ(input.bodies[1].groups, (std::vector<SurfaceRegion>{{0, "side"}, {0, "b_3_2"}}));
 }
 
 TEST(SurfaceRegions, StayWithTheirTrianglesInRepair) {

@@ -172,6 +172,34 @@ def test_groups_of_surfaces_are_patches():
     assert "1 faces of sets that are in a group already (dropped)" in made.notes[0]
 
 
+def test_names_of_the_faces_of_a_surface_are_patches():
+    polygons = np.hstack([np.full((6, 1), 4), CUBE_QUADS]).ravel()
+
+    def made(names, **others):
+        surface = types.SimpleNamespace(points=CUBE_POINTS, faces=polygons, cell_data={"Names": names, **others})
+        return tetwright.mesh(surface, resolution=12)
+    tissues = ["skin", "skin", "bone", "skin", "", "skin"]
+    for names in np.array(tissues), np.array(tissues, "S"), np.array(tissues, object):
+        mesh = made(names)
+        assert names_of_surfaces(mesh) == {"skin", "bone", "surface|outside"} and not mesh.notes
+    assert names_of_surfaces(made(np.full(6, "skin"))) == {"surface|outside"}
+    mesh = made(np.array(tissues), RegionId=np.arange(6))
+    assert names_of_surfaces(mesh) == {"skin", "bone", "surface|outside"}
+    assert 'fields of cells ("RegionId") (dropped)' in mesh.notes[0]
+    assert 'fields of cells ("Names") (dropped)' in made(np.array(["a"] * 5, object)).notes[0]
+
+
+def test_patches_of_one_name_are_qualified_by_their_body():
+    def box(x, name):
+        in_set = {name: [np.array([2, 8])]}
+        return meshio.Mesh(CUBE_POINTS + [x, 0, 0], [("triangle", CUBE_TRIANGLES)], cell_sets=in_set)
+    mesh = tetwright.mesh({"heater": box(0, "wall"), "fluid": box(2, "wall"), "case": box(4, "lid")}, resolution=30)
+    assert {n for n in names_of_surfaces(mesh) if "|" not in n} == {"heater:wall", "fluid:wall", "lid"}
+    assert '"wall" -> "heater:wall"' in mesh.notes[0] and '"wall" -> "fluid:wall"' in mesh.notes[0]
+    again = tetwright.simplify(mesh, target_tets=1000)
+    assert {n for n in names_of_surfaces(again) if "|" not in n} == {"heater:wall", "fluid:wall", "lid"}
+
+
 def test_sets_of_cells_are_patches_or_noted(cube_mesh, tmp_path):
     triangles = cube_mesh.interfaces.triangles
     top = np.flatnonzero((cube_mesh.points[triangles][:, :, 2] > 0.99).all(axis=1))

@@ -8,10 +8,11 @@
 
 #include "common/error.h"
 #include "common/io/formats.h"
-#include "common/io/names/unique_names.h"
 #include "common/io/volumes/label_names.h"
+#include "common/unique_names.h"
 #include "common/utf8.h"
 #include "mesher/distance/vdb_files.h"
+#include "mesher/input/qualified_names.h"
 #include "mesher/input/split_solids.h"
 #include "tools/compare/patch_comparison.h"
 
@@ -123,6 +124,30 @@ TriangleMesh read_one_level_set(const Input& input) {
   return std::move(level_sets[0].surface);
 }
 
+/// A file whose solids are materials.
+struct SplitFile {
+  NamesOfBody names;
+  std::vector<std::size_t> surfaces;  ///< indices of its solids among all surfaces
+};
+
+/// Qualifies names of solids that other materials have, too.
+void name_solids(std::vector<SplitFile> files, const std::vector<Layer>& layers,
+                 std::vector<MaterialSurface>& surfaces, std::vector<Diagnostic>& findings) {
+  UniqueNames taken([](const std::string& name) { return name; });
+  std::vector<bool> solid(surfaces.size(), false);
+  std::vector<NamesOfBody> names;
+  for (SplitFile& file : files) {
+    for (const std::size_t i : file.surfaces) solid[i] = true;
+    names.push_back(std::move(file.names));
+  }
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    if (!solid[i]) (void)taken.add(surfaces[i].name);
+  for (const Layer& layer : layers) (void)taken.add(layer.name);
+  qualify_names("names of materials", names, taken, findings);
+  for (std::size_t f = 0; f < files.size(); ++f)
+    for (const std::size_t i : files[f].surfaces) surfaces[i].name = names[f].names.at(surfaces[i].name);
+}
+
 /// One material for each surface and level set, or with --split-solids for each solid of a surface, with tags
 /// from 1 in the order of the inputs.
 std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs, PrepareRun& run) {
@@ -143,7 +168,7 @@ std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs, 
     report_dropped(dropped, input.name, report);
     return count(std::move(surface));
   };
-  bool split = false;
+  std::vector<SplitFile> split;
   for (Input& input : inputs) {
     const std::string& file = input.name;
     if (!input.material.empty()) {
@@ -153,17 +178,25 @@ std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs, 
         add(s.name.empty() ? file_stem(file) : s.name, file, count(std::move(s.surface)));
     } else if (split_solids_asked) {
       std::vector<NamedSurface> solids = split_solids(read(input), input.material_name());
-      split |= solids.size() > 1;
-      for (NamedSurface& s : solids)
-        add(s.name, solids.size() > 1 ? file + ", '" + s.name + "'" : file, std::move(s.surface));
+      if (solids.size() == 1) {
+        add(solids[0].name, file, std::move(solids[0].surface));
+        continue;
+      }
+      SplitFile& parts = split.emplace_back(SplitFile{{input.material_name(), file, {}}, {}});
+      for (NamedSurface& s : solids) {
+        parts.names.names[s.name] = s.name;
+        parts.surfaces.push_back(surfaces.size());
+        add(s.name, file + ", '" + s.name + "'", std::move(s.surface));
+      }
     } else {
       add(input.material_name(), file, read(input));
     }
   }
-  if (split_solids_asked && !split)
+  if (split_solids_asked && split.empty())
     throw InputError(inputs.front().name, 0,
                      "--split-solids finds no solids, groups or labels that tell its parts apart; leave the "
                      "option out (it does not split what --material names)");
+  name_solids(std::move(split), run.options.bodies.layers, surfaces, report.diagnostics);
   return surfaces;
 }
 

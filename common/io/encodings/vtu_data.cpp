@@ -357,6 +357,41 @@ std::vector<std::uint32_t> VtuData::counts(pugi::xml_node array, std::size_t max
   return values<std::uint32_t>(array, max_count);
 }
 
+void VtuData::texts(pugi::xml_node array, std::size_t count,
+                    const std::function<void(std::string_view text)>& take) const {
+  std::string text;
+  std::size_t taken = 0;
+  const auto add = [&](std::string_view bytes) {
+    while (!bytes.empty()) {
+      const std::size_t size = std::min(bytes.find('\0'), bytes.size());
+      if (text.size() + size > max_vtu_text)
+        fail(array, "text " + std::to_string(taken) + " (counted from 0) has more than " +
+                        std::to_string(max_vtu_text) + " bytes; shorten it");
+      text += bytes.substr(0, size);
+      if (size == bytes.size()) return;
+      if (taken++ == count) fail(array, "more than the " + std::to_string(count) + " texts expected");
+      take(text);
+      text.clear();
+      bytes.remove_prefix(size + 1);
+    }
+  };
+  if (std::string_view(array.attribute("format").as_string("ascii")) == "ascii") {
+    TextScanner in(array.child_value(), name_);
+    for (std::string_view word; !(word = in.word()).empty();) {
+      std::int64_t byte = 0;
+      if (!parse_number(word, byte) || byte < INT8_MIN || byte > UINT8_MAX)
+        fail(array, "expected the number of a character, found " + in_quotes(word));
+      const char character = static_cast<char>(byte);
+      add({&character, 1});
+    }
+  } else {
+    decode(array, count > SIZE_MAX / (max_vtu_text + 1) ? SIZE_MAX : count * (max_vtu_text + 1),
+           {[](std::size_t) {}, add});
+  }
+  if (!text.empty()) fail(array, "its last text does not end with a zero; the file is cut short");
+  expect_size(array, taken, count);
+}
+
 void write_vtu_array(std::size_t size, const std::function<void(std::size_t begin, std::span<char>)>& fill,
                      const ByteSink& sink) {
   constexpr std::size_t block_size = std::size_t{1} << 18;

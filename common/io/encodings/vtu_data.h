@@ -16,6 +16,9 @@
 
 namespace tetwright {
 
+/// The longest text that VtuData::texts() takes, in bytes.
+inline constexpr std::size_t max_vtu_text = 1000;
+
 /// Whether a child of PointData or CellData is an array of numbers; others hold text.
 bool holds_numbers(pugi::xml_node array);
 
@@ -52,6 +55,11 @@ class VtuData {
   std::vector<std::int64_t> integers(pugi::xml_node array, std::size_t max_count) const;
   /// Whole numbers from 0 to 2^32 - 1, in half the memory.
   std::vector<std::uint32_t> counts(pugi::xml_node array, std::size_t max_count) const;
+  /// Hands the texts of an array of type String to `take`, one after the other. Each ends with a zero; ascii
+  /// arrays have a number for each byte. Throws InputError unless there are `count` texts, none of which has
+  /// more than max_vtu_text bytes.
+  void texts(pugi::xml_node array, std::size_t count,
+             const std::function<void(std::string_view text)>& take) const;
   /// The arrays of numbers of PointData or CellData, which have a tuple for each of `n` items; of `chosen`
   /// items alone, unless it is null. Integers that are rounded are counted in `rounded`, unless that is null.
   /// Throws InputError for an array of another size.

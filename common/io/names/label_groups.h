@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
 #include <set>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -24,7 +26,7 @@ inline bool is_face_label(std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Numbers that label faces, as groups.
+/// Numbers or names that label faces, as groups.
 class LabelGroups {
  public:
   /// The index of a label's group. The label 0 is none.
@@ -33,10 +35,20 @@ class LabelGroups {
     if (added) groups_.push_back({label, {}});
     return known->second;
   }
+  /// The same by its name. The empty name is none.
+  std::uint32_t index_of_name(std::string_view name) {
+    auto known = named_.find(name);
+    if (known == named_.end()) {
+      known = named_.emplace(name, static_cast<std::uint32_t>(groups_.size())).first;
+      groups_.push_back({0, known->first});
+    }
+    return known->second;
+  }
   const std::vector<SurfaceRegion>& groups() const { return groups_; }
 
  private:
   std::map<std::int64_t, std::uint32_t> indices_;
+  std::map<std::string, std::uint32_t, std::less<>> named_;
   std::vector<SurfaceRegion> groups_;
 };
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/error.h"
-#include "common/io/names/unique_names.h"
+#include "common/unique_names.h"
 #include "common/mesh/boundary_groups.h"
 #include "common/mesh/face_buckets.h"
 #include "common/mesh/interfaces.h"

@@ -11,7 +11,7 @@
 
 #include "common/error.h"
 #include "common/io/encodings/zip_archive.h"
-#include "common/io/names/unique_names.h"
+#include "common/unique_names.h"
 #include "common/io/surfaces/placed_limit.h"
 #include "common/io/surfaces/surface_builder.h"
 #include "common/io/text/text_scanner.h"

@@ -13,7 +13,7 @@
 
 #include "common/error.h"
 #include "common/io/encodings/byte_order.h"
-#include "common/io/names/unique_names.h"
+#include "common/unique_names.h"
 #include "common/io/surfaces/placed_limit.h"
 #include "common/io/surfaces/point_merger.h"
 #include "common/io/surfaces/surface_builder.h"

@@ -16,29 +16,44 @@ namespace tetwright {
 
 namespace {
 
-/// The labels of all cells, or nothing.
-std::vector<std::int64_t> read_labels(const VtuData& data, pugi::xml_node cell_data, std::size_t cells,
-                                      std::string& label_name) {
-  for (const pugi::xml_node node : cell_data.children("DataArray")) {
-    const std::string_view name = node.attribute("Name").as_string(),
-                           type = node.attribute("type").as_string();
-    if (!is_face_label(name) || type.starts_with("Float") || type == "String") continue;
-    if (node.attribute("NumberOfComponents").as_int(1) != 1) continue;
-    label_name = name;
-    std::vector<std::int64_t> labels = data.integers(node, cells);
-    data.expect_size(node, labels.size(), cells);
-    return labels;
-  }
-  return {};
+bool holds_texts(pugi::xml_node array) {
+  return std::string_view(array.attribute("type").as_string()) == "String";
 }
 
-void note_arrays(pugi::xml_node parent, const std::string& what, const std::string& taken,
+/// Whether an array of CellData says which group each cell belongs to: by name, or by number.
+bool is_label_array(pugi::xml_node array) {
+  if (array.attribute("NumberOfComponents").as_int(1) != 1) return false;
+  if (holds_texts(array)) return true;
+  return holds_numbers(array) && is_face_label(array.attribute("Name").as_string()) &&
+         !std::string_view(array.attribute("type").as_string()).starts_with("Float");
+}
+
+/// The array of labels, or nothing.
+pugi::xml_node find_labels(pugi::xml_node cell_data) {
+  return cell_data.find_child([](pugi::xml_node node) { return is_label_array(node); });
+}
+
+/// The group of each cell, an index into `groups`.
+std::vector<std::uint32_t> read_labels(const VtuData& data, pugi::xml_node array, std::size_t cells,
+                                       LabelGroups& groups) {
+  std::vector<std::uint32_t> of_cells;
+  if (holds_texts(array)) {
+    data.texts(array, cells, [&](std::string_view name) { of_cells.push_back(groups.index_of_name(name)); });
+    return of_cells;
+  }
+  const std::vector<std::int64_t> labels = data.integers(array, cells);
+  data.expect_size(array, labels.size(), cells);
+  of_cells.reserve(cells);
+  for (const std::int64_t label : labels) of_cells.push_back(groups.index_of(label));
+  return of_cells;
+}
+
+void note_arrays(pugi::xml_node parent, const std::string& what, pugi::xml_node taken,
                  std::vector<Dropped>& dropped) {
   std::vector<std::string> names;
   for (const pugi::xml_node node : parent.children())
-    if (const std::string name = field_name(node.attribute("Name").as_string());
-        node.type() == pugi::node_element && (taken.empty() || name != taken))
-      names.push_back(name);
+    if (node.type() == pugi::node_element && node != taken)
+      names.push_back(field_name(node.attribute("Name").as_string()));
   append_dropped_names(dropped, what, names);
 }
 
@@ -73,7 +88,7 @@ TriangleMesh read_poly_data(std::string_view bytes, const std::string& name, std
   if (verts > 0) surface.drop("vertices", verts);
   if (lines > 0) surface.drop("lines", lines);
 
-  std::string label_name;
+  const pugi::xml_node label_array = find_labels(piece.child("CellData"));
   LabelGroups groups;
   if (polygons > 0) {
     const pugi::xml_node cells = piece.child("Polys");
@@ -83,8 +98,8 @@ TriangleMesh read_poly_data(std::string_view bytes, const std::string& name, std
     const std::vector<std::uint32_t> connectivity =
         data.counts(data.array(cells, "connectivity"), offsets.empty() ? 0 : offsets.back());
     // Cells are numbered vertices first, then lines, then polygons.
-    const std::vector<std::int64_t> labels =
-        read_labels(data, piece.child("CellData"), verts + lines + polygons, label_name);
+    std::vector<std::uint32_t> labels;
+    if (label_array) labels = read_labels(data, label_array, verts + lines + polygons, groups);
     std::vector<std::int64_t> polygon;
     std::size_t begin = 0;
     for (std::size_t c = 0; c < polygons; ++c) {
@@ -94,18 +109,20 @@ TriangleMesh read_poly_data(std::string_view bytes, const std::string& name, std
                                     std::to_string(connectivity.size()) + "; the file is damaged");
       polygon.assign(connectivity.begin() + static_cast<std::ptrdiff_t>(begin),
                      connectivity.begin() + static_cast<std::ptrdiff_t>(end));
-      if (!labels.empty()) surface.begin_group(groups.index_of(labels[verts + lines + c]));
+      if (!labels.empty()) surface.begin_group(labels[verts + lines + c]);
       surface.add_polygon(polygon, [&] { return "polygon " + std::to_string(c) + " (counted from 0)"; });
       begin = end;
     }
   }
   if (point_fields) *point_fields = data.fields(piece.child("PointData"), points.size());
   std::vector<SurfaceRegion> named = groups.groups();
-  if (label_name == vtk_surface_field) read_names(data, piece, named, bytes.size());
+  if (!holds_texts(label_array) &&
+      std::string_view(label_array.attribute("Name").as_string()) == vtk_surface_field)
+    read_names(data, piece, named, bytes.size());
   TriangleMesh mesh = surface.finish(dropped, named);
   if (dropped) {
-    note_arrays(piece.child("PointData"), "fields of points", "", *dropped);
-    note_arrays(piece.child("CellData"), "fields of cells", label_name, *dropped);
+    note_arrays(piece.child("PointData"), "fields of points", {}, *dropped);
+    note_arrays(piece.child("CellData"), "fields of cells", label_array, *dropped);
   }
   return mesh;
 }

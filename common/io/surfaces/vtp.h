@@ -12,10 +12,10 @@
 namespace tetwright {
 
 /// Reads the polygons of a VTK XML file of poly data (.vtp), in every encoding that read_vtu() knows.
-/// Polygons become fans of triangles. A cell array of whole numbers that is_face_label() knows by its name
-/// gives their groups; the other arrays, vertices and lines are appended to `dropped`, unless that is null.
-/// `name` is used in messages. Throws InputError with the byte offset for anything that is malformed, and for
-/// triangle strips.
+/// Polygons become fans of triangles. Their groups are given by the first cell array that has a text for each
+/// cell, the group's name, or a whole number, if is_face_label() knows the array's name; the other arrays,
+/// vertices and lines are appended to `dropped`, unless that is null. `name` is used in messages. Throws
+/// InputError with the byte offset for anything that is malformed, and for triangle strips.
 ///
 /// Our own, on pugixml: libvtk9.1 takes 105 MB, without what it depends on.
 TriangleMesh read_vtp(std::string_view bytes, const std::string& name,

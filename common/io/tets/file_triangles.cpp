@@ -7,7 +7,7 @@
 #include <set>
 
 #include "common/error.h"
-#include "common/io/names/unique_names.h"
+#include "common/unique_names.h"
 #include "common/io/surfaces/surface_builder.h"
 #include "common/io/tets/msh_data.h"
 #include "common/io/text/text_scanner.h"

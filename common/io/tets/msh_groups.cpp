@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/tets/msh_groups.h"
 
-#include "common/io/names/unique_names.h"
+#include "common/unique_names.h"
 #include "common/io/tets/msh_data.h"
 #include "common/mesh/interfaces.h"
 

@@ -16,7 +16,7 @@
 #include "common/io/encodings/vtu_arrays.h"
 #include "common/io/encodings/vtu_data.h"
 #include "common/io/names/mesh_fields.h"
-#include "common/io/names/unique_names.h"
+#include "common/unique_names.h"
 #include "common/io/text/text_scanner.h"
 #include "common/io/text/xml_text.h"
 

@@ -137,9 +137,182 @@ TEST(Patches, SolidsWithoutANameHaveNumbers) {
   EXPECT_LE(split.status, 1) << split.err;
   EXPECT_EQ(read_tet_mesh(f / "out.msh").mesh.material_names,
             (std::map<MaterialTag, std::string>{{1, "two_1"}, {2, "two_2"}}));
+  // A made-up name gives way to one that is given.
   write(f / "c.stl", box(2, 3, "c_2", " "));
-  expect_refused("mesh " + (f / "a.stl") + " " + (f / "c.stl") + " -o " + (f / "out.msh"), 3,
-                 {"c.stl: its patch 2 would be called 'c_2' like one of "});
+  const Answer taken =
+      run("mesh " + (f / "a.stl") + " " + (f / "c.stl") + " --resolution 12 -o " + (f / "out.msh"));
+  EXPECT_LE(taken.status, 1) << taken.err;
+  const TetMesh three = read_tet_mesh(f / "out.msh").mesh;
+  for (const char* name : {"a_1", "a_2", "c_2", "c_2_2"}) EXPECT_GT(faces_named(three, name), 0U) << name;
+}
+
+/// The six sides of a box as solids, called as OpenFOAM's users call them.
+std::string sides(const Vec3& low, const Vec3& high) {
+  std::ostringstream out;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool upper : {false, true}) {
+      out << "solid " << (upper ? "max" : "min") << "XYZ"[axis] << "\n";
+      const int u = (axis + (upper ? 1 : 2)) % 3, v = (axis + (upper ? 2 : 1)) % 3;
+      for (const auto& corners : {std::array{0, 1, 2}, std::array{0, 2, 3}}) {
+        out << "facet normal 0 0 0\nouter loop\n";
+        for (const int corner : corners) {
+          Vec3 p = low;
+          if (upper) p[axis] = high[axis];
+          if (corner == 1 || corner == 2) p[u] = high[u];
+          if (corner > 1) p[v] = high[v];
+          out << "vertex " << p.x() << " " << p.y() << " " << p.z() << "\n";
+        }
+        out << "endloop\nendfacet\n";
+      }
+      out << "endsolid\n";
+    }
+  return out.str();
+}
+
+const std::vector<std::string> side_names{"minX", "maxX", "minY", "maxY", "minZ", "maxZ"};
+
+std::set<std::string> names_in(const TetMesh& mesh) {
+  std::set<std::string> names;
+  for (const auto& [patch, group] : mesh.patch_groups) names.insert(group.name);
+  return names;
+}
+
+std::set<std::string> qualified(const std::vector<std::string>& bodies) {
+  std::set<std::string> names;
+  for (const std::string& body : bodies)
+    for (const std::string& side : side_names) names.insert(body + ":" + side);
+  return names;
+}
+
+TEST(Patches, OfOneNameInSeveralFilesAreQualifiedByTheirBody) {
+  const TemporaryFolder f;
+  write(f / "heater.stl", sides({0, 0, 0}, {1, 1, 1}));
+  write(f / "fluid.stl", sides({2, 0, 0}, {3, 1, 1}));
+  write(f / "inner.stl", sides({2.3, 0.3, 0.3}, {2.7, 0.7, 0.7}));
+  const std::set<std::string> names = qualified({"heater", "fluid", "inner"});
+  const Answer a = run("prepare " + (f / "heater.stl") + " " + (f / "fluid.stl") + " " + (f / "inner.stl") +
+                       " --target-tets 4000 -o " + (f / "a.msh") + " --stats " + (f / "s.json") +
+                       " --boundary " + (f / "b.vtp"));
+  EXPECT_LE(a.status, 1) << a.err;
+  EXPECT_EQ(a.err.find("lost"), std::string::npos) << a.err;
+  EXPECT_NE(a.err.find("heater.stl: 6 names of patches (changed, as others have them, too; the first: "
+                       "\"maxX\" -> \"heater:maxX\")"),
+            std::string::npos)
+      << a.err;
+  EXPECT_NE(a.out.find("heater:minY ("), std::string::npos) << a.out;
+  const TetMesh mesh = read_tet_mesh(f / "a.msh").mesh;
+  EXPECT_EQ(names_in(mesh), names);
+  for (const InterfaceTriangle& t : mesh.interfaces) {
+    const Vec3 centre = (mesh.points[t.ids[0]] + mesh.points[t.ids[1]] + mesh.points[t.ids[2]]) / 3;
+    const std::string body = centre.x() < 1.5                                               ? "heater"
+                             : ((centre - Vec3(2.5, 0.5, 0.5)).cwiseAbs().maxCoeff() > 0.4) ? "fluid"
+                                                                                            : "inner";
+    const std::string& name = mesh.patch_groups.at({t.pair(), t.patch}).name;
+    EXPECT_TRUE(name.starts_with(body + ":")) << name << " " << centre.transpose();
+  }
+  std::set<std::string> in_stats;
+  for (const nlohmann::json& patch : nlohmann::json::parse(contents(f / "s.json")).at("patches")) {
+    in_stats.insert(patch.at("name").get<std::string>());
+    EXPECT_NEAR(patch.at("area").get<double>(), patch.at("input_area").get<double>(), 1e-6) << patch;
+  }
+  EXPECT_EQ(in_stats, names);
+  std::set<std::string> in_boundary;
+  for (const SurfaceRegion& group : read_surface(f / "b.vtp").groups) in_boundary.insert(group.name);
+  EXPECT_EQ(in_boundary, names);
+
+  const Answer b =
+      run("simplify " + (f / "a.msh") + " -o " + (f / "b.msh") + " --target-tets 2000 --accept-changes");
+  EXPECT_LE(b.status, 1) << b.err;
+  EXPECT_EQ(names_in(read_tet_mesh(f / "b.msh").mesh), names);
+
+  // Formats of solvers have the form of names that they can hold.
+  for (const std::string format : {".inp", ".feb", ".bdf", ".mesh", ".vtk", ".xdmf"}) {
+    const Answer c = run("simplify " + (f / "a.msh") + " --target-tets 4000 -o " + (f / "c" + format));
+    EXPECT_LE(c.status, 1) << c.err;
+    const std::string text = contents(f / "c" + format);
+    if (format == ".inp")
+      for (const std::string& name : names) {
+        std::string plain = name;
+        plain.replace(plain.find(':'), 1, "_");
+        EXPECT_NE(text.find("NAME=" + plain), std::string::npos) << format << " lacks " << plain;
+      }
+    if (format == ".feb")
+      for (const std::string& name : names)
+        EXPECT_NE(text.find("name=\"" + name + "\""), std::string::npos) << format << " lacks " << name;
+  }
+}
+
+TEST(Patches, OfOneNameInBoxesSideBySideAreQualified) {
+  const TemporaryFolder f;
+  write(f / "left.stl", sides({0, 0, 0}, {1, 1, 1}));
+  write(f / "right.stl", sides({1, 0, 0}, {2, 1, 1}));
+  const Answer a = run("mesh " + (f / "left.stl") + " " + (f / "right.stl") + " --resolution 24 -o " +
+                       (f / "a.msh") + " --accept-changes");
+  EXPECT_LE(a.status, 1) << a.err;
+  const TetMesh mesh = read_tet_mesh(f / "a.msh").mesh;
+  const std::set<std::string> all = qualified({"left", "right"}), names = names_in(mesh);
+  // Both sides of the interface lie on it, and one of them may get all of it.
+  EXPECT_GE(names.size(), all.size() - 1);
+  for (const std::string& name : names) EXPECT_TRUE(all.contains(name)) << name;
+}
+
+TEST(Patches, OfOneFileKeepTheirNames) {
+  const TemporaryFolder f;
+  write(f / "box.stl", sides({0, 0, 0}, {1, 1, 1}));
+  write(f / "plain.stl", box(2, 3, "plain"));
+  const std::set<std::string> own(side_names.begin(), side_names.end());
+  for (const std::string& more : {std::string(), " " + (f / "plain.stl")}) {
+    const Answer a = run("mesh " + (f / "box.stl") + more + " --resolution 24 -o " + (f / "a.msh"));
+    EXPECT_LE(a.status, 1) << a.err;
+    EXPECT_EQ(names_in(read_tet_mesh(f / "a.msh").mesh), own);
+    EXPECT_EQ(a.err.find("names of patches"), std::string::npos) << a.err;
+  }
+}
+
+TEST(Patches, SolidsOfOneNameInTwoFilesAreTwoMaterials) {
+  const TemporaryFolder f;
+  write(f / "knee.stl", box(0, 1, "bone") + box(1.5, 2.5, "disc"));
+  write(f / "hip.stl", box(3, 4, "bone") + box(4.5, 5.5, "skin"));
+  write(f / "other.stl", sides({0, 0, 6}, {1, 1, 7}));
+  const Answer a =
+      run("mesh " + (f / "knee.stl") + " " + (f / "hip.stl") + " --material skin=" + (f / "other.stl") +
+          " --split-solids --resolution 40 -o " + (f / "a.msh"));
+  EXPECT_LE(a.status, 1) << a.err;
+  const TetMesh mesh = read_tet_mesh(f / "a.msh").mesh;
+  EXPECT_EQ(mesh.material_names,
+            (std::map<MaterialTag, std::string>{
+                {1, "knee:bone"}, {2, "disc"}, {3, "hip:bone"}, {4, "hip:skin"}, {5, "skin"}}));
+  EXPECT_NE(a.err.find("knee.stl: 1 names of materials (changed, as others have it, too: \"bone\" -> "
+                       "\"knee:bone\")"),
+            std::string::npos)
+      << a.err;
+  EXPECT_EQ(names_in(mesh), std::set<std::string>(side_names.begin(), side_names.end()));
+}
+
+TEST(Patches, NamesOfTrianglesInAVtpAreLabels) {
+  const TemporaryFolder f;
+  std::string names;
+  for (const std::string name : {"wall", "wall", "wall", "wall", "wall", "inlet"}) {
+    for (const char c : name) names += std::to_string(static_cast<int>(c)) + " ";
+    names += "0 ";
+  }
+  write(f / "box.vtp",
+        "<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\"><PolyData><Piece NumberOfPoints=\"8\" "
+        "NumberOfPolys=\"6\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
+        "format=\"ascii\">0 0 0 1 0 0 0 1 0 1 1 0 0 0 1 1 0 1 0 1 1 1 1 1</DataArray></Points><CellData>"
+        "<Array type=\"String\" Name=\"Names\" format=\"ascii\">" +
+            names +
+            "</Array></CellData><Polys><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">"
+            "0 2 3 1 0 1 5 4 2 6 7 3 0 4 6 2 1 3 7 5 4 5 7 6</DataArray><DataArray type=\"Int32\" "
+            "Name=\"offsets\" format=\"ascii\">4 8 12 16 20 24</DataArray></Polys></Piece></PolyData>"
+            "</VTKFile>");
+  const Answer a = run("mesh " + (f / "box.vtp") + " --resolution 12 -o " + (f / "a.msh"));
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_EQ(a.err.find("Names"), std::string::npos) << a.err;
+  EXPECT_EQ(names_in(read_tet_mesh(f / "a.msh").mesh), (std::set<std::string>{"wall", "inlet"}));
+  const Answer split =
+      run("mesh " + (f / "box.vtp") + " --split-solids --resolution 12 --accept-changes -o " + (f / "b.msh"));
+  EXPECT_NE(split.err.find("'inlet'"), std::string::npos) << split.err;
 }
 
 TEST(Patches, NamesAreTheSameInTheFileAndInTheStats) {

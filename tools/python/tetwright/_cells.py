@@ -11,7 +11,7 @@ import numpy as np
 from . import _core
 from ._arrays import MAX_EXACT_WHOLE, check_range, indices, numbers
 from ._faces import (FACE_GROUPS, GMSH_GROUPS, VTK_GROUPS, Block, Names, are_faces, label_field, sets_of_cells,
-                     sets_of_faces, whole_labels)
+                     sets_of_faces, surface_groups, whole_labels)
 from ._text import plain_text
 
 # VTK's numbers of cell types, by the names of meshio.
@@ -109,9 +109,9 @@ def _of_poly_data(value: Any, name: str) -> Cells:
     of_cells = getattr(value, "cell_data", None) or {}
     block = Block("polygon", range(int(face_of[-1]) + 1 if len(face_of) > 0 else 0),
                   {f: of_cells[f] for f in of_cells.keys()})
-    label = label_field([block], [])
-    if label is not None:
-        made.groups = whole_labels(block.data[label], len(block.cells))[face_of]
+    label, groups, made.group_names = surface_groups(block)
+    if groups is not None:
+        made.groups = groups[face_of]
     made.drop_names("fields of cells", [f for f in block.data if f != label])
     made.point_fields, left = _fields(getattr(value, "point_data", None) or {}, len(made.points))
     made.drop_names("fields of points", left)

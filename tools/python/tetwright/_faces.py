@@ -40,6 +40,38 @@ def whole_labels(values: Any, count: int) -> Optional[np.ndarray]:
     return array.astype(np.int64)
 
 
+def text_labels(values: Any, count: int) -> Optional[np.ndarray]:
+    """As str; None where they are not one text for each cell."""
+    if values is None or np.ma.is_masked(values):
+        return None
+    array = np.asarray(values)
+    if array.shape != (count,):
+        return None
+    if array.dtype.kind == "S":
+        return np.char.decode(array, "utf-8", "replace")
+    if array.dtype.kind == "O" and all(isinstance(v, str) for v in array):
+        return array.astype(str)
+    return array if array.dtype.kind == "U" else None
+
+
+def surface_groups(block: Block) -> tuple[Optional[str], Optional[np.ndarray], dict[int, bytes]]:
+    """The first field of a surface that says which groups its faces are in, the number of each face's group, 0 for
+    none, and the names of groups."""
+    count = len(block.cells)
+    by_number = label_field([block], [])
+    label = next((f for f, values in block.data.items() if f == by_number or text_labels(values, count) is not None),
+                 None)
+    if label is None or label == by_number:
+        return label, None if label is None else whole_labels(block.data[label], count), {}
+    texts, numbers = np.unique(text_labels(block.data[label], count), return_inverse=True)
+    if len(texts) < 2:
+        return label, None, {}
+    first = 0 if texts[0] == "" else 1
+    names = {n: plain_text(str(text), f"a name in the field '{label}'") for n, text in enumerate(texts, first)}
+    names.pop(0, None)
+    return label, numbers.astype(np.int64) + first, names
+
+
 def label_field(faces: list[Block], tets: list[Block]) -> Optional[str]:
     """The field that says which groups the faces are in: whole numbers, 0 for none, of tets too where they have it."""
     def is_label(field: Any) -> bool:

@@ -2,7 +2,10 @@
 #include "common/io/surfaces/vtp.h"
 
 #include <cmath>
+#include <cstring>
 
+#include "common/io/encodings/base64.h"
+#include "common/io/encodings/vtu_data.h"
 #include "tests/common/io/expect_error.h"
 
 namespace tetwright::vtp_test {
@@ -28,6 +31,53 @@ std::string labels(const std::string& name, const std::string& type) {
   return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" format=\"ascii\">9 2 5</DataArray>";
 }
 
+/// Text as VTK has it: each with a zero at its end.
+std::string zero_terminated(const std::vector<std::string>& texts) {
+  std::string bytes;
+  for (const std::string& text : texts) bytes += text + '\0';
+  return bytes;
+}
+
+std::string text_array(const std::string& format, const std::string& content,
+                       const std::string& name = "Names") {
+  return "<Array type=\"String\" Name=\"" + name + "\" format=\"" + format + "\">" + content + "</Array>";
+}
+
+/// A number for each byte.
+std::string ascii_texts(const std::vector<std::string>& texts, const std::string& name = "Names") {
+  std::string numbers;
+  for (const char c : zero_terminated(texts)) numbers += std::to_string(static_cast<int>(c)) + " ";
+  return text_array("ascii", numbers, name);
+}
+
+std::string with_size(const std::string& bytes) {
+  const auto size = static_cast<std::uint32_t>(bytes.size());
+  std::string all(sizeof size, ' ');
+  std::memcpy(all.data(), &size, sizeof size);
+  return all + bytes;
+}
+
+std::string with_base64(const std::string& bytes) {
+  std::string text;
+  append_base64(text, with_size(bytes));
+  return file(text_array("binary", text));
+}
+
+std::string with_appended(const std::string& bytes) {
+  std::string text = file("<Array type=\"String\" Name=\"Names\" format=\"appended\" offset=\"0\"/>");
+  return text.replace(text.find("</VTKFile>"), 0,
+                      "<AppendedData encoding=\"raw\">_" + with_size(bytes) + "</AppendedData>");
+}
+
+std::string with_zlib(const std::string& bytes) {
+  std::string packed;
+  write_vtu_array(
+      bytes.size(), [&](std::size_t begin, std::span<char> to) { bytes.copy(to.data(), to.size(), begin); },
+      [&](std::string_view part) { packed += part; });
+  std::string text = file(text_array("binary", packed));
+  return text.replace(text.find("version=\"0.1\""), 0, "compressor=\"vtkZLibDataCompressor\" ");
+}
+
 TEST(Vtp, PolygonsAndTheirLabels) {
   std::vector<Dropped> dropped;
   const TriangleMesh mesh = read_vtp(file(labels("RegionId", "Int32")), "f", &dropped);
@@ -47,6 +97,76 @@ TEST(Vtp, OtherFieldsAreNamed) {
     ASSERT_EQ(dropped.size(), 2u);
     EXPECT_EQ(dropped[1].what.substr(0, 15), "fields of cells");
   }
+}
+
+TEST(Vtp, TextsOfCellsNameTheirGroups) {
+  // The first is that of the line.
+  const std::vector<std::string> names{"a line", "liver & gall",
+                                       "h\xc3\xbc"
+                                       "fte"};
+  const std::string bytes = zero_terminated(names);
+  for (const std::string& text :
+       {file(ascii_texts(names)), with_base64(bytes), with_appended(bytes), with_zlib(bytes)}) {
+    std::vector<Dropped> dropped;
+    const TriangleMesh mesh = read_vtp(text, "f", &dropped);
+    EXPECT_EQ(mesh.groups, (std::vector<SurfaceRegion>{{0, names[1]}, {0, names[2]}})) << text;
+    EXPECT_EQ(mesh.triangle_groups, (std::vector<std::uint32_t>{0, 0, 1}));
+    EXPECT_EQ(dropped, (std::vector<Dropped>{{"lines", 1}}));
+  }
+}
+
+TEST(Vtp, AnEmptyTextIsNoGroup) {
+  const TriangleMesh mesh = read_vtp(file(ascii_texts({"", "", "bone"})), "f");
+  EXPECT_EQ(mesh.groups, (std::vector<SurfaceRegion>{{}, {0, "bone"}}));
+  EXPECT_EQ(mesh.triangle_groups, (std::vector<std::uint32_t>{0, 0, 1}));
+  // As one label for all: it tells nothing apart.
+  EXPECT_TRUE(read_vtp(file(ascii_texts({"", "bone", "bone"})), "f").groups.empty());
+}
+
+TEST(Vtp, TheFirstOfSeveralLabelsCounts) {
+  const std::string numbers = labels("RegionId", "Int32"), texts = ascii_texts({"a", "b", "c"}),
+                    more = ascii_texts({"d", "e", "f"}, "more");
+  std::vector<Dropped> dropped;
+  EXPECT_EQ(read_vtp(file(numbers + texts), "f", &dropped).groups,
+            (std::vector<SurfaceRegion>{{2, ""}, {5, ""}}));
+  EXPECT_EQ(dropped.back(), (Dropped{"fields of cells (\"Names\")", 1}));
+  dropped.clear();
+  EXPECT_EQ(read_vtp(file(texts + numbers + more), "f", &dropped).groups,
+            (std::vector<SurfaceRegion>{{0, "b"}, {0, "c"}}));
+  EXPECT_EQ(dropped.back(), (Dropped{"fields of cells (\"RegionId\", \"more\")", 2}));
+}
+
+TEST(Vtp, TextsThatDoNotFit) {
+  const auto expect_refused = [](const std::vector<std::string>& texts, const std::string& said) {
+    const std::string bytes = zero_terminated(texts);
+    for (const std::string& text :
+         {file(ascii_texts(texts)), with_base64(bytes), with_appended(bytes), with_zlib(bytes)})
+      expect_input_error(read_vtp, text, "Array \"Names\": ", said);
+  };
+  expect_refused({"a", "b"}, "2 values, but 3 were expected");
+  expect_refused({"a", "b", "c", ""}, "more than the 3 texts expected");
+  expect_refused({"a", std::string(1001, 'b'), "c"}, "text 1 (counted from 0) has more than 1000 bytes");
+  EXPECT_EQ(read_vtp(file(ascii_texts({"a", std::string(1000, 'b'), "c"})), "f").groups.size(), 2u);
+  expect_input_error(read_vtp, with_base64(std::string("a\0b\0c", 5)), "its last text does not end");
+  expect_input_error(read_vtp, with_base64(std::string(4000, 'a')), "4000 bytes, but 3003 were expected");
+  expect_input_error(read_vtp, with_zlib(std::string(4000, '\0')), "4000 bytes, but 3003 were expected");
+  expect_input_error(read_vtp, file(text_array("ascii", "97 0 300 0")),
+                     "number of a character, found \"300\"");
+  expect_input_error(read_vtp, file(text_array("ascii", "liver bone")), "found \"liver\"");
+  // Two texts for each cell are no label.
+  std::string two = ascii_texts({"a", "b"});
+  two.replace(two.find("Name="), 0, "NumberOfComponents=\"2\" ");
+  EXPECT_TRUE(read_vtp(file(two), "f").groups.empty());
+}
+
+TEST(Vtp, NamedGroupsAreWrittenAndRead) {
+  TriangleMesh mesh = read_vtp(file(ascii_texts({"", "liver", "bone"})), "f");
+  std::string text;
+  write_vtp(mesh, [&](std::string_view part) { text += part; });
+  const TriangleMesh back = read_vtp(text, "f");
+  ASSERT_EQ(back.groups.size(), 2u);
+  EXPECT_EQ(back.groups[0].name, "liver");
+  EXPECT_EQ(back.groups[1].name, "bone");
 }
 
 TEST(Vtp, ArraysOfPointsAreFields) {

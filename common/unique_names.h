@@ -21,6 +21,9 @@ class UniqueNames {
 
   std::string add(const std::string& name);
 
+  /// \return whether this name has been given
+  bool has(const std::string& name) const { return used_.contains(key(form_(name))); }
+
   /// Adds the name of a pair of materials, with the largest suffix of those with its name, so that readers
   /// can distinguish it from the input's.
   /// \pre the names of the input are added already

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/io/names/unique_names.h"
+#include "common/unique_names.h"
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
 #include <string_view>
-
-#include "common/io/text/text_scanner.h"
 
 namespace tetwright {
 
@@ -40,7 +39,9 @@ std::int64_t name_suffix(const std::string& base, const std::string& name) {
   if (!name.starts_with(base + "_")) return 0;
   std::int64_t n = 0;
   const std::string_view digits = std::string_view(name).substr(base.size() + 1);
-  const bool known = parse_number(digits, n) && n >= 2 && n <= std::numeric_limits<std::int32_t>::max();
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), n);
+  const bool known = error == std::errc() && end == digits.data() + digits.size() && n >= 2 &&
+                     n <= std::numeric_limits<std::int32_t>::max();
   return known && std::to_string(n) == digits ? n : 0;
 }
 
