@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/block_rules.h"
 
+#include "simplify/tuning/tuning.h"
+
 #include <algorithm>
 
 namespace tetwright {
 
 namespace {
 
-/// Max distance of a feature segment from the input's feature edges, as a share of the mesh's diagonal.
-constexpr double max_crease_share = 0.001;
-/// Parameters along a segment at which its distance from the feature edges is sampled.
-constexpr double segment_samples[] = {0.25, 0.5, 0.75};
+using Features = SimplifyTuning::Features;
 
 /// Max distance of the samples from the feature edges, or infinity if one exceeds `at_most`.
 double crease_distance(const SurfaceProjection& projection, const Vec3& p, const Vec3& q, double at_most) {
   double largest = 0;
-  for (const double s : segment_samples) {
+  for (const double s : Features::segment_parameters) {
     const Vec3 at = p + s * (q - p);
     const auto on = projection.onto_curve(at, at_most);
     if (!on) return std::numeric_limits<double>::infinity();
@@ -28,7 +27,8 @@ double crease_distance(const SurfaceProjection& projection, const Vec3& p, const
 
 void BlockRules::project_onto(const SurfaceProjection& surfaces, double diagonal) {
   projection = &surfaces;
-  max_crease_distance = surfaces.has_patches() ? std::min(max_crease_share * diagonal, tolerance) : 0;
+  max_crease_distance =
+      surfaces.has_patches() ? std::min(Features::max_segment_share * diagonal, tolerance) : 0;
 }
 
 bool near_crease(const BlockRules& rules, const Star& star, std::size_t first, const Vec3& to,

@@ -12,6 +12,7 @@
 #include "simplify/mesh/editable_mesh.h"
 #include "simplify/mesh/star.h"
 #include "simplify/operations/objective.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
@@ -41,7 +42,7 @@ struct BlockRules {
   /// Operations whose new tets are all better than this are accepted, whatever was there before.
   float good_enough = 1;
   /// Max number of targets that a collapse tries, in the order of their weight.
-  std::size_t max_targets = 4;
+  std::size_t max_targets = SimplifyTuning::Collapses::max_targets;
   /// Weight, relative to E, of the distance by which a collapse moves the surface at the removed point; 0:
   /// the volume alone decides, as in the paper.
   double distance_weight = 0;

@@ -14,6 +14,7 @@ namespace {
 
 /// Ring size of the largest basic flip, 4-4.
 constexpr std::size_t basic_ring = 4;
+static_assert(full_reach.max_ring < RingTriangulation::max_points);
 
 Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
 

@@ -5,14 +5,13 @@
 
 #include "simplify/constraints/surface_samples.h"
 #include "simplify/operations/edge_turn.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Share of the min length that new edges may have where the proposal removes one that is too long: halving
-/// the edge of flat tets makes short ones, and nothing else shortens it.
-constexpr double short_share_beside_long = 0.5;
+using EdgeLengths = SimplifyTuning::EdgeLengths;
 
 /// Whether the proposal makes no edge too long or too short, or violates no bound by more than an edge that
 /// it removes.
@@ -31,7 +30,7 @@ bool keeps_sizes(const Workspace& ws, const EdgeSizes& sizes) {
       for (const auto& e : tet_edges) add(worst, at(t[e[0]]), at(t[e[1]]));
     };
     for (const Index t : p.removed) add_tet(before, ws.mesh.points(t));
-    if (before.longer > 1) short_share = short_share_beside_long;
+    if (before.longer > 1) short_share = EdgeLengths::short_share_beside_long;
     for (const NewTet& t : p.added) add_tet(after, t.points);
   } else {
     const Star& star = ws.star;

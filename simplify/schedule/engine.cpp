@@ -15,20 +15,16 @@
 #include "common/tolerances.h"
 #include "simplify/operations/collapse.h"
 #include "simplify/operations/fitting.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr std::size_t slot_grain = 8192;  ///< tets or points a parallel loop hands out at a time
-/// Share of dead slots among those used above which the mesh is compacted.
-constexpr double compact_above = 0.3;
-/// Free slots left for operations that add: the inverse of their share of the live ones, and their min
-/// number. If they run out, the arrays grow.
-constexpr std::size_t spare_share = 16;
-constexpr std::size_t min_spare = 4096;
-/// Min quality of tets, by any objective, when points are fitted to feature edges: shapes recover.
-constexpr float crease_floor = 1e-4f;
+using EdgeLengths = SimplifyTuning::EdgeLengths;
+using Features = SimplifyTuning::Features;
+using Grains = SimplifyTuning::Grains;
+using Slots = SimplifyTuning::Slots;
 
 }  // namespace
 
@@ -53,7 +49,7 @@ TetMesh Engine::take() && {
 void Engine::compact() {
   const bool first = !std::exchange(compacted_, true);
   if (!first) constrained_.keep_patches();
-  const std::size_t spare = mesh_.live_tets() / spare_share + min_spare;
+  const std::size_t spare = mesh_.live_tets() / Slots::spare_inverse + Slots::min_spare;
   SlotNumbers numbers;
   mesh_.compact(spare, spare / 2, &numbers);
   const double min_cell = rules.objective.quality.ideal_edge / 2;
@@ -77,7 +73,7 @@ void Engine::set_sizes(const SizeField* target_length, double min_edge, double m
 }
 
 double Engine::tets_for_edge(double length) const {
-  const double ideal = length * mesh_.space().scale() / Objective::edge_to_ideal;
+  const double ideal = length * mesh_.space().scale() / EdgeLengths::edge_to_ideal;
   return mesh_.total_volume() / (ideal * ideal * ideal);
 }
 
@@ -88,7 +84,7 @@ double Engine::tets_for_sizes() const {
     const Tet& p = mesh_.points(t);
     const Vec3 centre =
         (mesh_.position(p[0]) + mesh_.position(p[1]) + mesh_.position(p[2]) + mesh_.position(p[3])) / 4;
-    const double edge = sizes_->target_length(centre) / Objective::edge_to_ideal;
+    const double edge = sizes_->target_length(centre) / EdgeLengths::edge_to_ideal;
     count += std::fabs(mesh_.signed_volume(t)) / (edge * edge * edge);
   }
   return count;
@@ -105,11 +101,11 @@ void Engine::own_samples(double edge) {
 DeviationReport Engine::deviation() const { return input_surface_->deviation(mesh_, progress_); }
 
 void Engine::compact_if_sparse() {
-  if (mesh_.dead_share() > compact_above) compact();
+  if (mesh_.dead_share() > Slots::compact_above) compact();
 }
 
 void Engine::rate_all() {
-  parallel_for(0, mesh_.tet_slots(), slot_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, mesh_.tet_slots(), Grains::slots, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto t = static_cast<Index>(i);
       const Tet& p = mesh_.points(t);
@@ -127,7 +123,7 @@ float Engine::cutoff(double percent) const {
   const auto bin = [](float q) { return std::bit_cast<std::uint32_t>(q) >> 16; };
   std::vector<std::atomic<std::uint32_t>> shared(bins);
   std::atomic<std::size_t> alive{0};
-  parallel_for(0, mesh_.tet_slots(), 16 * slot_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, mesh_.tet_slots(), 16 * Grains::slots, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> counts(bins, 0);
     std::size_t count = 0;
     for (std::size_t t = begin; t < end; ++t) {
@@ -145,7 +141,7 @@ float Engine::cutoff(double percent) const {
   std::size_t b = 0;
   while (wanted >= shared[b]) wanted -= shared[b++];
   std::vector<float> in_bin = parallel_collect<float>(
-      0, mesh_.tet_slots(), slot_grain, [&](std::size_t begin, std::size_t end, std::vector<float>& out) {
+      0, mesh_.tet_slots(), Grains::slots, [&](std::size_t begin, std::size_t end, std::vector<float>& out) {
         for (std::size_t t = begin; t < end; ++t) {
           const float quality = mesh_.quality(static_cast<Index>(t));
           if (!mesh_.dead(static_cast<Index>(t)) && bin(quality) == b) out.push_back(quality);
@@ -166,7 +162,7 @@ void Engine::begin_improvement() {
 template <class Test>
 std::vector<TetSnapshot> Engine::tets_where(const Test& test) const {
   return parallel_collect<TetSnapshot>(
-      0, mesh_.tet_slots(), slot_grain,
+      0, mesh_.tet_slots(), Grains::slots,
       [&](std::size_t begin, std::size_t end, std::vector<TetSnapshot>& out) {
         for (std::size_t i = begin; i < end; ++i) {
           const auto t = static_cast<Index>(i);
@@ -194,7 +190,7 @@ double Engine::share_below(double angle) const {
 template <class Mark>
 std::vector<Index> Engine::marked_points(const Mark& mark) const {
   std::vector<std::uint8_t> marks(mesh_.point_slots(), 0);
-  parallel_for(0, mesh_.tet_slots(), slot_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, mesh_.tet_slots(), Grains::slots, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto t = static_cast<Index>(i);
       if (mesh_.dead(t)) continue;
@@ -204,7 +200,7 @@ std::vector<Index> Engine::marked_points(const Mark& mark) const {
           std::atomic_ref<std::uint8_t>(marks[mesh_.points(t)[k]]).store(1, std::memory_order_relaxed);
     }
   });
-  return parallel_collect<Index>(0, marks.size(), slot_grain,
+  return parallel_collect<Index>(0, marks.size(), Grains::slots,
                                  [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
                                    for (std::size_t p = begin; p < end; ++p)
                                      if (marks[p]) out.push_back(static_cast<Index>(p));
@@ -290,7 +286,7 @@ std::vector<Index> Engine::points_off_creases() const {
       }
     }
   }
-  return parallel_collect<Index>(0, smallest.size(), slot_grain,
+  return parallel_collect<Index>(0, smallest.size(), Grains::slots,
                                  [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
                                    for (std::size_t p = begin; p < end; ++p) {
                                      if (smallest[p] == no_patch || smallest[p] == largest[p]) continue;
@@ -307,9 +303,9 @@ void Engine::fit_creases() {
   if (!projection_.has_patches()) return;
   BlockRules fitting = rules;
   fitting.max_error = std::numeric_limits<double>::infinity();
-  fitting.good_enough = crease_floor;
+  fitting.good_enough = Features::fitting_floor;
   runner_.each_star(points_off_creases(), Operation::fit, [&](Workspace& ws) {
-    const Outcome moved = fit_to_crease(ws, fitting, crease_floor);
+    const Outcome moved = fit_to_crease(ws, fitting, Features::fitting_floor);
     if (moved == Outcome::done || moved == Outcome::no_candidate || ws.star.dimension() != 1) return moved;
     for (std::size_t b = 0; b < ws.star.points.size(); ++b)
       if (ws.star.edge_dimension(b) == 1 && collapse_onto(ws, fitting, b) == Outcome::done)

@@ -11,14 +11,14 @@
 #include "simplify/operations/face_removal.h"
 #include "simplify/operations/insertion.h"
 #include "simplify/operations/smoothing.h"
-#include "simplify/schedule/schedule_constants.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Half width of the band around the target, once it is reached: actions that leave it are refused.
-constexpr double count_slack = 0.005;
+using PaperSchedule = SimplifyTuning::PaperSchedule;
+using Schedules = SimplifyTuning::Schedules;
 
 /// Collapses the tet's half-edge of least weight that passes every test.
 Outcome collapse_tet(Workspace& ws, const BlockRules& rules, const TetSnapshot& item) {
@@ -120,19 +120,19 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
   const auto target = static_cast<double>(target_tets);
   const double log_first =
       portable_log(std::max(static_cast<double>(mesh.live_tets()) / target, 1 + tolerance::at_target));
-  const double max_interpolation_error = max_useful_error * std::max(1.0, options.gamma / 10);
+  const double max_interpolation_error = Schedules::max_useful_error * std::max(1.0, options.gamma / 10);
   rules.objective.kind = Objective::Kind::paper;
   rules.max_error = rules.objective.quality.ideal_edge;
   rules.annealing_floor = 0;
   rules.losses_cancel = true;
-  rules.count.min = static_cast<std::size_t>(std::ceil(target * (1 - count_slack)));
+  rules.count.min = static_cast<std::size_t>(std::ceil(target * (1 - PaperSchedule::count_slack)));
   engine.compact();
   engine.rate_all();
-  double percent = percent_step;
+  double percent = Schedules::percent_step;
   int idle = 0;
   bool reached = false;
   std::size_t bad = mesh.live_tets();
-  for (int i = 0; i < options.max_iterations && idle < max_idle_iterations; ++i) {
+  for (int i = 0; i < options.max_iterations && idle < Schedules::max_idle_iterations; ++i) {
     reached = reached || mesh.live_tets() <= target_tets;
     if (reached) {
       // Second stop: the number of bad tets tells whether anything is still gained.
@@ -147,10 +147,11 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
     it.percent = percent;
     const auto before = static_cast<double>(it.tets_before);
     const double log_now = portable_log(std::max(before / target, 1.0));
-    rules.accept_worse = reached ? 0 : first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
+    rules.accept_worse = reached ? 0 : Schedules::first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
     // Before the target is reached, allow all that does not undo earlier iterations; then only what keeps or
     // restores the count.
-    rules.count.max = reached ? static_cast<std::size_t>(target * (1 + count_slack)) : it.tets_before;
+    rules.count.max =
+        reached ? static_cast<std::size_t>(target * (1 + PaperSchedule::count_slack)) : it.tets_before;
     const float limit = engine.cutoff(percent);
     it.cutoff = portable_cbrt(limit);
     engine.runner().tets(
@@ -163,11 +164,11 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
     if (!reached) {
       const auto after = static_cast<double>(mesh.live_tets());
       const bool error_grows = rules.max_error < max_interpolation_error;
-      if (percent >= 100 && !error_grows) idle = 1 - after / before < idle_below ? idle + 1 : 0;
+      if (percent >= 100 && !error_grows) idle = 1 - after / before < Schedules::idle_below ? idle + 1 : 0;
       rules.max_error =
           std::min(max_interpolation_error, rules.max_error * std::max(1.0, portable_cbrt(after / target)));
     }
-    percent = std::min(100.0, percent + percent_step);
+    percent = std::min(100.0, percent + Schedules::percent_step);
     engine.recorder().update(1 - log_now / log_first);
   }
   rules.accept_worse = 0;
