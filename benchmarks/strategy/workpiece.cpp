@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "simplify/operations/collapse.h"
+#include "simplify/operations/collapse_table.h"
 
 namespace tetwright {
 
@@ -38,11 +39,11 @@ bool Workpiece::gather(Workspace& ws, Index point) {
 void Workpiece::weigh(Workspace& ws, std::vector<WeighedCollapse>& out,
                       const std::function<bool(Index)>& wanted) {
   Star& star = ws.star;
-  const int dimension = star.dimension();
-  if (dimension == 0) return;
+  const int along = collapsible_edge(vertex_kind(star));
+  if (along == never) return;
   star.compute_gradients();
   for (std::size_t p = 0; p < star.points.size(); ++p) {
-    if (star.edge_dimension(p) != dimension || !wanted(star.points[p])) continue;
+    if (star.edge_dimension(p) != along || !wanted(star.points[p])) continue;
     out.push_back({collapse_weight(star, p, rules), star.centre, star.points[p]});
     ++counts.weights;
   }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/geometry/point_triangle.h"
+#include "simplify/operations/collapse_table.h"
 
 namespace tetwright {
 
@@ -171,8 +172,6 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
                           static_cast<std::int64_t>(left) - static_cast<std::int64_t>(star.tets.size()));
 }
 
-bool may_go(const Star& star, int dimension) { return dimension > 0 && !star.frozen; }
-
 }  // namespace
 
 double collapse_weight(Star& star, std::size_t b, const BlockRules& rules) {
@@ -183,8 +182,8 @@ double collapse_weight(Star& star, std::size_t b, const BlockRules& rules) {
 
 Outcome collapse_onto(Workspace& ws, const BlockRules& rules, std::size_t b) {
   Star& star = ws.star;
-  const int dimension = star.dimension();
-  if (!may_go(star, dimension) || star.edge_dimension(b) != dimension) return Outcome::material_rule;
+  const int along = collapsible_edge(vertex_kind(star));
+  if (along == never || star.edge_dimension(b) != along) return Outcome::material_rule;
   star.compute_normals();
   star.compute_gradients();
   if (collapse_weight(star, b, rules) > rules.max_error) return Outcome::surface_error;
@@ -193,8 +192,8 @@ Outcome collapse_onto(Workspace& ws, const BlockRules& rules, std::size_t b) {
 
 Outcome collapse(Workspace& ws, const BlockRules& rules) {
   Star& star = ws.star;
-  const int dimension = star.dimension();
-  if (!may_go(star, dimension)) return Outcome::material_rule;
+  const int along = collapsible_edge(vertex_kind(star));
+  if (along == never) return Outcome::material_rule;
   star.compute_normals();
   star.compute_gradients();
 
@@ -203,7 +202,7 @@ Outcome collapse(Workspace& ws, const BlockRules& rules) {
   const double max_error = rules.max_error * rules.scale_at(star.centre_position);
   Outcome refusal = Outcome::material_rule;
   for (std::size_t p = 0; p < star.points.size(); ++p) {
-    if (star.edge_dimension(p) != dimension) continue;
+    if (star.edge_dimension(p) != along) continue;
     if ((star.positions[p] - star.centre_position).norm() > rules.max_collapsed_edge) continue;
     if (rules.collapse_short_only &&
         !(rules.sizes->excess(star.centre_position, star.positions[p]).shorter > 1))

@@ -7,6 +7,7 @@
 #include "common/portable_math.h"
 #include "common/tolerances.h"
 #include "simplify/operations/collapse.h"
+#include "simplify/operations/collapse_table.h"
 #include "simplify/operations/edge_removal.h"
 #include "simplify/operations/face_removal.h"
 #include "simplify/operations/insertion.h"
@@ -32,12 +33,12 @@ Outcome collapse_tet(Workspace& ws, const BlockRules& rules, const TetSnapshot& 
   for (Index from : item.points) {
     Star& star = ws.star;
     if (const Outcome o = ws.gather(from); o != Outcome::done) return o;
-    const int dimension = star.dimension();
-    if (dimension == 0 || star.frozen) continue;
+    const int along = collapsible_edge(vertex_kind(star));
+    if (along == never) continue;
     star.compute_gradients();
     for (std::size_t p = 0; p < star.points.size(); ++p) {
       if (std::find(item.points.begin(), item.points.end(), star.points[p]) == item.points.end()) continue;
-      if (star.edge_dimension(p) != dimension) continue;
+      if (star.edge_dimension(p) != along) continue;
       const double weight = collapse_weight(star, p, rules);
       if (weight <= rules.max_error) {
         edges[count++] = {weight, from, star.points[p]};
