@@ -203,7 +203,7 @@ RemeshChanges Remesher::Impl::call(const RemeshRegion& region, const RemeshAim& 
                                .max_rounds = aim.max_rounds});
     operations = rounds.operations();
   }
-  rules.projection = nullptr;
+  rules.surface.projection = nullptr;
   runner.take_totals();
   carry_fields();
   places.repair(mesh, journal.points());

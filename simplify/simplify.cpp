@@ -43,7 +43,7 @@ ImprovementTools tools_of(Engine& engine) {
 /// Sweeps of fit_to_samples() over all interface points.
 void fit(Engine& engine, int sweeps, float floor) {
   for (int i = 0; i < sweeps; ++i) {
-    RoundRecorder::Round round(engine.recorder(), "close", engine.rules.max_error);
+    RoundRecorder::Round round(engine.recorder(), "close", engine.rules.error.limit());
     engine.fit_interfaces(floor);
     round.finish();
   }
@@ -351,7 +351,7 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
                 report, progress);
   engine.recorder().begin_stage("improve");
   const double build = seconds_since(start);
-  engine.rules.max_error = Improve::error_edges * engine.rules.objective.quality.ideal_edge;
+  engine.rules.error.max = Improve::error_edges * engine.rules.objective.quality.ideal_edge;
   const double below = Improve::margin * options.min_solid_angle;
   // Reserve the last rounds for the end.
   const int kept_rounds = std::min(options.max_iterations / 2, Improve::max_last_rounds);

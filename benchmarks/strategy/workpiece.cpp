@@ -2,7 +2,6 @@
 #include "benchmarks/strategy/workpiece.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "simplify/operations/collapse.h"
 #include "simplify/operations/collapse_table.h"
@@ -12,12 +11,12 @@ namespace tetwright {
 Workpiece::Workpiece(TetMesh input, std::size_t target_tets)
     : mesh(std::move(input), "mesh"), target(target_tets) {
   rules.objective.quality = TetQuality::for_target(mesh.total_volume(), static_cast<double>(target));
-  rules.max_error = std::numeric_limits<double>::infinity();
+  rules.error.max.reset();
   rules.count.min = 0;
   // Refuse only shapes far worse than the current ones, in both orderings alike: neither could reach the
   // target if nothing might get worse.
-  rules.accept_worse = 1;
-  rules.annealing_floor = 0.1f;
+  rules.acceptance.worse_probability = 1;
+  rules.acceptance.worse_floor = 0.1f;
   grid.build(mesh, rules.objective.quality.ideal_edge / 2);
   rate_all();
 }

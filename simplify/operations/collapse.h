@@ -8,9 +8,9 @@ namespace tetwright {
 /// Half-edge collapse: moves the centre of the gathered star (Workspace::gather()) onto one of its link
 /// points; the tets at the edge vanish.
 ///
-/// The edge must have the dimension that collapse_table asks for. The BlockRules::max_targets targets of least
-/// Weight = length + Error (Cutler, Dorsey & McMillan 2004, section 4) are tried, and the first that passes
-/// every test is proposed. Tests run in the order of their cost: E, signs, quality, link condition,
+/// The edge must have the dimension that collapse_table asks for. The CollapseLimits::max_targets targets of
+/// least Weight = length + Error (Cutler, Dorsey & McMillan 2004, section 4) are tried, and the first that
+/// passes every test is proposed. Tests run in the order of their cost: E, signs, quality, link condition,
 /// self-intersection.
 ///
 /// \return done: `ws.proposal` is complete. Otherwise the outcome of the target that passed the most tests.

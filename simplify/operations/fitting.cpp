@@ -38,8 +38,8 @@ Outcome fit_to_crease(Workspace& ws, const BlockRules& rules, float floor) {
   const int dimension = star.dimension();
   const double reach = Fitting::reach * shortest_edge(star);
   const Vec3& c = star.centre_position;
-  const auto on = dimension == 1   ? rules.projection->onto_curve(c, reach)
-                  : dimension == 0 ? rules.projection->onto_corner(c, reach)
+  const auto on = dimension == 1   ? rules.surface.projection->onto_curve(c, reach)
+                  : dimension == 0 ? rules.surface.projection->onto_corner(c, reach)
                                    : std::nullopt;
   if (!on) return Outcome::no_candidate;
   const Vec3 to = ws.mesh.snap(*on);
@@ -48,12 +48,12 @@ Outcome fit_to_crease(Workspace& ws, const BlockRules& rules, float floor) {
   return move_fitted(ws, rules, to, floor);
 }
 
-Outcome fit_to_samples(Workspace& ws, const BlockRules& rules, float floor) {
+Outcome fit_to_samples(Workspace& ws, const BlockRules& rules, float floor, SampleWeights weights) {
   Star& star = ws.star;
   const SurfaceSamples* samples = ws.grid.samples();
   if (!samples || star.frozen || star.dimension() != 2) return Outcome::no_candidate;
   star.compute_gradients();
-  if (rules.max_crease_distance > 0 && is_flat(star)) return Outcome::no_candidate;
+  if (rules.has_patches() && is_flat(star)) return Outcome::no_candidate;
   SurfaceGrid::Edit& edit = ws.proposal.edit;
   edit.clear();
   const Vec3& c = star.centre_position;
@@ -77,8 +77,9 @@ Outcome fit_to_samples(Workspace& ws, const BlockRules& rules, float floor) {
     samples->for_each(edit.removed_records[i], [&](const Vec3& at, float distance) {
       const double share = std::clamp(height.dot(at - p) / full, 0.0, 1.0);
       // These weights approach the least sum of fourth powers of the distances.
-      const double weight =
-          rules.fit_farthest ? static_cast<double>(distance) * static_cast<double>(distance) : 1;
+      const double weight = weights == SampleWeights::squared_distance
+                                ? static_cast<double>(distance) * static_cast<double>(distance)
+                                : 1;
       squares += weight * share * share;
       sum += weight * share * normal.dot(at - c);
     });

@@ -93,8 +93,8 @@ void sort_by_quality(Star& star) {
 /// patch never may.
 /// \pre Gradients are computed.
 bool may_leave(const Star& star, const BlockRules& rules) {
-  return rules.leave_surface && rules.projection && !star.creases &&
-         !(rules.max_crease_distance > 0 && !star.interface_triangles.empty() && is_flat(star));
+  return rules.surface.leave_surface && rules.surface.projection && !star.creases &&
+         !(rules.has_patches() && !star.interface_triangles.empty() && is_flat(star));
 }
 
 /// The search for a better position of a star's centre.
@@ -135,9 +135,10 @@ class PlacementSearch {
 
   std::optional<Vec3> find_nearest(const Vec3& to, double max_distance) const {
     const Star::InterfaceTriangle& s = star_.interface_triangles.front();
-    return dimension_ == 2   ? rules_.projection->onto_surface(to, s.inside, s.across, s.patch, max_distance)
-           : dimension_ == 1 ? rules_.projection->onto_curve(to, max_distance)
-                             : rules_.projection->onto_corner(to, max_distance);
+    return dimension_ == 2
+               ? rules_.surface.projection->onto_surface(to, s.inside, s.across, s.patch, max_distance)
+           : dimension_ == 1 ? rules_.surface.projection->onto_curve(to, max_distance)
+                             : rules_.surface.projection->onto_corner(to, max_distance);
   }
 
   /// Sets the bounds on the centre's distance from its surface, curve or corner. False if it may not move.
@@ -145,14 +146,14 @@ class PlacementSearch {
     reach_ = Smoothing::projection_reach * shortest_;
     // A surface point keeps its distance from the reference, which fit_to_samples() chose. Beyond the reach
     // it stays in its plane.
-    if (rules_.projection && dimension_ == 2 && !leave_surface_)
+    if (rules_.surface.projection && dimension_ == 2 && !leave_surface_)
       if (const auto on = nearest(star_.centre_position, reach_)) {
         const Vec3 normal = star_.gradients.front().change.normalized();
         offset_ = normal * normal.dot(star_.centre_position - *on);
         // Drop rounding errors, which would add up.
-        if (rules_.max_crease_distance > 0 && offset_.norm() <= tolerance::flat_patch) offset_.setZero();
+        if (rules_.has_patches() && offset_.norm() <= tolerance::flat_patch) offset_.setZero();
       }
-    max_distance_ = rules_.max_distance;
+    max_distance_ = rules_.surface.max_distance.value_or(0);
     // A point of dimension 0 at which no curve ends or branches (two interfaces that touch) has no corner to
     // stay near, unless one happens to be within the distance.
     if (leave_surface_ && dimension_ == 0 && !nearest(star_.centre_position, max_distance_)) return false;
@@ -165,7 +166,7 @@ class PlacementSearch {
 
   /// End of a step to `to`: back on the surface or curve, or near it; nullopt if that is too far away.
   std::optional<Vec3> placed(Vec3 to) {
-    if (rules_.projection && dimension_ < 3) {
+    if (rules_.surface.projection && dimension_ < 3) {
       const auto on = nearest(to, leave_surface_ ? max_distance_ : reach_);
       if (!on) return {};
       if (!leave_surface_) to = *on + offset_;
@@ -195,8 +196,9 @@ class PlacementSearch {
   /// The worst value at `to`; all values in ws.trial. nullopt if a value is not above the current worst, or E
   /// forbids the move.
   std::optional<float> worst_at(const Vec3& to) {
-    if (!star_.interface_triangles.empty() && star_.surface_error(to - star_.centre_position, rules_.gamma,
-                                                                  rules_.losses_cancel) > rules_.max_error)
+    if (!star_.interface_triangles.empty() &&
+        star_.surface_error(to - star_.centre_position, rules_.error.gamma, rules_.error.losses_cancel) >
+            rules_.error.limit())
       return {};
     float worst = 1;
     for (std::size_t k = 0; k < star_.tets.size(); ++k) {
@@ -307,11 +309,12 @@ Outcome smooth(Workspace& ws, const BlockRules& rules) {
   float worst;
   for (int i = 0; i < Smoothing::steps; ++i, step *= 0.5) {
     Vec3 to = star.centre_position + step;
-    if (rules.max_crease_distance > 0 && dimension < 3) {
+    if (rules.has_patches() && dimension < 3) {
       const Star::InterfaceTriangle& s = star.interface_triangles.front();
       const double reach = Smoothing::projection_reach * shortest_edge(star);
-      const auto on = dimension == 2 ? rules.projection->onto_surface(to, s.inside, s.across, s.patch, reach)
-                                     : rules.projection->onto_curve(to, reach);
+      const auto on = dimension == 2
+                          ? rules.surface.projection->onto_surface(to, s.inside, s.across, s.patch, reach)
+                          : rules.surface.projection->onto_curve(to, reach);
       if (!on) continue;
       to = *on;
     }

@@ -60,16 +60,17 @@ Outcome Workspace::gather(Index point) {
 }
 
 float Workspace::acceptance_limit(const BlockRules& rules, float worst) {
-  const bool may_worsen = rules.accept_worse > 0 && random.uniform() < rules.accept_worse;
-  return std::min(rules.good_enough, may_worsen ? rules.annealing_floor * worst : worst);
+  const bool may_worsen =
+      rules.acceptance.worse_probability > 0 && random.uniform() < rules.acceptance.worse_probability;
+  const float limit = may_worsen ? rules.acceptance.worse_floor * worst : worst;
+  return rules.acceptance.good_enough ? std::min(*rules.acceptance.good_enough, limit) : limit;
 }
 
 Outcome Workspace::test_surface(const BlockRules& rules) {
   if (!grid.test(proposal.edit)) return Outcome::self_intersection;
   const SurfaceSamples* samples = grid.samples();
   if (!samples || proposal.edit.removed.empty()) return Outcome::done;
-  const double allowed = std::min(
-      rules.tolerance, rules.max_deviation * rules.scale_at(proposal.edit.removed.front().points.front()));
+  const double allowed = rules.deviation.limit(rules.scale_at(proposal.edit.removed.front().points.front()));
   return samples->reassign_samples(proposal.edit, allowed) ? Outcome::done : Outcome::surface_error;
 }
 

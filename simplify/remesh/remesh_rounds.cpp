@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simplify/remesh/remesh_rounds.h"
 
-#include <limits>
-
 #include "simplify/operations/collapse.h"
 #include "simplify/operations/insertion.h"
 #include "simplify/schedule/improve_area.h"
@@ -22,16 +20,16 @@ RemeshRounds::RemeshRounds(const ImprovementTools& tools, ChangeJournal& journal
       tools_{tools.mesh, tools.runner, rules_, tools.recorder},
       region_(region),
       area_(tools.mesh, tools.runner, journal, region, with_rim) {
-  rules_.max_error = area_.usual_edge();
+  rules_.error.max = area_.usual_edge();
 }
 
 void RemeshRounds::coarsen(double size, float floor) {
   BlockRules rules = rules_;
-  rules.max_error = std::numeric_limits<double>::infinity();
-  rules.max_collapsed_edge = Remeshing::short_edge * size;
-  rules.max_edge = Remeshing::long_edge * size;
-  rules.max_distance = Remeshing::coarsening_distance * size;
-  rules.good_enough = floor;
+  rules.error.max.reset();
+  rules.collapse.max_collapsed_edge = Remeshing::short_edge * size;
+  rules.collapse.max_new_edge = Remeshing::long_edge * size;
+  rules.surface.max_distance = Remeshing::coarsening_distance * size;
+  rules.acceptance.good_enough = floor;
   std::vector<Index> points = area_.first_points(), changed;
   for (int round = 0; round < Remeshing::max_coarsening_rounds && !points.empty(); ++round) {
     tools_.runner.each_star(points, Operation::collapse, [&](Workspace& ws) { return collapse(ws, rules); });
@@ -44,7 +42,7 @@ void RemeshRounds::coarsen(double size, float floor) {
 void RemeshRounds::refine(double size, float floor) {
   const EditableMesh& mesh = tools_.mesh;
   BlockRules rules = rules_;
-  rules.good_enough = floor;
+  rules.acceptance.good_enough = floor;
   const double limit = Remeshing::long_edge * size;
   std::vector<Index> tets = region_, changed;
   for (int round = 0; round < Remeshing::max_refining_rounds && !tets.empty(); ++round) {

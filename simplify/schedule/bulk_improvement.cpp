@@ -82,9 +82,9 @@ class BulkLoop {
         flipping_(relaxed_rules(tools.rules, area.usual_edge())) {
     moving_.count = flipping_.count = {plan.min_tets, plan.max_tets};
     perturbing_ = resizing_ = flipping_;
-    perturbing_.good_enough = plan.bad_quality;
-    resizing_.accept_worse = 1;
-    resizing_.annealing_floor = BulkRounds::resize_floor;
+    perturbing_.acceptance.good_enough = plan.bad_quality;
+    resizing_.acceptance.worse_probability = 1;
+    resizing_.acceptance.worse_floor = BulkRounds::resize_floor;
   }
 
   int run() {
@@ -103,7 +103,7 @@ class BulkLoop {
 
  private:
   void run_round(std::size_t bad_count, bool first) {
-    RoundRecorder::Round round(recorder_, plan_.kind, moving_.max_error);
+    RoundRecorder::Round round(recorder_, plan_.kind, moving_.error.limit());
     const auto count = static_cast<double>(bad_count);
     round.report().percent = 100 * count / static_cast<double>(mesh_.live_tets());
     if (plan_.remodel) {

@@ -28,8 +28,8 @@ class EdgeLengthAdaptation {
         plan_(plan),
         bound_(static_cast<float>(shape_quality_bound(tools.rules.objective.shape, plan.angle))),
         resizing_(tools.rules) {
-    resizing_.max_error = std::numeric_limits<double>::infinity();
-    resizing_.good_enough = Adaptation::floor * bound_;
+    resizing_.error.max.reset();
+    resizing_.acceptance.good_enough = Adaptation::floor * bound_;
     resizing_.count = {plan.min_tets, plan.max_tets};
   }
 
@@ -87,7 +87,7 @@ class EdgeLengthAdaptation {
 
   void collapse_short() {
     BlockRules rules = resizing_;
-    rules.collapse_short_only = true;
+    rules.collapse.short_edges_only = true;
     tools_.runner.each_star(area_.bad_points(1), Operation::collapse,
                             [&](Workspace& ws) { return collapse(ws, rules); });
   }

@@ -36,7 +36,7 @@ Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, P
       progress_(progress) {
   rules.objective.quality = TetQuality::for_target(mesh_.total_volume(), options.target_tets, options.beta);
   rules.objective.shape = options.objective;
-  rules.gamma = options.gamma;
+  rules.error.gamma = options.gamma;
   // Keep patches from the first collapse on; without patches only improvement needs the projection.
   if (projection_.has_patches()) rules.project_onto(projection_, mesh_.diagonal());
 }
@@ -153,7 +153,7 @@ float Engine::cutoff(double percent) const {
 
 void Engine::begin_improvement() {
   rules.objective.kind = Objective::Kind::shape;
-  rules.accept_worse = 0;
+  rules.acceptance.worse_probability = 0;
   rules.project_onto(projection_, mesh_.diagonal());
   compact();
   rate_all();
@@ -302,8 +302,8 @@ std::vector<Index> Engine::points_off_creases() const {
 void Engine::fit_creases() {
   if (!projection_.has_patches()) return;
   BlockRules fitting = rules;
-  fitting.max_error = std::numeric_limits<double>::infinity();
-  fitting.good_enough = Features::fitting_floor;
+  fitting.error.max.reset();
+  fitting.acceptance.good_enough = Features::fitting_floor;
   runner_.each_star(points_off_creases(), Operation::fit, [&](Workspace& ws) {
     const Outcome moved = fit_to_crease(ws, fitting, Features::fitting_floor);
     if (moved == Outcome::done || moved == Outcome::no_candidate || ws.star.dimension() != 1) return moved;
@@ -315,10 +315,9 @@ void Engine::fit_creases() {
 }
 
 void Engine::fit_far(const std::vector<TetSnapshot>& tets, float floor) {
-  BlockRules farthest = rules;
-  farthest.fit_farthest = true;
-  runner_.each_star(points_around(tets), Operation::fit,
-                    [&](Workspace& ws) { return fit_to_samples(ws, farthest, floor); });
+  runner_.each_star(points_around(tets), Operation::fit, [&](Workspace& ws) {
+    return fit_to_samples(ws, rules, floor, SampleWeights::squared_distance);
+  });
 }
 
 void Engine::fit_interfaces(float floor) {

@@ -71,9 +71,10 @@ Outcome perturb_tet(Workspace& ws, const BlockRules& perturbation, const TetSnap
 
 BlockRules relaxed_rules(const BlockRules& rules, double edge) {
   BlockRules relaxed = rules;
-  relaxed.max_error = std::max(rules.max_error, Collapses::relaxed_error_edges * edge);
-  relaxed.max_targets = Collapses::relaxed_max_targets;
-  relaxed.max_distance = Collapses::relaxed_distance_edges * edge;
+  if (relaxed.error.max)
+    relaxed.error.max = std::max(*relaxed.error.max, Collapses::relaxed_error_edges * edge);
+  relaxed.collapse.max_targets = Collapses::relaxed_max_targets;
+  relaxed.surface.max_distance = Collapses::relaxed_distance_edges * edge;
   return relaxed;
 }
 

@@ -2,6 +2,7 @@
 #include "simplify/schedule/improvement.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -33,15 +34,14 @@ class ImprovementLoop {
   /// The number of rounds.
   int run() {
     relaxed_ = relaxed_rules(rules_, area_.usual_edge());
-    relaxed_.leave_surface = true;
-    max_deviation_ =
-        std::min(rules_.tolerance, ImprovementRounds::max_deviation_factor * rules_.max_deviation);
+    relaxed_.surface.leave_surface = true;
+    max_deviation_ = rules_.deviation.widened(ImprovementRounds::max_deviation_factor);
     min_bad_ = 4 * area_.tet_count();
     int i = 0;
     for (; i < plan_.max_rounds; ++i) {
       std::vector<TetSnapshot> bad = area_.bad_tets(bounds_.bad_quality);
       if (bad.empty() || !worth_a_round(bad, i == 0)) break;
-      RoundRecorder::Round round(recorder_, plan_.kind, rules_.max_error);
+      RoundRecorder::Round round(recorder_, plan_.kind, rules_.error.limit());
       round.report().cutoff = plan_.angle;
       round.report().percent = 100 * static_cast<double>(bad.size()) / static_cast<double>(mesh_.live_tets());
       run_round(std::move(bad));
@@ -87,9 +87,9 @@ class ImprovementLoop {
   }
 
   void run_round(std::vector<TetSnapshot> bad) {
-    if (last_resort_)
-      rules_.max_deviation = relaxed_.max_deviation =
-          std::min(max_deviation_, ImprovementRounds::deviation_growth * rules_.max_deviation);
+    if (last_resort_ && max_deviation_)
+      rules_.deviation.max = relaxed_.deviation.max =
+          std::min(*max_deviation_, *rules_.deviation.widened(ImprovementRounds::deviation_growth));
     const double kept =
         last_resort_ || plan_.target_tets <= plan_.min_tets
             ? 0
@@ -117,7 +117,7 @@ class ImprovementLoop {
   /// Makes room for insertions by collapses that leave only good tets, or improve the worst.
   void make_room(const std::vector<TetSnapshot>& bad) {
     BlockRules thinning = rules_;
-    thinning.good_enough = bounds_.bad_quality * ImprovementRounds::thinning_margin;
+    thinning.acceptance.good_enough = bounds_.bad_quality * ImprovementRounds::thinning_margin;
     thinning.count.min = plan_.target_tets;
     runner_.each_star(
         area_.points_to_thin(bad), Operation::collapse, [&](Workspace& ws) { return collapse(ws, thinning); },
@@ -126,7 +126,7 @@ class ImprovementLoop {
 
   void perturb(const std::vector<TetSnapshot>& bad) {
     BlockRules perturbation = last_resort_ ? relaxed_ : rules_;
-    perturbation.good_enough = ImprovementRounds::perturbed_share * bounds_.bad_quality;
+    perturbation.acceptance.good_enough = ImprovementRounds::perturbed_share * bounds_.bad_quality;
     runner_.tets(
         area_.tets_around(bad),
         [&](Workspace& ws, const TetSnapshot& item, int) { return perturb_tet(ws, perturbation, item); },
@@ -162,7 +162,7 @@ class ImprovementLoop {
   const ImprovementPlan& plan_;
   ImproveBounds bounds_;
   BlockRules relaxed_;
-  double max_deviation_ = 0;
+  std::optional<double> max_deviation_;
   std::vector<TetSnapshot> tried_;  ///< tets tried in the last round, by number
   std::size_t min_bad_ = 0;         ///< min number of bad tets after a round
   int idle_ = 0;                    ///< consecutive rounds without gain

@@ -34,8 +34,8 @@ void halve(const ImprovementTools& tools, const std::vector<TetSnapshot>& tets, 
            double angle, bool surface) {
   EditableMesh& mesh = tools.mesh;
   BlockRules halving = tools.rules;
-  halving.max_error = std::numeric_limits<double>::infinity();
-  halving.good_enough =
+  halving.error.max.reset();
+  halving.acceptance.good_enough =
       Refinement::split_floor * static_cast<float>(shape_quality_bound(halving.objective.shape, angle));
   halving.count = {plan.min_tets, plan.max_tets};
   RoundRecorder::Round round(tools.recorder, plan.kind, 0);

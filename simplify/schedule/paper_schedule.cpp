@@ -40,7 +40,7 @@ Outcome collapse_tet(Workspace& ws, const BlockRules& rules, const TetSnapshot& 
       if (std::find(item.points.begin(), item.points.end(), star.points[p]) == item.points.end()) continue;
       if (star.edge_dimension(p) != along) continue;
       const double weight = collapse_weight(star, p, rules);
-      if (weight <= rules.max_error) {
+      if (weight <= rules.error.limit()) {
         edges[count++] = {weight, from, star.points[p]};
       } else {
         refusal = Outcome::surface_error;
@@ -90,7 +90,7 @@ Outcome paper_step(Workspace& ws, const BlockRules& rules, const TetSnapshot& it
   if (smooth_points(ws, rules, item, 0) == Outcome::done) return Outcome::done;
   // A new point must improve the tets around it: tets that annealing accepts would be split for ever.
   BlockRules strict = rules;
-  strict.accept_worse = 0;
+  strict.acceptance.worse_probability = 0;
   if (insert_in_tet(ws, strict, item.tet, InsertionPlace::centre) == Outcome::done) return Outcome::done;
   for (int f = 0; f < 4; ++f)
     if (insert_in_face(ws, strict, item.tet, f, InsertionPlace::centre) == Outcome::done)
@@ -123,9 +123,9 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
       portable_log(std::max(static_cast<double>(mesh.live_tets()) / target, 1 + tolerance::at_target));
   const double max_interpolation_error = Schedules::max_useful_error * std::max(1.0, options.gamma / 10);
   rules.objective.kind = Objective::Kind::paper;
-  rules.max_error = rules.objective.quality.ideal_edge;
-  rules.annealing_floor = 0;
-  rules.losses_cancel = true;
+  double& error = rules.error.max.emplace(rules.objective.quality.ideal_edge);
+  rules.acceptance.worse_floor = 0;
+  rules.error.losses_cancel = true;
   rules.count.min = static_cast<std::size_t>(std::ceil(target * (1 - PaperSchedule::count_slack)));
   engine.compact();
   engine.rate_all();
@@ -143,12 +143,13 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
       bad = now;
     }
     engine.compact_if_sparse();
-    RoundRecorder::Round round(engine.recorder(), "simplify", rules.max_error);
+    RoundRecorder::Round round(engine.recorder(), "simplify", error);
     IterationReport& it = round.report();
     it.percent = percent;
     const auto before = static_cast<double>(it.tets_before);
     const double log_now = portable_log(std::max(before / target, 1.0));
-    rules.accept_worse = reached ? 0 : Schedules::first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
+    rules.acceptance.worse_probability =
+        reached ? 0 : Schedules::first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
     // Before the target is reached, allow all that does not undo earlier iterations; then only what keeps or
     // restores the count.
     rules.count.max =
@@ -164,15 +165,14 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
     round.finish();
     if (!reached) {
       const auto after = static_cast<double>(mesh.live_tets());
-      const bool error_grows = rules.max_error < max_interpolation_error;
+      const bool error_grows = error < max_interpolation_error;
       if (percent >= 100 && !error_grows) idle = 1 - after / before < Schedules::idle_below ? idle + 1 : 0;
-      rules.max_error =
-          std::min(max_interpolation_error, rules.max_error * std::max(1.0, portable_cbrt(after / target)));
+      error = std::min(max_interpolation_error, error * std::max(1.0, portable_cbrt(after / target)));
     }
     percent = std::min(100.0, percent + Schedules::percent_step);
     engine.recorder().update(1 - log_now / log_first);
   }
-  rules.accept_worse = 0;
+  rules.acceptance.worse_probability = 0;
 }
 
 }  // namespace tetwright

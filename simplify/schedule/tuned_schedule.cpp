@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "common/portable_math.h"
 #include "common/tolerances.h"
@@ -65,9 +66,9 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
   const double max_error = Schedules::max_useful_error * std::max(1.0, options.gamma / 10);
   rules.objective.kind = Objective::Kind::paper;
   rules.objective.quality.needle_angle = TunedLoop::needle_angle;
-  rules.max_error = TunedLoop::first_error_edges * rules.objective.quality.ideal_edge;
-  rules.annealing_floor = TunedLoop::annealing_floor;
-  rules.distance_weight = TunedLoop::distance_weight;
+  double& error = rules.error.max.emplace(TunedLoop::first_error_edges * rules.objective.quality.ideal_edge);
+  rules.acceptance.worse_floor = TunedLoop::annealing_floor;
+  rules.collapse.distance_weight = TunedLoop::distance_weight;
   // Rounded up: for small targets the slack is less than one tet.
   rules.count.min = static_cast<std::size_t>(std::ceil(target * (1 - Closing::slack)));
   engine.rate_all();
@@ -78,18 +79,19 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
         (static_cast<double>(mesh.live_tets()) < TunedLoop::samples_below * target ||
          engine.ledger().utilization() > TunedLoop::fit_above_utilization)) {
       engine.own_samples(rules.objective.quality.ideal_edge);
-      rules.max_deviation = TunedLoop::first_deviation * rules.objective.quality.ideal_edge;
+      rules.deviation.max = TunedLoop::first_deviation * rules.objective.quality.ideal_edge;
     } else {
       engine.compact_if_sparse();
     }
-    RoundRecorder::Round round(engine.recorder(), "simplify", rules.max_error);
+    RoundRecorder::Round round(engine.recorder(), "simplify", error);
     IterationReport& it = round.report();
     it.percent = percent;
     rules.count.max = it.tets_before;
     const double log_now = portable_log(static_cast<double>(it.tets_before) / target);
-    rules.accept_worse = Schedules::first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
+    rules.acceptance.worse_probability =
+        Schedules::first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
     if (!counted && engine.share_below(options.min_solid_angle) > Tolerance::max_bad_share)
-      rules.accept_worse = 0;
+      rules.acceptance.worse_probability = 0;
     const float limit = engine.cutoff(percent);
     it.cutoff = portable_cbrt(limit);
     engine.fit_creases();
@@ -110,12 +112,12 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
     round.finish();
     // A larger E helps only if E is what refuses.
     const bool error_refuses =
-        rules.max_error < max_error &&
+        error < max_error &&
         TunedLoop::error_refusals_inverse * it.counts.of(Operation::collapse, Outcome::surface_error) >
             it.counts.tried(Operation::collapse);
     if (removed < TunedLoop::min_removed) {
-      rules.max_error = std::min(max_error, TunedLoop::error_growth * rules.max_error);
-      rules.max_deviation = std::min(rules.tolerance, TunedLoop::deviation_growth * rules.max_deviation);
+      error = std::min(max_error, TunedLoop::error_growth * error);
+      rules.deviation.max = rules.deviation.widened(TunedLoop::deviation_growth);
     }
     const bool sized = rules.sizes && rules.sizes->has_target_length();
     if (removed < (sized     ? Tolerance::sized_min_removed
@@ -128,7 +130,7 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
     percent = std::min(100.0, percent + Schedules::percent_step);
     engine.recorder().update(1 - log_now / log_first);
   }
-  rules.accept_worse = 0;
+  rules.acceptance.worse_probability = 0;
   return mesh.live_tets() <= loop_target;
 }
 
@@ -138,12 +140,14 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options, std::siz
   EditableMesh& mesh = engine.mesh();
   BlockRules& rules = engine.rules;
   if (options.tolerance > 0) {
-    rules.tolerance = rules.max_deviation =
+    const double loop_tolerance =
         Tolerance::loop_share *
         std::min(options.tolerance * mesh.space().scale(), Tolerance::max_diagonal_share * mesh.diagonal());
-    rules.max_crease_distance = std::min(rules.max_crease_distance, rules.tolerance);
-    engine.set_spacing(Tolerance::between_places * rules.tolerance);
-    const double edge = Tolerance::to_edge * rules.tolerance;
+    rules.deviation = {.max = loop_tolerance, .tolerance = loop_tolerance};
+    std::optional<double>& feature_distance = rules.surface.max_feature_distance;
+    if (feature_distance) feature_distance = std::min(*feature_distance, loop_tolerance);
+    engine.set_spacing(Tolerance::between_places * loop_tolerance);
+    const double edge = Tolerance::to_edge * loop_tolerance;
     engine.own_samples(loop_target > 0 ? std::min(rules.objective.quality.ideal_edge, edge) : edge);
   }
   if (loop_target > 0) {
@@ -160,8 +164,8 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options, std::siz
   }
   if (options.tolerance > 0) {
     const double room = Tolerance::closing_share / Tolerance::loop_share;
-    rules.tolerance *= room;
-    rules.max_deviation *= room;
+    *rules.deviation.tolerance *= room;
+    *rules.deviation.max *= room;
   }
 }
 

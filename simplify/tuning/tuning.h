@@ -258,7 +258,7 @@ struct SimplifyTuning {
     /// Multiple of the target below which triangles own samples of the input's surface: until then E keeps
     /// surfaces near enough, and samples from the start would take twice the time for nothing.
     static constexpr double samples_below = 8;
-    /// Initial BlockRules::max_deviation, in edges, and its factor after an iteration that removed too
+    /// Initial DeviationBound::max, in edges, and its factor after an iteration that removed too
     /// little. Bunny and armadillo to 10K, mean of the max distances both ways in percent of the diagonal:
     /// 0.38 with these values, 0.43 with 0.2 and 1.1, 0.33 with 0.18 and 1.05, which takes longer and leaves
     /// less room for shapes.
@@ -373,7 +373,7 @@ struct SimplifyTuning {
     /// Share of the allowed decrease of the count that is reserved for the last resort: edge removals would
     /// use up all of it, and no collapse could remove the last slivers.
     static constexpr double kept_share = 0.125;
-    /// Growth of BlockRules::max_deviation with each last-resort round, and its max factor: the last slivers
+    /// Growth of DeviationBound::max with each last-resort round, and its max factor: the last slivers
     /// of fine detail need room. Unlimited growth would double the max distance.
     static constexpr double deviation_growth = 1.25, max_deviation_factor = 3;
   };

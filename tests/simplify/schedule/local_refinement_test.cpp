@@ -44,12 +44,12 @@ TEST(LocalRefinement, FollowsASurfaceWithinItsFaces) {
   const std::vector<std::uint8_t> free;
   Engine engine(grid_mesh(4), {"mesh", 384, 5, 10, 1, 0, ShapeObjective::both, nullptr, free, false}, nullptr,
                 nullptr);
-  engine.rules.max_error = std::numeric_limits<double>::infinity();
+  engine.rules.error.max.reset();
   engine.begin_improvement();
   engine.keep_input_surface(&surface, true);
   const double scale = engine.mesh().space().scale(), limit = 0.08 * scale;
   engine.own_samples(0.2 * scale);
-  engine.rules.tolerance = engine.rules.max_deviation = 0.87 * limit;
+  engine.rules.deviation.tolerance = engine.rules.deviation.max = 0.87 * limit;
   ASSERT_EQ(engine.find_far_tets(limit).size(), 1);  // the tet at the face below the hill
   WholeMesh whole(engine);
   const ImprovementPlan plan{.kind = "close",
