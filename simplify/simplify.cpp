@@ -16,10 +16,13 @@
 #include "simplify/schedule/bulk_improvement.h"
 #include "simplify/schedule/edge_length_adaptation.h"
 #include "simplify/schedule/engine.h"
+#include "simplify/schedule/fitting_sweeps.h"
 #include "simplify/schedule/improve_area.h"
 #include "simplify/schedule/local_refinement.h"
 #include "simplify/schedule/paper_schedule.h"
+#include "simplify/schedule/tet_count.h"
 #include "simplify/schedule/tuned_schedule.h"
+#include "simplify/schedule/whole_mesh.h"
 #include "simplify/tuning/tuning.h"
 
 namespace tetwright {
@@ -44,7 +47,7 @@ ImprovementTools tools_of(Engine& engine) {
 void fit(Engine& engine, int sweeps, float floor) {
   for (int i = 0; i < sweeps; ++i) {
     RoundRecorder::Round round(engine.recorder(), "close", engine.rules.error.limit());
-    engine.fit_interfaces(floor);
+    fit_interfaces(engine, floor);
     round.finish();
   }
 }
@@ -66,10 +69,10 @@ void check(const TetMesh& mesh, const std::string& name) {
 std::size_t target_for_sizes(const Engine& engine, const SimplifyOptions& options) {
   double tets = static_cast<double>(options.target_tets);
   if (options.sizes)
-    tets = engine.tets_for_sizes();
+    tets = tets_for_sizes(engine.mesh(), engine.sizes());
   else if (options.target_tets > 0)
-    tets = std::max(std::min(tets, engine.tets_for_edge(within_bounds * options.min_edge)),
-                    engine.tets_for_edge(options.max_edge / within_bounds));
+    tets = std::max(std::min(tets, tets_for_edge(engine.mesh(), within_bounds * options.min_edge)),
+                    tets_for_edge(engine.mesh(), options.max_edge / within_bounds));
   require_memory(Memory::program_bytes + Memory::bytes_per_tet * tets,
                  options.name + ": about " + short_number(tets) + " tets with edges of the wanted lengths",
                  "give larger ones");
@@ -145,7 +148,7 @@ bool is_bounded(const SimplifyOptions& options) {
 /// \param target number of tets; 0: the current one.
 /// \param deviation set if that of the result is known.
 void close(Engine& engine, const SimplifyOptions& options, std::size_t target, std::size_t first_count,
-           std::optional<DeviationReport>& deviation) {
+           const Progress* progress, std::optional<DeviationReport>& deviation) {
   const bool bounded = is_bounded(options);
   engine.begin_improvement();
   if (bounded) {
@@ -175,7 +178,7 @@ void close(Engine& engine, const SimplifyOptions& options, std::size_t target, s
                              .brief = false,
                              .max_rounds = Closing::max_rounds};
   // After a point has arrived, its neighbours may have more room.
-  for (int i = 0; i < Features::closing_sweeps; ++i) engine.fit_creases();
+  for (int i = 0; i < Features::closing_sweeps; ++i) fit_feature_edges(engine);
   fit(engine, Closing::sweeps_before, quality_at(engine, plan.angle));
   WholeMesh whole(engine);
   improve_area(tools_of(engine), whole, plan, 1);
@@ -185,7 +188,7 @@ void close(Engine& engine, const SimplifyOptions& options, std::size_t target, s
   // Fitting may cost a tet that is just above the bound.
   if (!counted) refine_bad_tets(tools_of(engine), whole, plan, options.min_solid_angle);
   if (options.tolerance == 0) return;
-  deviation = engine.deviation();
+  deviation = engine.input_samples().deviation(progress);
   if (deviation->upper() <= options.tolerance) return;
   engine.throw_if_stopped();
   deviation.reset();
@@ -227,7 +230,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     engine.throw_if_stopped();
     if (tuned) engine.compact();
     engine.throw_if_stopped();
-    if (tuned) engine.keep_input_surface(options.surface, options.tolerance > 0);
+    if (tuned) engine.input_samples().keep_surface(options.surface, options.tolerance > 0);
   });
   const double build = seconds_since(start);
   if (report) report->seconds_build = build;
@@ -251,13 +254,13 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
       const std::size_t closing_target = in_time ? target : engine.mesh().live_tets();
       in_time &= done_in_time([&] {
         engine.recorder().begin_stage("improve");
-        close(engine, options, closing_target, first_count, deviation);
+        close(engine, options, closing_target, first_count, progress, deviation);
       });
     }
   }
   if (options.tolerance > 0 && !deviation) {
     engine.recorder().begin_stage("compare");
-    deviation = engine.deviation();
+    deviation = engine.input_samples().deviation(progress);
   }
   if (report) {
     report->deviation = deviation;

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "simplify/operations/insertion.h"
+#include "simplify/schedule/fitting_sweeps.h"
 #include "simplify/schedule/improve_area.h"
+#include "simplify/schedule/selection.h"
 #include "simplify/tuning/tuning.h"
 
 namespace tetwright {
@@ -84,7 +86,8 @@ void refine_beyond_tolerance(Engine& engine, ImprovementArea& area, const Improv
   // Use this bound, not the plan's, which leaves a point less room than the tolerance may need.
   const auto floor = static_cast<float>(shape_quality_bound(engine.rules.objective.shape, angle));
   for (int i = 0; i < Refinement::max_rounds; ++i) {
-    const std::vector<TetSnapshot> far = engine.find_far_tets(limit);
+    const std::vector<TetSnapshot> far =
+        tets_with_faces(engine.mesh(), engine.input_samples().add_far_samples(limit));
     if (far.empty() ||
         static_cast<double>(far.size()) >
             std::max(Refinement::max_far_tets,
@@ -94,7 +97,7 @@ void refine_beyond_tolerance(Engine& engine, ImprovementArea& area, const Improv
     improve_area(tools, area, plan, 1);
     for (int sweep = 0; sweep < Refinement::far_fits; ++sweep) {
       RoundRecorder::Round round(tools.recorder, plan.kind, 0);
-      engine.fit_far(far, floor);
+      fit_farthest_samples(engine, far, floor);
       round.finish();
     }
     refine_bad_tets(tools, area, plan, angle);

@@ -12,6 +12,7 @@
 #include "simplify/operations/face_removal.h"
 #include "simplify/operations/insertion.h"
 #include "simplify/operations/smoothing.h"
+#include "simplify/schedule/selection.h"
 #include "simplify/tuning/tuning.h"
 
 namespace tetwright {
@@ -154,10 +155,10 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
     // restores the count.
     rules.count.max =
         reached ? static_cast<std::size_t>(target * (1 + PaperSchedule::count_slack)) : it.tets_before;
-    const float limit = engine.cutoff(percent);
+    const float limit = quality_cutoff(mesh, percent);
     it.cutoff = portable_cbrt(limit);
     engine.runner().tets(
-        engine.bad_tets(limit),
+        bad_tets(mesh, limit),
         [&](Workspace& ws, const TetSnapshot& item, int stage) {
           return paper_step(ws, rules, item, stage, limit);
         },

@@ -11,6 +11,8 @@
 #include "simplify/operations/edge_removal.h"
 #include "simplify/operations/face_removal.h"
 #include "simplify/operations/smoothing.h"
+#include "simplify/schedule/fitting_sweeps.h"
+#include "simplify/schedule/selection.h"
 #include "simplify/tuning/tuning.h"
 
 namespace tetwright {
@@ -25,15 +27,15 @@ using TunedLoop = SimplifyTuning::TunedLoop;
 void collapse_block(Engine& engine, float limit, std::size_t target) {
   EditableMesh& mesh = engine.mesh();
   engine.runner().each_star(
-      engine.bad_points(limit), Operation::collapse,
-      [&](Workspace& ws) { return collapse(ws, engine.rules); }, [&] { return mesh.live_tets() <= target; });
+      bad_points(mesh, limit), Operation::collapse, [&](Workspace& ws) { return collapse(ws, engine.rules); },
+      [&] { return mesh.live_tets() <= target; });
 }
 
 /// Flips and smooths tets that are still bad.
 void flip_and_smooth_block(Engine& engine, float limit) {
   const EditableMesh& mesh = engine.mesh();
   engine.runner().tets(
-      engine.bad_tets(limit),
+      bad_tets(mesh, limit),
       [&](Workspace& ws, const TetSnapshot& item, int) {
         // The tet may have been improved by a neighbour's operation since it was listed.
         if (!exists(mesh, item) || mesh.quality(item.tet) > limit) return Outcome::stale;
@@ -75,10 +77,10 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
   double percent = Schedules::percent_step;
   int idle = 0;
   for (int i = 0; i < options.max_iterations && mesh.live_tets() > loop_target; ++i) {
-    if (!engine.owns_samples() &&
+    if (!engine.input_samples().assigned() &&
         (static_cast<double>(mesh.live_tets()) < TunedLoop::samples_below * target ||
          engine.ledger().utilization() > TunedLoop::fit_above_utilization)) {
-      engine.own_samples(rules.objective.quality.ideal_edge);
+      engine.assign_samples(rules.objective.quality.ideal_edge);
       rules.deviation.max = TunedLoop::first_deviation * rules.objective.quality.ideal_edge;
     } else {
       engine.compact_if_sparse();
@@ -90,11 +92,11 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
     const double log_now = portable_log(static_cast<double>(it.tets_before) / target);
     rules.acceptance.worse_probability =
         Schedules::first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
-    if (!counted && engine.share_below(options.min_solid_angle) > Tolerance::max_bad_share)
+    if (!counted && share_below(mesh, rules.objective, options.min_solid_angle) > Tolerance::max_bad_share)
       rules.acceptance.worse_probability = 0;
-    const float limit = engine.cutoff(percent);
+    const float limit = quality_cutoff(mesh, percent);
     it.cutoff = portable_cbrt(limit);
-    engine.fit_creases();
+    fit_feature_edges(engine);
     collapse_block(engine, limit, loop_target);
     const std::size_t collapsed = mesh.live_tets();
     const double removed = 1 - static_cast<double>(collapsed) / static_cast<double>(it.tets_before);
@@ -103,12 +105,12 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
                                     (removed < TunedLoop::min_removed && percent >= 100)))
       flip_and_smooth_block(engine, removed < TunedLoop::min_removed && percent >= 100
                                         ? limit
-                                        : std::min(limit, engine.cutoff(TunedLoop::flip_percent)));
+                                        : std::min(limit, quality_cutoff(mesh, TunedLoop::flip_percent)));
     // If a body has lost much of its volume, fit its surface back to the middle of its samples; near the
     // target fit every surface.
     if (collapsed > loop_target && (engine.ledger().utilization() > TunedLoop::fit_above_utilization ||
                                     static_cast<double>(collapsed) < TunedLoop::fits_below * target))
-      engine.fit_interfaces(1);
+      fit_interfaces(engine, 1);
     round.finish();
     // A larger E helps only if E is what refuses.
     const bool error_refuses =
@@ -146,9 +148,9 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options, std::siz
     rules.deviation = {.max = loop_tolerance, .tolerance = loop_tolerance};
     std::optional<double>& feature_distance = rules.surface.max_feature_distance;
     if (feature_distance) feature_distance = std::min(*feature_distance, loop_tolerance);
-    engine.set_spacing(Tolerance::between_places * loop_tolerance);
+    engine.input_samples().set_spacing(Tolerance::between_places * loop_tolerance);
     const double edge = Tolerance::to_edge * loop_tolerance;
-    engine.own_samples(loop_target > 0 ? std::min(rules.objective.quality.ideal_edge, edge) : edge);
+    engine.assign_samples(loop_target > 0 ? std::min(rules.objective.quality.ideal_edge, edge) : edge);
   }
   if (loop_target > 0) {
     simplify_to(engine, options, loop_target);
