@@ -17,20 +17,15 @@
 #include "simplify/remesh/remesh_rounds.h"
 #include "simplify/schedule/block_runner.h"
 #include "simplify/schedule/round_recorder.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr std::size_t remesh_grain = 8192;  ///< tets a parallel loop hands out at a time
-/// Initial free slots: the inverse of their share of what there is, and their min number. Beyond them the
-/// arrays grow in place.
-constexpr std::size_t remesh_spare_share = 64, min_remesh_spare = 4096;
-/// Factors on min_solid_angle: tets below the first are improved, and for tets below the second points may
-/// leave the surface a little, as in improve().
-constexpr double bad_margin = 1.27, leave_surface_margin = 1;
-/// Share of the bound that coarsening and refining must leave of shapes that were good.
-constexpr double floor_share = 0.3;
+using Grains = SimplifyTuning::Grains;
+using Remeshing = SimplifyTuning::Remeshing;
+using Slots = SimplifyTuning::Slots;
 
 struct Field {
   Field(std::size_t count, std::vector<double>&& numbers) : components(count), values(std::move(numbers)) {
@@ -70,7 +65,7 @@ struct Remesher::Impl {
   /// Compacts, and rebuilds what depends on the whole mesh.
   void renumber(Renumbering* numbers) {
     SlotNumbers slots;
-    const std::size_t spare = mesh.live_tets() / remesh_spare_share + min_remesh_spare;
+    const std::size_t spare = mesh.live_tets() / Slots::remesher_spare_inverse + Slots::remesher_min_spare;
     mesh.compact(spare, spare, &slots);
     mesh.reserve_twice();
     if (numbers) *numbers = {std::move(slots.points), std::move(slots.tets)};
@@ -87,7 +82,7 @@ struct Remesher::Impl {
     std::sort(copies.begin(), copies.end());
   }
   void look_at_all() {
-    parallel_for(0, mesh.tet_slots(), remesh_grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(0, mesh.tet_slots(), Grains::slots, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) rate(static_cast<Index>(t));
     });
     grid.build(mesh, 0);
@@ -179,8 +174,8 @@ SurfaceProjection Remesher::Impl::project_onto(const std::vector<Index>& points)
 }
 
 RemeshAim Remesher::Impl::usual_aim() const {
-  return {.angle = bad_margin * options.min_solid_angle,
-          .leave_surface_angle = leave_surface_margin * options.min_solid_angle};
+  return {.angle = Remeshing::bad_margin * options.min_solid_angle,
+          .leave_surface_angle = Remeshing::leave_surface_margin * options.min_solid_angle};
 }
 
 template <class Work>
@@ -208,7 +203,7 @@ RemeshChanges Remesher::Impl::call(const RemeshRegion& region, const RemeshAim& 
                                .max_rounds = aim.max_rounds});
     operations = rounds.operations();
   }
-  rules.projection = nullptr;
+  rules.surface.projection = nullptr;
   runner.take_totals();
   carry_fields();
   places.repair(mesh, journal.points());
@@ -221,8 +216,8 @@ RemeshChanges Remesher::Impl::call(const RemeshRegion& region, const RemeshAim& 
 template <class Resize>
 RemeshChanges Remesher::Impl::resize(const RemeshRegion& region, double size, const Resize& work) {
   if (!(size > 0)) throw UsageError("the size of edges must be above 0");
-  const auto floor =
-      static_cast<float>(floor_share * shape_quality_bound(options.objective, options.min_solid_angle));
+  const auto floor = static_cast<float>(Remeshing::floor_share *
+                                        shape_quality_bound(options.objective, options.min_solid_angle));
   return call(region, usual_aim(),
               [&](RemeshRounds& rounds) { work(rounds, size * mesh.space().scale(), floor); });
 }

@@ -16,59 +16,24 @@
 #include "simplify/schedule/bulk_improvement.h"
 #include "simplify/schedule/edge_length_adaptation.h"
 #include "simplify/schedule/engine.h"
+#include "simplify/schedule/fitting_sweeps.h"
 #include "simplify/schedule/improve_area.h"
 #include "simplify/schedule/local_refinement.h"
 #include "simplify/schedule/paper_schedule.h"
-#include "simplify/schedule/schedule_constants.h"
+#include "simplify/schedule/tet_count.h"
 #include "simplify/schedule/tuned_schedule.h"
+#include "simplify/schedule/whole_mesh.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Share of the time limit, if there is one, that the loop may use. The closing takes about as long as the
-/// last fifth of the loop.
-constexpr double loop_time_share = 0.75;
-/// Share that loop and closing may use together if the result is compared with a tolerance.
-constexpr double changing_time_share = 0.8;
-/// Max rounds of the closing of simplify().
-constexpr int max_closing_rounds = 40;
-/// Multiple of the bound below which the closing works on tets: dihedral angles up to 25 degrees.
-constexpr double closing_margin = 1.27;
-/// Multiple of the bound below which improve() may move points off the surface for a tet: dihedral angles up
-/// to 30 degrees. In the closing that would move the surface a quarter farther.
-constexpr double improve_margin = 1.5;
-/// Max relative change of the count in the closing if no count was asked for.
-constexpr double free_closing_slack = 1;
-constexpr int sweeps_before_closing = 1, sweeps_after_closing = 2;
-/// Sweeps of fit_to_crease() before the closing.
-constexpr int crease_sweeps = 3;
-/// Share of bad tets above which improve() begins in bulk. Scans and results of other programs initially have
-/// up to 32 % of tets below 0.15 sr; on these, improvement without bulk takes half the time.
-constexpr double bulk_before = 0.4;
-/// Solid angle, steradians, below which improve() finally works on all tets, with cheap operations only: the
-/// mean rises by 0.01 sr. The rounds would take four times as long as everything before to gain that much
-/// again.
-constexpr double polish_below = 0.2;
-constexpr int max_polish_rounds = 3;
-/// Max rounds reserved for that and for the rounds after it.
-constexpr int max_last_rounds = 20;
-/// Another call of the Remesher is made only if the last one left less than this fraction of the bad tets.
-constexpr double min_call_gain = 0.95;
-/// Min and max factor on the count with ImproveOptions::free_count, so that no detail is lost on the way and
-/// no mesh grows for ever.
-constexpr double min_free = 0.8, max_free = 4;
-/// Min value of the first bound, for a --min-solid-angle of nearly 0.
-constexpr double min_first_bound = 1e-3;
-/// Max relative change of the count in improve(); 5 % are promised.
-constexpr double improve_slack = 0.045;
-/// E of improve(), in edges of a regular mesh of that count: the paper's initial E.
-constexpr double improve_error_edges = 1;
-
-/// Estimate of the process's peak memory: its libraries, and for each input tet the editable mesh with the
-/// input that it is made from. README.md, Memory, compares it with measurements.
-constexpr double program_bytes = 40e6;
-constexpr double bytes_per_tet = 105;
+using Closing = SimplifyTuning::Closing;
+using Features = SimplifyTuning::Features;
+using Improve = SimplifyTuning::Improve;
+using Memory = SimplifyTuning::Memory;
+using TimeLimit = SimplifyTuning::TimeLimit;
 
 float quality_at(const Engine& engine, double angle) {
   return static_cast<float>(shape_quality_bound(engine.rules.objective.shape, angle));
@@ -81,21 +46,21 @@ ImprovementTools tools_of(Engine& engine) {
 /// Sweeps of fit_to_samples() over all interface points.
 void fit(Engine& engine, int sweeps, float floor) {
   for (int i = 0; i < sweeps; ++i) {
-    RoundRecorder::Round round(engine.recorder(), "close", engine.rules.max_error);
-    engine.fit_interfaces(floor);
+    RoundRecorder::Round round(engine.recorder(), "close", engine.rules.error.limit());
+    fit_interfaces(engine, floor);
     round.finish();
   }
 }
 
 /// First of the rising bounds.
 double first_bound(double min_solid_angle) {
-  return std::max(min_first_bound, closing_margin * min_solid_angle);
+  return std::max(Improve::min_first_bound, Closing::margin * min_solid_angle);
 }
 
 /// Checks shared by both calls, before any work.
 void check(const TetMesh& mesh, const std::string& name) {
   if (mesh.tets.empty()) throw InputError(name, 0, "no tets in it");
-  require_memory(program_bytes + bytes_per_tet * static_cast<double>(mesh.tets.size()),
+  require_memory(Memory::program_bytes + Memory::bytes_per_tet * static_cast<double>(mesh.tets.size()),
                  name + ": work on its " + std::to_string(mesh.tets.size()) + " tets",
                  "free some, or use a machine or a container limit with more");
 }
@@ -104,11 +69,11 @@ void check(const TetMesh& mesh, const std::string& name) {
 std::size_t target_for_sizes(const Engine& engine, const SimplifyOptions& options) {
   double tets = static_cast<double>(options.target_tets);
   if (options.sizes)
-    tets = engine.tets_for_sizes();
+    tets = tets_for_sizes(engine.mesh(), engine.sizes());
   else if (options.target_tets > 0)
-    tets = std::max(std::min(tets, engine.tets_for_edge(within_bounds * options.min_edge)),
-                    engine.tets_for_edge(options.max_edge / within_bounds));
-  require_memory(program_bytes + bytes_per_tet * tets,
+    tets = std::max(std::min(tets, tets_for_edge(engine.mesh(), within_bounds * options.min_edge)),
+                    tets_for_edge(engine.mesh(), options.max_edge / within_bounds));
+  require_memory(Memory::program_bytes + Memory::bytes_per_tet * tets,
                  options.name + ": about " + short_number(tets) + " tets with edges of the wanted lengths",
                  "give larger ones");
   return options.target_tets == 0 && !options.sizes ? 0 : static_cast<std::size_t>(std::max(1.0, tets));
@@ -183,47 +148,47 @@ bool is_bounded(const SimplifyOptions& options) {
 /// \param target number of tets; 0: the current one.
 /// \param deviation set if that of the result is known.
 void close(Engine& engine, const SimplifyOptions& options, std::size_t target, std::size_t first_count,
-           std::optional<DeviationReport>& deviation) {
+           const Progress* progress, std::optional<DeviationReport>& deviation) {
   const bool bounded = is_bounded(options);
   engine.begin_improvement();
   if (bounded) {
     WholeMesh whole(engine);
     adapt_edge_lengths(tools_of(engine), whole,
                        {.kind = "close",
-                        .angle = closing_margin * options.min_solid_angle,
+                        .angle = Closing::margin * options.min_solid_angle,
                         .min_tets = 1,
                         .max_tets = std::numeric_limits<std::int64_t>::max()});
   }
   const auto near_target = [&](std::size_t tets) {
     return std::fabs(static_cast<double>(tets) - static_cast<double>(target)) <=
-           closing_slack * static_cast<double>(target);
+           Closing::slack * static_cast<double>(target);
   };
   const bool counted = target > 0 && !options.sizes && (!bounded || near_target(engine.mesh().live_tets()));
   const auto count = static_cast<double>(counted ? std::min(target, first_count) : engine.mesh().live_tets());
   // Without a count, better shapes are worth more tets, and edges shorter than the target length.
-  const double slack = counted ? closing_slack : free_closing_slack;
+  const double slack = counted ? Closing::slack : Closing::free_slack;
   if (options.sizes) engine.allow_shorter_edges();
   const ImprovementPlan plan{.kind = "close",
-                             .angle = closing_margin * options.min_solid_angle,
-                             .leave_surface_angle = closing_margin * options.min_solid_angle,
+                             .angle = Closing::margin * options.min_solid_angle,
+                             .leave_surface_angle = Closing::margin * options.min_solid_angle,
                              .target_tets = static_cast<std::size_t>(count),
                              .min_tets = static_cast<std::size_t>(std::ceil(count * (1 - slack))),
                              .max_tets = static_cast<std::size_t>(count * (1 + slack)),
                              .fast = false,
                              .brief = false,
-                             .max_rounds = max_closing_rounds};
+                             .max_rounds = Closing::max_rounds};
   // After a point has arrived, its neighbours may have more room.
-  for (int i = 0; i < crease_sweeps; ++i) engine.fit_creases();
-  fit(engine, sweeps_before_closing, quality_at(engine, plan.angle));
+  for (int i = 0; i < Features::closing_sweeps; ++i) fit_feature_edges(engine);
+  fit(engine, Closing::sweeps_before, quality_at(engine, plan.angle));
   WholeMesh whole(engine);
   improve_area(tools_of(engine), whole, plan, 1);
   if (!counted) refine_bad_tets(tools_of(engine), whole, plan, options.min_solid_angle);
   // Better shapes have cost fit.
-  fit(engine, sweeps_after_closing, quality_at(engine, plan.angle));
+  fit(engine, Closing::sweeps_after, quality_at(engine, plan.angle));
   // Fitting may cost a tet that is just above the bound.
   if (!counted) refine_bad_tets(tools_of(engine), whole, plan, options.min_solid_angle);
   if (options.tolerance == 0) return;
-  deviation = engine.deviation();
+  deviation = engine.input_samples().deviation(progress);
   if (deviation->upper() <= options.tolerance) return;
   engine.throw_if_stopped();
   deviation.reset();
@@ -231,7 +196,7 @@ void close(Engine& engine, const SimplifyOptions& options, std::size_t target, s
   ImprovementPlan holding = plan;
   const auto live = static_cast<double>(engine.mesh().live_tets());
   if (live > static_cast<double>(plan.max_tets))
-    holding.max_tets = static_cast<std::size_t>(live * (1 + free_closing_slack));
+    holding.max_tets = static_cast<std::size_t>(live * (1 + Closing::free_slack));
   refine_beyond_tolerance(
       engine, whole, holding, options.min_solid_angle,
       options.tolerance * engine.mesh().space().scale() / (1 + relative_deviation_accuracy));
@@ -265,7 +230,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     engine.throw_if_stopped();
     if (tuned) engine.compact();
     engine.throw_if_stopped();
-    if (tuned) engine.keep_input_surface(options.surface, options.tolerance > 0);
+    if (tuned) engine.input_samples().keep_surface(options.surface, options.tolerance > 0);
   });
   const double build = seconds_since(start);
   if (report) report->seconds_build = build;
@@ -274,9 +239,9 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
   bool in_time = true;
   double loop_end = build;
   {
-    const EarlierDeadline measuring_has_time(progress, options.tolerance > 0 ? changing_time_share : 1);
+    const EarlierDeadline measuring_has_time(progress, options.tolerance > 0 ? TimeLimit::changing_share : 1);
     in_time = done_in_time([&] {
-      const EarlierDeadline closing_has_time(progress, tuned ? loop_time_share : 1);
+      const EarlierDeadline closing_has_time(progress, tuned ? TimeLimit::loop_share : 1);
       engine.recorder().begin_stage("simplify");
       if (tuned)
         run_tuned_schedule(engine, options, target);
@@ -289,13 +254,13 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
       const std::size_t closing_target = in_time ? target : engine.mesh().live_tets();
       in_time &= done_in_time([&] {
         engine.recorder().begin_stage("improve");
-        close(engine, options, closing_target, first_count, deviation);
+        close(engine, options, closing_target, first_count, progress, deviation);
       });
     }
   }
   if (options.tolerance > 0 && !deviation) {
     engine.recorder().begin_stage("compare");
-    deviation = engine.deviation();
+    deviation = engine.input_samples().deviation(progress);
   }
   if (report) {
     report->deviation = deviation;
@@ -341,12 +306,12 @@ TetMesh improve_bad_regions(TetMesh&& mesh, const ImproveOptions& options, std::
       std::vector<Index> bad;
       for (Index t = 0; t < remesher.tet_slots(); ++t)
         if (remesher.has_tet(t) && remesher.quality(t) <= bound) bad.push_back(t);
-      if (bad.empty() || static_cast<double>(bad.size()) > min_call_gain * min_bad) break;
+      if (bad.empty() || static_cast<double>(bad.size()) > Improve::min_call_gain * min_bad) break;
       min_bad = static_cast<double>(bad.size());
       const RemeshChanges changes =
           remesher.improve(RemeshRegion::tets(std::move(bad)),
                            {.angle = angle,
-                            .leave_surface_angle = improve_margin * options.min_solid_angle,
+                            .leave_surface_angle = Improve::margin * options.min_solid_angle,
                             .target_tets = count,
                             .min_tets = min_tets,
                             .max_tets = max_tets,
@@ -376,9 +341,10 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
   if (out_of_time(progress)) return unchanged(std::move(mesh), report);
   const auto start = std::chrono::steady_clock::now();
   const auto count = static_cast<double>(mesh.tets.size());
-  const auto min_tets =
-      static_cast<std::size_t>(std::ceil(count * (options.free_count ? min_free : 1 - improve_slack)));
-  const auto max_tets = static_cast<std::size_t>(count * (options.free_count ? max_free : 1 + improve_slack));
+  const auto min_tets = static_cast<std::size_t>(
+      std::ceil(count * (options.free_count ? Improve::min_free : 1 - Improve::slack)));
+  const auto max_tets =
+      static_cast<std::size_t>(count * (options.free_count ? Improve::max_free : 1 + Improve::slack));
   if (options.only_below > 0)
     return improve_bad_regions(std::move(mesh), options, min_tets, max_tets, report, progress);
   const SimplifyOptions defaults;
@@ -388,10 +354,10 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
                 report, progress);
   engine.recorder().begin_stage("improve");
   const double build = seconds_since(start);
-  engine.rules.max_error = improve_error_edges * engine.rules.objective.quality.ideal_edge;
-  const double below = improve_margin * options.min_solid_angle;
+  engine.rules.error.max = Improve::error_edges * engine.rules.objective.quality.ideal_edge;
+  const double below = Improve::margin * options.min_solid_angle;
   // Reserve the last rounds for the end.
-  const int kept_rounds = std::min(options.max_iterations / 2, max_last_rounds);
+  const int kept_rounds = std::min(options.max_iterations / 2, Improve::max_last_rounds);
   ImprovementPlan plan{.kind = "improve",
                        .angle = below,
                        .leave_surface_angle = below,
@@ -408,18 +374,19 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
     engine.begin_improvement();
     for (const double bound : rising_bounds(first_bound(options.min_solid_angle), below)) {
       plan.angle = bound;
-      plan.max_rounds -= improve_area(tools, whole, plan, bulk_before);
+      plan.max_rounds -= improve_area(tools, whole, plan, Improve::bulk_before);
       if (plan.max_rounds <= 0) break;
     }
     plan.max_rounds += kept_rounds;
     if (plan.max_rounds <= 0) return;
-    plan.max_rounds -= run_bulk_improvement(tools, whole,
-                                            {.kind = plan.kind,
-                                             .bad_quality = quality_at(engine, std::max(below, polish_below)),
-                                             .min_tets = plan.min_tets,
-                                             .max_tets = plan.max_tets,
-                                             .max_rounds = std::min(plan.max_rounds, max_polish_rounds),
-                                             .remodel = false});
+    plan.max_rounds -=
+        run_bulk_improvement(tools, whole,
+                             {.kind = plan.kind,
+                              .bad_quality = quality_at(engine, std::max(below, Improve::polish_below)),
+                              .min_tets = plan.min_tets,
+                              .max_tets = plan.max_tets,
+                              .max_rounds = std::min(plan.max_rounds, Improve::max_polish_rounds),
+                              .remodel = false});
     // Other connectivity around the last bad tets lets them improve further.
     if (plan.max_rounds > 0) run_improvement(tools, whole, plan);
   });

@@ -61,7 +61,7 @@ void iterate(Workpiece& piece, const Block& block, const Grow& grow) {
 void block_of_tets(Workpiece& piece, std::uint64_t seed) {
   VolumeLedger ledger;
   BlockRunner runner(piece.mesh, piece.grid, ledger, seed, 0, nullptr);
-  piece.rules.max_error = piece.rules.objective.quality.ideal_edge;
+  double& error = piece.rules.error.max.emplace(piece.rules.objective.quality.ideal_edge);
   std::vector<WeighedCollapse> candidates;
   const auto block = [&](float limit) {
     runner.tets(
@@ -76,7 +76,7 @@ void block_of_tets(Workpiece& piece, std::uint64_t seed) {
             if (piece.gather(ws, p)) piece.weigh(ws, candidates, of_the_tet);
           sort_by_weight(candidates);
           for (const WeighedCollapse& c : candidates) {
-            if (c.weight > piece.rules.max_error) break;
+            if (c.weight > error) break;
             if (piece.gather(ws, c.origin) && piece.propose(ws, c.target)) return Outcome::done;
           }
           return Outcome::no_candidate;
@@ -85,8 +85,7 @@ void block_of_tets(Workpiece& piece, std::uint64_t seed) {
     piece.counts.collapses += runner.take_totals().counts.of(Operation::collapse, Outcome::done);
   };
   iterate(piece, block, [&](double) {
-    piece.rules.max_error *=
-        std::cbrt(static_cast<double>(piece.mesh.live_tets()) / static_cast<double>(piece.target));
+    error *= std::cbrt(static_cast<double>(piece.mesh.live_tets()) / static_cast<double>(piece.target));
   });
 }
 
@@ -94,7 +93,7 @@ void block_of_points(Workpiece& piece, std::uint64_t seed) {
   constexpr std::size_t max_targets = 4;
   VolumeLedger ledger;
   BlockRunner runner(piece.mesh, piece.grid, ledger, seed, 0, nullptr);
-  piece.rules.max_error = 4 * piece.rules.objective.quality.ideal_edge;
+  double& error = piece.rules.error.max.emplace(4 * piece.rules.objective.quality.ideal_edge);
   std::vector<WeighedCollapse> candidates;
   const auto block = [&](float limit) {
     std::vector<Index> points;
@@ -110,7 +109,7 @@ void block_of_points(Workpiece& piece, std::uint64_t seed) {
           piece.weigh(ws, candidates);
           sort_by_weight(candidates);
           for (std::size_t i = 0; i < std::min(max_targets, candidates.size()); ++i) {
-            if (candidates[i].weight > piece.rules.max_error) break;
+            if (candidates[i].weight > error) break;
             if (piece.propose(ws, candidates[i].target)) return Outcome::done;
           }
           return Outcome::no_candidate;
@@ -119,7 +118,7 @@ void block_of_points(Workpiece& piece, std::uint64_t seed) {
     piece.counts.collapses += runner.take_totals().counts.of(Operation::collapse, Outcome::done);
   };
   iterate(piece, block, [&](double removed) {
-    if (removed < 0.15) piece.rules.max_error *= 1.3;
+    if (removed < 0.15) error *= 1.3;
   });
 }
 

@@ -2,21 +2,21 @@
 #include "benchmarks/strategy/workpiece.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "simplify/operations/collapse.h"
+#include "simplify/operations/collapse_table.h"
 
 namespace tetwright {
 
 Workpiece::Workpiece(TetMesh input, std::size_t target_tets)
     : mesh(std::move(input), "mesh"), target(target_tets) {
   rules.objective.quality = TetQuality::for_target(mesh.total_volume(), static_cast<double>(target));
-  rules.max_error = std::numeric_limits<double>::infinity();
+  rules.error.max.reset();
   rules.count.min = 0;
   // Refuse only shapes far worse than the current ones, in both orderings alike: neither could reach the
   // target if nothing might get worse.
-  rules.accept_worse = 1;
-  rules.annealing_floor = 0.1f;
+  rules.acceptance.worse_probability = 1;
+  rules.acceptance.worse_floor = 0.1f;
   grid.build(mesh, rules.objective.quality.ideal_edge / 2);
   rate_all();
 }
@@ -38,11 +38,11 @@ bool Workpiece::gather(Workspace& ws, Index point) {
 void Workpiece::weigh(Workspace& ws, std::vector<WeighedCollapse>& out,
                       const std::function<bool(Index)>& wanted) {
   Star& star = ws.star;
-  const int dimension = star.dimension();
-  if (dimension == 0) return;
+  const int along = collapsible_edge(vertex_kind(star));
+  if (along == never) return;
   star.compute_gradients();
   for (std::size_t p = 0; p < star.points.size(); ++p) {
-    if (star.edge_dimension(p) != dimension || !wanted(star.points[p])) continue;
+    if (star.edge_dimension(p) != along || !wanted(star.points[p])) continue;
     out.push_back({collapse_weight(star, p, rules), star.centre, star.points[p]});
     ++counts.weights;
   }

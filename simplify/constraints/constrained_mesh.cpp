@@ -4,13 +4,13 @@
 #include <utility>
 
 #include "common/error.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Max relative change of a material's volume.
-constexpr double volume_share = 0.008;
+using Volumes = SimplifyTuning::Volumes;
 
 }  // namespace
 
@@ -24,7 +24,7 @@ ConstrainedMesh::ConstrainedMesh(TetMesh&& input, const std::string& name,
         "the volumes of its tets add up to nothing or less; turn the tets so that they are positive");
   if (!frozen.empty()) mesh.freeze(frozen);
   if (fix_boundary) mesh.freeze_interfaces();
-  if (keep_volumes) ledger.open(mesh, volume_share);
+  if (keep_volumes) ledger.open(mesh, Volumes::max_change);
 }
 
 void ConstrainedMesh::keep_patches() {

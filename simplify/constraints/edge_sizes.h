@@ -6,6 +6,7 @@
 
 #include "common/sizes/size_field.h"
 #include "simplify/mesh/working_space.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
@@ -39,11 +40,12 @@ class EdgeSizes {
 
   /// Max and min length of an edge with this midpoint.
   double upper(const Vec3& middle) const {
-    return target_length_ ? std::min(max_edge_, long_edge * target_length(middle)) : max_edge_;
+    return target_length_ ? std::min(max_edge_, Lengths::long_edge * target_length(middle)) : max_edge_;
   }
   double lower(const Vec3& middle) const {
-    return target_length_ && !shorter_allowed_ ? std::max(min_edge_, short_edge * target_length(middle))
-                                               : min_edge_;
+    return target_length_ && !shorter_allowed_
+               ? std::max(min_edge_, Lengths::short_edge * target_length(middle))
+               : min_edge_;
   }
   /// Ratios of an edge's length to its max length, and of its min length to its length: above 1 where the
   /// edge violates a bound, by that factor.
@@ -56,14 +58,13 @@ class EdgeSizes {
     const double length = (q - p).norm();
     if (!target_length_) return {length / max_edge_, min_edge_ / length};
     const double wanted = target_length(middle);
-    return {length / std::min(max_edge_, long_edge * wanted),
-            (shorter_allowed_ ? min_edge_ : std::max(min_edge_, short_share * short_edge * wanted)) / length};
+    return {length / std::min(max_edge_, Lengths::long_edge * wanted),
+            (shorter_allowed_ ? min_edge_ : std::max(min_edge_, short_share * Lengths::short_edge * wanted)) /
+                length};
   }
 
  private:
-  /// Ratios of length to target length between which an edge is left alone: halving an edge above the upper
-  /// one makes none below the lower one (as in Botsch & Kobbelt 2004).
-  static constexpr double short_edge = 0.7, long_edge = 1.48;
+  using Lengths = SimplifyTuning::EdgeLengths;
 
   const SizeField* target_length_;
   WorkingSpace space_;

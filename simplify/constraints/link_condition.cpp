@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "simplify/tuning/tuning.h"
+
 namespace tetwright {
 
 bool LinkCondition::holds(const EditableMesh& mesh, const SurfaceGrid& grid, const Star& star,
@@ -58,7 +60,7 @@ bool LinkCondition::walk_star_of_b() {
       break;
     }
   for (std::size_t i = 0; i < walk_.size(); ++i) {
-    if (walk_.size() > 4 * Star::max_points) return false;
+    if (walk_.size() > SimplifyTuning::Stars::max_walk) return false;
     const Index tet = walk_[i];
     const int slot = mesh_->slot_of(tet, b_id_);
     const LinkTriangle triangle = link_triangle(tet, slot);

@@ -11,15 +11,14 @@
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "simplify/constraints/surface_samples.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr std::size_t triangle_grain = 4096;  ///< triangles a parallel loop hands out at a time
-
-/// Max cells that the largest triangle spans along an axis: bounds the work of one operation.
-constexpr double max_cells_across = 24;
+using Grains = SimplifyTuning::Grains;
+using Grid = SimplifyTuning::Grid;
 
 void sort_ids(MeshTriangle& t) {
   const auto order = [&](int i, int j) {
@@ -40,11 +39,6 @@ auto with_record(std::uint32_t record) {
 Vec3 low_corner(const MeshTriangle& t) { return t.points[0].cwiseMin(t.points[1]).cwiseMin(t.points[2]); }
 Vec3 high_corner(const MeshTriangle& t) { return t.points[0].cwiseMax(t.points[1]).cwiseMax(t.points[2]); }
 
-/// Two triangles count as nearly folded together if the cosine of the angle between them at their common edge
-/// exceeds this. Its 120 degrees are wide enough that no operation gets past it unseen, and most edges are
-/// flatter.
-constexpr double min_narrow_cosine = -0.5;
-
 /// The common edge of two triangles, by its ends, if they are nearly folded together there.
 std::optional<std::array<Index, 2>> narrow_edge(const MeshTriangle& f, const MeshTriangle& g) {
   std::array<int, 2> shared{};
@@ -63,7 +57,7 @@ std::optional<std::array<Index, 2>> narrow_edge(const MeshTriangle& f, const Mes
   const Vec3 &a = f.points[shared[0]], along = (f.points[shared[1]] - a).normalized();
   const auto across = [&](const Vec3& apex) { return Vec3(apex - a - along * along.dot(apex - a)); };
   const Vec3 x = across(f.points[apex_f]), y = across(g.points[apex_g]);
-  if (x.dot(y) < min_narrow_cosine * std::sqrt(x.squaredNorm() * y.squaredNorm())) return {};
+  if (x.dot(y) < Grid::min_narrow_cosine * std::sqrt(x.squaredNorm() * y.squaredNorm())) return {};
   return std::array{f.ids[shared[0]], f.ids[shared[1]]};
 }
 
@@ -111,7 +105,7 @@ void SurfaceGrid::build(const EditableMesh& mesh, double min_cell) {
     records_.resize(faces.size());
     if (std::any_of(faces.begin(), faces.end(), [](const InterfaceFace& f) { return f.patch != 0; }))
       patches_.resize(faces.size());
-    parallel_for(0, faces.size(), triangle_grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(0, faces.size(), Grains::surface_triangles, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         MeshTriangle& triangle = records_[i];
         triangle.ids = faces[i].ids;
@@ -138,7 +132,7 @@ void SurfaceGrid::build(const EditableMesh& mesh, double min_cell) {
   // Twice the mean extent: a triangle touches few cells, and a cell lists few triangles even when they have
   // grown.
   const double mean = records_.empty() ? 1 : sum / static_cast<double>(records_.size());
-  const double size = std::max({2 * mean, largest / max_cells_across, min_cell});
+  const double size = std::max({2 * mean, largest / Grid::max_cells_across, min_cell});
   origin_ = low;
   to_cell_ = size > 0 ? 1 / size : 1;
   const std::size_t slots = std::bit_ceil(std::max<std::size_t>(64, records_.size() / 2));
@@ -146,7 +140,7 @@ void SurfaceGrid::build(const EditableMesh& mesh, double min_cell) {
   cells_.clear();
   cells_.resize(slots);
   free_records_.reset(records_.size(), records_.size());
-  parallel_for(0, records_.size(), triangle_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, records_.size(), Grains::surface_triangles, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) insert(static_cast<std::uint32_t>(i));
   });
 }
@@ -228,7 +222,7 @@ bool SurfaceGrid::hits_standing(const MeshTriangle& t, std::span<const std::uint
 
 bool SurfaceGrid::embedded() const {
   std::atomic<bool> meet{false};
-  parallel_for(0, records_.size(), triangle_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, records_.size(), Grains::surface_triangles, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end && !meet.load(std::memory_order_relaxed); ++i) {
       const auto self = static_cast<std::uint32_t>(i);
       if (hits_standing(records_[i], {&self, 1})) meet.store(true, std::memory_order_relaxed);

@@ -6,12 +6,13 @@
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "simplify/mesh/local_numbers.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr std::size_t projection_grain = 4096;
+using Grains = SimplifyTuning::Grains;
 
 ProjectionTree::Kind kind_of(RegionId first, RegionId second, PatchId patch) {
   return {std::min(first, second), std::max(first, second), patch};
@@ -61,7 +62,7 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
     PatchId patch;
   };
   std::vector<Edge> edges(3 * faces.size());
-  parallel_for(0, faces.size(), projection_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, faces.size(), Grains::surface_triangles, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       for (int k = 0; k < 3; ++k) {
         const Index p = faces[i].ids[k], q = faces[i].ids[(k + 1) % 3];

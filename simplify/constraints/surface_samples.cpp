@@ -14,22 +14,18 @@
 #include "common/message_text.h"
 #include "common/parallel/parallel.h"
 #include "common/tolerances.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr std::size_t sample_grain = 1024;
-/// Memory of a sample with everything that belongs to it: 190 measured for 7 million on a cube.
-constexpr double bytes_per_sample = 200;
-/// Samples for each equilateral triangle with the target edge. The simplified mesh's triangles are about
-/// twice as large: more than 12 samples each do not improve the result, 8 make it 5 % worse.
-constexpr double samples_per_triangle = 6;
+using Grains = SimplifyTuning::Grains;
+using Memory = SimplifyTuning::Memory;
+using Samples = SimplifyTuning::Samples;
+
 /// Area of an equilateral triangle over its edge squared: sqrt(3) / 4.
 constexpr double equilateral_area = 0.4330127018922193;
-/// Distance, in mean edges of the input mesh's surface, within which the mesh and the given surface
-/// correspond.
-constexpr double reach_edges = 2;
 
 double area(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a).norm() / 2; }
 
@@ -92,7 +88,8 @@ InputSurface::InputSurface(const EditableMesh& mesh, const TriangleMesh* given) 
   double total_edge = 0;
   for (std::size_t i = 0; i < faces.size(); ++i)
     for (int k = 0; k < 3; ++k) total_edge += (corner(i, (k + 1) % 3) - corner(i, k)).norm();
-  reach_ = reach_edges * total_edge / static_cast<double>(std::max<std::size_t>(1, 3 * faces.size()));
+  reach_ = Samples::correspondence_edges * total_edge /
+           static_cast<double>(std::max<std::size_t>(1, 3 * faces.size()));
 
   std::vector<Vec3> points;
   std::vector<ProjectionTree::Item> items;
@@ -101,7 +98,7 @@ InputSurface::InputSurface(const EditableMesh& mesh, const TriangleMesh* given) 
     for (const Vec3& p : given->points) points.push_back(mesh.space().to_working(p));
     for (const Triangle& t : given->triangles) items.push_back({t, given_kind});
     triangles_ = ProjectionTree(points, items);
-    parallel_for(0, faces.size(), sample_grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(0, faces.size(), Grains::samples, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
         alone[i] = !triangles_.any_within((corner(i, 0) + corner(i, 1) + corner(i, 2)) / 3, reach_);
     });
@@ -128,7 +125,7 @@ InputSurface::InputSurface(const EditableMesh& mesh, const TriangleMesh* given) 
 void InputSurface::find_hidden(const EditableMesh& mesh) {
   const ProjectionTree own = faces_of(mesh);
   hidden_.resize(triangles_.items().size());
-  parallel_for(0, hidden_.size(), sample_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, hidden_.size(), Grains::samples, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const ProjectionTree::Item& item = triangles_.items()[i];
       const Vec3 &a = triangles_.corner(item, 0), &b = triangles_.corner(item, 1),
@@ -206,7 +203,7 @@ SurfaceSamples::SurfaceSamples(const EditableMesh& mesh, std::size_t records, co
     const Vec3& a = tree.corner(item, 0);
     return (tree.corner(item, 1) - a).cross(tree.corner(item, 2) - a);
   };
-  const double area_each = equilateral_area * edge * edge / samples_per_triangle;
+  const double area_each = equilateral_area * edge * edge / Samples::per_triangle;
   double expected = 0;
   for (const ProjectionTree::Item& item : surface_.items()) {
     const Vec3 &a = surface_.corner(item, 0), &b = surface_.corner(item, 1), &c = surface_.corner(item, 2);
@@ -214,7 +211,7 @@ SurfaceSamples::SurfaceSamples(const EditableMesh& mesh, std::size_t records, co
     expected += area(a, b, c) / (area_each * here * here);
   }
   require_memory(
-      bytes_per_sample * expected,
+      Memory::bytes_per_sample * expected,
       "holding surfaces with " + short_number(expected) + " samples, which a tolerance this small takes,",
       "give a larger one");
   TETWRIGHT_CHECK(expected < none);
@@ -224,13 +221,13 @@ SurfaceSamples::SurfaceSamples(const EditableMesh& mesh, std::size_t records, co
     double distance;
   };
   std::vector<Owner> owners(places.size(), {none, 0});
-  const std::size_t blocks = (places.size() + sample_grain - 1) / sample_grain;
+  const std::size_t blocks = (places.size() + Grains::samples - 1) / Grains::samples;
   parallel_for(0, blocks, 1, [&](std::size_t begin_block, std::size_t end_block) {
     for (std::size_t block = begin_block; block < end_block; ++block) {
       constexpr std::size_t nobody = std::numeric_limits<std::size_t>::max();
       std::size_t last = nobody;  // the owner of the previous point: the next one is not far away
-      for (std::size_t i = block * sample_grain; i < std::min(places.size(), (block + 1) * sample_grain);
-           ++i) {
+      for (std::size_t i = block * Grains::samples;
+           i < std::min(places.size(), (block + 1) * Grains::samples); ++i) {
         const Vec3& at = places[i].at;
         const ProjectionTree::Item& from = surface_.items()[places[i].item];
         const bool given = InputSurface::is_given(from);

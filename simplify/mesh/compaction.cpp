@@ -10,12 +10,13 @@
 #include "common/mesh/interfaces.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr std::size_t compaction_grain = 8192;  ///< tets a parallel loop hands out at a time
+using Grains = SimplifyTuning::Grains;
 
 }  // namespace
 
@@ -91,7 +92,7 @@ void MeshCompaction::move_tets(const std::vector<Index>& new_point, const std::v
   const std::size_t slots = mesh_.tets_.size();
   {
     std::vector<TetRecord> tets(live + spare, {dead_tet, {}});
-    parallel_for(0, slots, compaction_grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(0, slots, Grains::slots, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         if (new_tet[t] == no_index) continue;
         TetRecord r = mesh_.tets_[t];
@@ -105,7 +106,7 @@ void MeshCompaction::move_tets(const std::vector<Index>& new_point, const std::v
   }
   const auto move = [&](auto& values) {
     std::remove_reference_t<decltype(values)> moved(live + spare, 0);
-    parallel_for(0, slots, compaction_grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(0, slots, Grains::slots, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t)
         if (new_tet[t] != no_index) moved[new_tet[t]] = values[t];
     });

@@ -11,12 +11,14 @@
 #include "common/parallel/parallel_sort.h"
 #include "simplify/mesh/compaction.h"
 #include "simplify/mesh/mesh_builder.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr std::size_t tet_grain = 8192;  ///< tets a parallel loop hands out at a time
+using Grains = SimplifyTuning::Grains;
+using Slots = SimplifyTuning::Slots;
 
 }  // namespace
 
@@ -72,11 +74,9 @@ std::size_t EditableMesh::touching_points() const {
 }
 
 void EditableMesh::make_room(std::size_t tets, std::size_t points) {
-  // More than a batch needs, yet negligible beside a mesh large enough to count. Vectors grow geometrically,
-  // so that few of these resizes copy.
-  constexpr std::size_t step = 4096;
+  // Vectors grow geometrically, so that few of these resizes copy.
   if (const std::size_t have = free_tets_.available(); have < tets) {
-    const std::size_t more = std::max(tets - have, step);
+    const std::size_t more = std::max(tets - have, Slots::growth);
     if (tets_.size() + more >= FaceLink::max_tets) throw OutputError("more than the 2^30 tets possible");
     tets_.resize(tets_.size() + more, {dead_tet, {}});
     regions_.resize(tets_.size(), 0);
@@ -84,7 +84,7 @@ void EditableMesh::make_room(std::size_t tets, std::size_t points) {
     free_tets_.grow(more);
   }
   if (const std::size_t have = free_points_.available(); have < points) {
-    const std::size_t more = std::max(points - have, step);
+    const std::size_t more = std::max(points - have, Slots::growth);
     const std::size_t size = positions_.size() + more;
     if (size >= no_index) throw OutputError("more than the 2^32 points possible");
     if (!originals_.empty())
@@ -105,7 +105,8 @@ double EditableMesh::dead_share() const {
 
 std::vector<InterfaceFace> EditableMesh::interface_faces() const {
   return parallel_collect<InterfaceFace>(
-      0, tets_.size(), tet_grain, [&](std::size_t begin, std::size_t end, std::vector<InterfaceFace>& out) {
+      0, tets_.size(), Grains::slots,
+      [&](std::size_t begin, std::size_t end, std::vector<InterfaceFace>& out) {
         for (std::size_t i = begin; i < end; ++i) {
           const auto t = static_cast<Index>(i);
           const TetRecord& r = tets_[t];
@@ -135,7 +136,7 @@ double EditableMesh::signed_volume(Index t) const {
 }
 
 double EditableMesh::total_volume() const {
-  return parallel_sum(0, tets_.size(), tet_grain, [&](std::size_t begin, std::size_t end) {
+  return parallel_sum(0, tets_.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t t = begin; t < end; ++t)
       if (tets_[t].points[0] != no_index) sum += signed_volume(static_cast<Index>(t));
@@ -152,7 +153,7 @@ double EditableMesh::diagonal() const {
 
 bool EditableMesh::all_positive() const {
   std::atomic<bool> all{true};
-  parallel_for(0, tets_.size(), tet_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, tets_.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const Tet& p = tets_[t].points;
       if (p[0] == no_index) continue;

@@ -10,12 +10,13 @@
 #include "common/mesh/face_buckets.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr std::size_t build_grain = 8192;  ///< tets or points a parallel loop hands out at a time
+using Grains = SimplifyTuning::Grains;
 
 /// Lowers `smallest` to `value`: messages name the first finding in the file, whichever thread makes it.
 void lower(std::atomic<Index>& smallest, Index value) {
@@ -72,7 +73,7 @@ void MeshBuilder::take_tets(const TetMesh& input) {
   mesh_.regions_.resize(input.tets.size());
   mesh_.qualities_.resize(input.tets.size(), 0);
   std::atomic<Index> first_bad{no_index};
-  parallel_for(0, input.tets.size(), build_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, input.tets.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Tet& t = input.tets[i];
       const auto region = std::lower_bound(tags.begin(), tags.end(), input.materials[i]) - tags.begin();
@@ -96,7 +97,7 @@ void MeshBuilder::link_faces() {
   using Buckets = FaceBuckets<Index>;
   const Buckets buckets(tets.size(), mesh_.positions_.size(), tet_at);
   std::atomic<Index> bad{no_index};  // 4 * tet + face
-  parallel_for(0, mesh_.positions_.size(), build_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, mesh_.positions_.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
     Buckets::Workspace ws;
     for (std::size_t p = begin; p < end; ++p)
       buckets.visit(static_cast<Index>(p), tet_at, ws,
@@ -154,7 +155,7 @@ std::vector<Index> MeshBuilder::points_with_split_stars() const {
   std::vector<Index> tets_at(mesh_.positions_.size(), 0);
   for (const TetRecord& t : mesh_.tets_)
     for (Index p : t.points) ++tets_at[p];
-  return parallel_collect<Index>(0, mesh_.positions_.size(), build_grain,
+  return parallel_collect<Index>(0, mesh_.positions_.size(), Grains::slots,
                                  [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
                                    LocalNumbers seen;
                                    std::vector<Index> part;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/portable_math.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
@@ -44,7 +45,7 @@ Outcome Star::gather(const EditableMesh& mesh, Index centre_point) {
               second_corner = slot_in(corners, points[link[1]]);
     const std::array<int, 3> corner{first_corner, second_corner, 6 - slot - first_corner - second_corner};
     if (i > 0) link[2] = number_of(corners[corner[2]]);
-    if (points.size() > max_points) return Outcome::too_large;
+    if (points.size() > SimplifyTuning::Stars::max_points) return Outcome::too_large;
     tets[i].link = link;
     tets[i].slot = static_cast<std::uint8_t>(slot);
     tets[i].quality = mesh.quality(tet);

@@ -41,9 +41,6 @@ struct Star {
                                       (inside == other.across && across == other.inside));
     }
   };
-  /// Max number of link points: larger stars are not worth the time.
-  static constexpr std::size_t max_points = 500;
-
   Index centre;
   Vec3 centre_position;
   std::vector<StarTet> tets;

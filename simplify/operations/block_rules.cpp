@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/block_rules.h"
 
+#include "simplify/tuning/tuning.h"
+
 #include <algorithm>
 
 namespace tetwright {
 
 namespace {
 
-/// Max distance of a feature segment from the input's feature edges, as a share of the mesh's diagonal.
-constexpr double max_crease_share = 0.001;
-/// Parameters along a segment at which its distance from the feature edges is sampled.
-constexpr double segment_samples[] = {0.25, 0.5, 0.75};
+using Features = SimplifyTuning::Features;
 
 /// Max distance of the samples from the feature edges, or infinity if one exceeds `at_most`.
 double crease_distance(const SurfaceProjection& projection, const Vec3& p, const Vec3& q, double at_most) {
   double largest = 0;
-  for (const double s : segment_samples) {
+  for (const double s : Features::segment_parameters) {
     const Vec3 at = p + s * (q - p);
     const auto on = projection.onto_curve(at, at_most);
     if (!on) return std::numeric_limits<double>::infinity();
@@ -27,16 +26,21 @@ double crease_distance(const SurfaceProjection& projection, const Vec3& p, const
 }  // namespace
 
 void BlockRules::project_onto(const SurfaceProjection& surfaces, double diagonal) {
-  projection = &surfaces;
-  max_crease_distance = surfaces.has_patches() ? std::min(max_crease_share * diagonal, tolerance) : 0;
+  surface.projection = &surfaces;
+  surface.max_feature_distance.reset();
+  if (!surfaces.has_patches()) return;
+  const double distance = Features::max_segment_share * diagonal;
+  surface.max_feature_distance = std::min(distance, deviation.tolerance.value_or(distance));
 }
 
 bool near_crease(const BlockRules& rules, const Star& star, std::size_t first, const Vec3& to,
                  std::optional<std::size_t> second) {
-  double bound = rules.max_crease_distance;
+  const double asked = *rules.surface.max_feature_distance;
+  double bound = asked;
   const auto fits = [&] {
-    return crease_distance(*rules.projection, star.positions[first], to, bound) <= bound &&
-           (!second || crease_distance(*rules.projection, to, star.positions[*second], bound) <= bound);
+    return crease_distance(*rules.surface.projection, star.positions[first], to, bound) <= bound &&
+           (!second ||
+            crease_distance(*rules.surface.projection, to, star.positions[*second], bound) <= bound);
   };
   if (fits()) return true;
   // Allow the distance of the segments that are replaced.
@@ -44,18 +48,18 @@ bool near_crease(const BlockRules& rules, const Star& star, std::size_t first, c
   for (std::size_t p = 0; p < star.points.size(); ++p)
     if (star.edge_dimension(p) == 1)
       if (const double d =
-              crease_distance(*rules.projection, star.positions[p], star.centre_position, unbounded);
+              crease_distance(*rules.surface.projection, star.positions[p], star.centre_position, unbounded);
           d <= unbounded)
         bound = std::max(bound, d);
-  return bound > rules.max_crease_distance && fits();
+  return bound > asked && fits();
 }
 
 bool near_reference(const BlockRules& rules, const SurfaceGrid::Added& t, RegionId inside, RegionId across) {
-  if (!rules.projection || !(rules.max_distance > 0)) return true;
+  if (!rules.surface.projection || !rules.surface.max_distance) return true;
   const auto& p = t.triangle.points;
   const Vec3 centre = (p[0] + p[1] + p[2]) / 3;
-  return rules.projection
-      ->onto_surface(centre, inside, across, t.patch, rules.max_distance * rules.scale_at(centre))
+  return rules.surface.projection
+      ->onto_surface(centre, inside, across, t.patch, *rules.surface.max_distance * rules.scale_at(centre))
       .has_value();
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/geometry/point_triangle.h"
+#include "simplify/operations/collapse_table.h"
 
 namespace tetwright {
 
@@ -51,7 +52,7 @@ bool surface_edit(Workspace& ws, const BlockRules& rules, std::size_t b) {
   const Star& star = ws.star;
   SurfaceGrid::Edit& edit = ws.proposal.edit;
   edit.clear();
-  if (rules.max_crease_distance > 0 && star.creases && star.edge_dimension(b) == 1)
+  if (rules.has_patches() && star.creases && star.edge_dimension(b) == 1)
     for (std::size_t p = 0; p < star.points.size(); ++p)
       if (p != b && star.edge_dimension(p) == 1 && !near_crease(rules, star, p, star.positions[b]))
         return false;
@@ -138,9 +139,9 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
       if (const Index below = ws.mesh.neighbour(t.tet, t.slot);
           below == no_index || contains(ws.mesh.points(below), star.centre))
         return Outcome::link_condition;
-  if (rules.max_edge < std::numeric_limits<double>::infinity() &&
+  if (rules.collapse.max_new_edge &&
       std::any_of(star.positions.begin(), star.positions.end(),
-                  [&](const Vec3& p) { return (p - to).norm() > rules.max_edge; }))
+                  [&](const Vec3& p) { return (p - to).norm() > *rules.collapse.max_new_edge; }))
     return Outcome::quality;
   ws.proposal.volumes = star.volume_changes(to - star.centre_position);
   if (!ws.ledger.allows(ws.proposal.volumes)) return Outcome::volume;
@@ -155,8 +156,9 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
     if (!(qualities[k] > limit)) return Outcome::quality;
   }
   // Bound the distance beside the paper's volumes: the tip of a spike has hardly any volume.
-  if (!star.interface_triangles.empty() && rules.distance_weight > 0 &&
-      rules.distance_weight * distance_left(star, b) > rules.max_error * rules.scale_at(star.centre_position))
+  if (!star.interface_triangles.empty() && rules.collapse.distance_weight &&
+      *rules.collapse.distance_weight * distance_left(star, b) >
+          rules.error.limit(rules.scale_at(star.centre_position)))
     return Outcome::surface_error;
   if (!(rules.embedded && star.interface_triangles.empty()) &&
       !ws.link_condition.holds(ws.mesh, ws.grid, star, b))
@@ -171,41 +173,42 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
                           static_cast<std::int64_t>(left) - static_cast<std::int64_t>(star.tets.size()));
 }
 
-bool may_go(const Star& star, int dimension) { return dimension > 0 && !star.frozen; }
-
 }  // namespace
 
 double collapse_weight(Star& star, std::size_t b, const BlockRules& rules) {
   const Vec3 step = star.positions[b] - star.centre_position;
-  return step.norm() +
-         (star.interface_triangles.empty() ? 0 : star.surface_error(step, rules.gamma, rules.losses_cancel));
+  return step.norm() + (star.interface_triangles.empty()
+                            ? 0
+                            : star.surface_error(step, rules.error.gamma, rules.error.losses_cancel));
 }
 
 Outcome collapse_onto(Workspace& ws, const BlockRules& rules, std::size_t b) {
   Star& star = ws.star;
-  const int dimension = star.dimension();
-  if (!may_go(star, dimension) || star.edge_dimension(b) != dimension) return Outcome::material_rule;
+  const int along = collapsible_edge(vertex_kind(star));
+  if (along == never || star.edge_dimension(b) != along) return Outcome::material_rule;
   star.compute_normals();
   star.compute_gradients();
-  if (collapse_weight(star, b, rules) > rules.max_error) return Outcome::surface_error;
+  if (collapse_weight(star, b, rules) > rules.error.limit()) return Outcome::surface_error;
   return try_target(ws, rules, b);
 }
 
 Outcome collapse(Workspace& ws, const BlockRules& rules) {
   Star& star = ws.star;
-  const int dimension = star.dimension();
-  if (!may_go(star, dimension)) return Outcome::material_rule;
+  const int along = collapsible_edge(vertex_kind(star));
+  if (along == never) return Outcome::material_rule;
   star.compute_normals();
   star.compute_gradients();
 
   std::vector<CollapseTarget>& targets = ws.targets;
   targets.clear();
-  const double max_error = rules.max_error * rules.scale_at(star.centre_position);
+  const double max_error = rules.error.limit(rules.scale_at(star.centre_position));
   Outcome refusal = Outcome::material_rule;
   for (std::size_t p = 0; p < star.points.size(); ++p) {
-    if (star.edge_dimension(p) != dimension) continue;
-    if ((star.positions[p] - star.centre_position).norm() > rules.max_collapsed_edge) continue;
-    if (rules.collapse_short_only &&
+    if (star.edge_dimension(p) != along) continue;
+    if (rules.collapse.max_collapsed_edge &&
+        (star.positions[p] - star.centre_position).norm() > *rules.collapse.max_collapsed_edge)
+      continue;
+    if (rules.collapse.short_edges_only &&
         !(rules.sizes->excess(star.centre_position, star.positions[p]).shorter > 1))
       continue;
     const double weight = collapse_weight(star, p, rules);
@@ -215,7 +218,7 @@ Outcome collapse(Workspace& ws, const BlockRules& rules) {
     }
     targets.push_back({weight, static_cast<std::uint16_t>(p)});
   }
-  const std::size_t count = std::min(rules.max_targets, targets.size());
+  const std::size_t count = std::min(rules.collapse.max_targets, targets.size());
   std::partial_sort(targets.begin(), targets.begin() + static_cast<std::ptrdiff_t>(count), targets.end(),
                     [](const CollapseTarget& x, const CollapseTarget& y) {
                       return x.weight != y.weight ? x.weight < y.weight : x.point < y.point;

@@ -14,6 +14,7 @@ namespace {
 
 /// Ring size of the largest basic flip, 4-4.
 constexpr std::size_t basic_ring = 4;
+static_assert(full_reach.max_ring < RingTriangulation::max_points);
 
 Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
 
@@ -27,7 +28,8 @@ Outcome surface_edit(Workspace& ws, const BlockRules& rules, Index s, Index t, R
              &pt = mesh.position(t);
   const double swept = std::fabs(orient3d_value(a, b, ps, pt)) / 6;
   const int materials = across == outside_id ? 1 : 2;
-  if (rules.gamma * materials * portable_cbrt(swept) > rules.max_error) return Outcome::surface_error;
+  if (rules.error.gamma * materials * portable_cbrt(swept) > rules.error.limit())
+    return Outcome::surface_error;
   // Refuse folds: every new triangle must face the way both old ones do.
   const std::array<Vec3, 2> before{normal_of(a, ps, b), normal_of(a, b, pt)};
   const std::array<Vec3, 2> after{normal_of(a, ps, pt), normal_of(b, pt, ps)};

@@ -5,13 +5,13 @@
 #include <array>
 
 #include "common/geometry/quality.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Degrees; the excess is more than rounding.
-constexpr double full_turn = 360.001;
+using Grid = SimplifyTuning::Grid;
 
 /// A point of a tet after the proposal.
 struct Corner {
@@ -93,7 +93,7 @@ bool folds_over(Workspace& ws) {
     };
     const auto at = std::find_if(p.write_set.begin(), p.write_set.end(), stays);
     if (at == p.write_set.end()) continue;
-    if (EdgeTurn(ws, ends).around(*at) > full_turn) return true;
+    if (EdgeTurn(ws, ends).around(*at) > Grid::full_turn) return true;
     const auto read = static_cast<std::size_t>(at - p.write_set.begin());
     if (read >= p.read_set_size) std::swap(p.write_set[read], p.write_set[p.read_set_size++]);
   }

@@ -100,7 +100,8 @@ Outcome try_remove(Workspace& ws, const BlockRules& rules, Index tet, int face, 
   const float worst_before = std::min(mesh.quality(tet), mesh.quality(other));
   for (int i = 0; i < 3; ++i) {
     worst = std::min(worst, tree.grow(ring[i], ring[(i + 1) % 3], tet, other));
-    if (worst <= 0 || (worst <= worst_before && rules.accept_worse == 0)) return Outcome::quality;
+    if (worst <= 0 || (worst <= worst_before && rules.acceptance.worse_probability == 0))
+      return Outcome::quality;
   }
   const std::vector<Index>& removed = proposal.removed;
   if (removed.size() > 2) kind = Operation::face_removal;

@@ -9,18 +9,13 @@
 #include "common/tolerances.h"
 #include "simplify/constraints/surface_samples.h"
 #include "simplify/operations/movement.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Max step, in shortest edges.
-constexpr double fit_reach = 1;
-constexpr int fitting_steps = 3;  ///< whole, half and quarter step
-/// Regularisation: share of the trace of the normal equations' matrix that is added to its diagonal.
-constexpr double flat_share = 0.01;
-/// Min step, in ideal edges: shorter ones are not worth their tests.
-constexpr double min_fit_step = 0.01;
+using Fitting = SimplifyTuning::Fitting;
 
 /// Moves the centre if the worst tet stays above `floor` or hardly gets worse.
 /// \pre Gradients are computed.
@@ -30,7 +25,8 @@ Outcome move_fitted(Workspace& ws, const BlockRules& rules, const Vec3& place, f
   std::vector<float>& qualities = ws.qualities;
   qualities.resize(star.tets.size());
   float worst;
-  const Outcome o = rate(star, rules, to, std::min(floor, star.worst * 0.999f), qualities, worst);
+  const Outcome o =
+      rate(star, rules, to, std::min(floor, Fitting::kept_quality * star.worst), qualities, worst);
   return o == Outcome::done ? move_to(ws, rules, to, qualities) : o;
 }
 
@@ -40,10 +36,10 @@ Outcome fit_to_crease(Workspace& ws, const BlockRules& rules, float floor) {
   Star& star = ws.star;
   if (!star.creases || star.frozen) return Outcome::no_candidate;
   const int dimension = star.dimension();
-  const double reach = fit_reach * shortest_edge(star);
+  const double reach = Fitting::reach * shortest_edge(star);
   const Vec3& c = star.centre_position;
-  const auto on = dimension == 1   ? rules.projection->onto_curve(c, reach)
-                  : dimension == 0 ? rules.projection->onto_corner(c, reach)
+  const auto on = dimension == 1   ? rules.surface.projection->onto_curve(c, reach)
+                  : dimension == 0 ? rules.surface.projection->onto_corner(c, reach)
                                    : std::nullopt;
   if (!on) return Outcome::no_candidate;
   const Vec3 to = ws.mesh.snap(*on);
@@ -52,12 +48,12 @@ Outcome fit_to_crease(Workspace& ws, const BlockRules& rules, float floor) {
   return move_fitted(ws, rules, to, floor);
 }
 
-Outcome fit_to_samples(Workspace& ws, const BlockRules& rules, float floor) {
+Outcome fit_to_samples(Workspace& ws, const BlockRules& rules, float floor, SampleWeights weights) {
   Star& star = ws.star;
   const SurfaceSamples* samples = ws.grid.samples();
   if (!samples || star.frozen || star.dimension() != 2) return Outcome::no_candidate;
   star.compute_gradients();
-  if (rules.max_crease_distance > 0 && is_flat(star)) return Outcome::no_candidate;
+  if (rules.has_patches() && is_flat(star)) return Outcome::no_candidate;
   SurfaceGrid::Edit& edit = ws.proposal.edit;
   edit.clear();
   const Vec3& c = star.centre_position;
@@ -81,8 +77,9 @@ Outcome fit_to_samples(Workspace& ws, const BlockRules& rules, float floor) {
     samples->for_each(edit.removed_records[i], [&](const Vec3& at, float distance) {
       const double share = std::clamp(height.dot(at - p) / full, 0.0, 1.0);
       // These weights approach the least sum of fourth powers of the distances.
-      const double weight =
-          rules.fit_farthest ? static_cast<double>(distance) * static_cast<double>(distance) : 1;
+      const double weight = weights == SampleWeights::squared_distance
+                                ? static_cast<double>(distance) * static_cast<double>(distance)
+                                : 1;
       squares += weight * share * share;
       sum += weight * share * normal.dot(at - c);
     });
@@ -92,13 +89,13 @@ Outcome fit_to_samples(Workspace& ws, const BlockRules& rules, float floor) {
   const double trace = a.trace();
   if (!(trace > 0)) return Outcome::no_candidate;
   // Suppress motion that the normals leave open, along flat parts and straight ridges.
-  a += (flat_share * trace) * Eigen::Matrix3d::Identity();
+  a += (Fitting::flat_share * trace) * Eigen::Matrix3d::Identity();
   Vec3 step = a.ldlt().solve(b);
-  if (step.norm() < min_fit_step * rules.objective.quality.ideal_edge) return Outcome::no_candidate;
-  const double reach = fit_reach * shortest_edge(star);
+  if (step.norm() < Fitting::min_step * rules.objective.quality.ideal_edge) return Outcome::no_candidate;
+  const double reach = Fitting::reach * shortest_edge(star);
   if (step.norm() > reach) step *= reach / step.norm();
   Outcome o = Outcome::quality;
-  for (int i = 0; i < fitting_steps && o != Outcome::done; ++i, step *= 0.5)
+  for (int i = 0; i < Fitting::steps && o != Outcome::done; ++i, step *= 0.5)
     o = move_fitted(ws, rules, c + step, floor);
   return o;
 }

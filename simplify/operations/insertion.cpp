@@ -4,15 +4,13 @@
 #include <algorithm>
 
 #include "simplify/operations/smoothing.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Min factor on the worst quality for a new point: it costs tets.
-constexpr float min_gain = 1.05f;
-/// Max number of tets that a cavity gains by growing.
-constexpr std::size_t max_grown = 24;
+using Insertion = SimplifyTuning::Insertion;
 
 Cone cone(const Workspace& ws, const BlockRules& rules, const Vec3& at, Index tet, int slot) {
   const EditableMesh& mesh = ws.mesh;
@@ -58,7 +56,7 @@ void grow(Workspace& ws, const BlockRules& rules, const Vec3& at, std::vector<Co
     return a.quality != b.quality ? a.quality > b.quality : a.tet != b.tet ? a.tet < b.tet : a.slot < b.slot;
   });
   std::vector<Cone>& fresh = ws.fresh;
-  for (std::size_t grown = 0; grown < max_grown && !cones.empty(); ++grown) {
+  for (std::size_t grown = 0; grown < Insertion::max_grown && !cones.empty(); ++grown) {
     const Cone worst = cones.back();
     const FaceLink link = mesh.link(worst.tet, worst.slot);
     if (link.is_interface() || mesh.frozen_tet(link.tet())) return;
@@ -135,7 +133,8 @@ Outcome propose(Workspace& ws, const BlockRules& rules, InsertionPlace place) {
   const int dimension = star.dimension();
   // A point of dimension 0 stays where it was inserted.
   Placement& placement = ws.placement;
-  const float limit = place == InsertionPlace::best ? min_gain * before : ws.acceptance_limit(rules, before);
+  const float limit =
+      place == InsertionPlace::best ? Insertion::min_gain * before : ws.acceptance_limit(rules, before);
   star.compute_gradients();
   bool good = false;
   if (place == InsertionPlace::best && dimension > 0)

@@ -18,7 +18,7 @@ namespace {
 /// interface of its two regions nearby.
 bool surface_edit(Workspace& ws, const BlockRules& rules, const Vec3& to) {
   const Star& star = ws.star;
-  const bool by_point = rules.leave_surface && star.dimension() < 2;
+  const bool by_point = rules.surface.leave_surface && star.dimension() < 2;
   SurfaceGrid::Edit& edit = ws.proposal.edit;
   for (const Star::InterfaceTriangle& s : star.interface_triangles) {
     const Triangle ids{star.centre, star.points[s.first], star.points[s.second]};
@@ -32,7 +32,7 @@ bool surface_edit(Workspace& ws, const BlockRules& rules, const Vec3& to) {
 
 /// Whether a point where patches meet stays near its feature edge at `to`.
 bool stays_near_crease(const Star& star, const BlockRules& rules, const Vec3& to) {
-  if (!(rules.max_crease_distance > 0) || !star.creases) return true;
+  if (!rules.has_patches() || !star.creases) return true;
   std::optional<std::size_t> first;
   for (std::size_t p = 0; p < star.points.size(); ++p) {
     if (star.edge_dimension(p) != 1) continue;
@@ -65,7 +65,8 @@ bool is_flat(const Star& star) {
 Outcome rate(Star& star, const BlockRules& rules, const Vec3& to, float limit, std::vector<float>& qualities,
              float& worst) {
   if (!star.interface_triangles.empty() &&
-      star.surface_error(to - star.centre_position, rules.gamma, rules.losses_cancel) > rules.max_error)
+      star.surface_error(to - star.centre_position, rules.error.gamma, rules.error.losses_cancel) >
+          rules.error.limit())
     return Outcome::surface_error;
   worst = 1;
   for (std::size_t k = 0; k < star.tets.size(); ++k) {

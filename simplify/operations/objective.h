@@ -5,6 +5,7 @@
 
 #include "common/geometry/quality.h"
 #include "simplify/constraints/edge_sizes.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
@@ -20,12 +21,9 @@ struct Objective {
   /// Kind::paper: target lengths of edges; `quality` is then for their average. Null: the same everywhere.
   const EdgeSizes* sizes = nullptr;
 
-  /// Ratio of a well-shaped mesh's edges to the cube root of its mean tet volume. Measured on meshes made for
-  /// target lengths: with it the median edge has the target length.
-  static constexpr double edge_to_ideal = 2.1;
   /// Target edge length at a point over the average one.
   double scale_at(const Vec3& place) const {
-    return sizes->target_length(place) / (edge_to_ideal * quality.ideal_edge);
+    return sizes->target_length(place) / (SimplifyTuning::EdgeLengths::edge_to_ideal * quality.ideal_edge);
   }
 
   float operator()(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {

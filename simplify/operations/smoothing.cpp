@@ -10,25 +10,13 @@
 
 #include "common/tolerances.h"
 #include "simplify/operations/movement.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr int smoothing_steps = 3;  ///< of smooth(): whole, half and quarter
-
-// The ascent of find_place().
-constexpr int max_ascents = 8;            ///< max steps uphill
-constexpr int max_backsteps = 4;          ///< max halvings of a failed step
-constexpr double first_step = 0.3;        ///< in shortest edges
-constexpr double difference_step = 1e-5;  ///< step of the finite differences, in shortest edges
-constexpr float active_within = 1.15f;    ///< factor on the worst quality up to which a tet's gradient counts
-constexpr std::size_t max_active = 8;
-constexpr int hull_steps = 12;  ///< iterations of shortest_of_hull()
-/// Min factor on the worst quality that is worth another round.
-constexpr float min_smoothing_gain = 1.01f;
-/// Max distance from which a point is projected back onto its surface, in shortest edges.
-constexpr double projection_reach = 0.5;
+using Smoothing = SimplifyTuning::Smoothing;
 
 /// Centroid of the neighbours that the centre may follow.
 Vec3 centroid(const Star& star, int dimension) {
@@ -78,9 +66,9 @@ std::array<Vec3, 3> free_directions(const Star& star, int dimension, bool leave_
 
 /// The shortest vector of the gradients' convex hull, by Gilbert's iteration (1966): uphill for all of them,
 /// or next to zero.
-Vec3 shortest_of_hull(const std::array<Vec3, max_active>& gradients, std::size_t count) {
+Vec3 shortest_of_hull(const std::array<Vec3, Smoothing::max_active>& gradients, std::size_t count) {
   Vec3 v = gradients[0];
-  for (int i = 0; i < hull_steps; ++i) {
+  for (int i = 0; i < Smoothing::hull_steps; ++i) {
     std::size_t lowest = 0;
     for (std::size_t k = 1; k < count; ++k)
       if (gradients[k].dot(v) < gradients[lowest].dot(v)) lowest = k;
@@ -105,8 +93,8 @@ void sort_by_quality(Star& star) {
 /// patch never may.
 /// \pre Gradients are computed.
 bool may_leave(const Star& star, const BlockRules& rules) {
-  return rules.leave_surface && rules.projection && !star.creases &&
-         !(rules.max_crease_distance > 0 && !star.interface_triangles.empty() && is_flat(star));
+  return rules.surface.leave_surface && rules.surface.projection && !star.creases &&
+         !(rules.has_patches() && !star.interface_triangles.empty() && is_flat(star));
 }
 
 /// The search for a better position of a star's centre.
@@ -147,24 +135,25 @@ class PlacementSearch {
 
   std::optional<Vec3> find_nearest(const Vec3& to, double max_distance) const {
     const Star::InterfaceTriangle& s = star_.interface_triangles.front();
-    return dimension_ == 2   ? rules_.projection->onto_surface(to, s.inside, s.across, s.patch, max_distance)
-           : dimension_ == 1 ? rules_.projection->onto_curve(to, max_distance)
-                             : rules_.projection->onto_corner(to, max_distance);
+    return dimension_ == 2
+               ? rules_.surface.projection->onto_surface(to, s.inside, s.across, s.patch, max_distance)
+           : dimension_ == 1 ? rules_.surface.projection->onto_curve(to, max_distance)
+                             : rules_.surface.projection->onto_corner(to, max_distance);
   }
 
   /// Sets the bounds on the centre's distance from its surface, curve or corner. False if it may not move.
   bool choose_bounds() {
-    reach_ = projection_reach * shortest_;
+    reach_ = Smoothing::projection_reach * shortest_;
     // A surface point keeps its distance from the reference, which fit_to_samples() chose. Beyond the reach
     // it stays in its plane.
-    if (rules_.projection && dimension_ == 2 && !leave_surface_)
+    if (rules_.surface.projection && dimension_ == 2 && !leave_surface_)
       if (const auto on = nearest(star_.centre_position, reach_)) {
         const Vec3 normal = star_.gradients.front().change.normalized();
         offset_ = normal * normal.dot(star_.centre_position - *on);
         // Drop rounding errors, which would add up.
-        if (rules_.max_crease_distance > 0 && offset_.norm() <= tolerance::flat_patch) offset_.setZero();
+        if (rules_.has_patches() && offset_.norm() <= tolerance::flat_patch) offset_.setZero();
       }
-    max_distance_ = rules_.max_distance;
+    max_distance_ = rules_.surface.max_distance.value_or(0);
     // A point of dimension 0 at which no curve ends or branches (two interfaces that touch) has no corner to
     // stay near, unless one happens to be within the distance.
     if (leave_surface_ && dimension_ == 0 && !nearest(star_.centre_position, max_distance_)) return false;
@@ -177,7 +166,7 @@ class PlacementSearch {
 
   /// End of a step to `to`: back on the surface or curve, or near it; nullopt if that is too far away.
   std::optional<Vec3> placed(Vec3 to) {
-    if (rules_.projection && dimension_ < 3) {
+    if (rules_.surface.projection && dimension_ < 3) {
       const auto on = nearest(to, leave_surface_ ? max_distance_ : reach_);
       if (!on) return {};
       if (!leave_surface_) to = *on + offset_;
@@ -207,8 +196,9 @@ class PlacementSearch {
   /// The worst value at `to`; all values in ws.trial. nullopt if a value is not above the current worst, or E
   /// forbids the move.
   std::optional<float> worst_at(const Vec3& to) {
-    if (!star_.interface_triangles.empty() && star_.surface_error(to - star_.centre_position, rules_.gamma,
-                                                                  rules_.losses_cancel) > rules_.max_error)
+    if (!star_.interface_triangles.empty() &&
+        star_.surface_error(to - star_.centre_position, rules_.error.gamma, rules_.error.losses_cancel) >
+            rules_.error.limit())
       return {};
     float worst = 1;
     for (std::size_t k = 0; k < star_.tets.size(); ++k) {
@@ -221,20 +211,20 @@ class PlacementSearch {
 
   /// Gradients, by forward differences, of the tets that are about as bad as the worst one. Returns their
   /// number.
-  std::size_t active_gradients(std::array<Vec3, max_active>& gradients) {
+  std::size_t active_gradients(std::array<Vec3, Smoothing::max_active>& gradients) {
     std::vector<std::size_t>& order = ws_.order;
     const std::vector<float>& values = ws_.current;
     order.resize(star_.tets.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    const std::size_t considered = std::min(max_active, order.size());
+    const std::size_t considered = std::min(Smoothing::max_active, order.size());
     std::partial_sort(
         order.begin(), order.begin() + static_cast<std::ptrdiff_t>(considered), order.end(),
         [&](std::size_t x, std::size_t y) { return values[x] != values[y] ? values[x] < values[y] : x < y; });
     std::size_t active = 0;
-    const double h = difference_step * shortest_;
+    const double h = Smoothing::difference_step * shortest_;
     for (std::size_t i = 0; i < considered; ++i) {
       const std::size_t k = order[i];
-      if (values[k] > (worst_ > 0 ? active_within * worst_ : 0)) break;
+      if (values[k] > (worst_ > 0 ? Smoothing::active_within * worst_ : 0)) break;
       const Star::StarTet& t = star_.tets[k];
       // Double precision, since the differences are small.
       const auto precise = [&](const Vec3& p) {
@@ -253,9 +243,9 @@ class PlacementSearch {
   /// Ascends; returns whether the centre has moved.
   bool ascend() {
     bool moved = false;
-    double length = first_step * shortest_;
-    std::array<Vec3, max_active> gradients;
-    for (int ascent = 0; ascent < max_ascents; ++ascent) {
+    double length = Smoothing::first_step * shortest_;
+    std::array<Vec3, Smoothing::max_active> gradients;
+    for (int ascent = 0; ascent < Smoothing::max_ascents; ++ascent) {
       const std::size_t active = active_gradients(gradients);
       if (active == 0) break;
       const Vec3 uphill = shortest_of_hull(gradients, active);
@@ -263,12 +253,12 @@ class PlacementSearch {
       if (!(steep * shortest_ > tolerance::ascent_share * std::fabs(worst_) + tolerance::ascent_rounding))
         break;
       bool better = false;
-      for (int back = 0; back < max_backsteps; ++back, length *= 0.5) {
+      for (int back = 0; back < Smoothing::max_backsteps; ++back, length *= 0.5) {
         const auto to = placed(at_ + uphill * (length / steep));
         if (!to) continue;
         const auto worst_there = worst_at(*to);
         if (!worst_there) continue;
-        better = *worst_there > worst_ + 1e-3f * std::fabs(worst_);
+        better = *worst_there > worst_ + Smoothing::min_step_gain * std::fabs(worst_);
         at_ = *to;
         worst_ = *worst_there;
         ws_.current.swap(ws_.trial);
@@ -276,7 +266,7 @@ class PlacementSearch {
         break;
       }
       if (!better) break;
-      length = std::min(2 * length, first_step * shortest_);
+      length = std::min(2 * length, Smoothing::first_step * shortest_);
     }
     return moved;
   }
@@ -317,13 +307,14 @@ Outcome smooth(Workspace& ws, const BlockRules& rules) {
   const float limit = ws.acceptance_limit(rules, star.worst);
   Outcome refusal = Outcome::quality;
   float worst;
-  for (int i = 0; i < smoothing_steps; ++i, step *= 0.5) {
+  for (int i = 0; i < Smoothing::steps; ++i, step *= 0.5) {
     Vec3 to = star.centre_position + step;
-    if (rules.max_crease_distance > 0 && dimension < 3) {
+    if (rules.has_patches() && dimension < 3) {
       const Star::InterfaceTriangle& s = star.interface_triangles.front();
-      const double reach = projection_reach * shortest_edge(star);
-      const auto on = dimension == 2 ? rules.projection->onto_surface(to, s.inside, s.across, s.patch, reach)
-                                     : rules.projection->onto_curve(to, reach);
+      const double reach = Smoothing::projection_reach * shortest_edge(star);
+      const auto on = dimension == 2
+                          ? rules.surface.projection->onto_surface(to, s.inside, s.across, s.patch, reach)
+                          : rules.surface.projection->onto_curve(to, reach);
       if (!on) continue;
       to = *on;
     }
@@ -343,7 +334,7 @@ Outcome optimise(Workspace& ws, const BlockRules& rules) {
   star.compute_gradients();
   if (dimension == 0 && !may_leave(star, rules)) return Outcome::material_rule;
   Placement& place = ws.placement;
-  if (!find_place(ws, rules, dimension, min_smoothing_gain * star.worst, place)) return Outcome::quality;
+  if (!find_place(ws, rules, dimension, Smoothing::min_gain * star.worst, place)) return Outcome::quality;
   return move_to(ws, rules, place.position, place.qualities);
 }
 

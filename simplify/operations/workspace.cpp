@@ -5,14 +5,13 @@
 
 #include "simplify/constraints/surface_samples.h"
 #include "simplify/operations/edge_turn.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Share of the min length that new edges may have where the proposal removes one that is too long: halving
-/// the edge of flat tets makes short ones, and nothing else shortens it.
-constexpr double short_share_beside_long = 0.5;
+using EdgeLengths = SimplifyTuning::EdgeLengths;
 
 /// Whether the proposal makes no edge too long or too short, or violates no bound by more than an edge that
 /// it removes.
@@ -31,7 +30,7 @@ bool keeps_sizes(const Workspace& ws, const EdgeSizes& sizes) {
       for (const auto& e : tet_edges) add(worst, at(t[e[0]]), at(t[e[1]]));
     };
     for (const Index t : p.removed) add_tet(before, ws.mesh.points(t));
-    if (before.longer > 1) short_share = short_share_beside_long;
+    if (before.longer > 1) short_share = EdgeLengths::short_share_beside_long;
     for (const NewTet& t : p.added) add_tet(after, t.points);
   } else {
     const Star& star = ws.star;
@@ -61,16 +60,17 @@ Outcome Workspace::gather(Index point) {
 }
 
 float Workspace::acceptance_limit(const BlockRules& rules, float worst) {
-  const bool may_worsen = rules.accept_worse > 0 && random.uniform() < rules.accept_worse;
-  return std::min(rules.good_enough, may_worsen ? rules.annealing_floor * worst : worst);
+  const bool may_worsen =
+      rules.acceptance.worse_probability > 0 && random.uniform() < rules.acceptance.worse_probability;
+  const float limit = may_worsen ? rules.acceptance.worse_floor * worst : worst;
+  return rules.acceptance.good_enough ? std::min(*rules.acceptance.good_enough, limit) : limit;
 }
 
 Outcome Workspace::test_surface(const BlockRules& rules) {
   if (!grid.test(proposal.edit)) return Outcome::self_intersection;
   const SurfaceSamples* samples = grid.samples();
   if (!samples || proposal.edit.removed.empty()) return Outcome::done;
-  const double allowed = std::min(
-      rules.tolerance, rules.max_deviation * rules.scale_at(proposal.edit.removed.front().points.front()));
+  const double allowed = rules.deviation.limit(rules.scale_at(proposal.edit.removed.front().points.front()));
   return samples->reassign_samples(proposal.edit, allowed) ? Outcome::done : Outcome::surface_error;
 }
 

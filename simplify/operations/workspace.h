@@ -88,7 +88,7 @@ struct Workspace {
     }
     return outcome;
   }
-  /// Tests the proposal's edit of the surface against self-intersection and BlockRules::max_deviation.
+  /// Tests the proposal's edit of the surface against self-intersection and DeviationBound.
   ///
   /// \return done, self_intersection or surface_error.
   Outcome test_surface(const BlockRules& rules);

@@ -7,15 +7,14 @@
 #include "common/geometry/point_triangle.h"
 #include "common/geometry/predicates.h"
 #include "common/parallel/parallel.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr std::size_t leaf_tets = 4;
-constexpr std::size_t transfer_grain = 64;  ///< tets a parallel loop hands out at a time
-/// Passes of the correction: the first leaves rounding errors of the values, the second those of the sum.
-constexpr int correction_passes = 2;
+using Grains = SimplifyTuning::Grains;
+using Transfer = SimplifyTuning::Transfer;
 
 Box3 box_of(const TetCorners& corners) {
   Box3 box;
@@ -68,7 +67,7 @@ void FieldCarrier::add_sources() {
     sources_.push_back(sources[i]);
     boxes_.push_back(boxes[i]);
   }
-  tree_ = BoxTree(sources_.size(), leaf_tets, [&](std::size_t i) { return boxes_[i]; });
+  tree_ = BoxTree(sources_.size(), Transfer::leaf_tets, [&](std::size_t i) { return boxes_[i]; });
 }
 
 template <class Visit>
@@ -89,7 +88,7 @@ void FieldCarrier::for_sources_near(const Box3& box, const Visit& visit) const {
 void FieldCarrier::add_targets() {
   for (const ChangeJournal::OldTet& t : journal_.tets())
     if (!mesh_.dead(t.slot)) targets_.push_back({t.slot, mesh_.region(t.slot), 0, {}});
-  parallel_for(0, targets_.size(), transfer_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, targets_.size(), Grains::transferred_tets, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Target& target = targets_[i];
       TetCorners corners;
@@ -202,7 +201,7 @@ void FieldCarrier::carry_tet_field(std::vector<double>& values, std::size_t comp
         }
         new_value(i) = covered > 0 ? sum / covered : mean;
       }
-      for (int pass = 0; pass < correction_passes; ++pass) {
+      for (int pass = 0; pass < Transfer::correction_passes; ++pass) {
         Sum missing;
         missing.add(before.value());
         for (std::size_t i = 0; i < targets_.size(); ++i)

@@ -4,13 +4,14 @@
 #include <algorithm>
 
 #include "common/error.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Points of a leaf: max, max at first, and max of two leaves that are merged.
-constexpr std::size_t leaf_points = 32, first_leaf_points = 20, joined_points = 12;
+using Transfer = SimplifyTuning::Transfer;
+
 constexpr Index root = 0;
 
 }  // namespace
@@ -39,8 +40,8 @@ void PointTree::build(const EditableMesh& mesh) {
   for (Index p = 0; p < mesh.point_slots(); ++p)
     if (mesh.incident_tet(p) != no_index) nodes_[root].points.push_back(p);
   // Reserve for all nodes that may arise, so that no later change reallocates.
-  nodes_.reserve(2 * (4 * nodes_[root].points.size() / first_leaf_points + 1));
-  halve(mesh, root, first_leaf_points);
+  nodes_.reserve(2 * (4 * nodes_[root].points.size() / Transfer::first_leaf_points + 1));
+  halve(mesh, root, Transfer::first_leaf_points);
 }
 
 void PointTree::halve(const EditableMesh& mesh, Index first, std::size_t max_points) {
@@ -100,7 +101,7 @@ void PointTree::repair(const EditableMesh& mesh, std::span<const ChangeJournal::
 void PointTree::insert(const EditableMesh& mesh, Index point) {
   const Index node = leaf_of(mesh.position(point));
   nodes_[node].points.push_back(point);
-  halve(mesh, node, leaf_points);
+  halve(mesh, node, Transfer::leaf_points);
 }
 
 void PointTree::erase(Index point, const Vec3& position) {
@@ -119,7 +120,7 @@ void PointTree::shrink(Index node) {
   const auto [a, b] = nodes_[parent].children;
   const Index other = a == node ? b : a;
   if (nodes_[other].axis == leaf) {
-    if (nodes_[node].points.size() + nodes_[other].points.size() > joined_points) return;
+    if (nodes_[node].points.size() + nodes_[other].points.size() > Transfer::joined_points) return;
     nodes_[parent].points = std::move(nodes_[node].points);
     nodes_[parent].points.insert(nodes_[parent].points.end(), nodes_[other].points.begin(),
                                  nodes_[other].points.end());

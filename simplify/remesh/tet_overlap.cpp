@@ -5,15 +5,16 @@
 #include <cstddef>
 
 #include "common/geometry/predicates.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
+using Transfer = SimplifyTuning::Transfer;
+
 /// The first three planes each cut a piece into at most three; the last one only measures volumes.
 constexpr std::size_t max_pieces = 27;
-/// Distances from a plane below this share of the largest are rounding errors of coordinates.
-constexpr double rounding = 1e-13;
 
 /// Signed distances of a point from the cutting planes. They are linear in the point, so that coordinates are
 /// not needed.
@@ -130,7 +131,7 @@ struct Relation {
     const Eigen::Array4d min_distances = distances[0].min(distances[1]).min(distances[2].min(distances[3])),
                          // Do not count corners that only rounding puts across a plane, such as those of the
                          // halves of an edge.
-        tolerance = rounding * max_distances.max(-min_distances);
+        tolerance = Transfer::plane_rounding * max_distances.max(-min_distances);
     apart = (max_distances <= tolerance).any();
     for (int f = 0; f < 4; ++f)
       if (min_distances[f] < -tolerance[f]) crossed[count++] = f;

@@ -11,32 +11,13 @@
 #endif
 
 #include "common/parallel/parallel.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-/// M: a batch has one of that many neighbouring items. A larger M makes fewer conflicts, but the batches of a
-/// block then reach over more memory: 24 times a batch of points still fits into a core's cache. For tets
-/// conflicts cost more than cache misses: there are five times as many tets, an operation on one changes
-/// those around its four points, and tets around an edge are neighbours in the list.
-constexpr std::size_t point_spacing = 24, tet_spacing = 256;
-/// Items of a batch: enough to keep several threads busy, few enough for the cache. Blocks that exceed the
-/// cache in any case get larger batches.
-constexpr std::size_t min_batch = 256, max_batch = 1024, batches_of_large_blocks = 1024;
-/// Items of a batch in the order given, where each item takes ten times as long and earlier failures are
-/// tried again.
-constexpr std::size_t min_ordered_batch = 16, max_ordered_batch = 1024, ordered_batches = 16;
-/// Share of a batch's proposals that may lose: above it the next batch is smaller, below half of it larger.
-/// Losers are decided twice, and in a mesh of few points, or around points of many tets, large batches have
-/// hardly any winners.
-constexpr double max_lost_share = 0.3;
-/// Min size of a reduced batch.
-constexpr std::size_t min_shrunk_batch = 16;
-/// Items that a thread decides, and winners that it commits, at a time.
-constexpr std::size_t chunk_in_order = 2, chunk_shuffled = 16, commit_chunk = 16;
-/// Min number of chunks that is worth waking other threads.
-constexpr std::size_t min_parallel_chunks = 3;
+using Batches = SimplifyTuning::Batches;
 
 /// The order of a shuffled block, by ascending keys: item i has the key i / step + r, where r is a random
 /// permutation of the numbers below `spacing` for as many consecutive items. `step` 0: the order given.
@@ -90,7 +71,7 @@ void maybe_yield() {
 void for_chunks(std::size_t count, std::size_t chunk,
                 const std::function<void(std::size_t begin, std::size_t end, unsigned worker)>& body) {
   const std::size_t chunks = (count + chunk - 1) / chunk;
-  if (chunks < min_parallel_chunks) {
+  if (chunks < Batches::min_parallel_chunks) {
     body(0, count, 0);
     return;
   }
@@ -182,19 +163,20 @@ bool BlockRunner::select(const Stop& stop) {
 }
 
 void BlockRunner::commit_winners() {
-  for_chunks(winners_.size(), commit_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
-    for (std::size_t i = begin; i < end; ++i) {
-      maybe_yield();
-      commit(mesh_, grid_, proposals_[winners_[i]], workers_[worker]->commit_workspace);
-    }
-  });
+  for_chunks(winners_.size(), Batches::commit_chunk,
+             [&](std::size_t begin, std::size_t end, unsigned worker) {
+               for (std::size_t i = begin; i < end; ++i) {
+                 maybe_yield();
+                 commit(mesh_, grid_, proposals_[winners_[i]], workers_[worker]->commit_workspace);
+               }
+             });
   end_batch(mesh_, grid_);
 }
 
 std::size_t BlockRunner::next_batch_size(std::size_t size, std::size_t max_size) const {
   const auto lost = static_cast<double>(lost_);
-  const double max_lost = max_lost_share * static_cast<double>(lost_ + winners_.size());
-  if (lost > max_lost) return std::max(std::min(min_shrunk_batch, max_size), size - size / 4);
+  const double max_lost = Batches::max_lost_share * static_cast<double>(lost_ + winners_.size());
+  if (lost > max_lost) return std::max(std::min(Batches::min_shrunk_size, max_size), size - size / 4);
   return lost < max_lost / 2 ? std::min(max_size, size + size / 4) : size;
 }
 
@@ -206,9 +188,11 @@ void BlockRunner::run(const std::vector<Item>& items, bool in_order, const Attem
   const std::size_t n = items.size();
   std::size_t step = batch_size_;
   if (step == 0)
-    step = in_order ? std::clamp(n / ordered_batches, min_ordered_batch, max_ordered_batch)
-                    : std::clamp(n / batches_of_large_blocks, min_batch, max_batch);
-  constexpr std::size_t spacing = std::is_same_v<Item, TetSnapshot> ? tet_spacing : point_spacing;
+    step = in_order ? std::clamp(n / Batches::ordered_batches, Batches::min_ordered_size,
+                                 Batches::max_ordered_size)
+                    : std::clamp(n / Batches::batches_of_large_blocks, Batches::min_size, Batches::max_size);
+  constexpr std::size_t spacing =
+      std::is_same_v<Item, TetSnapshot> ? Batches::tet_spacing : Batches::point_spacing;
   BlockOrder order(n, in_order ? 0 : step, spacing, Random(seed_, block, ~std::uint64_t{0}));
   const auto decide_entry = [&](Workspace& ws, const Entry& entry) {
     ws.random = Random(seed_, block, entry.item);
@@ -224,7 +208,7 @@ void BlockRunner::run(const std::vector<Item>& items, bool in_order, const Attem
     batch_ = again_;
     while (batch_.size() < batch && !order.empty()) batch_.push_back({order.take(), 0});
     ++totals_.batches;
-    decide(decide_entry, in_order ? chunk_in_order : chunk_shuffled);
+    decide(decide_entry, in_order ? Batches::chunk_in_order : Batches::chunk_shuffled);
     const bool goes_on = select(stop);
     totals_.conflicts += lost_;
     commit_winners();

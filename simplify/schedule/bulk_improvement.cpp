@@ -14,25 +14,16 @@
 #include "simplify/operations/insertion.h"
 #include "simplify/operations/smoothing.h"
 #include "simplify/schedule/improve_step.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Share of bad tets above which sizes are changed; below it only shapes are improved.
-constexpr double resize_above = 0.01;
-/// A round gains too little if it leaves more than this share of the bad tets; max number of such rounds.
-constexpr double idle_above = 0.9;
-constexpr int max_idle = 2;
+using BulkRounds = SimplifyTuning::BulkRounds;
+
 /// Cube of the edge of the regular tet of volume 1: 6 sqrt(2).
 constexpr double cubed_edge_of_unit_volume = 8.48528137423857;
-/// In edges of the regular tet with the mean volume of the tets around: edges of the surface above the first
-/// are split, and a point with an edge below the second is crowded.
-constexpr double long_edge_factor = 1.6;
-constexpr double short_edge_factor = 0.6;
-/// Share of the worst quality that splits and collapses must leave: halves of a tet are hardly better than
-/// the whole, but flips and smoothing then improve them.
-constexpr float resize_floor = 0.5f;
 
 double local_edge(double volume, std::size_t tets) {
   return portable_cbrt(cubed_edge_of_unit_volume * volume / static_cast<double>(tets));
@@ -60,7 +51,7 @@ Outcome split_tet(Workspace& ws, const BlockRules& rules, const TetSnapshot& ite
     if (length2 <= longest2) continue;
     double volume = 0;
     for (Index t : ws.ring.tets) volume += mesh.signed_volume(t);
-    const double local = long_edge_factor * local_edge(volume, ws.ring.tets.size());
+    const double local = BulkRounds::long_edge * local_edge(volume, ws.ring.tets.size());
     if (length2 < local * local) continue;
     longest = e;
     longest2 = length2;
@@ -75,7 +66,7 @@ bool crowded(const EditableMesh& mesh, const Star& star) {
   for (const Vec3& p : star.positions)
     shortest2 = std::min(shortest2, (p - star.centre_position).squaredNorm());
   for (const Star::StarTet& t : star.tets) volume += mesh.signed_volume(t.tet);
-  const double local = short_edge_factor * local_edge(volume, star.tets.size());
+  const double local = BulkRounds::short_edge * local_edge(volume, star.tets.size());
   return shortest2 < local * local;
 }
 
@@ -91,9 +82,9 @@ class BulkLoop {
         flipping_(relaxed_rules(tools.rules, area.usual_edge())) {
     moving_.count = flipping_.count = {plan.min_tets, plan.max_tets};
     perturbing_ = resizing_ = flipping_;
-    perturbing_.good_enough = plan.bad_quality;
-    resizing_.accept_worse = 1;
-    resizing_.annealing_floor = resize_floor;
+    perturbing_.acceptance.good_enough = plan.bad_quality;
+    resizing_.acceptance.worse_probability = 1;
+    resizing_.acceptance.worse_floor = BulkRounds::resize_floor;
   }
 
   int run() {
@@ -102,8 +93,8 @@ class BulkLoop {
     for (; i < plan_.max_rounds; ++i) {
       const std::size_t bad = area_.bad_tets(plan_.bad_quality).size();
       if (bad == 0) break;
-      if (static_cast<double>(bad) > idle_above * static_cast<double>(min_bad)) ++idle;
-      if (idle > (plan_.remodel ? max_idle : 0)) break;
+      if (static_cast<double>(bad) > BulkRounds::idle_above * static_cast<double>(min_bad)) ++idle;
+      if (idle > (plan_.remodel ? BulkRounds::max_idle : 0)) break;
       min_bad = std::min(min_bad, bad);
       run_round(bad, i == 0);
     }
@@ -112,11 +103,11 @@ class BulkLoop {
 
  private:
   void run_round(std::size_t bad_count, bool first) {
-    RoundRecorder::Round round(recorder_, plan_.kind, moving_.max_error);
+    RoundRecorder::Round round(recorder_, plan_.kind, moving_.error.limit());
     const auto count = static_cast<double>(bad_count);
     round.report().percent = 100 * count / static_cast<double>(mesh_.live_tets());
     if (plan_.remodel) {
-      if (count > resize_above * static_cast<double>(area_.tet_count())) resize();
+      if (count > BulkRounds::resize_above * static_cast<double>(area_.tet_count())) resize();
       perturb();
     }
     std::vector<TetSnapshot> bad = area_.bad_tets(plan_.bad_quality);

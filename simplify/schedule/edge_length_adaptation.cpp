@@ -10,23 +10,13 @@
 #include "simplify/operations/collapse.h"
 #include "simplify/operations/insertion.h"
 #include "simplify/schedule/bulk_improvement.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Edges are halved about twice in three rounds: enough for edges a million times too long.
-constexpr int max_adaptation_rounds = 60;
-/// Share of the edges, each counted once for each of its tets, that may violate a size field; none may
-/// violate a bound.
-constexpr double few = 0.002;
-/// A round gains too little if it leaves more than this share of the excess after the best round before; max
-/// number of such rounds.
-constexpr double size_idle_above = 0.97;
-constexpr int max_idle_adaptation_rounds = 2;
-/// Share of the shape bound that collapses and splits must leave. Flips and smoothing repair the shapes.
-constexpr float adaptation_floor = 0.3f;
-constexpr int shape_rounds = 2;  ///< of flips and smoothing between
+using Adaptation = SimplifyTuning::Adaptation;
 
 class EdgeLengthAdaptation {
  public:
@@ -38,19 +28,21 @@ class EdgeLengthAdaptation {
         plan_(plan),
         bound_(static_cast<float>(shape_quality_bound(tools.rules.objective.shape, plan.angle))),
         resizing_(tools.rules) {
-    resizing_.max_error = std::numeric_limits<double>::infinity();
-    resizing_.good_enough = adaptation_floor * bound_;
+    resizing_.error.max.reset();
+    resizing_.acceptance.good_enough = Adaptation::floor * bound_;
     resizing_.count = {plan.min_tets, plan.max_tets};
   }
 
   void run() {
     double min_excess = std::numeric_limits<double>::infinity();
     int idle = 0;
-    for (int i = 0; i < max_adaptation_rounds; ++i) {
+    for (int i = 0; i < Adaptation::max_rounds; ++i) {
       const OutOfBounds out = out_of_bounds();
-      if (out.share == 0 || (sizes_.has_target_length() && !sizes_.has_bounds() && out.share <= few)) break;
-      idle = out.excess > size_idle_above * min_excess ? idle + 1 : 0;
-      if (idle > max_idle_adaptation_rounds) break;
+      if (out.share == 0 || (sizes_.has_target_length() && !sizes_.has_bounds() &&
+                             out.share <= Adaptation::max_violating_share))
+        break;
+      idle = out.excess > Adaptation::idle_above * min_excess ? idle + 1 : 0;
+      if (idle > Adaptation::max_idle) break;
       min_excess = std::min(min_excess, out.excess);
       {
         RoundRecorder::Round round(tools_.recorder, plan_.kind, 0);
@@ -64,7 +56,7 @@ class EdgeLengthAdaptation {
                                   .bad_quality = bound_,
                                   .min_tets = plan_.min_tets,
                                   .max_tets = plan_.max_tets,
-                                  .max_rounds = shape_rounds,
+                                  .max_rounds = Adaptation::shape_rounds,
                                   .remodel = false});
     }
   }
@@ -95,7 +87,7 @@ class EdgeLengthAdaptation {
 
   void collapse_short() {
     BlockRules rules = resizing_;
-    rules.collapse_short_only = true;
+    rules.collapse.short_edges_only = true;
     tools_.runner.each_star(area_.bad_points(1), Operation::collapse,
                             [&](Workspace& ws) { return collapse(ws, rules); });
   }

@@ -8,16 +8,13 @@
 #include "simplify/operations/face_removal.h"
 #include "simplify/operations/insertion.h"
 #include "simplify/operations/smoothing.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Relaxed bound E of collapses and edge removals, and max distance by which they move the surface away from
-/// the reference; both in usual edges.
-constexpr double relaxed_error_edges = 12;
-constexpr double relaxed_distance_edges = 0.3;
-constexpr std::size_t relaxed_targets = 30;  ///< covers all neighbours of nearly every point
+using Collapses = SimplifyTuning::Collapses;
 
 /// Smooths the tet's points until one move improves the worst tet around.
 Outcome move_points(Workspace& ws, const BlockRules& rules, const TetSnapshot& item) {
@@ -74,9 +71,10 @@ Outcome perturb_tet(Workspace& ws, const BlockRules& perturbation, const TetSnap
 
 BlockRules relaxed_rules(const BlockRules& rules, double edge) {
   BlockRules relaxed = rules;
-  relaxed.max_error = std::max(rules.max_error, relaxed_error_edges * edge);
-  relaxed.max_targets = relaxed_targets;
-  relaxed.max_distance = relaxed_distance_edges * edge;
+  if (relaxed.error.max)
+    relaxed.error.max = std::max(*relaxed.error.max, Collapses::relaxed_error_edges * edge);
+  relaxed.collapse.max_targets = Collapses::relaxed_max_targets;
+  relaxed.surface.max_distance = Collapses::relaxed_distance_edges * edge;
   return relaxed;
 }
 

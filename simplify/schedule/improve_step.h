@@ -23,7 +23,7 @@ struct ImproveRules {
 /// One improvement step at a tet: tries operations until one improves the worst tet around.
 Outcome improve_tet(Workspace& ws, const ImproveRules& step, const TetSnapshot& item);
 
-/// Tries a random flip of the tet that leaves only good tets (BlockRules::good_enough) or improves the worst:
+/// Tries a random flip of the tet that leaves only good tets (Acceptance::good_enough) or improves the worst:
 /// it changes the connectivity near tets that no operation improves.
 Outcome perturb_tet(Workspace& ws, const BlockRules& perturbation, const TetSnapshot& item);
 

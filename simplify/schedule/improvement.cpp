@@ -2,44 +2,20 @@
 #include "simplify/schedule/improvement.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "simplify/operations/collapse.h"
 #include "simplify/operations/smoothing.h"
 #include "simplify/schedule/improve_step.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-/// After a round that leaves more than this share of the bad tets, the next one also flips tets around them
-/// at random and moves all points around, to free tets that are stuck.
-constexpr double stuck_above = 0.8;
-/// Factor on the target quality for tets left by collapses that make room for insertions.
-constexpr float thinning_margin = 1.1f;
-/// Min share of the bad tets that a round must fix to count as gain.
-constexpr double min_round_gain = 0.02;
-/// Share of bad tets above which many are bad, and then the min gain and the max rounds without gain.
-constexpr double many_bad = 0.01;
-constexpr double min_gain_of_many = 0.05;
-constexpr int max_idle_rounds_of_many = 4;
-/// Max rounds without gain: while tets are below ImprovementPlan::leave_surface_angle, and otherwise.
-constexpr int max_idle_rounds = 8;
-constexpr int max_idle_rounds_when_good = 2;
-/// Share of bad tets below which few are bad, and then the max rounds without gain: such rounds take hardly
-/// any time.
-constexpr double few_bad = 5e-4;
-constexpr int max_idle_rounds_of_few = 30;
-/// Share of the target quality that perturbation must leave: it frees twice as many of the last bad tets as
-/// the whole would, and tets below the target are repaired at once.
-constexpr float perturbed_share = 0.95f;
-/// Share of the allowed decrease of the count that is reserved for the last resort: edge removals would use
-/// up all of it, and no collapse could remove the last slivers.
-constexpr double kept_share = 0.125;
-/// Growth of BlockRules::max_deviation with each last-resort round, and its max factor: the last slivers of
-/// fine detail need room. Unlimited growth would double the max distance.
-constexpr double round_deviation_growth = 1.25, max_deviation_factor = 3;
+using ImprovementRounds = SimplifyTuning::ImprovementRounds;
 
 /// The rounds of run_improvement().
 class ImprovementLoop {
@@ -58,14 +34,14 @@ class ImprovementLoop {
   /// The number of rounds.
   int run() {
     relaxed_ = relaxed_rules(rules_, area_.usual_edge());
-    relaxed_.leave_surface = true;
-    max_deviation_ = std::min(rules_.tolerance, max_deviation_factor * rules_.max_deviation);
+    relaxed_.surface.leave_surface = true;
+    max_deviation_ = rules_.deviation.widened(ImprovementRounds::max_deviation_factor);
     min_bad_ = 4 * area_.tet_count();
     int i = 0;
     for (; i < plan_.max_rounds; ++i) {
       std::vector<TetSnapshot> bad = area_.bad_tets(bounds_.bad_quality);
       if (bad.empty() || !worth_a_round(bad, i == 0)) break;
-      RoundRecorder::Round round(recorder_, plan_.kind, rules_.max_error);
+      RoundRecorder::Round round(recorder_, plan_.kind, rules_.error.limit());
       round.report().cutoff = plan_.angle;
       round.report().percent = 100 * static_cast<double>(bad.size()) / static_cast<double>(mesh_.live_tets());
       run_round(std::move(bad));
@@ -87,17 +63,20 @@ class ImprovementLoop {
     const bool any_may_leave_surface = std::any_of(bad.begin(), bad.end(), [&](const TetSnapshot& t) {
       return mesh_.quality(t.tet) < bounds_.leave_surface;
     });
-    stuck_ = static_cast<double>(bad.size()) > stuck_above * static_cast<double>(min_bad_);
+    stuck_ = static_cast<double>(bad.size()) > ImprovementRounds::stuck_above * static_cast<double>(min_bad_);
     if (plan_.brief && stuck_ && !any_may_leave_surface) return false;
     const double gain = 1 - static_cast<double>(bad.size()) / static_cast<double>(min_bad_);
     // If a large share is bad, the interfaces are the reason, and more rounds would take long for little.
-    const bool many = static_cast<double>(bad.size()) > many_bad * static_cast<double>(area_.tet_count());
-    idle_ = gain >= (many ? min_gain_of_many : min_round_gain) ? 0 : idle_ + 1;
-    const bool few = static_cast<double>(bad.size()) < few_bad * static_cast<double>(area_.tet_count());
-    if (idle_ >= (few                              ? max_idle_rounds_of_few
-                  : any_may_leave_surface && !many ? max_idle_rounds
-                  : many                           ? max_idle_rounds_of_many
-                                                   : max_idle_rounds_when_good))
+    const bool many = static_cast<double>(bad.size()) >
+                      ImprovementRounds::many_bad * static_cast<double>(area_.tet_count());
+    idle_ =
+        gain >= (many ? ImprovementRounds::min_gain_of_many : ImprovementRounds::min_gain) ? 0 : idle_ + 1;
+    const bool few =
+        static_cast<double>(bad.size()) < ImprovementRounds::few_bad * static_cast<double>(area_.tet_count());
+    if (idle_ >= (few                              ? ImprovementRounds::max_idle_of_few
+                  : any_may_leave_surface && !many ? ImprovementRounds::max_idle
+                  : many                           ? ImprovementRounds::max_idle_of_many
+                                                   : ImprovementRounds::max_idle_when_good))
       return false;
     min_bad_ = std::min(min_bad_, bad.size());
     // Wait until perturbation on the surfaces has gained nothing: points that leave them do not return.
@@ -108,12 +87,13 @@ class ImprovementLoop {
   }
 
   void run_round(std::vector<TetSnapshot> bad) {
-    if (last_resort_)
-      rules_.max_deviation = relaxed_.max_deviation =
-          std::min(max_deviation_, round_deviation_growth * rules_.max_deviation);
-    const double kept = last_resort_ || plan_.target_tets <= plan_.min_tets
-                            ? 0
-                            : kept_share * static_cast<double>(plan_.target_tets - plan_.min_tets);
+    if (last_resort_ && max_deviation_)
+      rules_.deviation.max = relaxed_.deviation.max =
+          std::min(*max_deviation_, *rules_.deviation.widened(ImprovementRounds::deviation_growth));
+    const double kept =
+        last_resort_ || plan_.target_tets <= plan_.min_tets
+            ? 0
+            : ImprovementRounds::kept_share * static_cast<double>(plan_.target_tets - plan_.min_tets);
     rules_.count.min = relaxed_.count.min = plan_.min_tets + static_cast<std::size_t>(kept);
     // Make room if the count is more than halfway from the target to the upper bound, which may be the
     // largest number there is.
@@ -137,7 +117,7 @@ class ImprovementLoop {
   /// Makes room for insertions by collapses that leave only good tets, or improve the worst.
   void make_room(const std::vector<TetSnapshot>& bad) {
     BlockRules thinning = rules_;
-    thinning.good_enough = bounds_.bad_quality * thinning_margin;
+    thinning.acceptance.good_enough = bounds_.bad_quality * ImprovementRounds::thinning_margin;
     thinning.count.min = plan_.target_tets;
     runner_.each_star(
         area_.points_to_thin(bad), Operation::collapse, [&](Workspace& ws) { return collapse(ws, thinning); },
@@ -146,7 +126,7 @@ class ImprovementLoop {
 
   void perturb(const std::vector<TetSnapshot>& bad) {
     BlockRules perturbation = last_resort_ ? relaxed_ : rules_;
-    perturbation.good_enough = perturbed_share * bounds_.bad_quality;
+    perturbation.acceptance.good_enough = ImprovementRounds::perturbed_share * bounds_.bad_quality;
     runner_.tets(
         area_.tets_around(bad),
         [&](Workspace& ws, const TetSnapshot& item, int) { return perturb_tet(ws, perturbation, item); },
@@ -182,7 +162,7 @@ class ImprovementLoop {
   const ImprovementPlan& plan_;
   ImproveBounds bounds_;
   BlockRules relaxed_;
-  double max_deviation_ = 0;
+  std::optional<double> max_deviation_;
   std::vector<TetSnapshot> tried_;  ///< tets tried in the last round, by number
   std::size_t min_bad_ = 0;         ///< min number of bad tets after a round
   int idle_ = 0;                    ///< consecutive rounds without gain

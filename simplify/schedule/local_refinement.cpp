@@ -6,21 +6,16 @@
 #include <vector>
 
 #include "simplify/operations/insertion.h"
+#include "simplify/schedule/fitting_sweeps.h"
 #include "simplify/schedule/improve_area.h"
+#include "simplify/schedule/selection.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr int max_refinements = 8;
-/// Max number and max share of tets with far faces (the larger counts): above, local refinement does not
-/// help.
-constexpr double max_far_share = 0.02, max_far_tets = 100;
-constexpr int far_fits = 2;  ///< fitting sweeps after each round
-/// Max rounds without gain: each halves edges farther around.
-constexpr int max_idle_refinements = 2;
-/// Share of the shape bound that halved tets must have. Flips and smoothing improve them.
-constexpr float split_floor = 0.3f;
+using Refinement = SimplifyTuning::Refinement;
 
 /// The longest edge of a tet, or with `surface` of its boundary and interface faces; index into tet_edges.
 int longest_edge(const EditableMesh& mesh, const TetSnapshot& item, bool surface) {
@@ -41,8 +36,9 @@ void halve(const ImprovementTools& tools, const std::vector<TetSnapshot>& tets, 
            double angle, bool surface) {
   EditableMesh& mesh = tools.mesh;
   BlockRules halving = tools.rules;
-  halving.max_error = std::numeric_limits<double>::infinity();
-  halving.good_enough = split_floor * static_cast<float>(shape_quality_bound(halving.objective.shape, angle));
+  halving.error.max.reset();
+  halving.acceptance.good_enough =
+      Refinement::split_floor * static_cast<float>(shape_quality_bound(halving.objective.shape, angle));
   halving.count = {plan.min_tets, plan.max_tets};
   RoundRecorder::Round round(tools.recorder, plan.kind, 0);
   tools.runner.tets(
@@ -62,7 +58,7 @@ class Gain {
   bool goes_on(std::size_t left) {
     idle_ = left < min_left_ ? 0 : idle_ + 1;
     min_left_ = std::min(min_left_, left);
-    return idle_ <= max_idle_refinements;
+    return idle_ <= Refinement::max_idle;
   }
 
  private:
@@ -76,7 +72,7 @@ void refine_bad_tets(const ImprovementTools& tools, ImprovementArea& area, Impro
                      double angle) {
   const auto bound = static_cast<float>(shape_quality_bound(tools.rules.objective.shape, angle));
   Gain gain;
-  for (int i = 0; i < max_refinements && plan.max_rounds > 0; ++i) {
+  for (int i = 0; i < Refinement::max_rounds && plan.max_rounds > 0; ++i) {
     const std::vector<TetSnapshot> bad = area.bad_tets(bound);
     if (bad.empty() || !gain.goes_on(bad.size())) return;
     halve(tools, area.tets_around(bad), plan, angle, false);
@@ -89,17 +85,19 @@ void refine_beyond_tolerance(Engine& engine, ImprovementArea& area, const Improv
   const ImprovementTools tools{engine.mesh(), engine.runner(), engine.rules, engine.recorder()};
   // Use this bound, not the plan's, which leaves a point less room than the tolerance may need.
   const auto floor = static_cast<float>(shape_quality_bound(engine.rules.objective.shape, angle));
-  for (int i = 0; i < max_refinements; ++i) {
-    const std::vector<TetSnapshot> far = engine.find_far_tets(limit);
+  for (int i = 0; i < Refinement::max_rounds; ++i) {
+    const std::vector<TetSnapshot> far =
+        tets_with_faces(engine.mesh(), engine.input_samples().add_far_samples(limit));
     if (far.empty() ||
         static_cast<double>(far.size()) >
-            std::max(max_far_tets, max_far_share * static_cast<double>(engine.mesh().live_tets())))
+            std::max(Refinement::max_far_tets,
+                     Refinement::max_far_share * static_cast<double>(engine.mesh().live_tets())))
       return;
     halve(tools, far, plan, angle, true);
     improve_area(tools, area, plan, 1);
-    for (int sweep = 0; sweep < far_fits; ++sweep) {
+    for (int sweep = 0; sweep < Refinement::far_fits; ++sweep) {
       RoundRecorder::Round round(tools.recorder, plan.kind, 0);
-      engine.fit_far(far, floor);
+      fit_farthest_samples(engine, far, floor);
       round.finish();
     }
     refine_bad_tets(tools, area, plan, angle);

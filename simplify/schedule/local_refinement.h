@@ -21,8 +21,7 @@ void refine_bad_tets(const ImprovementTools& tools, ImprovementArea& area, Impro
 /// than a few faces are: then samples are not the reason.
 ///
 /// \throws Interrupted, OutOfTime.
-/// \pre As for refine_bad_tets(); the engine keeps and measures its input surface, and its triangles own
-///   samples.
+/// \pre As for refine_bad_tets(); the engine's InputSamples keep a measured surface and are assigned.
 void refine_beyond_tolerance(Engine& engine, ImprovementArea& area, const ImprovementPlan& plan, double angle,
                              double limit);
 

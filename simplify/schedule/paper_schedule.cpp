@@ -7,18 +7,20 @@
 #include "common/portable_math.h"
 #include "common/tolerances.h"
 #include "simplify/operations/collapse.h"
+#include "simplify/operations/collapse_table.h"
 #include "simplify/operations/edge_removal.h"
 #include "simplify/operations/face_removal.h"
 #include "simplify/operations/insertion.h"
 #include "simplify/operations/smoothing.h"
-#include "simplify/schedule/schedule_constants.h"
+#include "simplify/schedule/selection.h"
+#include "simplify/tuning/tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Half width of the band around the target, once it is reached: actions that leave it are refused.
-constexpr double count_slack = 0.005;
+using PaperSchedule = SimplifyTuning::PaperSchedule;
+using Schedules = SimplifyTuning::Schedules;
 
 /// Collapses the tet's half-edge of least weight that passes every test.
 Outcome collapse_tet(Workspace& ws, const BlockRules& rules, const TetSnapshot& item) {
@@ -32,14 +34,14 @@ Outcome collapse_tet(Workspace& ws, const BlockRules& rules, const TetSnapshot& 
   for (Index from : item.points) {
     Star& star = ws.star;
     if (const Outcome o = ws.gather(from); o != Outcome::done) return o;
-    const int dimension = star.dimension();
-    if (dimension == 0 || star.frozen) continue;
+    const int along = collapsible_edge(vertex_kind(star));
+    if (along == never) continue;
     star.compute_gradients();
     for (std::size_t p = 0; p < star.points.size(); ++p) {
       if (std::find(item.points.begin(), item.points.end(), star.points[p]) == item.points.end()) continue;
-      if (star.edge_dimension(p) != dimension) continue;
+      if (star.edge_dimension(p) != along) continue;
       const double weight = collapse_weight(star, p, rules);
-      if (weight <= rules.max_error) {
+      if (weight <= rules.error.limit()) {
         edges[count++] = {weight, from, star.points[p]};
       } else {
         refusal = Outcome::surface_error;
@@ -89,7 +91,7 @@ Outcome paper_step(Workspace& ws, const BlockRules& rules, const TetSnapshot& it
   if (smooth_points(ws, rules, item, 0) == Outcome::done) return Outcome::done;
   // A new point must improve the tets around it: tets that annealing accepts would be split for ever.
   BlockRules strict = rules;
-  strict.accept_worse = 0;
+  strict.acceptance.worse_probability = 0;
   if (insert_in_tet(ws, strict, item.tet, InsertionPlace::centre) == Outcome::done) return Outcome::done;
   for (int f = 0; f < 4; ++f)
     if (insert_in_face(ws, strict, item.tet, f, InsertionPlace::centre) == Outcome::done)
@@ -120,19 +122,19 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
   const auto target = static_cast<double>(target_tets);
   const double log_first =
       portable_log(std::max(static_cast<double>(mesh.live_tets()) / target, 1 + tolerance::at_target));
-  const double max_interpolation_error = max_useful_error * std::max(1.0, options.gamma / 10);
+  const double max_interpolation_error = Schedules::max_useful_error * std::max(1.0, options.gamma / 10);
   rules.objective.kind = Objective::Kind::paper;
-  rules.max_error = rules.objective.quality.ideal_edge;
-  rules.annealing_floor = 0;
-  rules.losses_cancel = true;
-  rules.count.min = static_cast<std::size_t>(std::ceil(target * (1 - count_slack)));
+  double& error = rules.error.max.emplace(rules.objective.quality.ideal_edge);
+  rules.acceptance.worse_floor = 0;
+  rules.error.losses_cancel = true;
+  rules.count.min = static_cast<std::size_t>(std::ceil(target * (1 - PaperSchedule::count_slack)));
   engine.compact();
   engine.rate_all();
-  double percent = percent_step;
+  double percent = Schedules::percent_step;
   int idle = 0;
   bool reached = false;
   std::size_t bad = mesh.live_tets();
-  for (int i = 0; i < options.max_iterations && idle < max_idle_iterations; ++i) {
+  for (int i = 0; i < options.max_iterations && idle < Schedules::max_idle_iterations; ++i) {
     reached = reached || mesh.live_tets() <= target_tets;
     if (reached) {
       // Second stop: the number of bad tets tells whether anything is still gained.
@@ -142,19 +144,21 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
       bad = now;
     }
     engine.compact_if_sparse();
-    RoundRecorder::Round round(engine.recorder(), "simplify", rules.max_error);
+    RoundRecorder::Round round(engine.recorder(), "simplify", error);
     IterationReport& it = round.report();
     it.percent = percent;
     const auto before = static_cast<double>(it.tets_before);
     const double log_now = portable_log(std::max(before / target, 1.0));
-    rules.accept_worse = reached ? 0 : first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
+    rules.acceptance.worse_probability =
+        reached ? 0 : Schedules::first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
     // Before the target is reached, allow all that does not undo earlier iterations; then only what keeps or
     // restores the count.
-    rules.count.max = reached ? static_cast<std::size_t>(target * (1 + count_slack)) : it.tets_before;
-    const float limit = engine.cutoff(percent);
+    rules.count.max =
+        reached ? static_cast<std::size_t>(target * (1 + PaperSchedule::count_slack)) : it.tets_before;
+    const float limit = quality_cutoff(mesh, percent);
     it.cutoff = portable_cbrt(limit);
     engine.runner().tets(
-        engine.bad_tets(limit),
+        bad_tets(mesh, limit),
         [&](Workspace& ws, const TetSnapshot& item, int stage) {
           return paper_step(ws, rules, item, stage, limit);
         },
@@ -162,15 +166,14 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
     round.finish();
     if (!reached) {
       const auto after = static_cast<double>(mesh.live_tets());
-      const bool error_grows = rules.max_error < max_interpolation_error;
-      if (percent >= 100 && !error_grows) idle = 1 - after / before < idle_below ? idle + 1 : 0;
-      rules.max_error =
-          std::min(max_interpolation_error, rules.max_error * std::max(1.0, portable_cbrt(after / target)));
+      const bool error_grows = error < max_interpolation_error;
+      if (percent >= 100 && !error_grows) idle = 1 - after / before < Schedules::idle_below ? idle + 1 : 0;
+      error = std::min(max_interpolation_error, error * std::max(1.0, portable_cbrt(after / target)));
     }
-    percent = std::min(100.0, percent + percent_step);
+    percent = std::min(100.0, percent + Schedules::percent_step);
     engine.recorder().update(1 - log_now / log_first);
   }
-  rules.accept_worse = 0;
+  rules.acceptance.worse_probability = 0;
 }
 
 }  // namespace tetwright

@@ -72,7 +72,7 @@ TetMesh snapshot(const EditableMesh& mesh) {
 }
 
 Outcome operate(Workspace& ws, BlockRules rules, Bytes& bytes, Index t) {
-  rules.accept_worse = bytes.below(2);
+  rules.acceptance.worse_probability = bytes.below(2);
   const FlipReach reach = bytes.below(2) ? full_reach : basic_reach;
   const auto place = bytes.below(2) ? InsertionPlace::best : InsertionPlace::centre;
   const Tet points = ws.mesh.points(t);
@@ -117,7 +117,7 @@ void run_operations(std::string_view input_bytes) {
   BlockRules rules;
   rules.objective.quality = TetQuality::for_target(mesh.total_volume(), 1);
   rules.objective.kind = bytes.below(2) ? Objective::Kind::shape : Objective::Kind::paper;
-  rules.max_error = 1e9;
+  rules.error.max = 1e9;
   rules.count.max = 2 * mesh.live_tets();
   for (Index t = 0; t < mesh.tet_slots(); ++t)
     if (!mesh.dead(t)) mesh.set_quality(t, quality_of(mesh, rules, mesh.points(t)));

@@ -213,9 +213,9 @@ TEST(Creases, FitOnlyWhatIsOffThem) {
   EXPECT_TRUE(projection.has_patches());
   BlockRules rules;
   rules.project_onto(projection, w.mesh.diagonal());
-  EXPECT_GT(rules.max_crease_distance, 0);
-  EXPECT_NEAR(rules.max_crease_distance, 0.001 * w.mesh.diagonal(), 1e-12);
-  rules.max_error = 1e9;
+  ASSERT_TRUE(rules.has_patches());
+  EXPECT_NEAR(*rules.surface.max_feature_distance, 0.001 * w.mesh.diagonal(), 1e-12);
+  rules.error.max = 1e9;
   for (const Index p : w.live_points()) {
     (void)w.star(p);
     EXPECT_EQ(fit_to_crease(*w.ws, rules, 1e-4f), Outcome::no_candidate);
@@ -225,7 +225,7 @@ TEST(Creases, FitOnlyWhatIsOffThem) {
   const SurfaceProjection none(smooth.mesh, nullptr);
   BlockRules plain;
   plain.project_onto(none, 1);
-  EXPECT_EQ(plain.max_crease_distance, 0);
+  EXPECT_FALSE(plain.has_patches());
 }
 
 }  // namespace

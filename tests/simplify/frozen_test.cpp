@@ -68,9 +68,9 @@ std::map<Operation, std::uint64_t> run_all(Workbench& w, const SurfaceProjection
   const Kept before = kept(w.mesh);
   w.own_samples(0.5 * w.mesh.space().scale());
   BlockRunner runner(w.mesh, w.grid, w.ledger, 1, 0, nullptr);
-  w.rules.accept_worse = 0.5;
-  w.rules.annealing_floor = 0.1f;
-  w.rules.projection = &projection;
+  w.rules.acceptance.worse_probability = 0.5;
+  w.rules.acceptance.worse_floor = 0.1f;
+  w.rules.surface.projection = &projection;
   const auto no_stop = [] { return false; };
   std::map<Operation, std::uint64_t> done;
   const auto check = [&](Operation operation) {
@@ -110,8 +110,8 @@ std::map<Operation, std::uint64_t> run_all(Workbench& w, const SurfaceProjection
     check(operation);
   };
   for (int round = 0; round < 2; ++round) {
-    w.rules.leave_surface = round == 1;
-    w.rules.max_distance = round == 1 ? 0.1 * w.mesh.space().scale() : 0;
+    w.rules.surface.leave_surface = round == 1;
+    if (round == 1) w.rules.surface.max_distance = 0.1 * w.mesh.space().scale();
     stars(Operation::smooth, [&](Workspace& ws) { return smooth(ws, w.rules); });
     stars(Operation::optimise, [&](Workspace& ws) { return optimise(ws, w.rules); });
     stars(Operation::fit, [&](Workspace& ws) { return fit_to_samples(ws, w.rules, 0); });

@@ -49,12 +49,12 @@ Outcome random_operation(Workbench& w, Index t, const SurfaceProjection& project
   Workspace& ws = *w.ws;
   Random& random = ws.random;
   BlockRules rules = w.rules;
-  rules.accept_worse = random.uniform() < 0.5 ? 1 : 0;
-  rules.good_enough = random.uniform() < 0.3 ? 0.05f : 1;
+  rules.acceptance.worse_probability = random.uniform() < 0.5 ? 1 : 0;
+  if (random.uniform() < 0.3) rules.acceptance.good_enough = 0.05f;
   if (random.below(2)) {
-    rules.projection = &projection;
-    rules.max_distance = 0.2;
-    rules.leave_surface = random.below(2);
+    rules.surface.projection = &projection;
+    rules.surface.max_distance = 0.2;
+    rules.surface.leave_surface = random.below(2);
   }
   const auto place = random.below(2) ? InsertionPlace::best : InsertionPlace::centre;
   const FlipReach reach = random.below(2) ? FlipReach{7, 5} : FlipReach{3, 1};
@@ -97,7 +97,7 @@ TEST(RandomOperations, TenThousandLeaveEveryMeshSoundAndItsTopologyAsItWas) {
       w.mesh.compact(4096, 1024);
       w.grid.build(w.mesh, 0);
       w.own_samples(w.mesh.space().scale());
-      if (round % 2) w.rules.max_deviation = 0.3 * w.mesh.space().scale();
+      if (round % 2) w.rules.deviation.max = 0.3 * w.mesh.space().scale();
       w.ws = std::make_unique<Workspace>(w.mesh, w.grid, w.ledger);
       w.ws->random = Random(seed);
       w.rules.objective.kind = seed % 2 ? Objective::Kind::shape : Objective::Kind::paper;
@@ -121,7 +121,7 @@ TEST(RandomOperations, TenThousandLeaveEveryMeshSoundAndItsTopologyAsItWas) {
       }
       w.expect_sound();
       if (round % 2) {
-        EXPECT_LE(w.samples->largest_distance(), w.rules.max_deviation);
+        EXPECT_LE(w.samples->largest_distance(), *w.rules.deviation.max);
       }
     }
   EXPECT_EQ(tried, 10000u);

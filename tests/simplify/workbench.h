@@ -24,7 +24,7 @@ struct Workbench {
     prepare(mesh);
     mesh.compact(64, 32);
     rules.objective.quality = TetQuality::for_target(mesh.total_volume(), 1);
-    rules.max_error = 1e9;
+    rules.error.max = 1e9;
     for (Index t = 0; t < mesh.tet_slots(); ++t) {
       const Tet& p = mesh.points(t);
       if (p[0] != no_index)

@@ -66,7 +66,7 @@ TEST(LinkCondition, WhatPassesKeepsTheTopology) {
     jitter(mesh, seed);
     Workbench w(mesh);
     // Collapse some points first: links conflict in coarse meshes.
-    w.rules.accept_worse = 1;
+    w.rules.acceptance.worse_probability = 1;
     for (Index p : w.live_points()) {
       w.star(p);
       if (random.below(4)) w.carry_out(collapse(*w.ws, w.rules));

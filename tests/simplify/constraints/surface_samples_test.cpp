@@ -150,10 +150,10 @@ TEST(SurfaceSamples, ThatWouldBeTooFarFromTheirTriangleRefuse) {
   const double scale = w.mesh.space().scale();
   w.own_samples(0.5 * scale);
   make_bad(w);
-  w.rules.max_deviation = 0.2 * scale;
+  w.rules.deviation.max = 0.2 * scale;
   w.star(w.at(2, 2, 4.25));
   EXPECT_EQ(collapse(*w.ws, w.rules), Outcome::surface_error);
-  w.rules.max_deviation = 0.26 * scale;
+  w.rules.deviation.max = 0.26 * scale;
   w.star(w.at(2, 2, 4.25));
   EXPECT_EQ(w.carry_out(collapse(*w.ws, w.rules)), Outcome::done);
 }

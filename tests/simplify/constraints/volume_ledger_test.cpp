@@ -48,7 +48,7 @@ TEST(VolumeLedger, HoldsCollapsesBack) {
   for (double share : {1e-9, 0.5}) {
     Workbench w(mesh);
     w.ledger.open(w.mesh, share);
-    w.rules.accept_worse = 1;
+    w.rules.acceptance.worse_probability = 1;
     std::size_t done = 0, volume = 0;
     for (Index p : w.live_points()) {
       if (w.mesh.incident_tet(p) == no_index || w.star(p).interface_triangles.empty()) continue;
@@ -62,7 +62,7 @@ TEST(VolumeLedger, HoldsCollapsesBack) {
   }
   Workbench w(mesh);
   w.ledger.open(w.mesh, 0.5);
-  w.rules.accept_worse = 1;
+  w.rules.acceptance.worse_probability = 1;
   w.rules.count.min = w.mesh.live_tets();
   for (Index p : w.live_points())
     if (!w.star(p).interface_triangles.empty()) {

@@ -86,7 +86,7 @@ TEST(Star, OfAPointThatIsGoneOrHasTooManyNeighbours) {
   const Index p = w.at(2, 2, 2);
   w.mesh.set_incident_tet(p, no_index);
   EXPECT_EQ(w.ws->star.gather(w.mesh, p), Outcome::stale);
-  constexpr int many = static_cast<int>(Star::max_points);
+  constexpr int many = static_cast<int>(SimplifyTuning::Stars::max_points);
   Workbench wheel(ring_mesh(many, 1));
   EXPECT_EQ(wheel.ws->star.gather(wheel.mesh, wheel.at(0, 0, 1)), Outcome::too_large);
   EXPECT_EQ(wheel.ws->star.gather(wheel.mesh, wheel.at(1, 0, 0)), Outcome::done);

@@ -14,7 +14,7 @@ TEST(Collapse, RemovesAnInnerPointAndItsEdgesTets) {
   TetMesh mesh = grid_mesh(4);
   jitter(mesh, 1);
   Workbench w(mesh);
-  w.rules.accept_worse = 1;
+  w.rules.acceptance.worse_probability = 1;
   const Index p = w.at(mesh.points[62].x(), mesh.points[62].y(), mesh.points[62].z());
   w.star(p);
   ASSERT_EQ(w.carry_out(collapse(*w.ws, w.rules)), Outcome::done);
@@ -25,7 +25,7 @@ TEST(Collapse, RemovesAnInnerPointAndItsEdgesTets) {
 
 // Collapses all that may be collapsed, again and again: the mesh must stay sound throughout.
 void collapse_all(Workbench& w) {
-  w.rules.accept_worse = 1;
+  w.rules.acceptance.worse_probability = 1;
   bool any = true;
   while (any) {
     any = false;
@@ -142,7 +142,7 @@ TEST(Collapse, OntoOneTargetProposedAndCarriedOut) {
   TetMesh mesh = grid_mesh(4);
   jitter(mesh, 7);
   Workbench w(mesh);
-  w.rules.accept_worse = 1;
+  w.rules.acceptance.worse_probability = 1;
   int allowed = 0;
   std::size_t onto = 0;
   Index last = no_index;
@@ -169,7 +169,7 @@ TEST(Collapse, CornersStay) {
   Workbench w(grid_mesh({4, 4, 4}, [](int x, int y, int z) {
     return Tag(z < 2 ? 1 : x < 2 ? 2 : y < 2 ? 3 : 4);
   }));
-  w.rules.accept_worse = 1;
+  w.rules.acceptance.worse_probability = 1;
   w.star(w.at(2, 2, 2));
   EXPECT_EQ(collapse(*w.ws, w.rules), Outcome::material_rule);
   w.expect_sound();
@@ -201,8 +201,8 @@ TEST(Collapse, AnErrorAboveEIsRefused) {
   TetMesh mesh = grid_mesh(4);
   jitter(mesh, 5);
   Workbench w(mesh);
-  w.rules.accept_worse = 1;
-  w.rules.max_error = 1e-3 * w.mesh.space().scale();  // far below an edge
+  w.rules.acceptance.worse_probability = 1;
+  w.rules.error.max = 1e-3 * w.mesh.space().scale();  // far below an edge
   w.star(0);
   EXPECT_EQ(collapse(*w.ws, w.rules), Outcome::surface_error);
   w.expect_sound();

@@ -103,7 +103,7 @@ TEST(EdgeRemoval, ErrorBoundsWhatTheSurfaceLoses) {
   TetMesh mesh = ring_mesh(2, 1, true, std::numbers::pi * 0.8);  // the flip would cut off a ridge
   Workbench w(mesh);
   make_bad(w);
-  w.rules.max_error = 1e-3;
+  w.rules.error.max = 1e-3;
   EXPECT_EQ(remove_axis(w, w.at(0, 0, -1), w.at(0, 0, 1), basic), Outcome::surface_error);
   w.expect_sound();
 }

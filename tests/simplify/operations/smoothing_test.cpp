@@ -78,9 +78,9 @@ TEST(Smoothing, ACornerMayLeaveItsPlaceALittleWhereThatIsAsked) {
     if (p == Vec3(2, 2, 2)) p = Vec3(2.5, 2.45, 2.4);
   Workbench w(mesh);
   const SurfaceProjection projection(w.mesh, nullptr);
-  w.rules.projection = &projection;
-  w.rules.leave_surface = true;
-  w.rules.max_distance = 0.2 * w.mesh.space().scale();
+  w.rules.surface.projection = &projection;
+  w.rules.surface.leave_surface = true;
+  w.rules.surface.max_distance = 0.2 * w.mesh.space().scale();
   const Index p = w.at(2.5, 2.45, 2.4);
   float worst = w.star(p).worst;
   for (int k = 0; k < 10; ++k) {

@@ -112,7 +112,7 @@ TEST(LocalArea, NoWorkBeyondTheRimWhateverHappensInIt) {
   Bench b(3);
   EditableMesh& mesh = b.work.mesh;
   BlockRules& rules = b.work.rules;
-  rules.good_enough = 0;
+  rules.acceptance.good_enough = 0;
   const Part part(mesh, 150);
   std::vector<std::pair<Index, Vec3>> beyond;
   for (const Index p : b.work.live_points())

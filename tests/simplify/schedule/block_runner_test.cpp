@@ -37,7 +37,7 @@ TetMesh jittered(int n, std::uint64_t seed) {
 struct Block : Workbench {
   explicit Block(const TetMesh& input, std::size_t batch_size)
       : Workbench(input), runner(mesh, grid, ledger, 1, batch_size, nullptr) {
-    rules.accept_worse = 1;
+    rules.acceptance.worse_probability = 1;
   }
   void in_order(const std::vector<Index>& points, const BlockRunner::TetAttempt& attempt) {
     std::vector<TetSnapshot> items;
@@ -162,7 +162,7 @@ TEST(BlockRunner, WinnersOfABatchCommitInAnyOrder) {
     std::optional<Contents> first;
     for (std::uint64_t order = 0; order < 4; ++order) {
       Workbench w(mesh);
-      w.rules.accept_worse = 1;
+      w.rules.acceptance.worse_probability = 1;
       std::vector<Proposal> proposals = proposals_of(w);
       Random choice(seed);
       for (std::size_t i = proposals.size(); i > 1; --i)
@@ -277,7 +277,7 @@ TEST(BlockRunner, BoundsHoldForABatchAsAWhole) {
 
 TEST(BlockRunner, ATurnGoesOnWithTheNextStage) {
   Block b(jittered(4, 4), 4);
-  b.rules.good_enough = 0;
+  b.rules.acceptance.good_enough = 0;
   const std::vector<Index> points = b.live_points();
   std::mutex mutex;
   std::map<Index, std::vector<int>> stages;

@@ -9,6 +9,8 @@
 
 #include "common/mesh/mesh_check.h"
 #include "simplify/schedule/engine.h"
+#include "simplify/schedule/selection.h"
+#include "simplify/schedule/whole_mesh.h"
 #include "tests/simplify/meshes.h"
 
 namespace tetwright {
@@ -44,13 +46,16 @@ TEST(LocalRefinement, FollowsASurfaceWithinItsFaces) {
   const std::vector<std::uint8_t> free;
   Engine engine(grid_mesh(4), {"mesh", 384, 5, 10, 1, 0, ShapeObjective::both, nullptr, free, false}, nullptr,
                 nullptr);
-  engine.rules.max_error = std::numeric_limits<double>::infinity();
+  engine.rules.error.max.reset();
   engine.begin_improvement();
-  engine.keep_input_surface(&surface, true);
+  engine.input_samples().keep_surface(&surface, true);
   const double scale = engine.mesh().space().scale(), limit = 0.08 * scale;
-  engine.own_samples(0.2 * scale);
-  engine.rules.tolerance = engine.rules.max_deviation = 0.87 * limit;
-  ASSERT_EQ(engine.find_far_tets(limit).size(), 1);  // the tet at the face below the hill
+  engine.assign_samples(0.2 * scale);
+  engine.rules.deviation.tolerance = engine.rules.deviation.max = 0.87 * limit;
+  const auto far_tets = [&] {
+    return tets_with_faces(engine.mesh(), engine.input_samples().add_far_samples(limit));
+  };
+  ASSERT_EQ(far_tets().size(), 1);  // the tet at the face below the hill
   WholeMesh whole(engine);
   const ImprovementPlan plan{.kind = "close",
                              .angle = 0.12,
@@ -62,9 +67,9 @@ TEST(LocalRefinement, FollowsASurfaceWithinItsFaces) {
                              .brief = false,
                              .max_rounds = 20};
   refine_beyond_tolerance(engine, whole, plan, 0.1, limit);
-  EXPECT_TRUE(engine.find_far_tets(limit).empty());
+  EXPECT_TRUE(far_tets().empty());
   EXPECT_LT(engine.mesh().live_tets(), 600);
-  EXPECT_LT(engine.deviation().from_surface.upper, 0.081);
+  EXPECT_LT(engine.input_samples().deviation(nullptr).from_surface.upper, 0.081);
   const TetMesh mesh = std::move(engine).take();
   EXPECT_TRUE(check_mesh(mesh).empty());
 }

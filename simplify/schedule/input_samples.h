@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "simplify/constraints/constrained_mesh.h"
+#include "simplify/constraints/surface_samples.h"
+#include "simplify/operations/block_rules.h"
+
+namespace tetwright {
+
+/// The surface that a mesh stands for, and its samples once the mesh's triangles own some. Call nothing while
+/// a task runs.
+class InputSamples {
+ public:
+  explicit InputSamples(ConstrainedMesh& constrained) : constrained_(constrained) {}
+
+  /// Keeps the input's surface: the `surface` (input units) that the mesh was made from, or without it the
+  /// mesh's own.
+  ///
+  /// \param measured deviation() will be called.
+  /// \pre No operation has run.
+  void keep_surface(const TriangleMesh* surface, bool measured);
+  /// Sets the max distance, working coordinates, between the points at which new triangles are tested.
+  /// \pre assign() has not been called.
+  void set_spacing(double spacing) { spacing_ = spacing; }
+  /// Gives the mesh's triangles samples of the input's surface in place of those they own, some ten for each
+  /// triangle with edges of length `edge`, scaled by BlockRules::scale_at().
+  /// \pre keep_surface() has been called; the grid has just been rebuilt.
+  void assign(double edge, const BlockRules& rules);
+  /// Whether triangles own samples.
+  bool assigned() const { return samples_ != nullptr; }
+  /// Adds a sample at each part of the input's surface that is farther than `limit` (working coordinates)
+  /// from the mesh.
+  ///
+  /// \return face_key() of the boundary and interface faces that are that far from the input's surface, or
+  ///   nearest to a part of it that is; ascending.
+  /// \pre assigned().
+  std::vector<Triangle> add_far_samples(double limit);
+  /// Two-sided distance between the mesh's surface and the input's, with proven bounds; wider bounds once the
+  /// deadline of `progress` has passed.
+  DeviationReport deviation(const Progress* progress) const;
+
+ private:
+  ConstrainedMesh& constrained_;
+  std::unique_ptr<InputSurface> surface_;
+  std::unique_ptr<SurfaceSamples> samples_;
+  double spacing_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace tetwright

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "simplify/constraints/surface_projection.h"
+#include "simplify/mesh/editable_mesh.h"
+#include "simplify/operations/objective.h"
+#include "simplify/schedule/block_runner.h"
+
+namespace tetwright {
+
+// Choice of the tets and points that a round works on. Call these only while no task runs. They are parallel,
+// change nothing, and the results do not depend on the threads. Lists are in the order of the mesh's curve,
+// each item once.
+
+/// The quality below which `percent` of the tets lie; 1 for all tets, 0 for an empty mesh.
+float quality_cutoff(const EditableMesh& mesh, double percent);
+/// Share of the tets whose shape is worse than the shape_quality_bound() of a solid angle (steradians),
+/// whatever objective rates them.
+///
+/// \param objective only its shape counts.
+double share_below(const EditableMesh& mesh, const Objective& objective, double angle);
+
+/// The tets of quality `limit` or less.
+std::vector<TetSnapshot> bad_tets(const EditableMesh& mesh, float limit);
+/// The points of bad_tets().
+std::vector<Index> bad_points(const EditableMesh& mesh, float limit);
+/// The tets that share a point with a listed one.
+std::vector<TetSnapshot> tets_around(const EditableMesh& mesh, const std::vector<TetSnapshot>& tets);
+/// The points of tets_around().
+std::vector<Index> points_around(const EditableMesh& mesh, const std::vector<TetSnapshot>& tets);
+/// The tets with one of these boundary or interface faces.
+///
+/// \param faces face_key() of each, ascending.
+std::vector<TetSnapshot> tets_with_faces(const EditableMesh& mesh, const std::vector<Triangle>& faces);
+/// The points of boundary and interfaces.
+std::vector<Index> interface_points(const EditableMesh& mesh);
+/// The boundary points at which two patches meet off any feature edge, or three off any corner.
+std::vector<Index> points_off_features(const EditableMesh& mesh, const SurfaceProjection& projection);
+
+}  // namespace tetwright
