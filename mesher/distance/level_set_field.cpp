@@ -5,20 +5,13 @@
 #include <cmath>
 
 #include "common/parallel/parallel_sort.h"
+#include "mesher/tuning/distance_tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Surfaces of two bodies that face each other (cosine between their normals below the second number) and are
-/// closer than the first number (voxels) count as one. Common faces of bodies are known to a few hundredths
-/// of a voxel, near sharp edges to a few tenths, and slivers of another region between them would be noise.
-constexpr double contact = 0.4, contact_facing = -0.7;
-/// Cosine between the normals of two surfaces below which the region between them is a sheet. Otherwise it is
-/// a wedge, which is thin at its edge for any cell size.
-constexpr double sheet_facing = -0.95;
-/// Thinner sheets (voxels) are gaps between two faces meant to coincide.
-constexpr double noticed = 0.1;
+using Sheets = DistanceTuning::Sheets;
 
 std::vector<FieldRegion> names_of(const std::vector<LevelSetRegion>& regions) {
   std::vector<FieldRegion> out;
@@ -131,7 +124,7 @@ class LevelSetField::Sampler final : public FieldSampler {
       const Carving& carving = carved[carved.size() - (terms.size() - own)];
       if (!largest || carving.value > best) best = carving.value, largest = carving.term;
     }
-    const double thinnest = contact * per_voxel;
+    const double thinnest = Sheets::contact * per_voxel;
     if (terms.size() < 2 || best < -thinnest || best > thinnest) return best;
     return best + sliver_excess(terms, best);
   }
@@ -139,7 +132,7 @@ class LevelSetField::Sampler final : public FieldSampler {
   /// thickness of the region between them; 0 where the region is not a sliver.
   /// \param best the largest term
   double sliver_excess(const std::vector<RegionTerm>& terms, double best) {
-    const double thinnest = contact * per_voxel;
+    const double thinnest = Sheets::contact * per_voxel;
     // The terms of a sliver add up to more than -thinnest, so none is below this. The factor allows for
     // rounding.
     const double smallest = -1.001 * (thinnest + std::abs(best));
@@ -150,7 +143,7 @@ class LevelSetField::Sampler final : public FieldSampler {
     for (std::size_t i = 0; i < candidates.size(); ++i)
       for (std::size_t k = i + 1; k < candidates.size(); ++k)
         if (const RegionTerm& a = *candidates[i], &b = *candidates[k];
-            in_contact(a, b) && cosine(a, b) < contact_facing)
+            in_contact(a, b) && cosine(a, b) < Sheets::contact_cosine)
           more = std::max(more, thinnest - sheet(a, b));
     return more;
   }
@@ -158,7 +151,7 @@ class LevelSetField::Sampler final : public FieldSampler {
   /// constant.
   double sheet(const RegionTerm& a, const RegionTerm& b) const { return -signed_term(a) - signed_term(b); }
   bool in_contact(const RegionTerm& a, const RegionTerm& b) const {
-    return a.body != b.body && sheet(a, b) < contact * per_voxel;
+    return a.body != b.body && sheet(a, b) < Sheets::contact * per_voxel;
   }
   /// Cosine of the angle between the gradients of two terms.
   double cosine(const RegionTerm& a, const RegionTerm& b) {
@@ -274,9 +267,9 @@ std::vector<MortonKey> LevelSetField::interface_voxels() const {
   if (level_sets_.size() == 1) return keys;
   parallel_sort_unique(keys);
   // Where a later material covers an earlier one's surface there is no interface.
-  constexpr std::size_t grain = 1024;
   return parallel_collect<MortonKey>(
-      0, keys.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+      0, keys.size(), DistanceGrains::cells_of_regions,
+      [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
         Sampler sampler(*this);
         const double voxel = std::ldexp(1, refinement());
         for (std::size_t i = begin; i < end; ++i) {
@@ -324,7 +317,9 @@ std::optional<FieldSampler::Sheet> LevelSetField::Sampler::thinnest_sheet(const 
     for (std::size_t i = 0; i < terms.size(); ++i)
       for (std::size_t k = i + 1; k < terms.size(); ++k) {
         const double thickness = sheet(terms[i], terms[k]);
-        if (!(thickness > noticed * per_voxel) || cosine(terms[i], terms[k]) > sheet_facing) continue;
+        if (!(thickness > Sheets::min_thickness * per_voxel) ||
+            cosine(terms[i], terms[k]) > Sheets::max_cosine)
+          continue;
         if (!thinnest || thickness < thinnest->thickness)
           thinnest = Sheet{static_cast<RegionIndex>(r), thickness, in_contact(terms[i], terms[k])};
       }
