@@ -72,7 +72,7 @@ TetMesh to_input_units(CutMesh cut, const MaterialField& field) {
     }
   });
   mesh.interfaces = find_interfaces(mesh, &candidates);
-  if (field.ends_at_box()) number_box_patches(mesh.interfaces, sides);
+  if (field.volume()) number_box_patches(mesh.interfaces, sides);
   return mesh;
 }
 
@@ -239,8 +239,9 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   stages.throw_if_stopped();
   // A region with few lattice points may have vanished by moves or as an isolated vertex.
   validate_regions(regions_there(*field, cut.regions));
-  if (std::shared_ptr<const MaterialField> as_is = field->with_true_walls()) {
-    report.thickened = thickened_report(recover_thin_walls(cut, *field, *as_is), field->frame());
+  if (const WallChanges* walls = field->wall_changes()) {
+    std::shared_ptr<const MaterialField> as_is = walls->with_true_walls();
+    report.thickened = thickened_report(recover_thin_walls(cut, *walls, *as_is), field->frame());
     field = std::move(as_is);
   }
   result.mesh = to_input_units(std::move(cut), *field);

@@ -284,7 +284,8 @@ void allow_for_chamfers(MesherReport& report) {
 
 /// Measures thickened walls again, since fitting creases has moved them too.
 void measure_walls(DenseMesh& dense, const MaterialField& field) {
-  if (dense.report.thickened.points == 0) return;
+  const WallChanges* walls = field.wall_changes();
+  if (!walls || dense.report.thickened.points == 0) return;
   const GridFrame& frame = field.frame();
   std::vector<Vec3> points;
   points.reserve(dense.mesh.points.size());
@@ -293,7 +294,7 @@ void measure_walls(DenseMesh& dense, const MaterialField& field) {
   for (const InterfaceTriangle& t : dense.mesh.interfaces)
     for (const Index p : t.ids) on_interface[p] = 1;
   dense.report.thickened =
-      thickened_report(find_thickened_walls(points, on_interface, field, *dense.field), frame);
+      thickened_report(find_thickened_walls(points, on_interface, *walls, *dense.field), frame);
 }
 
 void validate_outside_is_free(const MesherInput& input) {
@@ -369,10 +370,11 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   {
     // Where distances come from the triangles, thin parts and gaps are reported separately.
     std::vector<MortonKey> elsewhere = interface_voxels;
-    std::erase_if(elsewhere, [&](MortonKey key) {
-      const auto [x, y, z] = morton_decode(key);
-      return field->changes_walls(Vec3(x, y, z) + Vec3::Constant(0.5));
-    });
+    if (const WallChanges* walls = field->wall_changes())
+      std::erase_if(elsewhere, [&](MortonKey key) {
+        const auto [x, y, z] = morton_decode(key);
+        return walls->contains(Vec3(x, y, z) + Vec3::Constant(0.5));
+      });
     add_thin(find_thin_parts(*field, elsewhere), false);
   }
   for (const auto& [body, wall] : bodies.changed)

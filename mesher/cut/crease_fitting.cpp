@@ -66,8 +66,9 @@ class Fitter {
 
   /// True for points of thickened walls in passes that would spoil their tets.
   bool must_stay(Index p, double floor) const {
-    return floor < Fitting::wall_floor && labels_.of(p).kind == Kind::patch &&
-           field_.changes_walls(field_.frame().to_grid(mesh_.points[p]));
+    const WallChanges* walls = field_.wall_changes();
+    return walls && floor < Fitting::wall_floor && labels_.of(p).kind == Kind::patch &&
+           walls->contains(field_.frame().to_grid(mesh_.points[p]));
   }
 
   std::vector<PointMove> remaining_moves(double floor) const {

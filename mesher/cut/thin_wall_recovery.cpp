@@ -18,14 +18,14 @@ namespace {
 
 /// The moves that return points displaced by thickened walls.
 std::vector<PointMove> find_moves(const std::vector<Vec3>& points,
-                                  const std::vector<std::uint8_t>& is_on_interface,
-                                  const MaterialField& field, const MaterialField& as_is) {
+                                  const std::vector<std::uint8_t>& is_on_interface, const WallChanges& walls,
+                                  const MaterialField& as_is) {
   return parallel_collect<PointMove>(
       0, points.size(), CutGrains::moves,
       [&](std::size_t begin, std::size_t end, std::vector<PointMove>& out) {
         const std::unique_ptr<FieldSampler> owned = as_is.sampler();
         for (std::size_t p = begin; p < end; ++p) {
-          if (!is_on_interface[p] || !field.changes_walls(points[p])) continue;
+          if (!is_on_interface[p] || !walls.contains(points[p])) continue;
           const std::optional<RegionSet> both = owned->two_nearest(points[p]);
           if (!both) continue;
           Vec3 gradient;
@@ -38,7 +38,7 @@ std::vector<PointMove> find_moves(const std::vector<Vec3>& points,
       });
 }
 
-ThickenedWalls what_is_left(const std::vector<PointMove>& moves, const MaterialField& field) {
+ThickenedWalls what_is_left(const std::vector<PointMove>& moves, const WallChanges& walls) {
   ThickenedWalls left;
   struct Off {
     double offset, thickness;
@@ -47,7 +47,7 @@ ThickenedWalls what_is_left(const std::vector<PointMove>& moves, const MaterialF
   const std::vector<Off> off = parallel_collect<Off>(
       0, moves.size(), CutGrains::moves, [&](std::size_t begin, std::size_t end, std::vector<Off>& out) {
         for (std::size_t m = begin; m < end; ++m) {
-          const double offset = moves[m].step.norm(), thickness = field.parallel_thickness(moves[m].from);
+          const double offset = moves[m].step.norm(), thickness = walls.parallel_thickness(moves[m].from);
           if (2 * offset > CutTuning::WallRecovery::recovered_share * thickness)
             out.push_back({offset, thickness, moves[m].from});
         }
@@ -71,8 +71,8 @@ std::vector<Triangle> interface_faces(const CutMesh& mesh) {
 
 }  // namespace
 
-ThickenedWalls recover_thin_walls(CutMesh& mesh, const MaterialField& field, const MaterialField& as_is) {
-  std::vector<PointMove> moves = find_moves(mesh.points, mesh.on_interface, field, as_is);
+ThickenedWalls recover_thin_walls(CutMesh& mesh, const WallChanges& walls, const MaterialField& as_is) {
+  std::vector<PointMove> moves = find_moves(mesh.points, mesh.on_interface, walls, as_is);
   if (moves.empty()) return {};
   const std::vector<Vec3> before = mesh.points;
   for (int pass = 0; pass < CutTuning::WallRecovery::passes && !moves.empty(); ++pass) {
@@ -80,13 +80,13 @@ ThickenedWalls recover_thin_walls(CutMesh& mesh, const MaterialField& field, con
     keep_remaining(mesh.points, moves);
   }
   undo_intersections(mesh.points, mesh.tets, interface_faces(mesh), before);
-  return find_thickened_walls(mesh.points, mesh.on_interface, field, as_is);
+  return find_thickened_walls(mesh.points, mesh.on_interface, walls, as_is);
 }
 
 ThickenedWalls find_thickened_walls(const std::vector<Vec3>& points,
                                     const std::vector<std::uint8_t>& is_on_interface,
-                                    const MaterialField& field, const MaterialField& as_is) {
-  return what_is_left(find_moves(points, is_on_interface, field, as_is), field);
+                                    const WallChanges& walls, const MaterialField& as_is) {
+  return what_is_left(find_moves(points, is_on_interface, walls, as_is), walls);
 }
 
 }  // namespace tetwright

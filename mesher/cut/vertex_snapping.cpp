@@ -157,10 +157,16 @@ class Mover {
         });
   }
 
+  /// True for points whose region the mesh must keep.
+  bool is_certain(Index p) const {
+    const VoxelVolume* volume = field_.volume();
+    return volume && volume->is_certain(lattice_.positions[p]);
+  }
+
   /// The candidate for a point, or nothing if no cut is too close to it or it must not be moved.
   std::optional<Candidate> as_candidate(Index p, FieldSampler& sampler) const {
     const RegionIndex own = lattice_.first_region[p];
-    if (field_.is_certain(lattice_.positions[p])) return std::nullopt;
+    if (is_certain(p)) return std::nullopt;
     const std::optional<RegionSet> regions = pure_regions(lattice_, p);
     if (!regions) return std::nullopt;
     const unsigned faces = lattice_.box_faces(p);
@@ -381,7 +387,7 @@ class Mover {
   }
 
   void improve_star(Index p, FieldSampler& sampler) {
-    if (!lattice_.is_on[p] && field_.is_certain(lattice_.positions[p])) return;
+    if (!lattice_.is_on[p] && is_certain(p)) return;
     std::vector<Vec3> places;
     const Vec3 from = lattice_.positions[p], to_middle = without_held(p, middle_of_star(p) - from);
     if (lattice_.is_on[p]) {

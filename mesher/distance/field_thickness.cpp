@@ -21,7 +21,7 @@ struct SheetCell {
   bool operator<(const SheetCell& o) const { return depth != o.depth ? depth < o.depth : key < o.key; }
 };
 
-void descend(FieldSampler& sampler, int depth, const std::array<int, 3>& low, std::vector<SheetCell>& out) {
+void descend(SheetSampler& sampler, int depth, const std::array<int, 3>& low, std::vector<SheetCell>& out) {
   const double side = std::ldexp(1, -depth);
   const Vec3 centre = side * (Vec3(low[0], low[1], low[2]) + Vec3::Constant(0.5));
   const auto sheet = sampler.thinnest_sheet(centre, half_cube_diagonal * side);
@@ -52,14 +52,13 @@ Vec3 place_of(const SheetCell& c) {
 
 ThinSheets find_thin_sheets(const MaterialField& field, const std::vector<MortonKey>& interface_voxels) {
   ThinSheets sheets;
-  if (!field.knows_sheets()) return sheets;
+  if (!field.sampler()->sheets()) return sheets;
   std::vector<SheetCell> found =
       parallel_collect<SheetCell>(0, interface_voxels.size(), DistanceGrains::sampled_voxels,
                                   [&](std::size_t begin, std::size_t end, std::vector<SheetCell>& out) {
-                                    const std::unique_ptr<FieldSampler> owned = field.sampler();
-                                    FieldSampler& sampler = *owned;
+                                    const std::unique_ptr<FieldSampler> sampler = field.sampler();
                                     for (std::size_t i = begin; i < end; ++i)
-                                      descend(sampler, 0, morton_decode(interface_voxels[i]), out);
+                                      descend(*sampler->sheets(), 0, morton_decode(interface_voxels[i]), out);
                                   });
   parallel_sort(found);
   for (const SheetCell& c : found)
@@ -104,7 +103,9 @@ std::vector<ThinPart> find_thin_parts(const MaterialField& field,
             Vec3 slope;  // grows out of the region
             sampler.between(near, far, across, slope);
             if (!(side * slope.dot(normal) > -DistanceTuning::ThinParts::max_cosine * slope.norm())) continue;
-            const auto sheet = sampler.thinnest_sheet(place, DistanceTuning::ThinParts::identified_at);
+            const auto sheet = sampler.sheets() ? sampler.sheets()->thinnest_sheet(
+                                                      place, DistanceTuning::ThinParts::identified_at)
+                                                : std::nullopt;
             if (!sheet || sheet->region != near) out.push_back({interface_voxels[i], near});
           }
         }

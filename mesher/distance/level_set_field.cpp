@@ -28,7 +28,7 @@ std::array<int, 3> voxel_of(const Vec3& point) {
 
 }  // namespace
 
-class LevelSetField::Sampler final : public FieldSampler {
+class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
  public:
   explicit Sampler(const LevelSetField& f)
       : FieldSampler(std::ldexp(1, f.refinement())),
@@ -59,9 +59,10 @@ class LevelSetField::Sampler final : public FieldSampler {
     for (RegionIndex r : regions) *out++ = static_cast<float>(value(r));
   }
   std::optional<RegionSet> two_nearest(const Vec3& point) override;
-  std::optional<Sheet> thinnest_sheet(const Vec3& point, double reach) override;
+  SheetSampler* sheets() override { return distances.size() > 1 ? this : nullptr; }
 
  private:
+  std::optional<FieldSheet> thinnest_sheet(const Vec3& point, double reach) override;
   void values_and_gradients(const Vec3& point, std::span<const RegionIndex> regions, double* out,
                             Vec3* slopes) override {
     read_gradients(point);
@@ -224,14 +225,19 @@ std::shared_ptr<const MaterialField> LevelSetField::refined(int refinement) cons
   return std::make_shared<LevelSetField>(voxels(), level_sets_, level_set_regions_, refinement);
 }
 
+const WallChanges* LevelSetField::wall_changes() const {
+  const bool any = std::any_of(level_sets_.begin(), level_sets_.end(),
+                               [](const auto& level_set) { return level_set->walls() != nullptr; });
+  return any ? this : nullptr;
+}
+
 std::shared_ptr<const MaterialField> LevelSetField::with_true_walls() const {
   std::vector<std::shared_ptr<const LevelSet>> as_is;
   for (const auto& level_set : level_sets_) as_is.push_back(LevelSet::with_true_walls(level_set));
-  if (as_is == level_sets_) return nullptr;
   return std::make_shared<LevelSetField>(voxels(), std::move(as_is), level_set_regions_, refinement());
 }
 
-bool LevelSetField::changes_walls(const Vec3& point) const {
+bool LevelSetField::contains(const Vec3& point) const {
   const Vec3 at = std::ldexp(1, -refinement()) * point;
   return std::any_of(level_sets_.begin(), level_sets_.end(), [&](const auto& level_set) {
     return level_set->walls() && level_set->walls()->depth(voxel_of(at)) >= 0;
@@ -308,9 +314,9 @@ std::optional<RegionSet> LevelSetField::Sampler::two_nearest(const Vec3& point) 
   return both;
 }
 
-std::optional<FieldSampler::Sheet> LevelSetField::Sampler::thinnest_sheet(const Vec3& point, double reach) {
+std::optional<FieldSheet> LevelSetField::Sampler::thinnest_sheet(const Vec3& point, double reach) {
   read_gradients(point);
-  std::optional<Sheet> thinnest;
+  std::optional<FieldSheet> thinnest;
   for (std::size_t r = 1; r < field.regions().size(); ++r) {
     const auto& terms = field.terms(static_cast<RegionIndex>(r));
     if (terms.size() < 2 || value(static_cast<RegionIndex>(r)) > reach) continue;
@@ -321,7 +327,7 @@ std::optional<FieldSampler::Sheet> LevelSetField::Sampler::thinnest_sheet(const 
             cosine(terms[i], terms[k]) > Sheets::max_cosine)
           continue;
         if (!thinnest || thickness < thinnest->thickness)
-          thinnest = Sheet{static_cast<RegionIndex>(r), thickness, in_contact(terms[i], terms[k])};
+          thinnest = FieldSheet{static_cast<RegionIndex>(r), thickness, in_contact(terms[i], terms[k])};
       }
   }
   return thinnest;

@@ -155,7 +155,6 @@ class LabelField::Sampler final : public FieldSampler {
     both.insert(second);
     return both;
   }
-  std::optional<Sheet> thinnest_sheet(const Vec3&, double) override { return std::nullopt; }
 
  private:
   /// A brick, the lowest node of a cell in it, and the position in the cell.
