@@ -21,21 +21,18 @@
 #include "mesher/lattice/octree.h"
 #include "mesher/lattice/sized_cells.h"
 #include "mesher/mesh_estimate.h"
+#include "mesher/tuning/cell_tuning.h"
+#include "mesher/tuning/domain_tuning.h"
+#include "mesher/tuning/estimate_tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr int min_resolution = 4;
-/// Indices have 32 bits, and a lattice has more tets than its mesh.
-constexpr double max_tets = 2e9;
-/// Coordinates must resolve this fraction of a finest cell, or rounding them could invert a thin tet.
-constexpr double cell_share_of_rounding = 0x1p-20;
-
 /// Gives the faces on the sides of the frame's box the patches 1 to 6.
 /// \param sides box_faces() of each point
 void number_box_patches(std::vector<InterfaceTriangle>& interfaces, const std::vector<std::uint8_t>& sides) {
-  parallel_for(0, interfaces.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, interfaces.size(), CellGrains::elements, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       InterfaceTriangle& t = interfaces[i];
       const unsigned common = sides[t.ids[0]] & sides[t.ids[1]] & sides[t.ids[2]];
@@ -50,7 +47,7 @@ TetMesh to_input_units(CutMesh cut, const MaterialField& field) {
   mesh.points = std::move(cut.points);
   std::vector<std::uint8_t> candidates = std::move(cut.on_interface);
   std::vector<std::uint8_t> sides(mesh.points.size());
-  parallel_for(0, mesh.points.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, mesh.points.size(), CellGrains::elements, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       sides[i] = static_cast<std::uint8_t>(box_faces(mesh.points[i], frame.box));
       if (sides[i]) candidates[i] = 1;
@@ -59,7 +56,7 @@ TetMesh to_input_units(CutMesh cut, const MaterialField& field) {
   });
   mesh.tets = std::move(cut.tets);
   mesh.materials.resize(mesh.tets.size());
-  parallel_for(0, mesh.tets.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, mesh.tets.size(), CellGrains::elements, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) mesh.materials[i] = field.regions()[cut.regions[i]].tag;
   });
   std::vector<RegionIndex>().swap(cut.regions);
@@ -67,7 +64,7 @@ TetMesh to_input_units(CutMesh cut, const MaterialField& field) {
     if (!region.name.empty()) mesh.material_names[region.tag] = region.name;
   // Positive orientation is promised for the final coordinates; finest_cell_size() leaves room for their
   // rounding.
-  parallel_for(0, mesh.tets.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, mesh.tets.size(), CellGrains::tets, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Tet& t = mesh.tets[i];
       TETWRIGHT_CHECK(orient3d(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) >
@@ -75,7 +72,7 @@ TetMesh to_input_units(CutMesh cut, const MaterialField& field) {
     }
   });
   mesh.interfaces = find_interfaces(mesh, &candidates);
-  if (field.ends_at_box()) number_box_patches(mesh.interfaces, sides);
+  if (field.volume()) number_box_patches(mesh.interfaces, sides);
   return mesh;
 }
 
@@ -97,12 +94,6 @@ std::vector<std::uint8_t> regions_there(const MaterialField& field,
 MesherEstimate estimate_from_lattice(const Octree& octree, const LatticePoints& points,
                                      const std::vector<NearestRegion>& regions, const MemoryModel& memory,
                                      const MesherOptions& options) {
-  // Tets per leaf by its centre: inside; outside and less than half a leaf from an interface; outside and
-  // less than one leaf from it. Fitted to 23 inputs: within 5 % of the lattice's tets, and within 6 % of the
-  // dense ones for one material, 16 % for several.
-  constexpr double dense_inside = 12.03, dense_near = 6.2;
-  constexpr double lattice_inside = 12.16, lattice_near = 24.1, lattice_beside = 5.8;
-  constexpr double kept_uniform = 12.2, kept = 13.6, cut_share = 1.025;  // with the outside, for all leaves
   std::size_t inside = 0, near = 0, beside = 0;
   for (std::size_t i = 0; i < octree.size(); ++i) {
     const NearestRegion& centre = regions[points.leaf_centres[i]];
@@ -116,11 +107,14 @@ MesherEstimate estimate_from_lattice(const Octree& octree, const LatticePoints& 
   }
   const auto in = static_cast<double>(inside), out = static_cast<double>(near);
   const auto leaves = static_cast<double>(octree.size());
-  double dense = dense_inside * in + dense_near * out;
-  double lattice = lattice_inside * in + lattice_near * out + lattice_beside * static_cast<double>(beside);
+  double dense = EstimateTuning::Leaves::dense_inside * in + EstimateTuning::Leaves::dense_near * out;
+  double lattice = EstimateTuning::Leaves::lattice_inside * in + EstimateTuning::Leaves::lattice_near * out +
+                   EstimateTuning::Leaves::lattice_beside * static_cast<double>(beside);
   if (options.keep_outside) {
-    lattice = (options.uniform ? kept_uniform : kept) * leaves;
-    dense = cut_share * lattice;
+    lattice =
+        (options.uniform ? EstimateTuning::Leaves::kept_uniform : EstimateTuning::Leaves::kept_adaptive) *
+        leaves;
+    dense = EstimateTuning::Leaves::kept_dense * lattice;
   }
   return estimate_of({leaves, lattice, dense}, memory, options);
 }
@@ -131,18 +125,20 @@ double finest_cell_size(const MesherOptions& options, double longest_side, doubl
                         const std::string& file) {
   if (options.voxel_size != 0 && !(options.voxel_size > 0 && std::isfinite(options.voxel_size)))
     throw UsageError("the voxel size must be a positive number, not " + short_number(options.voxel_size));
-  if (options.voxel_size == 0 && (options.resolution < min_resolution || options.resolution > max_resolution))
-    throw UsageError("the resolution must be from " + std::to_string(min_resolution) + " to " +
-                     std::to_string(max_resolution) + ", not " + std::to_string(options.resolution));
+  if (options.voxel_size == 0 && (options.resolution < DomainTuning::Frames::min_resolution ||
+                                  options.resolution > DomainTuning::Frames::max_resolution))
+    throw UsageError("the resolution must be from " + std::to_string(DomainTuning::Frames::min_resolution) +
+                     " to " + std::to_string(DomainTuning::Frames::max_resolution) + ", not " +
+                     std::to_string(options.resolution));
   if (!(options.adaptivity >= 0 && std::isfinite(options.adaptivity)))
     throw UsageError("the adaptivity must be 0 or more finest cells, not " +
                      short_number(options.adaptivity));
   const double h = options.voxel_size > 0 ? options.voxel_size : longest_side / options.resolution;
-  if (longest_side > h * (max_resolution + 0.5))
+  if (longest_side > h * (DomainTuning::Frames::max_resolution + 0.5))
     throw UsageError("a voxel size of " + short_number(h) + " gives " + short_number(longest_side / h) +
-                     " cells along the longest side; at most " + std::to_string(max_resolution) +
-                     " are possible");
-  if (max_coordinate * 0x1p-52 > h * cell_share_of_rounding)
+                     " cells along the longest side; at most " +
+                     std::to_string(DomainTuning::Frames::max_resolution) + " are possible");
+  if (max_coordinate * 0x1p-52 > h * DomainTuning::Frames::share_of_rounding)
     throw InputError(file, 0,
                      "with coordinates up to " + short_number(max_coordinate) + " cells of " +
                          short_number(h) +
@@ -151,22 +147,21 @@ double finest_cell_size(const MesherOptions& options, double longest_side, doubl
 }
 
 int max_possible_refinement(const GridFrame& frame, double max_coordinate) {
-  // Required by make_grid_frame().
-  constexpr double max_cells = 1 << 18;
   const double cells = *std::max_element(frame.cells.begin(), frame.cells.end());
   int depth = 0;
-  while (depth < max_wall_refinement && std::ldexp(cells, depth + 1) <= max_cells &&
-         max_coordinate * 0x1p-52 <= std::ldexp(frame.cell_size, -depth - 1) * cell_share_of_rounding)
+  while (depth < max_wall_refinement && std::ldexp(cells, depth + 1) <= DomainTuning::Frames::max_cells &&
+         max_coordinate * 0x1p-52 <=
+             std::ldexp(frame.cell_size, -depth - 1) * DomainTuning::Frames::share_of_rounding)
     ++depth;
   return depth;
 }
 
 MesherEstimate estimate_of(const MeshSize& size, const MemoryModel& memory, const MesherOptions& options) {
-  const double lattice =
-      options.uniform ? uniform_bytes_per_lattice_tet * size.lattice + uniform_bytes_per_leaf * size.leaves
-                      : memory.per_lattice_tet * size.lattice;
-  const double bytes = program_bytes + std::max({memory.before, memory.beside + lattice,
-                                                 options.later_bytes_per_tet * size.dense});
+  const double lattice = options.uniform ? EstimateTuning::Memory::per_uniform_lattice_tet * size.lattice +
+                                               EstimateTuning::Memory::per_uniform_leaf * size.leaves
+                                         : memory.per_lattice_tet * size.lattice;
+  const double bytes = EstimateTuning::Memory::program + std::max({memory.before, memory.beside + lattice,
+                                                                   options.later_bytes_per_tet * size.dense});
   constexpr double max_count = 1e18;  // fits in 64 bits
   return {static_cast<std::size_t>(std::min(size.dense, max_count)),
           static_cast<std::size_t>(std::min(bytes, max_count))};
@@ -174,9 +169,10 @@ MesherEstimate estimate_of(const MeshSize& size, const MemoryModel& memory, cons
 
 void validate_estimate(const MesherEstimate& estimate) {
   const double tets = static_cast<double>(estimate.tets);
-  if (tets > max_tets)
+  if (tets > DomainTuning::Frames::max_tets)
     throw OutputError("the mesh would have about " + short_number(tets) + " tets, and at most " +
-                      short_number(max_tets) + " can be numbered; use a lower resolution");
+                      short_number(DomainTuning::Frames::max_tets) +
+                      " can be numbered; use a lower resolution");
   require_memory(static_cast<double>(estimate.bytes), "a mesh of about " + short_number(tets) + " tets",
                  "use a lower resolution");
 }
@@ -203,8 +199,9 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   finer = {};
   report.cells = octree.size();
   // Thin sheets may have taken far more cells than the surface alone.
-  require_memory(program_bytes + bytes_per_leaf * static_cast<double>(octree.size()),
-                 "an octree of " + std::to_string(octree.size()) + " leaves", "use a lower resolution");
+  require_memory(
+      EstimateTuning::Memory::program + EstimateTuning::Memory::per_leaf * static_cast<double>(octree.size()),
+      "an octree of " + std::to_string(octree.size()) + " leaves", "use a lower resolution");
   report.seconds_octree = stages.seconds();
 
   stages.begin("lattice");
@@ -242,8 +239,9 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   stages.throw_if_stopped();
   // A region with few lattice points may have vanished by moves or as an isolated vertex.
   validate_regions(regions_there(*field, cut.regions));
-  if (std::shared_ptr<const MaterialField> as_is = field->with_true_walls()) {
-    report.thickened = thickened_report(recover_thin_walls(cut, *field, *as_is), field->frame());
+  if (const WallChanges* walls = field->wall_changes()) {
+    std::shared_ptr<const MaterialField> as_is = walls->with_true_walls();
+    report.thickened = thickened_report(recover_thin_walls(cut, *walls, *as_is), field->frame());
     field = std::move(as_is);
   }
   result.mesh = to_input_units(std::move(cut), *field);

@@ -29,7 +29,7 @@ void write_fields(const MaterialField& field, const std::string& path, OutputFil
         sampler->values_at_voxel(x, y, z, std::array{number, there.region}, both.data());
         float& distance = out[static_cast<std::size_t>(i)];
         distance = there.region == number ? -there.margin : 0.5F * (both[0] - both[1]);
-        if (!on_voxels->ends_at_box()) continue;
+        if (!on_voxels->volume()) continue;
         const auto band = static_cast<float>(on_voxels->band());
         const std::array<int, 3> at{x, y, z};
         for (std::size_t a = 0; a < 3; ++a)

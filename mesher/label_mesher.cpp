@@ -9,14 +9,12 @@
 #include "mesher/labels/label_thickness.h"
 #include "mesher/mesh_estimate.h"
 #include "mesher/mesher.h"
+#include "mesher/tuning/cell_tuning.h"
+#include "mesher/tuning/domain_tuning.h"
 
 namespace tetwright {
 
 namespace {
-
-/// Whole cells fill the volume along each axis, so cells larger than this multiple of its shortest side would
-/// be flat. They shrink to that, but not below this fraction of the size wanted.
-constexpr double max_cell_share = 1.5, min_share_of_wanted = 0.25;
 
 /// Sides of the whole volume, input units.
 Vec3 sides(const LabelInput& labels) {
@@ -49,8 +47,9 @@ double cell_size(const LabelInput& labels, const MesherOptions& options) {
   const double max_coordinate = labels.origin.cwiseAbs().maxCoeff() + longest;
   const double wanted = finest_cell_size(options, longest, max_coordinate, labels.file);
   MesherOptions smaller = options;
-  smaller.voxel_size = std::max(
-      {max_cell_share * sides(labels).minCoeff(), min_share_of_wanted * wanted, longest / max_resolution});
+  smaller.voxel_size = std::max({CellTuning::LabelCells::max_side_share * sides(labels).minCoeff(),
+                                 CellTuning::LabelCells::min_share_of_wanted * wanted,
+                                 longest / DomainTuning::Frames::max_resolution});
   return smaller.voxel_size < wanted ? finest_cell_size(smaller, longest, max_coordinate, labels.file)
                                      : wanted;
 }

@@ -11,29 +11,15 @@
 #include "mesher/domain/grid_frame.h"
 #include "mesher/domain/refinement_regions.h"
 #include "mesher/mesh_estimate.h"
+#include "mesher/tuning/distance_tuning.h"
+#include "mesher/tuning/domain_tuning.h"
+#include "mesher/tuning/estimate_tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Dense tets of an adaptive mesh per squared finest cell of interface and meshed side of it. The number
-/// tends to the first value where the material is thick, and is half of it where the material has as many
-/// finest cells of volume per squared cell of interface as the second value.
-constexpr double tets_per_area = 29, half_full_wall_thickness = 1.6;
-/// Lattice tets per squared cell on a side that is not meshed, adaptive and uniform.
-constexpr double outside_tets_per_area = 14, outside_tets_per_area_uniform = 15.5;
-/// Dense tets of uniform cells: per cell, and per squared cell of interface.
-constexpr double solid_tets_per_cell = 12, cut_tets_per_area = 0.7, kept_outside_tets_per_area = 3;
-/// Memory per triangle while signed distances are computed, bytes; open parts also need a tree.
-constexpr double bytes_per_triangle = 150, bytes_per_open_triangle = 300;
-
-/// Samples of a surface, and of the interior of bodies along each axis.
-constexpr int surface_samples = 256, volume_samples = 24;
-/// Distances at a surface sample are needed up to this, finest cells.
-constexpr double sample_reach = 12;
-/// Maximum number of triangles used for distances; of finer surfaces only every second one, or every third,
-/// ... is read.
-constexpr std::size_t max_triangles = 1 << 20;
+using Sampling = EstimateTuning::Sampling;
 
 /// A low-discrepancy sequence in the unit interval (Roberts 2018: multiples of the inverses of the plastic
 /// number and its square).
@@ -95,7 +81,8 @@ class SampledSurface {
       const auto [a, b, c] = corners(t);
       const Vec3 normal = (b - a).cross(c - a);
       sum += 0.5 * normal.norm();
-      for (; next < surface_samples && (next + 0.5) / surface_samples * area() <= sum; ++next) {
+      for (; next < Sampling::surface_samples && (next + 0.5) / Sampling::surface_samples * area() <= sum;
+           ++next) {
         double u = sequence(next, first_step), v = sequence(next, second_step);
         if (u + v > 1) u = 1 - u, v = 1 - v;
         samples_.push_back({a + u * (b - a) + v * (c - a), normal.normalized()});
@@ -107,7 +94,8 @@ class SampledSurface {
   SurfaceTree nearby_triangles() const {
     const auto cube = [](const Vec3& p) {
       std::array<int, 3> at;
-      for (int a = 0; a < 3; ++a) at[a] = std::max(0, static_cast<int>(std::floor(p[a] / sample_reach)) + 1);
+      for (int a = 0; a < 3; ++a)
+        at[a] = std::max(0, static_cast<int>(std::floor(p[a] / Sampling::reach)) + 1);
       return at;
     };
     std::unordered_set<MortonKey> cubes;
@@ -127,7 +115,7 @@ class SampledSurface {
           for (int x = low[0]; x <= high[0] && !found; ++x) found = cubes.contains(morton_encode(x, y, z));
       if (found) near.push_back(t);
     }
-    const std::size_t step = near.size() / max_triangles + 1;
+    const std::size_t step = near.size() / Sampling::max_triangles + 1;
     std::vector<Vec3> points;
     std::vector<Triangle> triangles;
     for (std::size_t i = 0; i < near.size(); i += step) {
@@ -154,10 +142,9 @@ class SampledSurface {
     const double height = (place - sample.place).dot(sample.normal);
     // The surface has this distance from the sample's plane there, on the closer side.
     const Vec3 in_plane = place - height * sample.normal;
-    constexpr double aside = 0.25;
-    const double away = tree.distance(in_plane, sample_reach);
-    const bool above = tree.distance(in_plane + aside * sample.normal, sample_reach) <
-                       tree.distance(in_plane - aside * sample.normal, sample_reach);
+    const double away = tree.distance(in_plane, Sampling::reach);
+    const bool above = tree.distance(in_plane + Sampling::plane_offset * sample.normal, Sampling::reach) <
+                       tree.distance(in_plane - Sampling::plane_offset * sample.normal, Sampling::reach);
     return height - (above ? away : -away);
   }
   static bool interpolates(const SurfaceTree& tree, const Sample& sample, const Vec3& place, int level,
@@ -168,7 +155,7 @@ class SampledSurface {
     for (int i = 0; i < 27; ++i) {
       const Vec3 p = low + 0.5 * side * Vec3(i % 3, i / 3 % 3, i / 9);
       const double height = plane ? (p - sample.place).dot(sample.normal) : height_over(tree, sample, p);
-      values[i] = std::copysign(tree.distance(p, 2 * sample_reach), height);
+      values[i] = std::copysign(tree.distance(p, 2 * Sampling::reach), height);
     }
     for (int i = 0; i < 27; ++i) {
       double coarse = 0;
@@ -208,8 +195,9 @@ class SurfaceEstimate {
   MesherEstimate run() {
     double before = 0;
     for (const MesherInput::Body& b : input_.bodies)
-      before += bytes_per_triangle * static_cast<double>(b.surface.closed) +
-                bytes_per_open_triangle * static_cast<double>(b.surface.triangles.size() - b.surface.closed);
+      before += EstimateTuning::Memory::per_triangle * static_cast<double>(b.surface.closed) +
+                EstimateTuning::Memory::per_open_triangle *
+                    static_cast<double>(b.surface.triangles.size() - b.surface.closed);
     return options_.uniform ? uniform(before) : adaptive(before);
   }
 
@@ -223,7 +211,6 @@ class SurfaceEstimate {
 
   /// The visible part of a body's surface, as later bodies carve it, by the materials on either side.
   Interfaces interfaces_of(std::size_t body) const {
-    constexpr double beside = 0.1;  // finest cells from a sample to the points that determine its sides
     Interfaces found;
     const std::vector<Sample>& samples = surfaces_[body].samples();
     if (samples.empty()) return found;
@@ -232,10 +219,10 @@ class SurfaceEstimate {
       bool hidden = false, faces_later = false, faces_earlier = false;
       for (std::size_t other = 0; other < trees_.size(); ++other) {
         if (other == body) continue;
-        const bool out = is_inside(other, s.place + beside * s.normal);
+        const bool out = is_inside(other, s.place + Sampling::side_offset * s.normal);
         faces_later |= out && other > body;
         faces_earlier |= out && other < body;
-        hidden |= other > body && is_inside(other, s.place - beside * s.normal);
+        hidden |= other > body && is_inside(other, s.place - Sampling::side_offset * s.normal);
       }
       if (hidden) continue;
       found.meshed_sides += area;
@@ -258,7 +245,7 @@ class SurfaceEstimate {
   template <class Use>
   double for_inside(Use&& use) const {
     const Vec3 low = frame_.to_grid(input_.low), size = frame_.to_grid(input_.high) - low;
-    constexpr int n = volume_samples;
+    constexpr int n = Sampling::volume_samples;
     int inside = 0;
     for (int i = 0; i < n * n * n; ++i) {
       const Vec3 share((i % n + sequence(i, first_step)) / n, (i / n % n + sequence(i, second_step)) / n,
@@ -277,13 +264,15 @@ class SurfaceEstimate {
     double area = 0;
     for (const SampledSurface& s : surfaces_) area += s.area();
     const double box = static_cast<double>(frame_.cells[0]) * frame_.cells[1] * frame_.cells[2];
-    double dense = solid_tets_per_cell * volume() + cut_tets_per_area * area;
-    double lattice = dense + outside_tets_per_area_uniform * area;
+    double dense = EstimateTuning::Uniform::tets_per_cell * volume() +
+                   EstimateTuning::Surfaces::cut_tets_per_area * area;
+    double lattice = dense + EstimateTuning::Surfaces::outside_tets_per_area_uniform * area;
     if (options_.keep_outside) {
-      lattice = solid_tets_per_cell * box;
-      dense = lattice + kept_outside_tets_per_area * area;
+      lattice = EstimateTuning::Uniform::tets_per_cell * box;
+      dense = lattice + EstimateTuning::Surfaces::kept_outside_tets_per_area * area;
     }
-    return estimate_of({box, lattice, dense}, {surface_bytes_per_lattice_tet, 0, before}, options_);
+    return estimate_of({box, lattice, dense}, {EstimateTuning::Memory::per_surface_lattice_tet, 0, before},
+                       options_);
   }
 
   MesherEstimate adaptive(double before) {
@@ -295,19 +284,20 @@ class SurfaceEstimate {
       if (b == 0) add_layers(found.meshed_sides);
       // The surrounding outside, or the body that contains this one, is usually thick.
       const double own = std::min(found.meshed_sides, surfaces_[b].area()), others = found.meshed_sides - own;
-      double tets = share * tets_per_area *
+      double tets = share * EstimateTuning::Surfaces::tets_per_area *
                     filling(b == 0 && !input_.layers.empty() ? found.meshed_sides : own, body_volume);
-      if (b > 0 || input_.layers.empty()) tets += share * tets_per_area * others;
+      if (b > 0 || input_.layers.empty()) tets += share * EstimateTuning::Surfaces::tets_per_area * others;
       dense += tets;
-      lattice += tets + share * outside_tets_per_area * found.outside;
+      lattice += tets + share * EstimateTuning::Surfaces::outside_tets_per_area * found.outside;
     }
     if (options_.keep_outside) lattice = dense;
-    return estimate_of({0, lattice, dense}, {surface_bytes_per_lattice_tet, 0, before}, options_);
+    return estimate_of({0, lattice, dense}, {EstimateTuning::Memory::per_surface_lattice_tet, 0, before},
+                       options_);
   }
 
   /// Sides of interfaces in a volume, reduced as tets fill it.
   static double filling(double sides, double volume) {
-    return volume > 0 ? sides / (1 + half_full_wall_thickness * sides / volume) : 0;
+    return volume > 0 ? sides / (1 + EstimateTuning::Surfaces::half_full_thickness * sides / volume) : 0;
   }
 
   /// Adds the sides of the interfaces between layers; thin layers have smaller cells.
@@ -318,8 +308,9 @@ class SurfaceEstimate {
     for (const MaterialLayer& layer : input_.layers) {
       depth += layer.thickness / h_;
       double times = 1;
-      for (double side = 1;
-           side > std::ldexp(1, -max_refinement) && layer.thickness / h_ < sheet_cells * side; side /= 2)
+      for (double side = 1; side > std::ldexp(1, -DomainTuning::Refinement::max_levels) &&
+                            layer.thickness / h_ < DistanceTuning::Sheets::min_cells * side;
+           side /= 2)
         times *= 4;
       sides += 2 * times * area_at_depth(tree, depth);
     }
@@ -329,7 +320,7 @@ class SurfaceEstimate {
   /// depths close together, divided by their distance.
   double area_at_depth(const SurfaceTree& tree, double depth) {
     const Vec3 size = (input_.high - input_.low) / h_;
-    constexpr int n = volume_samples;
+    constexpr int n = Sampling::volume_samples;
     const double half = std::max(0.5, 0.5 * size.maxCoeff() / n);
     const Vec3 low = frame_.to_grid(input_.low);
     int found = 0;
@@ -342,9 +333,6 @@ class SurfaceEstimate {
     }
     return size.prod() * found / (n * n * n) / (2 * half);
   }
-
-  /// The limit below which field_thickness.h refines sheets.
-  static constexpr double sheet_cells = 1.5;
 
   const MesherInput& input_;
   const MesherOptions& options_;

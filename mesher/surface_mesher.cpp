@@ -19,18 +19,11 @@
 #include "mesher/field_mesher.h"
 #include "mesher/input/expected_solids.h"
 #include "mesher/mesh_estimate.h"
+#include "mesher/tuning/cell_tuning.h"
 
 namespace tetwright {
 
 namespace {
-
-/// Tets that thin walls and gaps may add, or as many as there are without them if that is more.
-constexpr double max_added_tets = 8e6;
-/// Tets that always count as cheap.
-constexpr double min_cheap_tets = 1e6;
-
-/// In diagonals: a surface whose points are all this close to a plane encloses nothing, in cells of any size.
-constexpr double flat_surface = 1e-6;
 
 /// True if all points are on the plane of the largest triangle.
 bool is_flat(const RepairedSurface& surface) {
@@ -44,7 +37,7 @@ bool is_flat(const RepairedSurface& surface) {
     normal = n;
     on_plane = a;
   }
-  const double slack = flat_surface * normal.norm() * (box.high - box.low).norm();
+  const double slack = CellTuning::Patches::flat_surface * normal.norm() * (box.high - box.low).norm();
   return std::all_of(surface.triangles.begin(), surface.triangles.end(), [&](const Triangle& t) {
     return std::all_of(t.begin(), t.end(),
                        [&](Index p) { return std::fabs(normal.dot(surface.points[p] - on_plane)) <= slack; });
@@ -130,14 +123,14 @@ void expect_materials(const MesherInput& input, const MaterialField& field,
 
 /// Closing and omitting measure cell by cell around each point of the surface.
 void validate_limits(const MesherOptions& options, double cell) {
-  constexpr double max_cells = 16;
   for (const auto& [name, limit] :
        {std::pair("gap", options.min_gap), std::pair("thickness", options.min_thickness)}) {
     if (!(limit >= 0 && std::isfinite(limit)))
       throw UsageError("the min " + std::string(name) + " must be 0 or more, not " + short_number(limit));
-    if (limit > max_cells * cell)
+    if (limit > CellTuning::WallBudget::max_limit_cells * cell)
       throw UsageError("a min " + std::string(name) + " of " + short_number(limit) + " is " +
-                       short_number(limit / cell) + " finest cells; at most " + short_number(max_cells) +
+                       short_number(limit / cell) + " finest cells; at most " +
+                       short_number(CellTuning::WallBudget::max_limit_cells) +
                        " are possible: use a lower resolution or a smaller min " + name);
   }
   if (options.max_refinement &&
@@ -145,13 +138,6 @@ void validate_limits(const MesherOptions& options, double cell) {
     throw UsageError("the max refinement must be from 0 to " + std::to_string(max_wall_refinement) +
                      ", not " + std::to_string(*options.max_refinement));
 }
-
-/// Factor on the tets that fill a thin wall in good shapes, where its rims stay sharp.
-constexpr double filling_with_creases = 1.5;
-/// Smallest area of a patch, squared cells: cells do not resolve smaller ones.
-constexpr double min_patch_cells = 8;
-/// Turns within this distance are not corners: cells do not resolve them.
-constexpr double corner_reach_cells = 1;
 
 /// Size of the cells that resolve a body's patches: bodies that are thin everywhere are meshed with smaller
 /// ones.
@@ -182,7 +168,7 @@ std::vector<SurfacePatches> patches_of(const MesherInput& input, const MesherOpt
   for (const MesherInput::Body& body : input.bodies) {
     const RepairedSurface& surface = body.surface;
     const double shown = patch_cell(surface, options, cell);
-    PatchOptions patch_options{options.feature_angle, min_patch_cells * shown * shown};
+    PatchOptions patch_options{options.feature_angle, CellTuning::Patches::min_area * shown * shown};
     // Where parts intersect there are creases that are not edges of the surface.
     const bool intersecting =
         surface.intersects_itself && options.feature_angle.rule != FeatureAngle::Rule::off;
@@ -239,12 +225,11 @@ void give_up_where_surfaces_meet(const MesherInput& input, const TetMesh& mesh,
 /// those creases would lie inside the solid.
 void give_up_where_gaps_are_closed(const MesherInput& input, const MesherReport& report,
                                    std::vector<SurfacePatches>& patches) {
-  constexpr double max_closed_share = 0.01;
   for (std::size_t b = 0; b < patches.size(); ++b) {
     double closed = 0;
     for (const ClosedGapReport& g : report.closed_gaps)
       if (g.gap && g.name == input.bodies[b].name) closed += g.area;
-    if (closed > max_closed_share * input.bodies[b].surface.area)
+    if (closed > CellTuning::WallBudget::max_closed_share * input.bodies[b].surface.area)
       give_up_creases(input.bodies[b], patches[b]);
   }
 }
@@ -259,7 +244,7 @@ void report_features(const MesherInput& input, const std::vector<SurfacePatches>
                        patches[b].verdict != SurfacePatches::Verdict::intersecting;
     if (patches[b].any() && exact)
       report.creases.add(find_creases(surface.points, surface.triangles, patches[b].patches,
-                                      corner_reach_cells * report.cell_size),
+                                      CellTuning::Patches::corner_reach * report.cell_size),
                          surface.points);
     report.features.push_back({input.bodies[b].name, patches[b]});
     report.features.back().found.patches = {};
@@ -270,7 +255,7 @@ void report_features(const MesherInput& input, const std::vector<SurfacePatches>
 /// known to half a cell.
 void keep_visible(CreaseCurves& creases, const MesherInput& input, const DenseMesh& dense) {
   if (input.bodies.size() == 1) return;
-  const double near = 1.5 * dense.report.cell_size;
+  const double near = CellTuning::Patches::junction_reach * dense.report.cell_size;
   CreaseCurves junctions = mesh_junctions(dense.mesh);
   std::vector<ProjectionTree::Item> segments;
   segments.reserve(junctions.segments.size());
@@ -304,7 +289,8 @@ void allow_for_chamfers(MesherReport& report) {
 
 /// Measures thickened walls again, since fitting creases has moved them too.
 void measure_walls(DenseMesh& dense, const MaterialField& field) {
-  if (dense.report.thickened.points == 0) return;
+  const WallChanges* walls = field.wall_changes();
+  if (!walls || dense.report.thickened.points == 0) return;
   const GridFrame& frame = field.frame();
   std::vector<Vec3> points;
   points.reserve(dense.mesh.points.size());
@@ -313,7 +299,7 @@ void measure_walls(DenseMesh& dense, const MaterialField& field) {
   for (const InterfaceTriangle& t : dense.mesh.interfaces)
     for (const Index p : t.ids) on_interface[p] = 1;
   dense.report.thickened =
-      thickened_report(find_thickened_walls(points, on_interface, field, *dense.field), frame);
+      thickened_report(find_thickened_walls(points, on_interface, *walls, *dense.field), frame);
 }
 
 void validate_outside_is_free(const MesherInput& input) {
@@ -357,8 +343,9 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   budget.deeper_where_cheap = !options.max_refinement;
   if (options.uniform) budget.max_depth = 0, budget.deeper_where_cheap = false;
   budget.max_possible = max_possible_refinement(voxels, largest_coordinate(input));
-  budget.base_tets = std::max(min_cheap_tets, static_cast<double>(report.estimate.tets));
-  budget.max_tets = std::max(max_added_tets, budget.base_tets);
+  budget.base_tets =
+      std::max(CellTuning::WallBudget::min_cheap_tets, static_cast<double>(report.estimate.tets));
+  budget.max_tets = std::max(CellTuning::WallBudget::max_added_tets, budget.base_tets);
   std::vector<SurfacePatches> patches = patches_of(input, options, report.cell_size);
   const auto has_patches = [](const SurfacePatches& p) { return p.any(); };
   const int max_depth = std::min(budget.max_depth, budget.max_possible);
@@ -388,10 +375,11 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   {
     // Where distances come from the triangles, thin parts and gaps are reported separately.
     std::vector<MortonKey> elsewhere = interface_voxels;
-    std::erase_if(elsewhere, [&](MortonKey key) {
-      const auto [x, y, z] = morton_decode(key);
-      return field->changes_walls(Vec3(x, y, z) + Vec3::Constant(0.5));
-    });
+    if (const WallChanges* walls = field->wall_changes())
+      std::erase_if(elsewhere, [&](MortonKey key) {
+        const auto [x, y, z] = morton_decode(key);
+        return walls->contains(Vec3(x, y, z) + Vec3::Constant(0.5));
+      });
     add_thin(find_thin_parts(*field, elsewhere), false);
   }
   for (const auto& [body, wall] : bodies.changed)
@@ -415,7 +403,7 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
     keep_visible(dense.report.creases, input, dense);
     allow_for_chamfers(dense.report);
     const auto features = std::make_shared<const FeatureSurface>(
-        input, patches, corner_reach_cells * dense.report.cell_size, dense.field);
+        input, patches, CellTuning::Patches::corner_reach * dense.report.cell_size, dense.field);
     fit_creases(dense.mesh, *features, *field, dense.report.cell_size);
     measure_walls(dense, *field);
     for (const InterfaceTriangle& t : dense.mesh.interfaces)
@@ -432,7 +420,8 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   dense.surface = std::make_shared<const TriangleMesh>(all_surfaces(input));
   dense.report.filling_tets = static_cast<std::size_t>(
       (dense.report.thickened.points > 0 ? bodies.filling_tets_thickened : bodies.filling_tets) *
-      (std::any_of(patches.begin(), patches.end(), has_patches) ? filling_with_creases : 1));
+      (std::any_of(patches.begin(), patches.end(), has_patches) ? CellTuning::WallBudget::filling_with_creases
+                                                                : 1));
   return dense;
 }
 

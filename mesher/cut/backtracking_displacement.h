@@ -6,22 +6,19 @@
 #include <vector>
 
 #include "common/types.h"
+#include "mesher/tuning/cut_tuning.h"
 
 namespace tetwright {
 
-/// min_solid_angle_tangent() of a solid angle of 0.1 sr: the tangent of half the angle.
-inline constexpr double tangent_of_bad_tet = 0.05004170837553879;
-
 /// A displacement of a point by `step`.
 struct PointMove {
-  /// A move that would spoil a tet is halved up to this many times, then dropped.
-  static constexpr std::uint8_t max_halvings = 4;
-
   Index point;
   Vec3 from, step;
   std::uint8_t halvings = 0;
 
-  double share() const { return halvings > max_halvings ? 0.0 : std::ldexp(1, -halvings); }
+  double share() const {
+    return halvings > CutTuning::Displacement::max_halvings ? 0.0 : std::ldexp(1, -halvings);
+  }
 };
 
 /// Moves all points at once. Moves at a tet that they spoil are shortened together until no tet is spoilt:

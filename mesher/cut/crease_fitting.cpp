@@ -13,26 +13,15 @@
 #include "mesher/cut/backtracking_displacement.h"
 #include "mesher/cut/crease_labels.h"
 #include "mesher/cut/undo_intersections.h"
+#include "mesher/tuning/cut_tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-using Kind = FeatureLabel::Kind;
+using Fitting = CutTuning::Fitting;
 
-constexpr std::size_t fitting_grain = 512, fitted_tet_grain = 1 << 13;
-/// Maximum distance of a point from its target, cells.
-constexpr double target_reach = 4;
-/// Quality that tets must keep in each pass, in multiples of tangent_of_bad_tet: shapes first, then exact
-/// creases.
-constexpr double pass_floors[] = {1, 1, 0.5, 0.5, 0.2, 0.2, 0.05, 0.05};
-/// Walls that cells have thickened move back as long as tets keep this quality; otherwise they are reported.
-constexpr double wall_floor = 0.2;
-/// Steps tried to make room, in multiples of the mean edge at the point.
-constexpr double room_steps[] = {0.4, 0.2, 0.1, 0.05};
-constexpr int room_sweeps = 2;
-/// Points closer to their target than this have arrived, in cells: rounding.
-constexpr double arrived = 1e-12;
+using Kind = FeatureLabel::Kind;
 
 /// Moves the points of a mesh to the targets that their labels determine.
 class Fitter {
@@ -42,15 +31,17 @@ class Fitter {
       : mesh_(mesh), surface_(surface), labels_(labels), field_(field), cell_(cell) {}
 
   void run() {
-    for (const double floor : pass_floors) {
+    for (const double floor : Fitting::pass_floors) {
       std::vector<PointMove> moves = remaining_moves(floor);
       if (moves.empty()) return;
-      displace_with_backtracking(mesh_.points, mesh_.tets, moves, floor * tangent_of_bad_tet);
+      displace_with_backtracking(mesh_.points, mesh_.tets, moves,
+                                 floor * CutTuning::Shapes::tangent_of_bad_tet);
       make_room(remaining_moves(floor));
     }
-    std::vector<PointMove> moves = remaining_moves(pass_floors[std::size(pass_floors) - 1]);
-    displace_with_backtracking(mesh_.points, mesh_.tets, moves,
-                               pass_floors[std::size(pass_floors) - 1] * tangent_of_bad_tet);
+    std::vector<PointMove> moves = remaining_moves(Fitting::pass_floors[std::size(Fitting::pass_floors) - 1]);
+    displace_with_backtracking(
+        mesh_.points, mesh_.tets, moves,
+        Fitting::pass_floors[std::size(Fitting::pass_floors) - 1] * CutTuning::Shapes::tangent_of_bad_tet);
   }
 
  private:
@@ -62,11 +53,11 @@ class Fitter {
       case Kind::none:
         return {};
       case Kind::patch:
-        if (const auto place = surface_.nearest_of_patch(at, patches[0], target_reach * cell_))
+        if (const auto place = surface_.nearest_of_patch(at, patches[0], Fitting::target_reach * cell_))
           return place->point;
         return {};
       case Kind::crease:
-        return surface_.onto_crease_between(at, label.crease, target_reach * cell_);
+        return surface_.onto_crease_between(at, label.crease, Fitting::target_reach * cell_);
       case Kind::corner:
         return surface_.corners()[label.corner].point;
     }
@@ -75,19 +66,20 @@ class Fitter {
 
   /// True for points of thickened walls in passes that would spoil their tets.
   bool must_stay(Index p, double floor) const {
-    return floor < wall_floor && labels_.of(p).kind == Kind::patch &&
-           field_.changes_walls(field_.frame().to_grid(mesh_.points[p]));
+    const WallChanges* walls = field_.wall_changes();
+    return walls && floor < Fitting::wall_floor && labels_.of(p).kind == Kind::patch &&
+           walls->contains(field_.frame().to_grid(mesh_.points[p]));
   }
 
   std::vector<PointMove> remaining_moves(double floor) const {
     const std::vector<Index>& points = labels_.points();
-    return parallel_collect<PointMove>(0, points.size(), fitting_grain,
+    return parallel_collect<PointMove>(0, points.size(), CutGrains::searches,
                                        [&](std::size_t begin, std::size_t end, std::vector<PointMove>& out) {
                                          for (std::size_t i = begin; i < end; ++i) {
                                            if (must_stay(points[i], floor)) continue;
                                            const Vec3& at = mesh_.points[points[i]];
                                            const auto target = place_of(points[i], at);
-                                           if (target && (*target - at).norm() > arrived * cell_)
+                                           if (target && (*target - at).norm() > Fitting::arrived * cell_)
                                              out.push_back({points[i], at, *target - at});
                                          }
                                        });
@@ -103,7 +95,7 @@ class Fitter {
     std::vector<std::uint8_t> role(mesh_.points.size(), 0);  // 1: waits, 2: adjacent to a waiting point
     for (const PointMove& m : waiting) role[m.point] = 1;
     const auto tets_with = [&](std::uint8_t wanted) {
-      return parallel_collect<Index>(0, mesh_.tets.size(), fitted_tet_grain,
+      return parallel_collect<Index>(0, mesh_.tets.size(), CutGrains::tets,
                                      [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
                                        for (std::size_t t = begin; t < end; ++t)
                                          if (std::any_of(mesh_.tets[t].begin(), mesh_.tets[t].end(),
@@ -125,7 +117,7 @@ class Fitter {
     for (const Index t : tets_with(2))
       for (const Index p : mesh_.tets[t])
         if (number[p] != no_index) stars[number[p]].push_back(t);
-    for (int sweep = 0; sweep < room_sweeps; ++sweep)
+    for (int sweep = 0; sweep < Fitting::room_sweeps; ++sweep)
       for (std::size_t i = 0; i < beside.size(); ++i) find_better_place(beside[i], stars[i]);
   }
 
@@ -149,7 +141,7 @@ class Fitter {
     const Vec3 from = at;
     Index worst_tet = star.front();
     double best = worst_at(from, &worst_tet);
-    if (best >= tangent_of_bad_tet) return;
+    if (best >= CutTuning::Shapes::tangent_of_bad_tet) return;
     Vec3 centre = Vec3::Zero();
     double edges = 0, count = 0;
     for (const Index t : star)
@@ -169,7 +161,7 @@ class Fitter {
     Vec3 best_place = from;
     for (const Vec3& direction : {Vec3(-out.normalized()), Vec3((centre / count - from).normalized())}) {
       if (!direction.allFinite()) continue;
-      for (const double step : room_steps) {
+      for (const double step : Fitting::room_steps) {
         Vec3 place = from + step * edge * direction;
         if (labels_.on_boundary(p)) {
           const auto on = place_of(p, place);
@@ -213,13 +205,14 @@ FeatureSurface::Patch patch_of(const TetMesh& mesh, const InterfaceTriangle& t, 
   const Vec3 &a = mesh.points[t.ids[0]], &b = mesh.points[t.ids[1]], &c = mesh.points[t.ids[2]];
   const Vec3 centre = (a + b + c) / 3, normal = (b - a).cross(c - a).normalized();
   if (candidates.size() == 0) {
-    const auto place = surface.nearest(centre, *body, target_reach * cell, t.other ? nullptr : &normal);
+    const auto place =
+        surface.nearest(centre, *body, Fitting::target_reach * cell, t.other ? nullptr : &normal);
     return place ? place->patch : surface.no_patch();
   }
   FeatureSurface::Patch best = *candidates.begin();
   double best_fit = -std::numeric_limits<double>::infinity();
   for (const FeatureSurface::Patch patch : candidates) {
-    const auto place = surface.nearest_of_patch(centre, patch, target_reach * cell);
+    const auto place = surface.nearest_of_patch(centre, patch, Fitting::target_reach * cell);
     if (!place) continue;
     const double alike = normal.dot(place->normal) - (place->point - centre).norm() / cell;
     if (alike > best_fit) {
@@ -243,7 +236,7 @@ void fit_creases(TetMesh& mesh, const FeatureSurface& surface, const MaterialFie
   faces.reserve(mesh.interfaces.size());
   for (const InterfaceTriangle& t : mesh.interfaces) faces.push_back(t.ids);
   undo_intersections(mesh.points, mesh.tets, faces, before);
-  parallel_for(0, mesh.interfaces.size(), fitting_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, mesh.interfaces.size(), CutGrains::searches, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       mesh.interfaces[i].patch = patch_of(mesh, mesh.interfaces[i], labels, surface, cell);
   });

@@ -6,30 +6,13 @@
 
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
+#include "mesher/tuning/cut_tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr std::size_t label_grain = 512, label_tet_grain = 1 << 13;
-/// Maximum distance of a boundary point from the surface, cells.
-constexpr double surface_reach = 2;
-/// Maximum distance of a corner from the point that represents it, cells.
-constexpr double corner_reach = 1.5;
-/// Maximum distance of a crease from an edge that crosses it, in edge lengths: the tip of a wedge of 30
-/// degrees is two edges from its chamfer.
-constexpr double crease_reach = 2.5;
-/// Snap an endpoint to the crease if the crossing lies within this fraction of the edge.
-constexpr double max_snap = 0.5;
-/// New points keep at least this fraction of the edge from its ends.
-constexpr double min_split = 0.2;
-/// A point with only crease points around it gets the patch on their other side if that is closer than this,
-/// cells: the accuracy of a level set near creases.
-constexpr double island_reach = 0.35;
-constexpr int crossing_steps = 3;
-/// Creases separated only by patches narrower than this, cells, are merged.
-constexpr double narrow_reach = 0.3;
-constexpr int max_label_rounds = 4;
+using Labelling = CutTuning::Labelling;
 
 }  // namespace
 
@@ -78,7 +61,7 @@ void CreaseLabels::number_boundary() {
 }
 
 void CreaseLabels::label_points() {
-  parallel_for(0, points_.size(), label_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, points_.size(), CutGrains::searches, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::vector<Index>& around = triangles_at_[i];
       const InterfaceTriangle& first = mesh_.interfaces[around.front()];
@@ -94,7 +77,7 @@ void CreaseLabels::label_points() {
       if (!one_pair || !body) continue;
       normal.normalize();
       // Between two materials either may be the body.
-      const auto place = surface_.nearest(mesh_.points[points_[i]], *body, surface_reach * cell_,
+      const auto place = surface_.nearest(mesh_.points[points_[i]], *body, Labelling::surface_reach * cell_,
                                           first.other ? nullptr : &normal);
       if (place) labels_[i] = {Kind::patch, {place->patch}, no_index, {}};
     }
@@ -162,7 +145,7 @@ void CreaseLabels::take_corners() {
     if (meeting.size() < 3) continue;  // see take_kinks()
     // Two points would not fit next to each other.
     const auto beside = std::find_if(taken.begin(), taken.end(), [&](const Taken& t) {
-      return (surface_.corners()[t.corner].point - corner.point).norm() < narrow_reach * cell_;
+      return (surface_.corners()[t.corner].point - corner.point).norm() < Labelling::narrow_reach * cell_;
     });
     if (beside != taken.end()) {
       for (const FeatureSurface::Patch p : corner.patches) labels_[beside->number].patches.insert(p);
@@ -183,7 +166,7 @@ void CreaseLabels::take_corners() {
     };
     for (std::size_t min_patches : {std::size_t{3}, std::size_t{2}, std::size_t{1}}) {
       const auto hit =
-          tree.nearest_of(corner.point, corner_reach * cell_,
+          tree.nearest_of(corner.point, Labelling::corner_reach * cell_,
                           [&](const ProjectionTree::Item& item) { return fits(item, min_patches); });
       if (!hit) continue;
       const Index number = tree.items()[hit->item].kind[0];
@@ -201,9 +184,9 @@ std::optional<CreaseLabels::Crossing> CreaseLabels::find_crossing(Index u, Index
   Crossing crossing{u, v, 0.5, {}, {}};
   using Pair = FeatureSurface::PatchPair;
   const auto find = [&](const auto& accepts) {
-    for (int i = 0; i < crossing_steps; ++i) {
-      const auto place =
-          surface_.nearest_crease(p + crossing.share * along, crease_reach * along.norm(), accepts);
+    for (int i = 0; i < Labelling::crossing_steps; ++i) {
+      const auto place = surface_.nearest_crease(p + crossing.share * along,
+                                                 Labelling::crease_reach * along.norm(), accepts);
       if (!place) return false;
       crossing.share = std::clamp((place->point - p).dot(along) / along.squaredNorm(), 0.0, 1.0);
       crossing.crease = place->patches;
@@ -220,12 +203,12 @@ std::optional<CreaseLabels::Crossing> CreaseLabels::find_crossing(Index u, Index
         return a.contains(pair[0]) || a.contains(pair[1]) || b.contains(pair[0]) || b.contains(pair[1]);
       }))
     return {};
-  const auto at =
-      surface_.onto_crease_between(p + crossing.share * along, crossing.crease, surface_reach * cell_);
+  const auto at = surface_.onto_crease_between(p + crossing.share * along, crossing.crease,
+                                               Labelling::surface_reach * cell_);
   if (!at) return {};
   while (!(crossing.patches.meets(a) && crossing.patches.meets(b))) {
     const std::size_t known = crossing.patches.size();
-    const auto next = surface_.nearest_crease(*at, narrow_reach * cell_, [&](const Pair& pair) {
+    const auto next = surface_.nearest_crease(*at, Labelling::narrow_reach * cell_, [&](const Pair& pair) {
       return crossing.patches.contains(pair[0]) != crossing.patches.contains(pair[1]);
     });
     if (!next) return {};
@@ -254,14 +237,14 @@ void CreaseLabels::snap_points() {
   };
   const std::vector<std::array<Index, 2>> edges = crossing_edges();
   std::vector<Snap> snaps = parallel_collect<Snap>(
-      0, edges.size(), label_grain, [&](std::size_t begin, std::size_t end, std::vector<Snap>& out) {
+      0, edges.size(), CutGrains::searches, [&](std::size_t begin, std::size_t end, std::vector<Snap>& out) {
         for (std::size_t e = begin; e < end; ++e) {
           const auto [u, v] = edges[e];
           const std::optional<Crossing> c = find_crossing(u, v);
           if (!c) continue;
-          if (labels_[number_[u]].kind == Kind::patch && c->share <= max_snap)
+          if (labels_[number_[u]].kind == Kind::patch && c->share <= Labelling::max_snap)
             out.push_back({c->share, u, v, c->label()});
-          if (labels_[number_[v]].kind == Kind::patch && 1 - c->share <= max_snap)
+          if (labels_[number_[v]].kind == Kind::patch && 1 - c->share <= Labelling::max_snap)
             out.push_back({1 - c->share, v, u, c->label()});
         }
       });
@@ -278,7 +261,7 @@ void CreaseLabels::snap_points() {
 }
 
 void CreaseLabels::resolve_rest() {
-  for (int round = 0; round < max_label_rounds; ++round) {
+  for (int round = 0; round < Labelling::max_rounds; ++round) {
     const std::vector<std::array<Index, 2>> edges = crossing_edges();
     if (edges.empty()) return;
     for (const auto& [u, v] : edges) {
@@ -309,7 +292,7 @@ void CreaseLabels::take_kinks() {
     const FeatureSurface::Corner& corner = surface_.corners()[c];
     if (corner.patches.size() > 2) continue;
     const auto hit =
-        tree.nearest_of(corner.point, corner_reach * cell_, [&](const ProjectionTree::Item& item) {
+        tree.nearest_of(corner.point, Labelling::corner_reach * cell_, [&](const ProjectionTree::Item& item) {
           const Index i = item.kind[0];
           // The point must lie between points of one patch and points of the other.
           return labels_[i].kind == Kind::crease &&
@@ -342,7 +325,7 @@ void CreaseLabels::dissolve_islands() {
     if (!alone) continue;
     for (const FeatureSurface::Patch patch : shared)
       if (!labels_[i].patches.contains(patch) &&
-          surface_.nearest_of_patch(mesh_.points[points_[i]], patch, island_reach * cell_)) {
+          surface_.nearest_of_patch(mesh_.points[points_[i]], patch, Labelling::island_reach * cell_)) {
         labels_[i].patches = {patch};
         break;
       }
@@ -359,7 +342,7 @@ void CreaseLabels::track(const std::vector<std::array<Index, 2>>& edges) {
       for_neighbours(number_[p], [&](Index q) { tracked[number_[q]] = 1; });
     }
   const std::vector<Index> tets = parallel_collect<Index>(
-      0, mesh_.tets.size(), label_tet_grain,
+      0, mesh_.tets.size(), CutGrains::tets,
       [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
         for (std::size_t t = begin; t < end; ++t)
           if (std::any_of(mesh_.tets[t].begin(), mesh_.tets[t].end(),
@@ -385,7 +368,7 @@ void CreaseLabels::split(const Crossing& crossing) {
     if (const Triangle& c = mesh_.interfaces[t].ids; std::find(c.begin(), c.end(), v) != c.end())
       triangles.push_back(t);
   const auto middle = static_cast<Index>(mesh_.points.size());
-  const double s = std::clamp(crossing.share, min_split, 1 - min_split);
+  const double s = std::clamp(crossing.share, Labelling::min_split, 1 - Labelling::min_split);
   mesh_.points.push_back(mesh_.points[u] + s * (mesh_.points[v] - mesh_.points[u]));
   const auto number = static_cast<Index>(points_.size());
   number_.push_back(number);

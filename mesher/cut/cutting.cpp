@@ -11,19 +11,11 @@
 #include "common/geometry/quality.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/cut/cut_tet.h"
+#include "mesher/tuning/cut_tuning.h"
 
 namespace tetwright {
 
 namespace {
-
-constexpr std::size_t grain = 1 << 13;  // tets per parallel chunk; each takes some ten nanoseconds
-
-/// Cuts keep at least this fraction of the edge from its ends, so that the pieces are well shaped. Only edges
-/// of points that could not be moved would be cut closer.
-constexpr double smallest_share = 0.25;
-/// Minimum barycentric coordinates of the point in a face and in a tet.
-constexpr double min_face_share = 0.15;
-constexpr double min_tet_share = 0.2;
 
 /// The corners of an edge or face, ascending.
 using EdgeKey = std::uint64_t;
@@ -70,7 +62,7 @@ bool face_is_cut(const LabelledLattice& lattice, Index a, Index b, Index c) {
 Vec3 edge_cut(const LabelledLattice& lattice, Index a, Index b) {
   if (b < a) std::swap(a, b);  // the same bits from both ends
   const double share = std::clamp(lattice.cut_share(a, lattice.first_region[a], b, lattice.first_region[b]),
-                                  smallest_share, 1 - smallest_share);
+                                  CutTuning::Cuts::min_edge_share, 1 - CutTuning::Cuts::min_edge_share);
   return lattice.positions[a] + share * (lattice.positions[b] - lattice.positions[a]);
 }
 
@@ -110,7 +102,7 @@ Vec3 meeting_point(const LabelledLattice& lattice, const std::array<Index, N>& c
 }
 
 Vec3 face_cut(const LabelledLattice& lattice, const FaceKey& key) {
-  Vec3 point = meeting_point<3>(lattice, key, min_face_share);
+  Vec3 point = meeting_point<3>(lattice, key, CutTuning::Cuts::min_face_share);
   // Shares add up to 1 only up to rounding, but no point may leave a face of the box.
   const Vec3 &a = lattice.positions[key[0]], &b = lattice.positions[key[1]], &c = lattice.positions[key[2]];
   for (int k = 0; k < 3; ++k)
@@ -124,7 +116,7 @@ Vec3 tet_cut(const LabelledLattice& lattice, const Tet& t) {
   if (pure_regions(lattice, t).size() == 4) {
     Tet sorted = t;
     std::sort(sorted.begin(), sorted.end());
-    return meeting_point<4>(lattice, sorted, min_tet_share);
+    return meeting_point<4>(lattice, sorted, CutTuning::Cuts::min_tet_share);
   }
   Vec3 middle = Vec3::Zero();
   double faces = 0;
@@ -142,7 +134,7 @@ Vec3 tet_cut(const LabelledLattice& lattice, const Tet& t) {
       kept_off_the_ends<4>(Eigen::Vector4d(tet_volume(middle, b, c, d), tet_volume(a, middle, c, d),
                                            tet_volume(a, b, middle, d), tet_volume(a, b, c, middle)) /
                                whole,
-                           min_tet_share);
+                           CutTuning::Cuts::min_tet_share);
   return shares[0] * a + shares[1] * b + shares[2] * c + shares[3] * d;
 }
 
@@ -199,15 +191,16 @@ struct Cuts {
           out.push_back(face_key(t[f[0]], t[f[1]], t[f[2]]));
     });
     if (faces.empty()) return;
-    tets = parallel_collect<Index>(
-        0, lattice.tets.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
-          for (std::size_t i = begin; i < end; ++i) {
-            const Tet& t = lattice.tets[i];
-            const bool all_pure =
-                pure(lattice, t[0]) && pure(lattice, t[1]) && pure(lattice, t[2]) && pure(lattice, t[3]);
-            if (all_pure && pure_regions(lattice, t).size() > 2) out.push_back(static_cast<Index>(i));
-          }
-        });
+    tets = parallel_collect<Index>(0, lattice.tets.size(), CutGrains::tets,
+                                   [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+                                     for (std::size_t i = begin; i < end; ++i) {
+                                       const Tet& t = lattice.tets[i];
+                                       const bool all_pure = pure(lattice, t[0]) && pure(lattice, t[1]) &&
+                                                             pure(lattice, t[2]) && pure(lattice, t[3]);
+                                       if (all_pure && pure_regions(lattice, t).size() > 2)
+                                         out.push_back(static_cast<Index>(i));
+                                     }
+                                   });
   }
 
   std::size_t size() const { return edges.size() + faces.size() + tets.size(); }
@@ -218,7 +211,7 @@ struct Cuts {
   Index tet(Index t) const { return static_cast<Index>(edges.size() + faces.size()) + place(tets, t); }
   std::vector<Vec3> points(const LabelledLattice& lattice) const {
     std::vector<Vec3> points(size());
-    parallel_for(0, points.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(0, points.size(), CutGrains::tets, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         if (i < edges.size())
           points[i] = edge_cut(lattice, static_cast<Index>(edges[i] >> 32), static_cast<Index>(edges[i]));
@@ -235,15 +228,18 @@ struct Cuts {
   /// Collects the keys that `body(tet, out)` appends for each tet that is cut; sorted, without repetitions.
   template <class Key, class Body>
   static std::vector<Key> collect(const LabelledLattice& lattice, Body&& body) {
-    std::vector<Key> keys = parallel_collect<Key>(
-        0, lattice.tets.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<Key>& out) {
-          RegionIndex unused;
-          for (std::size_t i = begin; i < end; ++i)
-            if (fate(lattice, lattice.tets[i], unused) == Fate::cut) body(lattice.tets[i], out);
-          // Most tets that share an edge are in the same chunk, so this removes most repetitions.
-          std::sort(out.begin(), out.end());
-          out.erase(std::unique(out.begin(), out.end()), out.end());
-        });
+    std::vector<Key> keys =
+        parallel_collect<Key>(0, lattice.tets.size(), CutGrains::tets,
+                              [&](std::size_t begin, std::size_t end, std::vector<Key>& out) {
+                                RegionIndex unused;
+                                for (std::size_t i = begin; i < end; ++i)
+                                  if (fate(lattice, lattice.tets[i], unused) == Fate::cut)
+                                    body(lattice.tets[i], out);
+                                // Most tets that share an edge are in the same chunk, so this removes most
+                                // repetitions.
+                                std::sort(out.begin(), out.end());
+                                out.erase(std::unique(out.begin(), out.end()), out.end());
+                              });
     parallel_sort_unique(keys);
     return keys;
   }
@@ -273,7 +269,7 @@ void compact(const LabelledLattice& lattice, const std::vector<Vec3>& cuts, CutM
     }
   mesh.points.resize(next);
   mesh.on_interface.resize(next);
-  parallel_for(0, number.size(), 4 * grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, number.size(), 4 * CutGrains::tets, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (number[i] == no_index) continue;
       const bool is_cut = i >= positions.size();

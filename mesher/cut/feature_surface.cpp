@@ -5,14 +5,9 @@
 #include <map>
 #include <set>
 
+#include "mesher/tuning/cut_tuning.h"
+
 namespace tetwright {
-
-namespace {
-
-/// Cosine below which a triangle's normal faces the other way.
-constexpr double min_facing = -0.5;
-
-}  // namespace
 
 FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches,
                                double corner_reach, std::shared_ptr<const MaterialField> field)
@@ -89,8 +84,8 @@ std::optional<FeatureSurface::Place> FeatureSurface::nearest(const Vec3& p, std:
                                                              const Vec3* facing) const {
   const auto hit = triangles_.nearest_of(p, at_most, [&](const ProjectionTree::Item& item) {
     if (item.kind[1] != body) return false;
-    return !facing ||
-           normals_[static_cast<std::size_t>(&item - triangles_.items().data())].dot(*facing) >= min_facing;
+    return !facing || normals_[static_cast<std::size_t>(&item - triangles_.items().data())].dot(*facing) >=
+                          CutTuning::Labelling::min_facing;
   });
   if (!hit) return {};
   return Place{hit->point, normals_[hit->item], static_cast<Patch>(triangles_.items()[hit->item].kind[0])};

@@ -8,6 +8,7 @@
 
 #include "common/parallel/parallel.h"
 #include "mesher/lattice/labelled_lattice.h"
+#include "mesher/tuning/cut_tuning.h"
 
 namespace tetwright {
 
@@ -31,9 +32,8 @@ class IndependentRounds {
   template <class Body, class BetweenRounds>
   void run(std::span<const Index> points, std::span<const std::size_t> starts, Body&& body,
            BetweenRounds&& between_rounds) {
-    // Enough groups to be worth a parallel loop, few enough that most of them do not share points.
-    constexpr std::size_t min_round = 128, rounds_wanted = 48, grain = 4;
-    const std::size_t groups = starts.size() - 1, max_round = std::max(min_round, groups / rounds_wanted);
+    const std::size_t groups = starts.size() - 1,
+                      max_round = std::max(CutTuning::Rounds::min_groups, groups / CutTuning::Rounds::wanted);
     struct Group {
       Index number;
       std::vector<Index> slots;  ///< the points near interfaces in its closed stars
@@ -42,7 +42,7 @@ class IndependentRounds {
     std::vector<Index> winners;
     std::vector<std::uint8_t> wins;
     const auto for_waiting = [&](auto&& work) {
-      parallel_for(0, waiting.size(), 4 * grain, [&](std::size_t begin, std::size_t end) {
+      parallel_for(0, waiting.size(), 4 * CutTuning::Rounds::grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) work(i);
       });
     };
@@ -79,7 +79,7 @@ class IndependentRounds {
           winners.push_back(waiting[i].number);
         else
           losers.push_back(std::move(waiting[i]));
-      parallel_for(0, winners.size(), grain, [&](std::size_t begin, std::size_t end) {
+      parallel_for(0, winners.size(), CutTuning::Rounds::grain, [&](std::size_t begin, std::size_t end) {
         body(std::span<const Index>(winners).subspan(begin, end - begin));
       });
       done += winners.size();

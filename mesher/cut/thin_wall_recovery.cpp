@@ -10,52 +10,46 @@
 #include "common/parallel/parallel_sort.h"
 #include "mesher/cut/backtracking_displacement.h"
 #include "mesher/cut/undo_intersections.h"
+#include "mesher/tuning/cut_tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr std::size_t wall_point_grain = 1024;
-/// A wall counts as recovered within this fraction of its thickness.
-constexpr double restored_share = 0.1;
-/// Remaining moves are tried again in another pass, since their neighbours have moved too.
-constexpr int restoring_passes = 3;
-/// Lattice units: half of the largest thickening, and as much again for a point that has moved on from there.
-constexpr double max_step = 1.25;
-
 /// The moves that return points displaced by thickened walls.
 std::vector<PointMove> find_moves(const std::vector<Vec3>& points,
-                                  const std::vector<std::uint8_t>& is_on_interface,
-                                  const MaterialField& field, const MaterialField& as_is) {
+                                  const std::vector<std::uint8_t>& is_on_interface, const WallChanges& walls,
+                                  const MaterialField& as_is) {
   return parallel_collect<PointMove>(
-      0, points.size(), wall_point_grain,
+      0, points.size(), CutGrains::moves,
       [&](std::size_t begin, std::size_t end, std::vector<PointMove>& out) {
         const std::unique_ptr<FieldSampler> owned = as_is.sampler();
         for (std::size_t p = begin; p < end; ++p) {
-          if (!is_on_interface[p] || !field.changes_walls(points[p])) continue;
+          if (!is_on_interface[p] || !walls.contains(points[p])) continue;
           const std::optional<RegionSet> both = owned->two_nearest(points[p]);
           if (!both) continue;
           Vec3 gradient;
           const double off = owned->between((*both)[0], (*both)[1], points[p], gradient);
           const double slope = gradient.squaredNorm();
           // No wall was thickened by more; a longer step comes from distances without slope.
-          if (!(std::abs(off) < max_step * std::sqrt(slope))) continue;
+          if (!(std::abs(off) < CutTuning::WallRecovery::max_step * std::sqrt(slope))) continue;
           out.push_back({static_cast<Index>(p), points[p], -gradient * (off / slope)});
         }
       });
 }
 
-ThickenedWalls what_is_left(const std::vector<PointMove>& moves, const MaterialField& field) {
+ThickenedWalls what_is_left(const std::vector<PointMove>& moves, const WallChanges& walls) {
   ThickenedWalls left;
   struct Off {
     double offset, thickness;
     Vec3 place;
   };
   const std::vector<Off> off = parallel_collect<Off>(
-      0, moves.size(), wall_point_grain, [&](std::size_t begin, std::size_t end, std::vector<Off>& out) {
+      0, moves.size(), CutGrains::moves, [&](std::size_t begin, std::size_t end, std::vector<Off>& out) {
         for (std::size_t m = begin; m < end; ++m) {
-          const double offset = moves[m].step.norm(), thickness = field.parallel_thickness(moves[m].from);
-          if (2 * offset > restored_share * thickness) out.push_back({offset, thickness, moves[m].from});
+          const double offset = moves[m].step.norm(), thickness = walls.parallel_thickness(moves[m].from);
+          if (2 * offset > CutTuning::WallRecovery::recovered_share * thickness)
+            out.push_back({offset, thickness, moves[m].from});
         }
       });
   left.points = off.size();
@@ -77,22 +71,22 @@ std::vector<Triangle> interface_faces(const CutMesh& mesh) {
 
 }  // namespace
 
-ThickenedWalls recover_thin_walls(CutMesh& mesh, const MaterialField& field, const MaterialField& as_is) {
-  std::vector<PointMove> moves = find_moves(mesh.points, mesh.on_interface, field, as_is);
+ThickenedWalls recover_thin_walls(CutMesh& mesh, const WallChanges& walls, const MaterialField& as_is) {
+  std::vector<PointMove> moves = find_moves(mesh.points, mesh.on_interface, walls, as_is);
   if (moves.empty()) return {};
   const std::vector<Vec3> before = mesh.points;
-  for (int pass = 0; pass < restoring_passes && !moves.empty(); ++pass) {
-    displace_with_backtracking(mesh.points, mesh.tets, moves, tangent_of_bad_tet);
+  for (int pass = 0; pass < CutTuning::WallRecovery::passes && !moves.empty(); ++pass) {
+    displace_with_backtracking(mesh.points, mesh.tets, moves, CutTuning::Shapes::tangent_of_bad_tet);
     keep_remaining(mesh.points, moves);
   }
   undo_intersections(mesh.points, mesh.tets, interface_faces(mesh), before);
-  return find_thickened_walls(mesh.points, mesh.on_interface, field, as_is);
+  return find_thickened_walls(mesh.points, mesh.on_interface, walls, as_is);
 }
 
 ThickenedWalls find_thickened_walls(const std::vector<Vec3>& points,
                                     const std::vector<std::uint8_t>& is_on_interface,
-                                    const MaterialField& field, const MaterialField& as_is) {
-  return what_is_left(find_moves(points, is_on_interface, field, as_is), field);
+                                    const WallChanges& walls, const MaterialField& as_is) {
+  return what_is_left(find_moves(points, is_on_interface, walls, as_is), walls);
 }
 
 }  // namespace tetwright

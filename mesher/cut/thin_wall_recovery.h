@@ -22,13 +22,13 @@ struct ThickenedWalls {
 /// Moves the interfaces of thin walls that the field has thickened (see thin_walls.h) back to their true
 /// positions, as far as tets keep solid angles of 0.1 sr; tets that are worse already get no worse. The
 /// result does not depend on the number of threads.
-/// \param as_is field.with_true_walls()
+/// \param as_is walls.with_true_walls()
 /// \return the walls that could not be moved back
-ThickenedWalls recover_thin_walls(CutMesh& mesh, const MaterialField& field, const MaterialField& as_is);
+ThickenedWalls recover_thin_walls(CutMesh& mesh, const WallChanges& walls, const MaterialField& as_is);
 
 /// The thickened walls that remain in a mesh whose points have moved since; lattice units.
 ThickenedWalls find_thickened_walls(const std::vector<Vec3>& points,
                                     const std::vector<std::uint8_t>& is_on_interface,
-                                    const MaterialField& field, const MaterialField& as_is);
+                                    const WallChanges& walls, const MaterialField& as_is);
 
 }  // namespace tetwright

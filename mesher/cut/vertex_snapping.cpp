@@ -14,28 +14,13 @@
 #include "mesher/cut/cutting.h"
 #include "mesher/cut/independent_rounds.h"
 #include "mesher/cut/link_topology.h"
+#include "mesher/tuning/cut_tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-/// A cut is too close to an end of its edge below this fraction of the edge. Long edges join two corners or
-/// two centres of cells, short ones a corner and a centre. Tuned on scans: with the classic 0.25 and 0.41,
-/// points snap onto flat patches from both sides and tets would be inverted.
-constexpr double near_long = 0.35;
-constexpr double near_short = 0.49;
-
-/// A move must not give a lattice tet a solid angle below 0.1 sr. This controls the smallest dihedral angle
-/// of the result: 0.06 sr gives 6 degrees, 0.1 sr gives 11, 0.14 sr gives 13, but more moves are refused.
-/// Stored as the tangent of half the angle, which is what the code compares.
-constexpr double min_tangent = 0.05004170837553879;
-
-/// Distances are compared in steps of this fraction of an edge, because all points along a flat face have
-/// nearly the same distance.
-constexpr double distance_steps = 32;  // a byte holds it
-
-/// Number of points that one thread processes consecutively.
-constexpr std::size_t group_size = 16;
+using Snapping = CutTuning::Snapping;
 
 /// A hash that spreads neighbouring points over the order, so that groups processed concurrently rarely share
 /// points.
@@ -59,7 +44,9 @@ std::vector<std::size_t> scatter_groups(std::vector<Index>& items, Priority&& pr
   };
   std::vector<Group> groups;
   for (std::size_t i = 0, j; i < items.size(); i = j) {
-    for (j = i + 1; j < items.size() && j - i < group_size && priority(items[j]) == priority(items[i]);) ++j;
+    for (j = i + 1;
+         j < items.size() && j - i < Snapping::group_size && priority(items[j]) == priority(items[i]);)
+      ++j;
     groups.push_back({i, j, scattered(items[i])});
   }
   for (std::size_t i = 0, j; i < groups.size(); i = j) {
@@ -94,7 +81,7 @@ struct Candidate {
   double room() const { return edge.cast<double>().norm(); }
   /// Points near junction curves are moved first: once moved onto an interface they could not reach the
   /// curve.
-  int priority() const { return at_junction ? rank : rank + static_cast<int>(distance_steps) + 1; }
+  int priority() const { return at_junction ? rank : rank + static_cast<int>(Snapping::distance_steps) + 1; }
 };
 
 class Mover {
@@ -119,12 +106,10 @@ class Mover {
     counts.pushed = left.size() - attempt(left, one_priority, [&](Index i, FieldSampler& sampler) {
                                     return push_away(candidate(i), sampler);
                                   }).size();
-    // The first sweep improves most stars; later ones improve those whose neighbours had to be moved first.
     std::vector<Candidate>().swap(candidates_);
     std::vector<Index>().swap(by_rank_);
-    constexpr int sweeps = 4;
     std::vector<Index> tets = improve_worst_stars(lattice_.tets.size(), [](std::size_t i) { return i; });
-    for (int sweep = 1; sweep < sweeps && !tets.empty(); ++sweep)
+    for (int sweep = 1; sweep < Snapping::sweeps && !tets.empty(); ++sweep)
       tets = improve_worst_stars(tets.size(), [&](std::size_t i) { return tets[i]; });
     return counts;
   }
@@ -172,10 +157,16 @@ class Mover {
         });
   }
 
+  /// True for points whose region the mesh must keep.
+  bool is_certain(Index p) const {
+    const VoxelVolume* volume = field_.volume();
+    return volume && volume->is_certain(lattice_.positions[p]);
+  }
+
   /// The candidate for a point, or nothing if no cut is too close to it or it must not be moved.
   std::optional<Candidate> as_candidate(Index p, FieldSampler& sampler) const {
     const RegionIndex own = lattice_.first_region[p];
-    if (field_.is_certain(lattice_.positions[p])) return std::nullopt;
+    if (is_certain(p)) return std::nullopt;
     const std::optional<RegionSet> regions = pure_regions(lattice_, p);
     if (!regions) return std::nullopt;
     const unsigned faces = lattice_.box_faces(p);
@@ -187,7 +178,8 @@ class Mover {
         const RegionIndex r = lattice_.first_region[q];
         if (r == own) continue;
         const double share = lattice_.cut_share(p, own, q, r);
-        too_near |= share <= (lattice_.is_centre[p] == lattice_.is_centre[q] ? near_long : near_short);
+        too_near |= share <= (lattice_.is_centre[p] == lattice_.is_centre[q] ? Snapping::near_long
+                                                                             : Snapping::near_short);
         if ((lattice_.box_faces(q) & faces) != faces) continue;  // out of reach
         const double length = share * (lattice_.positions[q] - lattice_.positions[p]).norm();
         if (other == no_index || length < nearest || (length == nearest && q < other)) {
@@ -207,7 +199,7 @@ class Mover {
     if (!sampler.project(*regions, c.projected, held_axes(p)) || (c.projected - from).norm() > c.room())
       c.projected = on_edge(c);
     const double distance = c.at_junction ? (c.projected - from).norm() : lattice_.margin(p);
-    c.rank = static_cast<std::uint8_t>(std::clamp(distance / c.room(), 0.0, 1.0) * distance_steps);
+    c.rank = static_cast<std::uint8_t>(std::clamp(distance / c.room(), 0.0, 1.0) * Snapping::distance_steps);
     return c;
   }
 
@@ -238,13 +230,15 @@ class Mover {
 
   void find_candidates() {
     const std::vector<Index>& near = lattice_.stars.points();
-    candidates_ = parallel_collect<Candidate>(
-        0, near.size(), 1 << 13, [&](std::size_t begin, std::size_t end, std::vector<Candidate>& out) {
-          const std::unique_ptr<FieldSampler> owned = field_.sampler();
-          FieldSampler& sampler = *owned;
-          for (std::size_t i = begin; i < end; ++i)
-            if (const std::optional<Candidate> c = as_candidate(near[i], sampler)) out.push_back(*c);
-        });
+    candidates_ =
+        parallel_collect<Candidate>(0, near.size(), CutGrains::candidates,
+                                    [&](std::size_t begin, std::size_t end, std::vector<Candidate>& out) {
+                                      const std::unique_ptr<FieldSampler> owned = field_.sampler();
+                                      FieldSampler& sampler = *owned;
+                                      for (std::size_t i = begin; i < end; ++i)
+                                        if (const std::optional<Candidate> c = as_candidate(near[i], sampler))
+                                          out.push_back(*c);
+                                    });
     by_rank_.resize(candidates_.size());
     std::iota(by_rank_.begin(), by_rank_.end(), Index{0});
     parallel_sort(by_rank_, [&](Index a, Index b) {
@@ -260,7 +254,8 @@ class Mover {
         const Index v = lattice_.tets[t][k];
         x[k] = v == p ? &place : &lattice_.positions[v];
       }
-      if (!(min_solid_angle_tangent(*x[0], *x[1], *x[2], *x[3]) >= min_tangent)) return false;
+      if (!(min_solid_angle_tangent(*x[0], *x[1], *x[2], *x[3]) >= CutTuning::Shapes::tangent_of_bad_tet))
+        return false;
     }
     return true;
   }
@@ -370,11 +365,12 @@ class Mover {
   template <class TetOf>
   std::vector<Index> improve_worst_stars(std::size_t count, TetOf&& tet) {
     std::vector<Index> points = parallel_collect<Index>(
-        0, count, 1 << 12, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+        0, count, CutGrains::stars, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
           const auto near = [&](Index v) { return lattice_.stars.lists(v); };
           for (std::size_t i = begin; i < end; ++i) {
             const Tet& t = lattice_.tets[tet(i)];
-            if (std::none_of(t.begin(), t.end(), near) || worst_piece_tangent(lattice_, t) >= min_tangent)
+            if (std::none_of(t.begin(), t.end(), near) ||
+                worst_piece_tangent(lattice_, t) >= CutTuning::Shapes::tangent_of_bad_tet)
               continue;
             std::copy_if(t.begin(), t.end(), std::back_inserter(out), near);
           }
@@ -391,13 +387,13 @@ class Mover {
   }
 
   void improve_star(Index p, FieldSampler& sampler) {
-    if (!lattice_.is_on[p] && field_.is_certain(lattice_.positions[p])) return;
+    if (!lattice_.is_on[p] && is_certain(p)) return;
     std::vector<Vec3> places;
     const Vec3 from = lattice_.positions[p], to_middle = without_held(p, middle_of_star(p) - from);
     if (lattice_.is_on[p]) {
       const std::optional<RegionSet> regions = pure_regions(lattice_, p);
       if (!regions) return;
-      for (double share : {0.25, 0.5, 1.0}) {
+      for (double share : Snapping::steps_on_interface) {
         Vec3 place = from + share * to_middle;
         if (sampler.project(*regions, place, held_axes(p))) places.push_back(place);
       }
@@ -405,11 +401,10 @@ class Mover {
       Vec3 gradient;
       const double value = sampler.between(lattice_.first_region[p], other, from, gradient);
       gradient = without_held(p, gradient);
-      // Steps are fractions of the distance, so that the point keeps its side for any cell size.
-      for (double share : {-0.4, -0.2, 0.3, 0.6})
+      for (double share : Snapping::steps_off_interface)
         places.push_back(from + gradient * (share * value /
                                             std::max(tolerance::min_squared_slope, gradient.squaredNorm())));
-      places.push_back(from + 0.5 * to_middle);
+      places.push_back(from + Snapping::step_to_middle * to_middle);
     }
     take_best(p, places, sampler);
   }

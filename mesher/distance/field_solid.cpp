@@ -4,12 +4,12 @@
 #include <algorithm>
 
 #include "common/parallel/parallel_sort.h"
+#include "mesher/tuning/distance_tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-constexpr std::size_t voxel_grain = 2048;
 /// Bits of a coordinate in the number of an edge: a frame has at most 2^18 cells along a side.
 constexpr int coordinate_bits = 19;
 
@@ -81,7 +81,7 @@ Vec3 cut_of(FieldSampler& sampler, const GridFrame& voxels, Edge edge) {
 SolidShape field_solid(const MaterialField& field, const std::vector<MortonKey>& interface_voxels,
                        RegionIndex region) {
   const std::vector<Edge> cuts =
-      parallel_collect<Edge>(0, interface_voxels.size(), voxel_grain,
+      parallel_collect<Edge>(0, interface_voxels.size(), DistanceGrains::marched_voxels,
                              [&](std::size_t begin, std::size_t end, std::vector<Edge>& out) {
                                const std::unique_ptr<FieldSampler> sampler = field.sampler();
                                for (std::size_t i = begin; i < end; ++i) {
@@ -98,12 +98,12 @@ SolidShape field_solid(const MaterialField& field, const std::vector<MortonKey>&
   std::vector<Edge> edges = cuts;
   parallel_sort_unique(edges);
   std::vector<Vec3> points(edges.size());
-  parallel_for(0, edges.size(), voxel_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, edges.size(), DistanceGrains::marched_voxels, [&](std::size_t begin, std::size_t end) {
     const std::unique_ptr<FieldSampler> sampler = field.sampler();
     for (std::size_t i = begin; i < end; ++i) points[i] = cut_of(*sampler, field.voxels(), edges[i]);
   });
   std::vector<Triangle> triangles(cuts.size() / 3);
-  parallel_for(0, triangles.size(), voxel_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, triangles.size(), DistanceGrains::marched_voxels, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
       for (std::size_t k = 0; k < 3; ++k)
         triangles[t][k] =

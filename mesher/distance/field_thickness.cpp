@@ -5,15 +5,12 @@
 #include <cmath>
 
 #include "common/parallel/parallel_sort.h"
+#include "mesher/tuning/distance_tuning.h"
+#include "mesher/tuning/domain_tuning.h"
 
 namespace tetwright {
 
 namespace {
-
-constexpr std::size_t sheet_grain = 512;  // voxels per task, a microsecond or more each
-
-/// A sheet of at least this many cells never tears: wherever it lies, a lattice point is inside.
-constexpr double sheet_cells = 1.5;
 
 /// A cell of 1/2^depth voxels that holds a sheet.
 struct SheetCell {
@@ -24,12 +21,12 @@ struct SheetCell {
   bool operator<(const SheetCell& o) const { return depth != o.depth ? depth < o.depth : key < o.key; }
 };
 
-void descend(FieldSampler& sampler, int depth, const std::array<int, 3>& low, std::vector<SheetCell>& out) {
+void descend(SheetSampler& sampler, int depth, const std::array<int, 3>& low, std::vector<SheetCell>& out) {
   const double side = std::ldexp(1, -depth);
   const Vec3 centre = side * (Vec3(low[0], low[1], low[2]) + Vec3::Constant(0.5));
   const auto sheet = sampler.thinnest_sheet(centre, half_cube_diagonal * side);
-  if (!sheet || sheet->thickness >= sheet_cells * side) return;
-  const bool too_thin = depth == max_refinement || sheet->closed;
+  if (!sheet || sheet->thickness >= DistanceTuning::Sheets::min_cells * side) return;
+  const bool too_thin = depth == DomainTuning::Refinement::max_levels || sheet->closed;
   out.push_back({depth, morton_encode(low), sheet->region, too_thin});
   if (too_thin) return;
   for (int k = 0; k < 8; ++k)
@@ -55,14 +52,13 @@ Vec3 place_of(const SheetCell& c) {
 
 ThinSheets find_thin_sheets(const MaterialField& field, const std::vector<MortonKey>& interface_voxels) {
   ThinSheets sheets;
-  if (!field.knows_sheets()) return sheets;
+  if (!field.sampler()->sheets()) return sheets;
   std::vector<SheetCell> found =
-      parallel_collect<SheetCell>(0, interface_voxels.size(), sheet_grain,
+      parallel_collect<SheetCell>(0, interface_voxels.size(), DistanceGrains::sampled_voxels,
                                   [&](std::size_t begin, std::size_t end, std::vector<SheetCell>& out) {
-                                    const std::unique_ptr<FieldSampler> owned = field.sampler();
-                                    FieldSampler& sampler = *owned;
+                                    const std::unique_ptr<FieldSampler> sampler = field.sampler();
                                     for (std::size_t i = begin; i < end; ++i)
-                                      descend(sampler, 0, morton_decode(interface_voxels[i]), out);
+                                      descend(*sampler->sheets(), 0, morton_decode(interface_voxels[i]), out);
                                   });
   parallel_sort(found);
   for (const SheetCell& c : found)
@@ -79,17 +75,12 @@ ThinSheets find_thin_sheets(const MaterialField& field, const std::vector<Morton
 
 std::vector<ThinPart> find_thin_parts(const MaterialField& field,
                                       const std::vector<MortonKey>& interface_voxels) {
-  // A region is identified next to an interface and must extend this far from it, voxels.
-  constexpr double thick_enough = 2, next_to_it = 0.25;
-  // Maximum cosine between the normals of two interfaces that face each other. Others form a wedge, which is
-  // thin at its edge in cells of any size.
-  constexpr double facing = -0.5;
   struct Found {
     MortonKey voxel;
     RegionIndex region;
   };
   const std::vector<Found> found = parallel_collect<Found>(
-      0, interface_voxels.size(), sheet_grain,
+      0, interface_voxels.size(), DistanceGrains::sampled_voxels,
       [&](std::size_t begin, std::size_t end, std::vector<Found>& out) {
         const std::unique_ptr<FieldSampler> owned = field.sampler();
         FieldSampler& sampler = *owned;
@@ -104,14 +95,17 @@ std::vector<ThinPart> find_thin_parts(const MaterialField& field,
           if (!(normal.norm() > 0)) continue;
           normal.normalize();
           for (double side : {-1.0, 1.0}) {
-            const RegionIndex near = sampler.nearest(place + side * next_to_it * normal).region;
-            const Vec3 across = place + side * thick_enough * normal;
+            const RegionIndex near =
+                sampler.nearest(place + side * DistanceTuning::ThinParts::identified_at * normal).region;
+            const Vec3 across = place + side * DistanceTuning::ThinParts::thick_at * normal;
             const RegionIndex far = sampler.nearest(across).region;
             if (far == near) continue;
             Vec3 slope;  // grows out of the region
             sampler.between(near, far, across, slope);
-            if (!(side * slope.dot(normal) > -facing * slope.norm())) continue;
-            const auto sheet = sampler.thinnest_sheet(place, next_to_it);
+            if (!(side * slope.dot(normal) > -DistanceTuning::ThinParts::max_cosine * slope.norm())) continue;
+            const auto sheet = sampler.sheets() ? sampler.sheets()->thinnest_sheet(
+                                                      place, DistanceTuning::ThinParts::identified_at)
+                                                : std::nullopt;
             if (!sheet || sheet->region != near) out.push_back({interface_voxels[i], near});
           }
         }

@@ -7,6 +7,7 @@
 #include "common/geometry/ray_crossing.h"
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
+#include "mesher/tuning/distance_tuning.h"
 
 namespace tetwright {
 
@@ -66,9 +67,9 @@ int first_node_above(const std::array<Vec3, 3>& p, int crossing, int x, int y) {
 GridWinding::GridWinding(std::span<const Vec3> points, std::span<const Triangle> triangles,
                          const std::array<int, 3>& cells)
     : nodes_x_(cells[0] + 1), nodes_y_(cells[1] + 1) {
-  constexpr std::size_t grain = 4096;
   std::vector<RowCrossing> found = parallel_collect<RowCrossing>(
-      0, triangles.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<RowCrossing>& out) {
+      0, triangles.size(), DistanceGrains::elements,
+      [&](std::size_t begin, std::size_t end, std::vector<RowCrossing>& out) {
         for (std::size_t t = begin; t < end; ++t) {
           const std::array<Vec3, 3> p{points[triangles[t][0]], points[triangles[t][1]],
                                       points[triangles[t][2]]};
@@ -99,7 +100,7 @@ GridWinding::GridWinding(std::span<const Vec3> points, std::span<const Triangle>
   crossings_.resize(found.size());
   std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
   for (const RowCrossing& c : found) crossings_[next[c.row]++] = {c.first, c.step};
-  parallel_for(0, rows, grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, rows, DistanceGrains::elements, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
       const std::span<Crossing> row{crossings_.data() + starts_[r], crossings_.data() + starts_[r + 1]};
       std::sort(row.begin(), row.end(),

@@ -8,14 +8,13 @@
 #include <unordered_set>
 
 #include "common/parallel/parallel_sort.h"
+#include "mesher/tuning/distance_tuning.h"
 
 namespace tetwright {
 
 namespace {
 
 using GridPoint = std::array<int, 3>;
-
-constexpr std::size_t cap_grain = 256;
 
 GridPoint point_of(MortonKey key) {
   const auto p = morton_decode(key);
@@ -77,17 +76,18 @@ class CapFinder {
   }
 
   void read_corners(const std::vector<MortonKey>& cells) {
-    auto corners = parallel_collect<MortonKey>(
-        0, cells.size(), cap_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
-          for (std::size_t i = begin; i < end; ++i)
-            for (int k = 0; k < 8; ++k) {
-              const MortonKey key = corner_key(point_of(cells[i]), k);
-              if (!readings_.contains(key)) out.push_back(key);
-            }
-        });
+    auto corners =
+        parallel_collect<MortonKey>(0, cells.size(), DistanceGrains::cap_cells,
+                                    [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+                                      for (std::size_t i = begin; i < end; ++i)
+                                        for (int k = 0; k < 8; ++k) {
+                                          const MortonKey key = corner_key(point_of(cells[i]), k);
+                                          if (!readings_.contains(key)) out.push_back(key);
+                                        }
+                                    });
     parallel_sort_unique(corners);
     std::vector<GridReading> readings(corners.size());
-    parallel_for(0, corners.size(), cap_grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(0, corners.size(), DistanceGrains::cap_cells, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const GridPoint p = point_of(corners[i]);
         readings[i] = read_(p[0], p[1], p[2]);
@@ -103,7 +103,7 @@ class CapFinder {
   }
 
   std::vector<GridEdge> cap_edges(const std::vector<MortonKey>& cells) const {
-    return parallel_collect<GridEdge>(0, cells.size(), cap_grain,
+    return parallel_collect<GridEdge>(0, cells.size(), DistanceGrains::cap_cells,
                                       [&](std::size_t begin, std::size_t end, std::vector<GridEdge>& out) {
                                         for (std::size_t i = begin; i < end; ++i) {
                                           const std::array<GridReading, 8> corners = corners_of(cells[i]);
@@ -118,11 +118,10 @@ class CapFinder {
   /// The crossing of the edge from a to b, as a fraction of it; kept away from both ends, so that no cap
   /// triangle has zero area.
   static double crossing(const GridReading& a, const GridReading& b) {
-    constexpr double margin = 0.02;
     const double share = needs_cap(a.distance, b.distance)
-                             ? (inside_winding - a.winding) / (b.winding - a.winding)
+                             ? (DistanceTuning::Caps::inside_winding - a.winding) / (b.winding - a.winding)
                              : std::abs(a.distance) / (std::abs(a.distance) + std::abs(b.distance));
-    return std::clamp(share, margin, 1 - margin);
+    return std::clamp(share, DistanceTuning::Caps::min_share, 1 - DistanceTuning::Caps::min_share);
   }
 
   Vec3 net_point(MortonKey cell) const {
@@ -146,11 +145,11 @@ class CapFinder {
     parallel_sort(cells);
     TriangleMesh caps;
     caps.points.resize(cells.size());
-    parallel_for(0, cells.size(), cap_grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(0, cells.size(), DistanceGrains::cap_cells, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) caps.points[i] = net_point(cells[i]);
     });
     caps.triangles.resize(2 * edges_.size());
-    parallel_for(0, edges_.size(), cap_grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(0, edges_.size(), DistanceGrains::cap_cells, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         std::array<Index, 4> q;
         const auto around = cells_around(edges_[i]);

@@ -9,12 +9,9 @@
 #include "common/geometry/morton.h"
 #include "common/progress.h"
 #include "common/triangle_mesh.h"
+#include "mesher/tuning/distance_tuning.h"
 
 namespace tetwright {
-
-/// Points of at least this generalised winding number are inside: one half plus more than the rounding error,
-/// so that the back of a flat sheet is consistently outside.
-inline constexpr double inside_winding = 0.5001;
 
 /// Distance and winding number at a grid point.
 struct GridReading {
@@ -32,8 +29,8 @@ struct GridEdge {
 /// True if exactly one end of a grid edge is inside although no surface crosses the edge. Where a surface
 /// crosses it, the distances at both ends add up to at most one voxel.
 inline bool needs_cap(double distance, double next_distance) {
-  constexpr double slack = 0.02;  // error of the distances near the surface
-  return (distance < 0) != (next_distance < 0) && std::abs(distance) + std::abs(next_distance) > 1 + slack;
+  return (distance < 0) != (next_distance < 0) &&
+         std::abs(distance) + std::abs(next_distance) > 1 + DistanceTuning::Caps::distance_error;
 }
 
 /// Caps the holes of a surface: where the winding number passes inside_winding without a surface. Starts from

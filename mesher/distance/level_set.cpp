@@ -7,6 +7,7 @@
 
 #include "common/parallel/parallel_sort.h"
 #include "mesher/distance/level_set_signs.h"
+#include "mesher/tuning/distance_tuning.h"
 
 namespace tetwright {
 
@@ -18,7 +19,7 @@ LevelSet::LevelSet(DistanceGrid grid, TriangleMesh caps, const std::array<int, 3
 std::shared_ptr<const LevelSet> LevelSet::of_surface(const RepairedSurface& surface, const GridFrame& frame,
                                                      Progress* progress) {
   std::vector<Vec3> points(surface.points.size());
-  parallel_for(0, points.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, points.size(), DistanceGrains::elements, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) points[i] = frame.to_grid(surface.points[i]);
   });
   const NodeWinding winding(points, surface.triangles, surface.closed, frame.cells);
@@ -41,7 +42,8 @@ std::shared_ptr<const LevelSet> LevelSet::with_walls(const LevelSet& level_set,
     bool operator<(const Corner& o) const { return point != o.point ? point < o.point : depth > o.depth; }
   };
   std::vector<Corner> corners = parallel_collect<Corner>(
-      0, voxels.size(), 512, [&](std::size_t begin, std::size_t end, std::vector<Corner>& out) {
+      0, voxels.size(), DistanceGrains::sampled_voxels,
+      [&](std::size_t begin, std::size_t end, std::vector<Corner>& out) {
         for (std::size_t i = begin; i < end; ++i) {
           const std::array<int, 3> v = morton_decode(voxels[i]);
           const int depth = walls->depth(v);
@@ -54,7 +56,7 @@ std::shared_ptr<const LevelSet> LevelSet::with_walls(const LevelSet& level_set,
                             [](const Corner& a, const Corner& b) { return a.point == b.point; }),
                 corners.end());
   std::vector<float> values(corners.size());
-  parallel_for(0, corners.size(), 64, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, corners.size(), DistanceGrains::leaves, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto [x, y, z] = morton_decode(corners[i].point);
       Vec3 unused;
@@ -83,7 +85,8 @@ std::vector<MortonKey> LevelSet::interface_cells() const {
   const std::vector<GridLeaf<const float>> leaves = grid_->leaves();
   constexpr int n = leaf_side + 1;
   std::vector<MortonKey> keys = parallel_collect<MortonKey>(
-      0, leaves.size(), 64, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+      0, leaves.size(), DistanceGrains::leaves,
+      [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
         DistanceGridReader reader(*grid_);
         for (std::size_t i = begin; i < end; ++i) {
           const auto& [ox, oy, oz] = leaves[i].origin;

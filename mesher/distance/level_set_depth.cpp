@@ -6,6 +6,7 @@
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
 #include "mesher/distance/level_set.h"
+#include "mesher/tuning/distance_tuning.h"
 
 namespace tetwright {
 
@@ -36,12 +37,13 @@ class DepthFinder {
     std::vector<GridBox> found{all};
     while (!found.empty() && found.front().side > side) {
       if (progress) progress->throw_if_stopped();
-      found = parallel_collect<GridBox>(
-          0, found.size(), 64, [&](std::size_t begin, std::size_t end, std::vector<GridBox>& out) {
-            LevelSetSampler sampler(boundary_);
-            for (std::size_t i = begin; i < end; ++i)
-              for_each_part(found[i], sampler, [&](const GridBox& b) { out.push_back(b); });
-          });
+      found = parallel_collect<GridBox>(0, found.size(), DistanceGrains::depth_boxes,
+                                        [&](std::size_t begin, std::size_t end, std::vector<GridBox>& out) {
+                                          LevelSetSampler sampler(boundary_);
+                                          for (std::size_t i = begin; i < end; ++i)
+                                            for_each_part(found[i], sampler,
+                                                          [&](const GridBox& b) { out.push_back(b); });
+                                        });
     }
     return found;
   }
@@ -107,7 +109,7 @@ std::shared_ptr<const LevelSet> LevelSet::at_depth(const RepairedSurface& surfac
   std::vector<GridLeaf<float>> leaves;
   leaves.reserve(boxes.size());
   for (const GridBox& box : boxes) leaves.push_back(grid.touch_leaf(box.lowest));
-  parallel_for(0, boxes.size(), 16, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, boxes.size(), DistanceGrains::depth_leaves, [&](std::size_t begin, std::size_t end) {
     if (progress) progress->throw_if_stopped();
     LevelSetSampler sampler(boundary);
     for (std::size_t i = begin; i < end; ++i) finder.fill(boxes[i], sampler, leaves[i]);

@@ -5,20 +5,13 @@
 #include <cmath>
 
 #include "common/parallel/parallel_sort.h"
+#include "mesher/tuning/distance_tuning.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Surfaces of two bodies that face each other (cosine between their normals below the second number) and are
-/// closer than the first number (voxels) count as one. Common faces of bodies are known to a few hundredths
-/// of a voxel, near sharp edges to a few tenths, and slivers of another region between them would be noise.
-constexpr double contact = 0.4, contact_facing = -0.7;
-/// Cosine between the normals of two surfaces below which the region between them is a sheet. Otherwise it is
-/// a wedge, which is thin at its edge for any cell size.
-constexpr double sheet_facing = -0.95;
-/// Thinner sheets (voxels) are gaps between two faces meant to coincide.
-constexpr double noticed = 0.1;
+using Sheets = DistanceTuning::Sheets;
 
 std::vector<FieldRegion> names_of(const std::vector<LevelSetRegion>& regions) {
   std::vector<FieldRegion> out;
@@ -35,7 +28,7 @@ std::array<int, 3> voxel_of(const Vec3& point) {
 
 }  // namespace
 
-class LevelSetField::Sampler final : public FieldSampler {
+class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
  public:
   explicit Sampler(const LevelSetField& f)
       : FieldSampler(std::ldexp(1, f.refinement())),
@@ -66,9 +59,10 @@ class LevelSetField::Sampler final : public FieldSampler {
     for (RegionIndex r : regions) *out++ = static_cast<float>(value(r));
   }
   std::optional<RegionSet> two_nearest(const Vec3& point) override;
-  std::optional<Sheet> thinnest_sheet(const Vec3& point, double reach) override;
+  SheetSampler* sheets() override { return distances.size() > 1 ? this : nullptr; }
 
  private:
+  std::optional<FieldSheet> thinnest_sheet(const Vec3& point, double reach) override;
   void values_and_gradients(const Vec3& point, std::span<const RegionIndex> regions, double* out,
                             Vec3* slopes) override {
     read_gradients(point);
@@ -131,7 +125,7 @@ class LevelSetField::Sampler final : public FieldSampler {
       const Carving& carving = carved[carved.size() - (terms.size() - own)];
       if (!largest || carving.value > best) best = carving.value, largest = carving.term;
     }
-    const double thinnest = contact * per_voxel;
+    const double thinnest = Sheets::contact * per_voxel;
     if (terms.size() < 2 || best < -thinnest || best > thinnest) return best;
     return best + sliver_excess(terms, best);
   }
@@ -139,7 +133,7 @@ class LevelSetField::Sampler final : public FieldSampler {
   /// thickness of the region between them; 0 where the region is not a sliver.
   /// \param best the largest term
   double sliver_excess(const std::vector<RegionTerm>& terms, double best) {
-    const double thinnest = contact * per_voxel;
+    const double thinnest = Sheets::contact * per_voxel;
     // The terms of a sliver add up to more than -thinnest, so none is below this. The factor allows for
     // rounding.
     const double smallest = -1.001 * (thinnest + std::abs(best));
@@ -150,7 +144,7 @@ class LevelSetField::Sampler final : public FieldSampler {
     for (std::size_t i = 0; i < candidates.size(); ++i)
       for (std::size_t k = i + 1; k < candidates.size(); ++k)
         if (const RegionTerm& a = *candidates[i], &b = *candidates[k];
-            in_contact(a, b) && cosine(a, b) < contact_facing)
+            in_contact(a, b) && cosine(a, b) < Sheets::contact_cosine)
           more = std::max(more, thinnest - sheet(a, b));
     return more;
   }
@@ -158,7 +152,7 @@ class LevelSetField::Sampler final : public FieldSampler {
   /// constant.
   double sheet(const RegionTerm& a, const RegionTerm& b) const { return -signed_term(a) - signed_term(b); }
   bool in_contact(const RegionTerm& a, const RegionTerm& b) const {
-    return a.body != b.body && sheet(a, b) < contact * per_voxel;
+    return a.body != b.body && sheet(a, b) < Sheets::contact * per_voxel;
   }
   /// Cosine of the angle between the gradients of two terms.
   double cosine(const RegionTerm& a, const RegionTerm& b) {
@@ -231,14 +225,19 @@ std::shared_ptr<const MaterialField> LevelSetField::refined(int refinement) cons
   return std::make_shared<LevelSetField>(voxels(), level_sets_, level_set_regions_, refinement);
 }
 
+const WallChanges* LevelSetField::wall_changes() const {
+  const bool any = std::any_of(level_sets_.begin(), level_sets_.end(),
+                               [](const auto& level_set) { return level_set->walls() != nullptr; });
+  return any ? this : nullptr;
+}
+
 std::shared_ptr<const MaterialField> LevelSetField::with_true_walls() const {
   std::vector<std::shared_ptr<const LevelSet>> as_is;
   for (const auto& level_set : level_sets_) as_is.push_back(LevelSet::with_true_walls(level_set));
-  if (as_is == level_sets_) return nullptr;
   return std::make_shared<LevelSetField>(voxels(), std::move(as_is), level_set_regions_, refinement());
 }
 
-bool LevelSetField::changes_walls(const Vec3& point) const {
+bool LevelSetField::contains(const Vec3& point) const {
   const Vec3 at = std::ldexp(1, -refinement()) * point;
   return std::any_of(level_sets_.begin(), level_sets_.end(), [&](const auto& level_set) {
     return level_set->walls() && level_set->walls()->depth(voxel_of(at)) >= 0;
@@ -274,9 +273,9 @@ std::vector<MortonKey> LevelSetField::interface_voxels() const {
   if (level_sets_.size() == 1) return keys;
   parallel_sort_unique(keys);
   // Where a later material covers an earlier one's surface there is no interface.
-  constexpr std::size_t grain = 1024;
   return parallel_collect<MortonKey>(
-      0, keys.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+      0, keys.size(), DistanceGrains::cells_of_regions,
+      [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
         Sampler sampler(*this);
         const double voxel = std::ldexp(1, refinement());
         for (std::size_t i = begin; i < end; ++i) {
@@ -315,18 +314,20 @@ std::optional<RegionSet> LevelSetField::Sampler::two_nearest(const Vec3& point) 
   return both;
 }
 
-std::optional<FieldSampler::Sheet> LevelSetField::Sampler::thinnest_sheet(const Vec3& point, double reach) {
+std::optional<FieldSheet> LevelSetField::Sampler::thinnest_sheet(const Vec3& point, double reach) {
   read_gradients(point);
-  std::optional<Sheet> thinnest;
+  std::optional<FieldSheet> thinnest;
   for (std::size_t r = 1; r < field.regions().size(); ++r) {
     const auto& terms = field.terms(static_cast<RegionIndex>(r));
     if (terms.size() < 2 || value(static_cast<RegionIndex>(r)) > reach) continue;
     for (std::size_t i = 0; i < terms.size(); ++i)
       for (std::size_t k = i + 1; k < terms.size(); ++k) {
         const double thickness = sheet(terms[i], terms[k]);
-        if (!(thickness > noticed * per_voxel) || cosine(terms[i], terms[k]) > sheet_facing) continue;
+        if (!(thickness > Sheets::min_thickness * per_voxel) ||
+            cosine(terms[i], terms[k]) > Sheets::max_cosine)
+          continue;
         if (!thinnest || thickness < thinnest->thickness)
-          thinnest = Sheet{static_cast<RegionIndex>(r), thickness, in_contact(terms[i], terms[k])};
+          thinnest = FieldSheet{static_cast<RegionIndex>(r), thickness, in_contact(terms[i], terms[k])};
       }
   }
   return thinnest;

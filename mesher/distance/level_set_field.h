@@ -26,7 +26,7 @@ struct LevelSetRegion {
 };
 
 /// The field of surfaces: level sets on voxels, and regions as combinations of them.
-class LevelSetField final : public MaterialField {
+class LevelSetField final : public MaterialField, private WallChanges {
  public:
   /// \param voxels frame of the level sets
   /// \param regions the first is the outside
@@ -38,11 +38,7 @@ class LevelSetField final : public MaterialField {
   std::shared_ptr<const MaterialField> refined(int refinement) const override;
   std::vector<MortonKey> interface_voxels() const override;
   std::vector<LeafOrigin> band_leaves(RegionIndex region) const override;
-  bool knows_sheets() const override { return level_sets_.size() > 1; }
-  bool is_certain(const Vec3&) const override { return false; }
-  std::shared_ptr<const MaterialField> with_true_walls() const override;
-  bool changes_walls(const Vec3& point) const override;
-  double parallel_thickness(const Vec3& point) const override;
+  const WallChanges* wall_changes() const override;
 
   const std::vector<std::shared_ptr<const LevelSet>>& level_sets() const { return level_sets_; }
   const std::vector<RegionTerm>& terms(RegionIndex region) const { return level_set_regions_[region].terms; }
@@ -52,6 +48,10 @@ class LevelSetField final : public MaterialField {
 
  private:
   class Sampler;
+
+  std::shared_ptr<const MaterialField> with_true_walls() const override;
+  bool contains(const Vec3& point) const override;
+  double parallel_thickness(const Vec3& point) const override;
 
   std::vector<std::shared_ptr<const LevelSet>> level_sets_;
   std::vector<LevelSetRegion> level_set_regions_;

@@ -7,13 +7,11 @@
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
 #include "mesher/distance/hole_caps.h"
+#include "mesher/tuning/distance_tuning.h"
 
 namespace tetwright {
 
 namespace {
-
-/// Leaves per task.
-constexpr std::size_t band_grain = 16;
 
 float signed_value(float distance, bool inside) {
   const float size = std::clamp(distance, static_cast<float>(tolerance::smallest_distance),
@@ -37,7 +35,7 @@ void sign_by_rows(const GridLeaf<float>& leaf, const GridWinding& winding) {
 }
 
 bool is_inside(const NodeWinding& winding, const std::array<int, 3>& p) {
-  return winding.at(p[0], p[1], p[2]) >= inside_winding;
+  return winding.at(p[0], p[1], p[2]) >= DistanceTuning::Caps::inside_winding;
 }
 
 void sign_by_points(const GridLeaf<float>& leaf, const NodeWinding& winding) {
@@ -47,7 +45,7 @@ void sign_by_points(const GridLeaf<float>& leaf, const NodeWinding& winding) {
 
 std::vector<GridEdge> edges_to_cap(const DistanceGrid& grid) {
   const std::vector<GridLeaf<const float>> leaves = grid.leaves();
-  return parallel_collect<GridEdge>(0, leaves.size(), band_grain,
+  return parallel_collect<GridEdge>(0, leaves.size(), DistanceGrains::band_leaves,
                                     [&](std::size_t begin, std::size_t end, std::vector<GridEdge>& out) {
                                       DistanceGridReader reader(grid);
                                       for (std::size_t i = begin; i < end; ++i)
@@ -73,7 +71,7 @@ void add_caps(DistanceGrid& grid, const TriangleMesh& caps, const NodeWinding& w
   std::vector<GridLeaf<float>> targets;
   targets.reserve(sources.size());
   for (const GridLeaf<const float>& source : sources) targets.push_back(grid.touch_leaf(source.origin));
-  parallel_for(0, sources.size(), band_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, sources.size(), DistanceGrains::band_leaves, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       for (int k = 0; k < leaf_points; ++k) {
         if (!sources[i].active(k)) continue;
@@ -109,13 +107,13 @@ double NodeWinding::at(int x, int y, int z) const {
   bool in_box = true;
   for (int a = 0; a < 3; ++a) in_box &= p[a] >= low_[a] && p[a] <= high_[a];
   constexpr double outside = 0.5;  // by the smallest margin
-  static_assert(outside < inside_winding);
+  static_assert(outside < DistanceTuning::Caps::inside_winding);
   return in_box ? winding : std::min(winding, outside);
 }
 
 TriangleMesh sign_band(DistanceGrid& grid, const NodeWinding& winding, Progress* progress) {
   const std::vector<GridLeaf<float>> leaves = grid.leaves();
-  parallel_for(0, leaves.size(), band_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, leaves.size(), DistanceGrains::band_leaves, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       if (winding.whole_numbers())
         sign_by_rows(leaves[i], winding.closed());
@@ -127,13 +125,10 @@ TriangleMesh sign_band(DistanceGrid& grid, const NodeWinding& winding, Progress*
 
   const auto read = [&](int x, int y, int z) {
     const double w = winding.at(x, y, z);
-    const float far = w >= inside_winding ? -level_set_band : level_set_band;
+    const float far = w >= DistanceTuning::Caps::inside_winding ? -level_set_band : level_set_band;
     return GridReading{grid.active_or(x, y, z, far), w};
   };
-  // Each cap is followed to its end. Later rounds cap only where the band of a cap extends into another
-  // inside.
-  constexpr int rounds = 4;
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < DistanceTuning::Caps::rounds; ++round) {
     if (progress) progress->throw_if_stopped();
     const std::vector<GridEdge> edges = edges_to_cap(grid);
     if (edges.empty()) break;

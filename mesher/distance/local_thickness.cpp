@@ -7,33 +7,18 @@
 
 #include "common/mesh/disjoint_sets.h"
 #include "common/parallel/parallel_sort.h"
+#include "mesher/tuning/distance_tuning.h"
 
 namespace tetwright {
 
 namespace {
 
+using Walls = DistanceTuning::Walls;
+using WallCells = DistanceTuning::WallCells;
+
 using Side = SurfaceDistance::Side;
 using Voxel = std::array<int, 3>;
 
-constexpr std::size_t measuring_grain = 256;
-
-/// Distances come from the triangles where a wall or gap is thinner than this, voxels: interpolation between
-/// grid points is accurate only if each wall has two voxels of its own, in any direction.
-constexpr double exact_below = 2.5;
-/// Tolerance, voxels, within which distances on voxels must be as expected to rule out thin walls.
-constexpr double trusted = 0.3;
-
-/// Depth to which cells are counted before any decision; deeper ones are extrapolated.
-constexpr int counted_depth = 3;
-/// A region with fewer thin voxels, or fewer cells of counted_depth too thin for it, is a fold or a particle
-/// smaller than a cell, and is not refined (further) for that.
-constexpr std::size_t min_thin_voxels = 4, min_deep_cells = 64;
-/// Dense tets for each finest cell that holds a surface (1.7 cells for each squared cell of area): a wall has
-/// such cells on both sides and little else, a gap has a thick part on both sides.
-constexpr double tets_per_wall_cell = 8, tets_per_gap_cell = 17;
-/// Tets that fill a wall, for each squared thickness of its area: a plate of 100 x 100 x 1 simplified to
-/// 7,000 tets has 0.5 % of them under 0.1 sr, to 8,000 none (areas come out 15 % too large here).
-constexpr double filling_tets_per_area = 0.66;
 /// Cells whose middle is within half a diagonal of a plane, for each squared cell of the plane.
 constexpr double cells_per_area = 2 * half_cube_diagonal;
 
@@ -43,7 +28,8 @@ std::array<int, 3> sum(const Voxel& a, int dx, int dy, int dz) { return {a[0] + 
 std::vector<MortonKey> surface_voxels(const LevelSet& level_set) {
   const std::vector<GridLeaf<const float>> leaves = level_set.grid().leaves();
   std::vector<MortonKey> keys = parallel_collect<MortonKey>(
-      0, leaves.size(), 16, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+      0, leaves.size(), DistanceGrains::band_leaves,
+      [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
         DistanceGridReader reader(level_set.grid());
         for (std::size_t i = begin; i < end; ++i)
           for (int k = 0; k < leaf_points; ++k) {
@@ -66,12 +52,12 @@ bool may_be_thin(LevelSetSampler& sampler, const Vec3& middle, double limit) {
   Vec3 slope;
   const double value = sampler.at(middle, slope);
   const double length = slope.norm();
-  if (std::abs(value) > half_cube_diagonal + trusted) return std::abs(length - 1) > trusted;
-  if (std::abs(length - 1) > trusted) return true;
+  if (std::abs(value) > half_cube_diagonal + Walls::trusted) return std::abs(length - 1) > Walls::trusted;
+  if (std::abs(length - 1) > Walls::trusted) return true;
   const Vec3 normal = slope / length, place = middle - value * normal;
   const double radius = 0.5 * limit;
-  return sampler.at(place + radius * normal) < radius - trusted ||
-         sampler.at(place - radius * normal) > trusted - radius;
+  return sampler.at(place + radius * normal) < radius - Walls::trusted ||
+         sampler.at(place - radius * normal) > Walls::trusted - radius;
 }
 
 Vec3 middle_of(const Voxel& cell, int depth) {
@@ -123,8 +109,8 @@ CellWalls measure(const SurfaceDistance& surface, const Voxel& cell, int depth, 
 template <class Visit>
 void descend(const SurfaceDistance& surface, const Voxel& cell, int depth, int max_depth,
              const Visit& visit) {
-  const double side = std::ldexp(1, -depth), enough = min_shown_cells * side;
-  const CellWalls walls = measure(surface, cell, depth, facing_to_refine, {enough, enough});
+  const double side = std::ldexp(1, -depth), enough = Walls::min_shown_cells * side;
+  const CellWalls walls = measure(surface, cell, depth, Walls::facing_to_refine, {enough, enough});
   if (!walls.near) return;
   const bool thin = walls.thin;
   visit(cell, depth, walls, thin);
@@ -136,7 +122,7 @@ void descend(const SurfaceDistance& surface, const Voxel& cell, int depth, int m
 std::vector<MortonKey> dilated(std::vector<MortonKey> voxels, int times, const std::array<int, 3>& cells) {
   for (int i = 0; i < times; ++i) {
     voxels =
-        parallel_collect<MortonKey>(0, voxels.size(), measuring_grain,
+        parallel_collect<MortonKey>(0, voxels.size(), DistanceGrains::measured_voxels,
                                     [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
                                       for (std::size_t v = begin; v < end; ++v) {
                                         const Voxel at = morton_decode(voxels[v]);
@@ -173,7 +159,7 @@ void find_regions(LocalThickness& measured) {
     bool operator<(const Claim& o) const { return voxel != o.voxel ? voxel < o.voxel : owner < o.owner; }
   };
   std::vector<Claim> claims =
-      parallel_collect<Claim>(0, measured.voxels.size(), measuring_grain,
+      parallel_collect<Claim>(0, measured.voxels.size(), DistanceGrains::measured_voxels,
                               [&](std::size_t begin, std::size_t end, std::vector<Claim>& out) {
                                 for (std::size_t v = begin; v < end; ++v)
                                   for (const MortonKey key : dilated({measured.voxels[v]}, 1, measured.cells))
@@ -202,21 +188,21 @@ void count_cells(LocalThickness& measured) {
     bool gap;
   };
   const std::vector<Cell> cells = parallel_collect<Cell>(
-      0, measured.voxels.size(), measuring_grain,
+      0, measured.voxels.size(), DistanceGrains::measured_voxels,
       [&](std::size_t begin, std::size_t end, std::vector<Cell>& out) {
         for (std::size_t v = begin; v < end; ++v)
-          descend(*measured.surface, morton_decode(measured.voxels[v]), 0, counted_depth,
+          descend(*measured.surface, morton_decode(measured.voxels[v]), 0, WallCells::counted_depth,
                   [&](const Voxel& cell, int depth, const CellWalls& walls, bool thin) {
                     int needed = depth + thin;
-                    if (thin && depth == counted_depth) {
+                    if (thin && depth == WallCells::counted_depth) {
                       // Tips of wedges are thin in cells of any size: only parallel walls go deeper.
                       const double side = std::ldexp(1, -depth);
                       const CellWalls parallel =
-                          measure_nearest(*measured.surface, cell, depth, facing_to_report,
-                                          {min_shown_cells * side, min_shown_cells * side});
+                          measure_nearest(*measured.surface, cell, depth, Walls::facing_to_report,
+                                          {Walls::min_shown_cells * side, Walls::min_shown_cells * side});
                       if (parallel.thin)
                         while (needed < max_wall_refinement &&
-                               parallel.thickness < std::ldexp(min_shown_cells, -needed))
+                               parallel.thickness < std::ldexp(Walls::min_shown_cells, -needed))
                           ++needed;
                       else
                         needed = depth;
@@ -231,7 +217,8 @@ void count_cells(LocalThickness& measured) {
   const auto worth = [&](const Cell& c) {
     int needed = c.needed;
     const auto& of_region = asking[c.region];
-    while (needed > 0 && of_region[needed] < (needed > counted_depth ? min_deep_cells : min_thin_voxels))
+    while (needed > 0 && of_region[needed] < (needed > WallCells::counted_depth ? WallCells::min_deep_cells
+                                                                                : WallCells::min_thin_voxels))
       --needed;
     return needed;
   };
@@ -239,10 +226,10 @@ void count_cells(LocalThickness& measured) {
     c.needed = worth(c);
     if (c.depth > c.needed) continue;  // below a cell that is not split
     LocalThickness::Region& region = measured.regions[c.region];
-    const double tets = c.gap ? tets_per_gap_cell : tets_per_wall_cell;
+    const double tets = c.gap ? WallCells::tets_per_gap_cell : WallCells::tets_per_wall_cell;
     region.needed = std::max(region.needed, c.needed);
     for (int d = c.depth; d <= max_wall_refinement; ++d) {
-      const bool counted_below = c.depth < counted_depth && c.needed > c.depth && d > c.depth;
+      const bool counted_below = c.depth < WallCells::counted_depth && c.needed > c.depth && d > c.depth;
       if (!counted_below)
         region.tets[d] += tets * std::ldexp(1, 2 * (std::min(d, std::max(c.needed, c.depth)) - c.depth));
     }
@@ -257,10 +244,12 @@ LocalThickness measure_local_thickness(const RepairedSurface& surface, const Lev
   LocalThickness measured;
   measured.limits = limits;
   measured.cells = frame.cells;
-  const SideLimits exact{std::max(exact_below, limits.min_thickness), std::max(exact_below, limits.min_gap)};
+  const SideLimits exact{std::max(Walls::exact_below, limits.min_thickness),
+                         std::max(Walls::exact_below, limits.min_gap)};
   const std::vector<MortonKey> all = surface_voxels(level_set);
   const std::vector<MortonKey> suspects = parallel_collect<MortonKey>(
-      0, all.size(), measuring_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+      0, all.size(), DistanceGrains::measured_voxels,
+      [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
         LevelSetSampler sampler(level_set);
         for (std::size_t i = begin; i < end; ++i)
           if (may_be_thin(sampler, middle_of(morton_decode(all[i]), 0), std::max(exact.wall, exact.gap)))
@@ -271,16 +260,16 @@ LocalThickness measure_local_thickness(const RepairedSurface& surface, const Lev
   if (suspects.empty() && measured.exact.empty()) return measured;
 
   std::vector<Vec3> points(surface.points.size());
-  parallel_for(0, points.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, points.size(), DistanceGrains::elements, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) points[i] = frame.to_grid(surface.points[i]);
   });
   measured.surface = std::make_shared<const SurfaceDistance>(points, surface.triangles, surface.closed,
                                                              level_set.caps(), surface.intersects_itself);
   measured.voxels = parallel_collect<MortonKey>(
-      0, suspects.size(), measuring_grain,
+      0, suspects.size(), DistanceGrains::measured_voxels,
       [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
         for (std::size_t i = begin; i < end; ++i) {
-          if (measure(*measured.surface, morton_decode(suspects[i]), 0, facing_to_change, exact).thin)
+          if (measure(*measured.surface, morton_decode(suspects[i]), 0, Walls::facing_to_change, exact).thin)
             out.push_back(suspects[i]);
         }
       });
@@ -365,15 +354,16 @@ ThinWallPlan plan_thin_walls(const LocalThickness& measured) {
       std::vector<Cell> cells;
       std::vector<Change> changes;
     };
-    const std::size_t tasks = (measured.voxels.size() + measuring_grain - 1) / measuring_grain;
+    const std::size_t tasks =
+        (measured.voxels.size() + DistanceGrains::measured_voxels - 1) / DistanceGrains::measured_voxels;
     std::vector<Found> found(tasks);
     parallel_for(0, tasks, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t task = begin; task < end; ++task)
-        for (std::size_t v = task * measuring_grain;
-             v < std::min(measured.voxels.size(), (task + 1) * measuring_grain); ++v) {
+        for (std::size_t v = task * DistanceGrains::measured_voxels;
+             v < std::min(measured.voxels.size(), (task + 1) * DistanceGrains::measured_voxels); ++v) {
           const std::uint32_t region = measured.region[v];
           const int max_depth = measured.regions[region].depth;
-          const double min_shown = std::ldexp(min_shown_cells, -max_depth);
+          const double min_shown = std::ldexp(Walls::min_shown_cells, -max_depth);
           descend(*measured.surface, morton_decode(measured.voxels[v]), 0, max_depth,
                   [&](const Voxel& cell, int depth, const CellWalls&, bool thin) {
                     if (thin && depth < max_depth) found[task].cells.push_back({depth, morton_encode(cell)});
@@ -393,15 +383,16 @@ ThinWallPlan plan_thin_walls(const LocalThickness& measured) {
                     const std::optional<SurfacePlace> place =
                         measured.surface->nearest(middle, half_cube_diagonal * side);
                     if (!place) return;
-                    const double wall =
-                        measured.surface->thickness(*place, Side::wall, facing_to_report, exact_below);
-                    if (wall < exact_below) {
+                    const double wall = measured.surface->thickness(
+                        *place, Side::wall, Walls::facing_to_report, Walls::exact_below);
+                    if (wall < Walls::exact_below) {
                       const double kept = std::max(wall, measured.limits.min_thickness),
                                    shown = std::max(kept, min_shown);
                       // At most as many as the dense mesh has there: a fold may have no thickness at all.
                       const auto filling = [&](double thickness) {
-                        return std::min(filling_tets_per_area * area_of(wall) / (thickness * thickness),
-                                        tets_per_wall_cell);
+                        return std::min(
+                            WallCells::filling_tets_per_area * area_of(wall) / (thickness * thickness),
+                            WallCells::tets_per_wall_cell);
                       };
                       found[task].filling += filling(kept);
                       found[task].filling_thickened += filling(shown);
@@ -411,7 +402,7 @@ ThinWallPlan plan_thin_walls(const LocalThickness& measured) {
                           kind == Side::gap ? measured.limits.min_gap : measured.limits.min_thickness;
                       const double limit = std::max(min_shown, wanted);
                       const double thickness =
-                          measured.surface->thickness(*place, kind, facing_to_report, limit);
+                          measured.surface->thickness(*place, kind, Walls::facing_to_report, limit);
                       if (thickness < limit)
                         found[task].changes.push_back({region, kind == Side::gap, thickness < wanted,
                                                        thickness, area_of(thickness), place->point});
@@ -431,7 +422,8 @@ ThinWallPlan plan_thin_walls(const LocalThickness& measured) {
   // At the rim of a wall or gap the closest point may be on an adjacent face: surface cells next to split
   // cells are split too.
   const std::vector<Cell> beside = parallel_collect<Cell>(
-      0, cells.size(), measuring_grain, [&](std::size_t begin, std::size_t end, std::vector<Cell>& out) {
+      0, cells.size(), DistanceGrains::measured_voxels,
+      [&](std::size_t begin, std::size_t end, std::vector<Cell>& out) {
         for (std::size_t i = begin; i < end; ++i)
           for (int k = 0; k < 27; ++k) {
             const Voxel next = sum(morton_decode(cells[i].key), k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
@@ -462,8 +454,8 @@ ThinWallPlan plan_thin_walls(const LocalThickness& measured) {
                       (&c)[-1].gap == c.gap && (&c)[-1].on_purpose == c.on_purpose;
     if (!same)
       plan.changed.push_back({c.gap, c.thickness,
-                              std::ldexp(min_shown_cells, -measured.regions[c.region].depth), 0, c.place,
-                              c.on_purpose});
+                              std::ldexp(Walls::min_shown_cells, -measured.regions[c.region].depth), 0,
+                              c.place, c.on_purpose});
     ChangedWall& w = plan.changed.back();
     w.area += c.area;
     if (c.thickness < w.thickness) w.thickness = c.thickness, w.place = c.place;

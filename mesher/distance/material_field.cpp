@@ -7,6 +7,7 @@
 #include <new>
 
 #include "common/tolerances.h"
+#include "mesher/tuning/distance_tuning.h"
 
 namespace tetwright {
 
@@ -30,12 +31,8 @@ double FieldSampler::between(RegionIndex a, RegionIndex b, const Vec3& point, Ve
 }
 
 bool FieldSampler::project(const RegionSet& regions, Vec3& point, unsigned held_axes) {
-  constexpr int steps = 8;
-  // For the squared slope; below this the point is near a ridge of the distance.
-  const double smallest_slope = 0.1 * min_slope_ * min_slope_;
-  // Damping (Levenberg 1944): on one side of a junction curve two of the distances may be the same function,
-  // so their difference has no slope there and must not contribute to the step.
-  const double damping = 0.01 * min_slope_ * min_slope_;
+  const double smallest_slope = DistanceTuning::Projection::min_slope_share * min_slope_ * min_slope_;
+  const double damping = DistanceTuning::Projection::damping_share * min_slope_ * min_slope_;
   // The accuracy of distances is that of voxels; small cells need a small fraction of their own size.
   const double enough = std::min(tolerance::on_interface * per_voxel_, tolerance::on_interface_of_cell);
   const int equations = regions.size() - 1;
@@ -44,7 +41,7 @@ bool FieldSampler::project(const RegionSet& regions, Vec3& point, unsigned held_
   Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> misses(equations);
   double values[RegionSet::capacity];
   Vec3 gradients[RegionSet::capacity];
-  for (int step = 0; step < steps; ++step) {
+  for (int step = 0; step < DistanceTuning::Projection::steps; ++step) {
     values_and_gradients(point, {regions.begin(), regions.end()}, values, gradients);
     double worst = 0;
     for (int k = 0; k < equations; ++k) {

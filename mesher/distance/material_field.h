@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cmath>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -31,6 +30,24 @@ struct NearestRegion {
   float margin;
 };
 
+/// A region between two level sets that face each other.
+struct FieldSheet {
+  RegionIndex region;
+  double thickness;  ///< lattice units
+  bool closed;       ///< lies between two bodies so close that they count as touching
+};
+
+/// Finds sheets. Only the samplers of fields of several level sets can, since only these tell sheets from
+/// other thin parts. Not thread-safe.
+class SheetSampler {
+ public:
+  /// The thinnest sheet within `reach` (lattice units) of the point, or nothing.
+  virtual std::optional<FieldSheet> thinnest_sheet(const Vec3& point, double reach) = 0;
+
+ protected:
+  ~SheetSampler() = default;
+};
+
 /// Evaluates a field. Caches the last nodes read, so consecutive nearby points are fast. Not thread-safe; any
 /// number of samplers of one field may be used concurrently. Points are in lattice units.
 class FieldSampler {
@@ -47,14 +64,8 @@ class FieldSampler {
   virtual void values_at_voxel(int x, int y, int z, std::span<const RegionIndex> regions, float* out) = 0;
   /// The two regions of the smallest distances, ascending; nothing if only one is within the band.
   virtual std::optional<RegionSet> two_nearest(const Vec3& point) = 0;
-  /// A region between two level sets that face each other.
-  struct Sheet {
-    RegionIndex region;
-    double thickness;
-    bool closed;  ///< lies between two bodies so close that they count as touching
-  };
-  /// The thinnest sheet within `reach` (lattice units) of the point, or nothing.
-  virtual std::optional<Sheet> thinnest_sheet(const Vec3& point, double reach) = 0;
+  /// The sheets of the field, with this sampler's cache; null if the field does not know sheets.
+  virtual SheetSampler* sheets() { return nullptr; }
 
   /// Half the signed distance of region a minus that of region b: negative in a, zero on their interface,
   /// with a slope of about 1 there.
@@ -80,6 +91,36 @@ class FieldSampler {
   double per_voxel_, min_slope_;
 };
 
+class MaterialField;
+
+/// The thin walls and gaps of surfaces where a field changes the distances, see thin_walls.h. All functions
+/// may be called concurrently; points are in the field's lattice units.
+class WallChanges {
+ public:
+  /// The field with thin walls at their true thickness.
+  virtual std::shared_ptr<const MaterialField> with_true_walls() const = 0;
+  /// True where distances may be changed.
+  virtual bool contains(const Vec3& point) const = 0;
+  /// The thickness, lattice units, of a thin wall with parallel sides that has a side near the point; else
+  /// infinity.
+  virtual double parallel_thickness(const Vec3& point) const = 0;
+
+ protected:
+  ~WallChanges() = default;
+};
+
+/// The segmented volume that a field is made of. Its regions are cut off at the frame's box, the volume's
+/// border; the distances themselves ignore the box. All functions may be called concurrently.
+class VoxelVolume {
+ public:
+  /// True for points, lattice units, whose region is known exactly and guaranteed in the mesh. Lattice points
+  /// there are not moved.
+  virtual bool is_certain(const Vec3& point) const = 0;
+
+ protected:
+  ~VoxelVolume() = default;
+};
+
 /// The signed distances of all regions of space including the outside. Each point belongs to the region of
 /// the smallest signed distance; ties go to the smaller region number.
 ///
@@ -101,21 +142,10 @@ class MaterialField : public ReferenceSurface {
   /// The leaves of 8 x 8 x 8 voxel corners in which the region's distance is within the band or a voxel edge
   /// crosses its surface, ascending.
   virtual std::vector<LeafOrigin> band_leaves(RegionIndex region) const = 0;
-  /// True if sheets between level sets can be told from other thin parts, see FieldSampler::thinnest_sheet().
-  virtual bool knows_sheets() const = 0;
-  /// The field with thin walls at their true thickness, see thin_walls.h; null if no wall was thickened.
-  virtual std::shared_ptr<const MaterialField> with_true_walls() const { return nullptr; }
-  /// True where thin walls may have changed the distances.
-  virtual bool changes_walls(const Vec3&) const { return false; }
-  /// The thickness, lattice units, of a thin wall with parallel sides that has a side near the point; else
-  /// infinity.
-  virtual double parallel_thickness(const Vec3&) const { return HUGE_VAL; }
-  /// True if regions are cut off at the frame's box, as a volume's labels are at its border. The distances
-  /// themselves ignore the box.
-  virtual bool ends_at_box() const { return false; }
-  /// True for points whose region is known exactly and guaranteed in the mesh. Lattice points there are not
-  /// moved.
-  virtual bool is_certain(const Vec3& point) const = 0;
+  /// The thin walls and gaps where distances are changed; null if there are none.
+  virtual const WallChanges* wall_changes() const { return nullptr; }
+  /// The volume that the field is made of; null for surfaces.
+  virtual const VoxelVolume* volume() const { return nullptr; }
 
   const GridFrame& voxels() const { return voxels_; }
   const GridFrame& frame() const { return frame_; }  ///< of the lattice

@@ -8,20 +8,11 @@
 #include "common/geometry/projection_tree.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
+#include "mesher/tuning/distance_tuning.h"
 
 namespace tetwright {
 
 namespace {
-
-constexpr std::size_t segment_grain = 256;
-/// Cells that should span the width of a patch.
-constexpr double cells_to_width = 2;
-/// Creases closer to each other than this fraction of their distance from a corner do more than meet in it.
-constexpr double corner_share = 0.4;
-/// Spacing of the points tested along a crease, voxels.
-constexpr double place_distance = 0.5;
-/// Approximate number of dense tets for each split cell: half of its eight parts are inside.
-constexpr double tets_of_split = 42;
 
 struct Split {
   int depth;  ///< of the cell
@@ -43,28 +34,32 @@ std::vector<RefinementRegion> narrow_places(const RepairedSurface& surface, cons
   for (const Index c : creases.corners) corners.push_back({{c, c, c}, {}});
   const ProjectionTree segment_tree(points, std::move(segments)), corner_tree(points, std::move(corners));
   return parallel_collect<RefinementRegion>(
-      0, creases.segments.size(), segment_grain,
+      0, creases.segments.size(), DistanceGrains::crease_segments,
       [&](std::size_t begin, std::size_t end, std::vector<RefinementRegion>& out) {
         for (std::size_t i = begin; i < end; ++i) {
           const SurfaceCreases::Segment& segment = creases.segments[i];
           const std::array<std::uint16_t, 2>& own = segment.patches;
           const Vec3 &a = points[segment.ends[0]], &b = points[segment.ends[1]];
-          const auto places = static_cast<int>(std::ceil((b - a).norm() / place_distance));
+          const auto places =
+              static_cast<int>(std::ceil((b - a).norm() / DistanceTuning::NarrowPatches::spacing));
           for (int k = 0; k <= places; ++k) {
             const Vec3 at = a + (b - a) * (static_cast<double>(k) / std::max(places, 1));
-            const auto other =
-                segment_tree.nearest_of(at, cells_to_width, [&](const ProjectionTree::Item& item) {
+            const auto other = segment_tree.nearest_of(
+                at, DistanceTuning::NarrowPatches::cells_to_width, [&](const ProjectionTree::Item& item) {
                   const std::uint32_t p = item.kind[0], q = item.kind[1];
                   if (p == own[0] && q == own[1]) return false;
                   return p == own[0] || p == own[1] || q == own[0] || q == own[1];
                 });
             if (!other) continue;
             const double width = (other->point - at).norm();
-            if (corner_tree.nearest_of(at, width / corner_share, [](const auto&) { return true; })) continue;
+            if (corner_tree.nearest_of(at, width / DistanceTuning::NarrowPatches::corner_share,
+                                       [](const auto&) { return true; }))
+              continue;
             // Creases that touch there form a corner, too.
             if (!(width > 0)) continue;
             out.push_back(
-                {at, std::min(max_depth, static_cast<int>(std::ceil(std::log2(cells_to_width / width))))});
+                {at, std::min(max_depth, static_cast<int>(std::ceil(std::log2(
+                                             DistanceTuning::NarrowPatches::cells_to_width / width))))});
           }
         }
       });
@@ -88,7 +83,8 @@ NarrowPatches halve_cells(const std::vector<RefinementRegion>& places, int max_d
     std::sort(splits.begin(), splits.end());
     splits.erase(std::unique(splits.begin(), splits.end()), splits.end());
     if (splits.empty()) return {};
-    if (tets_of_split * static_cast<double>(splits.size()) > max_tets) continue;
+    if (DistanceTuning::NarrowPatches::tets_of_split * static_cast<double>(splits.size()) > max_tets)
+      continue;
     NarrowPatches narrow;
     RefinementRegions& finer = narrow.finer;
     finer.refinement = splits.back().depth + 1;

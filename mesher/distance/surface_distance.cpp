@@ -9,23 +9,9 @@
 #include "common/parallel/parallel.h"
 #include "common/tolerances.h"
 #include "mesher/distance/hole_caps.h"
+#include "mesher/tuning/distance_tuning.h"
 
 namespace tetwright {
-
-namespace {
-
-constexpr std::size_t leaf_size = 4;
-/// Shrinking converges quadratically where walls are flat, usually within three steps.
-constexpr int max_shrinks = 16;
-/// Squared distances count as equal within this fraction: rounding of coordinates leaves less, down to a
-/// thousandth of a voxel.
-constexpr double tie = 1e-9;
-/// Distance in front of and behind a surface point at which its sides are tested, voxels.
-constexpr double beside = 1e-4;
-/// The ball has stopped shrinking when its radius changes by less than this fraction.
-constexpr double still = 1e-6;
-
-}  // namespace
 
 SurfaceDistance::SurfaceDistance(std::span<const Vec3> points, std::span<const Triangle> triangles,
                                  std::size_t closed, const TriangleMesh& caps, bool intersects_itself)
@@ -34,7 +20,7 @@ SurfaceDistance::SurfaceDistance(std::span<const Vec3> points, std::span<const T
   std::vector<std::array<Vec3, 3>> corners(count);
   std::vector<Box3> boxes(count);
   std::vector<Vec3> middles(count);  // times 3
-  parallel_for(0, count, 4096, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, count, DistanceGrains::elements, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
         corners[t][k] = t < surface ? points[triangles[t][k]] : caps.points[caps.triangles[t - surface][k]];
@@ -43,12 +29,13 @@ SurfaceDistance::SurfaceDistance(std::span<const Vec3> points, std::span<const T
       middles[t] = corners[t][0] + corners[t][1] + corners[t][2];
     }
   });
-  const std::vector<Index> order = median_order(boxes, middles, leaf_size);
-  tree_ = BoxTree(count, leaf_size, [&](std::size_t i) { return boxes[order[i]]; });
+  const std::vector<Index> order = median_order(boxes, middles, DistanceTuning::Triangles::leaf_size);
+  tree_ =
+      BoxTree(count, DistanceTuning::Triangles::leaf_size, [&](std::size_t i) { return boxes[order[i]]; });
   triangles_.resize(count);
   normals_.resize(count);
   is_closed_.resize(count);
-  parallel_for(0, count, 4096, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, count, DistanceGrains::elements, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto& [a, b, c] = triangles_[i] = corners[order[i]];
       const Vec3 normal = (b - a).cross(c - a);
@@ -69,9 +56,9 @@ std::optional<SurfacePlace> SurfaceDistance::nearest(const Vec3& point, double a
     const auto& [a, b, c] = triangles_[t];
     const Vec3 p = closest_point(point, a, b, c);
     const double squared = (p - point).squaredNorm();
-    if (squared > squared_distance * (1 + tie)) return best;
+    if (squared > squared_distance * (1 + DistanceTuning::Triangles::tie)) return best;
     const double aligned = std::abs(normals_[t].dot(p - point));
-    if (nearest < triangles_.size() && squared >= squared_distance * (1 - tie)) {
+    if (nearest < triangles_.size() && squared >= squared_distance * (1 - DistanceTuning::Triangles::tie)) {
       // Among equally close triangles choose the one that faces the point most, then the first, so that the
       // result does not depend on the order of the search.
       if (aligned < alignment || (aligned == alignment && t > nearest)) return best;
@@ -80,7 +67,7 @@ std::optional<SurfacePlace> SurfaceDistance::nearest(const Vec3& point, double a
     place = p;
     squared_distance = std::min(squared_distance, squared);
     alignment = aligned;
-    return squared_distance * (1 + tie);
+    return squared_distance * (1 + DistanceTuning::Triangles::tie);
   });
   if (nearest == triangles_.size()) return std::nullopt;
   return SurfacePlace{place, normals_[nearest]};
@@ -101,7 +88,7 @@ bool SurfaceDistance::inside(const Vec3& point) const {
       });
   if (!open_) return winding > 0;
   static const Vec3 aside(tolerance::aside[0], tolerance::aside[1], tolerance::aside[2]);
-  return winding + open_->winding_number(point + aside) >= inside_winding;
+  return winding + open_->winding_number(point + aside) >= DistanceTuning::Caps::inside_winding;
 }
 
 std::optional<SurfacePlace> SurfaceDistance::nearest_facing(const Vec3& point, const Vec3& normal,
@@ -125,22 +112,24 @@ std::optional<SurfacePlace> SurfaceDistance::nearest_facing(const Vec3& point, c
 
 bool SurfaceDistance::is_boundary(const SurfacePlace& place) const {
   if (!intersects_itself_) return true;
-  return inside(place.point - beside * place.normal) && !inside(place.point + beside * place.normal);
+  return inside(place.point - DistanceTuning::Triangles::side_distance * place.normal) &&
+         !inside(place.point + DistanceTuning::Triangles::side_distance * place.normal);
 }
 
 double SurfaceDistance::thickness(const SurfacePlace& place, Side side, double facing, double at_most) const {
   const Vec3 direction = side == Side::gap ? place.normal : Vec3(-place.normal);
   double radius = 0.5 * at_most;
   std::optional<SurfacePlace> wall;
-  for (int step = 0; step < max_shrinks && radius > 0; ++step) {
+  for (int step = 0; step < DistanceTuning::Triangles::max_shrinks && radius > 0; ++step) {
     const std::optional<SurfacePlace> nearer =
-        nearest_facing(place.point + radius * direction, place.normal, facing, radius * (1 - still));
+        nearest_facing(place.point + radius * direction, place.normal, facing,
+                       radius * (1 - DistanceTuning::Triangles::min_shrink));
     if (!nearer) break;
     wall = nearer;
     const Vec3 chord = wall->point - place.point;
     const double along = chord.dot(direction);
     const double next = along > 0 ? chord.squaredNorm() / (2 * along) : 0;
-    if (next >= radius * (1 - still)) break;
+    if (next >= radius * (1 - DistanceTuning::Triangles::min_shrink)) break;
     radius = next;
   }
   if (wall && !(is_boundary(place) && is_boundary(*wall))) return at_most;

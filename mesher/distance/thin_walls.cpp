@@ -6,21 +6,9 @@
 
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
+#include "mesher/tuning/distance_tuning.h"
 
 namespace tetwright {
-
-namespace {
-
-/// Cosine between the direction to the closest point and its normal below which that point is on the rim of a
-/// gap.
-constexpr double min_alignment = 0.7;
-/// Minus the cosine between the directions from a point to two walls around it. It falls in front of the
-/// mouth of a wide gap.
-constexpr double min_opposition = 0.95;
-/// The narrow face at a corner of a rim is next to another narrow face.
-constexpr int max_steps_beside = 2;
-
-}  // namespace
 
 void ThinWalls::cover(const std::array<int, 3>& voxel, int depth) {
   std::uint8_t& at = blocks_[block_key(voxel)][place_in_block(voxel)];
@@ -50,10 +38,11 @@ double ThinWalls::true_distance(const Vec3& point, int depth, Vec3& gradient) co
 }
 
 double ThinWalls::parallel_thickness(const Vec3& point, int depth) const {
-  const double min_shown = std::ldexp(min_shown_cells, -depth);
+  const double min_shown = std::ldexp(DistanceTuning::Walls::min_shown_cells, -depth);
   const std::optional<SurfacePlace> place = surface_->nearest(point, 1);
   if (!place) return HUGE_VAL;
-  const double wall = surface_->thickness(*place, SurfaceDistance::Side::wall, facing_to_report, min_shown);
+  const double wall = surface_->thickness(*place, SurfaceDistance::Side::wall,
+                                          DistanceTuning::Walls::facing_to_report, min_shown);
   return wall < min_shown ? wall : HUGE_VAL;
 }
 
@@ -61,12 +50,12 @@ double ThinWalls::thickness_around(SurfacePlace& place, SurfaceDistance::Side si
   const double sign = side == SurfaceDistance::Side::gap ? 1 : -1;
   SurfacePlace at = place;
   for (int step = 0;; ++step) {
-    const double thickness = surface_->thickness(at, side, facing_to_change, at_most);
+    const double thickness = surface_->thickness(at, side, DistanceTuning::Walls::facing_to_change, at_most);
     if (thickness < at_most) {
       place = at;
       return thickness;
     }
-    if (step == max_steps_beside) return at_most;
+    if (step == DistanceTuning::Walls::max_steps_beside) return at_most;
     const std::optional<SurfacePlace> beside =
         surface_->nearest(at.point + sign * 0.5 * at_most * at.normal, 0.5 * at_most);
     if (!beside) return at_most;
@@ -75,16 +64,18 @@ double ThinWalls::thickness_around(SurfacePlace& place, SurfaceDistance::Side si
 }
 
 bool ThinWalls::is_between(const Vec3& point, const Vec3& normal, double width) const {
-  const auto behind = surface_->nearest_facing(point, -normal, facing_to_change, width, true),
-             ahead = surface_->nearest_facing(point, normal, facing_to_change, width, true);
+  const auto behind = surface_->nearest_facing(point, -normal, DistanceTuning::Walls::facing_to_change, width,
+                                               true),
+             ahead = surface_->nearest_facing(point, normal, DistanceTuning::Walls::facing_to_change, width,
+                                              true);
   if (!behind || !ahead) return false;
   const Vec3 a = behind->point - point, b = ahead->point - point;
-  return a.dot(b) <= -min_opposition * a.norm() * b.norm();
+  return a.dot(b) <= -DistanceTuning::Walls::min_opposition * a.norm() * b.norm();
 }
 
 double ThinWalls::distance(const Vec3& point, int depth, bool thicken, Vec3& gradient) const {
   gradient = Vec3::Zero();
-  const double min_shown = std::ldexp(min_shown_cells, -depth);
+  const double min_shown = std::ldexp(DistanceTuning::Walls::min_shown_cells, -depth);
   const double close_below = std::max(min_shown, limits_.min_gap), omit_below = limits_.min_thickness;
   const double reach = std::max<double>(level_set_band, 0.5 * std::max(close_below, omit_below));
   const bool inside = surface_->inside(point);
@@ -94,8 +85,8 @@ double ThinWalls::distance(const Vec3& point, int depth, bool thicken, Vec3& gra
   const double size = away.norm();
   // In front of a gap's mouth the closest point is on its rim, and nothing is closed. On the surface the
   // direction to it is only rounding.
-  const bool beside =
-      size > tolerance::smallest_distance && std::abs(place->normal.dot(away)) < min_alignment * size;
+  const bool beside = size > tolerance::smallest_distance &&
+                      std::abs(place->normal.dot(away)) < DistanceTuning::Walls::min_alignment * size;
   // Within a gap no point is farther from the nearest wall than half its width.
   if (!inside && !beside && size <= 0.5 * close_below) {
     SurfacePlace side = *place;

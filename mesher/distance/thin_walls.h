@@ -85,10 +85,4 @@ class ThinWalls {
   std::vector<MortonKey> core_;
 };
 
-/// Thinnest walls and gaps that a lattice resolves, in cells: wherever they lie, a lattice point is inside.
-inline constexpr double min_shown_cells = 1.25;
-/// Cosines to facing walls that count for changing distances, for choosing cells, and for reports: tips of
-/// wedges are thin in cells of any size.
-inline constexpr double facing_to_change = 0.3, facing_to_refine = 0.9, facing_to_report = 0.99;
-
 }  // namespace tetwright

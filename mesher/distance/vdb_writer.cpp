@@ -13,6 +13,7 @@
 #include "common/parallel/parallel.h"
 #include "common/tolerances.h"
 #include "mesher/distance/openvdb_grids.h"
+#include "mesher/tuning/distance_tuning.h"
 
 namespace tetwright {
 
@@ -30,7 +31,7 @@ DistanceGrid make_grid(const GridFrame& frame, double band_cells, const LevelSet
   std::vector<GridLeaf<float>> leaves;
   leaves.reserve(source.leaves.size());
   for (const LeafOrigin& origin : source.leaves) leaves.push_back(grid.touch_leaf(origin));
-  parallel_for(0, leaves.size(), 16, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, leaves.size(), DistanceGrains::band_leaves, [&](std::size_t begin, std::size_t end) {
     std::array<float, leaf_points> values;
     for (std::size_t i = begin; i < end; ++i) {
       source.distances(source.leaves[i], values);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesher/tuning/domain_tuning.h"
+
 namespace tetwright {
 
 namespace {
@@ -23,10 +25,11 @@ void take_cells(GridFrame& frame, const std::array<int, 3>& needed, bool uniform
 GridFrame make_grid_frame(const Vec3& low, const Vec3& high, double cell_size, bool uniform, bool centred) {
   GridFrame frame;
   frame.cell_size = cell_size;
-  frame.origin = low - Vec3::Constant(frame_margin * cell_size);
+  frame.origin = low - Vec3::Constant(DomainTuning::Frames::margin * cell_size);
   std::array<int, 3> needed;
   for (int a = 0; a < 3; ++a)
-    needed[a] = static_cast<int>(std::ceil((high[a] - low[a]) / cell_size)) + 2 * frame_margin;
+    needed[a] =
+        static_cast<int>(std::ceil((high[a] - low[a]) / cell_size)) + 2 * DomainTuning::Frames::margin;
   take_cells(frame, needed, uniform);
   frame.box = frame.cells;
   if (centred)

@@ -40,12 +40,7 @@ inline unsigned box_faces(const Vec3& place, const std::array<int, 3>& box) {
   return faces;
 }
 
-/// Margin between the surface's bounding box and the box of the octree, finest cells. Points that may move
-/// and their stars reach two cells from the surface; the third cell keeps the faces of the box away from
-/// them.
-inline constexpr int frame_margin = 3;
-
-/// A frame whose box contains [low, high] (input units) and a margin of frame_margin cells, rounded up to
+/// A frame whose box contains [low, high] (input units) and a margin (DomainTuning::Frames), rounded up to
 /// whole root cells.
 /// \param uniform root cells are finest cells; otherwise the longest side has about four to eight root cells
 /// \param centred the excess of rounding up is even on both sides; otherwise it is above `high`

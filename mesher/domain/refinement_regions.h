@@ -10,9 +10,6 @@
 
 namespace tetwright {
 
-/// Levels below a voxel that cells may reach for sheets between surfaces and for thin labels.
-inline constexpr int max_refinement = 3;
-
 /// Cells that the octree must split beyond what the interface alone requires.
 struct RefinementRegions {
   int refinement = 0;  ///< levels below a voxel

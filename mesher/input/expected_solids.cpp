@@ -5,13 +5,11 @@
 
 #include "common/geometry/self_intersection.h"
 #include "common/geometry/surface_tree.h"
+#include "mesher/tuning/input_tuning.h"
 
 namespace tetwright {
 
 namespace {
-
-/// Number of queries of a surface above which a tree pays; each query without one visits every triangle.
-constexpr std::size_t max_plain_queries = 16;
 
 bool boxes_meet(const RepairedSurface& a, const RepairedSurface& b) {
   return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
@@ -21,7 +19,8 @@ bool boxes_meet(const RepairedSurface& a, const RepairedSurface& b) {
 class Inside {
  public:
   Inside(const RepairedSurface& surface, std::size_t queries) : surface_(surface) {
-    if (queries > max_plain_queries) tree_.emplace(surface.points, surface.triangles);
+    if (queries > InputTuning::ExpectedSolids::max_plain_queries)
+      tree_.emplace(surface.points, surface.triangles);
   }
   bool operator()(const Vec3& p) const {
     return (tree_ ? tree_->winding_number(p) : winding_number(surface_.points, surface_.triangles, p)) > 0.5;

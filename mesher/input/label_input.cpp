@@ -10,15 +10,11 @@
 #include "common/error.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/input/connected_components.h"
+#include "mesher/tuning/input_tuning.h"
 
 namespace tetwright {
 
 namespace {
-
-constexpr std::size_t max_labels = 60'000;          // regions have numbers of 16 bits, a few of them reserved
-constexpr std::size_t max_listed = 30;              // labels in a message
-constexpr std::size_t max_named = 20;               // labels with a finding of their own
-constexpr std::size_t label_voxel_grain = 1 << 18;  // voxels
 
 using LabelRange = std::pair<MaterialTag, MaterialTag>;
 using LabelCount = std::pair<MaterialTag, std::size_t>;
@@ -78,13 +74,13 @@ void for_each_run(const std::vector<MaterialTag>& labels, std::size_t begin, std
 std::vector<LabelCount> count_labels(const std::vector<MaterialTag>& labels, const Chosen& chosen,
                                      const std::string& file) {
   const auto check = [&](std::size_t n) {
-    if (n > max_labels)
+    if (n > InputTuning::Limits::max_materials)
       throw InputError(file, 0,
-                       "has more than " + std::to_string(max_labels) +
+                       "has more than " + std::to_string(InputTuning::Limits::max_materials) +
                            " labels; choose fewer with --labels, if these are labels and not gray values");
   };
   std::vector<LabelCount> found = parallel_collect<LabelCount>(
-      0, labels.size(), label_voxel_grain, [&](std::size_t begin, std::size_t end, auto& out) {
+      0, labels.size(), InputGrains::voxels, [&](std::size_t begin, std::size_t end, auto& out) {
         std::unordered_map<MaterialTag, std::size_t> counts;
         for_each_run(labels, begin, end, [&](std::size_t i, std::size_t j) {
           if (!chosen(labels[i])) return;
@@ -106,20 +102,21 @@ std::vector<LabelCount> count_labels(const std::vector<MaterialTag>& labels, con
 /// "1, 2, 3" for messages: the labels that occur, without the outside label.
 std::string labels_text(const std::vector<MaterialTag>& labels, MaterialTag outside) {
   std::vector<MaterialTag> found = parallel_collect<MaterialTag>(
-      0, labels.size(), label_voxel_grain, [&](std::size_t begin, std::size_t end, auto& out) {
+      0, labels.size(), InputGrains::voxels, [&](std::size_t begin, std::size_t end, auto& out) {
         std::set<MaterialTag> smallest;
         for_each_run(labels, begin, end, [&](std::size_t i, std::size_t) {
           if (labels[i] == outside) return;
           smallest.insert(labels[i]);
-          if (smallest.size() > max_listed + 1) smallest.erase(std::prev(smallest.end()));
+          if (smallest.size() > InputTuning::Messages::max_listed_labels + 1)
+            smallest.erase(std::prev(smallest.end()));
         });
         out.assign(smallest.begin(), smallest.end());
       });
   parallel_sort_unique(found);
   std::string text;
-  for (std::size_t i = 0; i < std::min(found.size(), max_listed); ++i)
+  for (std::size_t i = 0; i < std::min(found.size(), InputTuning::Messages::max_listed_labels); ++i)
     text += (i ? ", " : "") + std::to_string(found[i]);
-  return text + (found.size() > max_listed ? ", ..." : "");
+  return text + (found.size() > InputTuning::Messages::max_listed_labels ? ", ..." : "");
 }
 
 /// Throws if all of the volume is outside, or no label of a chosen range occurs.
@@ -201,7 +198,7 @@ std::vector<RegionIndex> number_regions(const std::vector<MaterialTag>& labels,
     return at->tag == label ? static_cast<RegionIndex>(at - materials.begin() + 1) : outside_region;
   };
   std::vector<RegionIndex> regions(labels.size());
-  parallel_for(0, labels.size(), label_voxel_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, labels.size(), InputGrains::voxels, [&](std::size_t begin, std::size_t end) {
     for_each_run(labels, begin, end, [&](std::size_t i, std::size_t j) {
       std::fill(regions.begin() + static_cast<std::ptrdiff_t>(i),
                 regions.begin() + static_cast<std::ptrdiff_t>(j), region(labels[i]));
@@ -300,7 +297,7 @@ void Preparation::report(const std::vector<Loss>& losses) {
     if (m.voxels == 0) {
       add(DiagnosticCode::islands_merged, "islands of '" + m.name + "'" + voxels + ", all there is of it",
           loss.islands, place(loss.first_voxel), done + "; this label is lost");
-    } else if (named++ < max_named) {
+    } else if (named++ < InputTuning::Messages::max_named_labels) {
       add(DiagnosticCode::islands_merged, "islands of '" + m.name + "'" + voxels, loss.islands,
           place(loss.first_voxel), done);
     } else {
@@ -329,7 +326,7 @@ void Preparation::drop_lost(const std::vector<Loss>& losses) {
   }
   result_.materials = std::move(kept);
   if (result_.lost.empty()) return;
-  parallel_for(0, result_.regions.size(), label_voxel_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, result_.regions.size(), InputGrains::voxels, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) result_.regions[i] = renumbered[result_.regions[i]];
   });
 }

@@ -11,13 +11,11 @@
 #include "common/geometry/measurable.h"
 #include "common/message_text.h"
 #include "mesher/input/qualified_names.h"
+#include "mesher/tuning/input_tuning.h"
 
 namespace tetwright {
 
 namespace {
-
-/// Regions have numbers of 16 bits, a few of them reserved.
-constexpr std::size_t max_materials = 60000;
 
 /// The tags assigned by the caller. Throws UsageError for a layer without a thickness.
 std::set<MaterialTag> tags_in_use(const std::vector<MaterialSurface>& surfaces,
@@ -113,10 +111,10 @@ void find_bounding_box(MesherInput& input) {
 
 /// Throws UsageError for too many materials and for two of one name or tag.
 void validate_materials(const MesherInput& input) {
-  if (input.bodies.size() + input.layers.size() > max_materials)
+  if (input.bodies.size() + input.layers.size() > InputTuning::Limits::max_materials)
     throw UsageError(std::to_string(input.bodies.size() + input.layers.size()) +
-                     " materials are too many; at most " + std::to_string(max_materials) +
-                     " can be meshed at a time");
+                     " materials are too many; at most " +
+                     std::to_string(InputTuning::Limits::max_materials) + " can be meshed at a time");
   std::vector<std::pair<std::string, MaterialTag>> all;
   for (const MesherInput::Body& b : input.bodies) all.emplace_back(b.name, b.tag);
   for (const MaterialLayer& l : input.layers) all.emplace_back(l.name, l.tag);

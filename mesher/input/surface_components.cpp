@@ -11,6 +11,7 @@
 #include "common/mesh/disjoint_sets.h"
 #include "common/message_text.h"
 #include "common/parallel/parallel_sort.h"
+#include "mesher/tuning/input_tuning.h"
 
 namespace tetwright {
 
@@ -26,7 +27,7 @@ struct EdgeSide {
 
 std::vector<EdgeSide> sorted_sides(const std::vector<Triangle>& triangles) {
   std::vector<EdgeSide> sides(3 * triangles.size());
-  parallel_for(0, triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, triangles.size(), InputGrains::triangles, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint64_t a = triangles[t][k], b = triangles[t][(k + 1) % 3];

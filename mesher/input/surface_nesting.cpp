@@ -9,6 +9,7 @@
 #include "common/geometry/ray_crossing.h"
 #include "common/geometry/surface_tree.h"
 #include "common/parallel/parallel_sort.h"
+#include "mesher/tuning/input_tuning.h"
 
 namespace tetwright {
 
@@ -35,7 +36,7 @@ std::vector<Shape> shapes(const std::vector<Vec3>& points, const std::vector<Tri
         user[v] = c;
       }
   std::vector<Shape> all(components.size());
-  parallel_for(0, components.size(), 16, [&](std::size_t first, std::size_t last) {
+  parallel_for(0, components.size(), InputGrains::components, [&](std::size_t first, std::size_t last) {
     for (std::size_t c = first; c < last; ++c) {
       Shape& shape = all[c];
       Index probe = triangles[components[c].triangles[0]][0];

@@ -11,6 +11,7 @@
 #include "common/tolerances.h"
 #include "mesher/input/surface_components.h"
 #include "mesher/input/surface_nesting.h"
+#include "mesher/tuning/input_tuning.h"
 
 namespace tetwright {
 
@@ -176,14 +177,15 @@ RepairedSurface assemble(const Cleaned& from, const std::vector<SurfaceComponent
   for (const Vec3& p : s.points) s.low = s.low.cwiseMin(p), s.high = s.high.cwiseMax(p);
   const Vec3 apex = 0.5 * s.low + 0.5 * s.high;
   const auto sum = [&](auto&& of_triangle) {
-    return parallel_sum(0, s.triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
-      double total = 0;
-      for (std::size_t t = begin; t < end; ++t) {
-        const auto& [a, b, c] = s.triangles[t];
-        total += of_triangle(s.points[a], s.points[b], s.points[c]);
-      }
-      return total;
-    });
+    return parallel_sum(0, s.triangles.size(), InputGrains::triangles,
+                        [&](std::size_t begin, std::size_t end) {
+                          double total = 0;
+                          for (std::size_t t = begin; t < end; ++t) {
+                            const auto& [a, b, c] = s.triangles[t];
+                            total += of_triangle(s.points[a], s.points[b], s.points[c]);
+                          }
+                          return total;
+                        });
   };
   s.area = sum([](const Vec3& a, const Vec3& b, const Vec3& c) { return 0.5 * (b - a).cross(c - a).norm(); });
   s.volume = sum([&](const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -8,6 +8,7 @@
 
 #include "common/error.h"
 #include "common/parallel/parallel.h"
+#include "mesher/tuning/label_tuning.h"
 
 namespace tetwright {
 
@@ -107,10 +108,10 @@ void make_tile(const LabelInput& labels, int t, const std::array<int, 3>& tiles,
   }
   smoother.set_volume(first_voxel, end_voxel);
   if (mixed) {
-    if (smoother.number_labels() > LabelSmoother::max_labels)
+    if (smoother.number_labels() > LabelTuning::Smoothing::max_labels)
       throw InputError(
           labels.file, 0,
-          "has more than " + std::to_string(LabelSmoother::max_labels) + " labels within " +
+          "has more than " + std::to_string(LabelTuning::Smoothing::max_labels) + " labels within " +
               std::to_string(LabelSmoother::side) +
               " voxels, like an image of gray values; give a segmented volume, or choose --labels");
     smoother.smooth(growth);
@@ -142,9 +143,6 @@ void make_tile(const LabelInput& labels, int t, const std::array<int, 3>& tiles,
       out.bricks.push_back({at, 0, 0, smoother.voxels()[0]});
   }
 }
-
-/// Maximum number of rounds of growth; growing a label changes its neighbours.
-constexpr int max_brick_rounds = 4;
 
 /// Determines how far each label is grown so that it keeps its volume.
 ///
@@ -211,14 +209,12 @@ class Growth {
 
   /// Compares the effect of the last steps with the expected one.
   void learn(const std::vector<double>& now) {
-    // The faces of voxels have a larger area than the interface, and enforced nodes do not move.
-    constexpr double min_give = 0.25, max_give = 1.25;
-    constexpr double telling = 1e-3;  ///< fraction of the volume; smaller steps are dominated by noise
     for (std::size_t r = 1; r < growth_.size(); ++r) {
       double expected = 0;
       for (const Contact& c : contacts(r)) expected += c.faces * (step_[r] - step_[c.with]);
-      if (std::abs(expected) > telling * volumes_[r])
-        give_[r] = std::clamp((now[r] - volumes_[r]) / expected, min_give, max_give);
+      if (std::abs(expected) > LabelTuning::Growth::min_informative * volumes_[r])
+        give_[r] = std::clamp((now[r] - volumes_[r]) / expected, LabelTuning::Growth::min_response,
+                              LabelTuning::Growth::max_response);
     }
   }
 
@@ -226,26 +222,21 @@ class Growth {
     return static_cast<double>(labels.materials[region - 1].voxels);
   }
   static bool is_small(const LabelInput& labels, std::size_t region) {
-    constexpr double small = 1000;
-    return voxels_of(labels, region) <= small;
+    return voxels_of(labels, region) <= LabelTuning::Growth::small_voxels;
   }
 
   bool solve(const LabelInput& labels) {
-    // Relative to the label's voxels; meshing adds a few tenths of a percent. Small labels are promised less.
-    constexpr double tolerance = 0.004, tolerance_small = 0.02;
-    // Slanted sheets of a voxel come out too thick, and tear if they shrink further relative to their
-    // neighbours; voxels.
-    constexpr double max_small_shrinking = 0.15;
-    constexpr int sweeps = 30;  // of Gauss-Seidel; the outside and labels of correct volume are not changed
     std::vector<RegionIndex> off;
     for (std::size_t r = 1; r < growth_.size(); ++r) {
       step_[r] = 0;
       const double voxels = voxels_of(labels, r);
       if (!contacts(r).empty() &&
-          std::abs(voxels - volumes_[r]) > (is_small(labels, r) ? tolerance_small : tolerance) * voxels)
+          std::abs(voxels - volumes_[r]) >
+              (is_small(labels, r) ? LabelTuning::Growth::tolerance_small : LabelTuning::Growth::tolerance) *
+                  voxels)
         off.push_back(static_cast<RegionIndex>(r));
     }
-    for (int sweep = 0; sweep < sweeps; ++sweep)
+    for (int sweep = 0; sweep < LabelTuning::Growth::sweeps; ++sweep)
       for (RegionIndex r : off) {
         double gain = (voxels_of(labels, r) - volumes_[r]) / give_[r];
         double faces = 0;
@@ -253,14 +244,14 @@ class Growth {
           gain += c.faces * step_[c.with];
           faces += c.faces;
         }
-        const double max_growth = LabelSmoother::max_growth;
+        const double max_growth = LabelTuning::Growth::max_growth;
         double low = -max_growth, high = max_growth;
         for (const Contact& c : contacts(r)) {
           const double beside = growth_[c.with] + step_[c.with];
-          if (is_small(labels, r)) low = std::max(low, beside - max_small_shrinking);
+          if (is_small(labels, r)) low = std::max(low, beside - LabelTuning::Growth::max_small_shrinking);
           if (c.with != outside_region && is_small(labels, c.with) &&
               volumes_[c.with] > voxels_of(labels, c.with))
-            high = std::min(high, beside + max_small_shrinking);
+            high = std::min(high, beside + LabelTuning::Growth::max_small_shrinking);
         }
         step_[r] = std::clamp(growth_[r] + gain / faces, std::min(low, high), high) - growth_[r];
       }
@@ -302,8 +293,7 @@ LabelBricks make_label_bricks(const LabelInput& labels, const Progress* progress
   // Only tiles with labels whose growth changed are computed again.
   Growth growth(labels.materials.size() + 1);
   for (int round = 0;; ++round) {
-    constexpr std::size_t grain = 2;  // tiles per task, several milliseconds each where labels meet
-    parallel_for(0, tile_count, grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(0, tile_count, LabelGrains::tiles, [&](std::size_t begin, std::size_t end) {
       if (progress) progress->throw_if_stopped();
       LabelSmoother smoother;
       for (std::size_t t = begin; t < end; ++t) {
@@ -316,7 +306,7 @@ LabelBricks make_label_bricks(const LabelInput& labels, const Progress* progress
                     parts[t]);
       }
     });
-    if (round == max_brick_rounds || !growth.adjust(labels, parts, tiles)) break;
+    if (round == LabelTuning::Growth::max_rounds || !growth.adjust(labels, parts, tiles)) break;
   }
   std::size_t channel_count = 0;
   for (const TileBricks& p : parts) channel_count += p.channels.size();

@@ -8,6 +8,7 @@
 #include "common/tolerances.h"
 #include "mesher/labels/distance_transform.h"
 #include "mesher/labels/label_bricks.h"
+#include "mesher/tuning/label_tuning.h"
 
 namespace tetwright {
 
@@ -154,7 +155,6 @@ class LabelField::Sampler final : public FieldSampler {
     both.insert(second);
     return both;
   }
-  std::optional<Sheet> thinnest_sheet(const Vec3&, double) override { return std::nullopt; }
 
  private:
   /// A brick, the lowest node of a cell in it, and the position in the cell.
@@ -237,8 +237,7 @@ class LabelField::Sampler final : public FieldSampler {
     if (shared_.depths.steps.empty()) return std::nullopt;
     const NearestRegion first = nearest(p).first;
     const double cut_off = per_unit_ * band_units;
-    // Rounding and interpolation give slightly less than the band.
-    if (first.margin < 0.98 * cut_off) return std::nullopt;
+    if (first.margin < LabelTuning::Field::clamped_share * cut_off) return std::nullopt;
     const Vec3 index = field_.to_nodes(point) - Vec3::Constant(padding);
     Vec3 by_voxels;
     const double per_voxel = per_unit_ * units_per_voxel;
@@ -293,8 +292,9 @@ class LabelField::Sampler final : public FieldSampler {
 };
 
 bool LabelField::is_certain(const Vec3& point) const {
-  constexpr double cells_per_voxel = 2;
-  if (cells_per_voxel * voxels().cell_size > (1 + tolerance::coinciding_cells) * shared_->voxel) return false;
+  if (LabelTuning::Field::promised_cells_per_voxel * voxels().cell_size >
+      (1 + tolerance::coinciding_cells) * shared_->voxel)
+    return false;
   const Vec3 at = to_nodes(point);
   // A point at a voxel centre is off by rounding only; voxels.
   return (at - at.array().round().matrix()).cwiseAbs().maxCoeff() < tolerance::coinciding_cells;
@@ -328,11 +328,10 @@ class LabelField::InterfaceFinder {
  private:
   void append_range(const std::array<int, 3>& from, const std::array<int, 3>& to,
                     std::vector<MortonKey>& out) {
-    constexpr int small_range = 8;  // cells along a side; testing smaller ranges first does not pay
     int longest = 0;
     for (int a = 1; a < 3; ++a)
       if (to[a] - from[a] > to[longest] - from[longest]) longest = a;
-    if (smaller_ && to[longest] - from[longest] > small_range) {
+    if (smaller_ && to[longest] - from[longest] > LabelTuning::Field::small_range) {
       if (is_far_from_interfaces(from, to)) return;
       std::array<int, 3> middle_to = to, middle_from = from;
       middle_to[longest] = middle_from[longest] = (from[longest] + to[longest]) / 2;

@@ -24,7 +24,7 @@ double voxel_size(const LabelInput& labels);
 /// Distances are measured in index space, with each axis in its own spacing, and multiplied by the smallest
 /// spacing; they are clamped to about two voxels. They are stored in bricks of 8 x 8 x 8 cells between voxel
 /// centres, each with only the labels near it.
-class LabelField final : public MaterialField {
+class LabelField final : public MaterialField, private VoxelVolume {
  public:
   /// \param frame from label_frame()
   /// \param keep_outside region 0 has the outside's name
@@ -37,16 +37,15 @@ class LabelField final : public MaterialField {
   std::shared_ptr<const MaterialField> refined(int refinement) const override;
   std::vector<MortonKey> interface_voxels() const override;
   std::vector<LeafOrigin> band_leaves(RegionIndex region) const override;
-  bool knows_sheets() const override { return false; }
-  /// True at voxel centres, provided that cells are at most half a voxel.
-  bool is_certain(const Vec3& point) const override;
-  bool ends_at_box() const override { return true; }
+  const VoxelVolume* volume() const override { return this; }
 
  private:
   class Sampler;
   class InterfaceFinder;
   struct Shared;
 
+  /// True at voxel centres, provided that cells are at most half a voxel.
+  bool is_certain(const Vec3& point) const override;
   static double band_in_cells(const Shared& shared, const GridFrame& voxels);
   LabelField(std::shared_ptr<const Shared> shared, const GridFrame& voxels, std::vector<FieldRegion> regions,
              int refinement);

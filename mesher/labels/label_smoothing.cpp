@@ -4,47 +4,32 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesher/tuning/label_tuning.h"
+
 namespace tetwright {
 
 namespace {
 
+using Smoothing = LabelTuning::Smoothing;
+
 /// Binomial coefficients of order 4, of variance 1.
 constexpr std::array<float, 5> kernel{0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F};
 constexpr int kernel_reach = 2;
-constexpr int back_projections = 2;
-/// Fraction of the missing share that one back projection adds: with all of it thin sheets overshoot.
-constexpr float given_back = 0.7F;
-/// Lead of the largest share over the second above which a sample point counts entirely for its label.
-constexpr float sure_lead = 0.4F;
-/// Minimum lead of a voxel's own share at its centre: keeps interfaces an eighth of a voxel away from it.
-constexpr float min_lead = 0.1F;
-/// Minimum lead as a distance, voxels.
-constexpr float min_distance = 0.125F;
-/// Minimum lead at the middle of an edge across which two voxels of a label are connected, voxels.
-constexpr float min_connection = 0.0625F;
-/// Minimum distance of third labels from the middle of a voxel face shared by two labels, voxels. Otherwise
-/// the contact could shrink so far that no tet fits around it.
-constexpr float min_contact = 0.25F;
 /// Standard deviation of the smoothing kernel, and the derivative of probit(u) with respect to t = 2u - 1 at
 /// 0.
 constexpr float deviation = 1.0F, probit_slope = 1.2533141F;
-/// Change of the lead of one share over the other along one voxel across a flat interface.
-constexpr float share_per_voxel = 0.8F;
-/// |2u - 1| is clamped to this, where the distance is LabelSmoother::band.
-constexpr float max_excess = 0.95F;
 
 /// Approximates -probit(u) using only + - * / and sqrt, which round identically everywhere: within 0.05 up to
 /// 1.6 voxels from a flat interface, 0.17 too large at the band.
 float distance_from_share(float u) {
-  const float t = std::clamp(2 * u - 1, -max_excess, max_excess);
+  const float t = std::clamp(2 * u - 1, -Smoothing::max_excess, Smoothing::max_excess);
   return -deviation * probit_slope * t / std::sqrt(std::sqrt(1 - t * t));
 }
 
-/// The depth of the centre of a voxel most of which its label still lacks. Such a label is a rod or a single
-/// voxel, too narrow for back projection; the depth is nearly that in a voxel of its own.
+/// The depth of the centre of a voxel most of which its label still lacks, voxels.
 float distance_from_lack(float lack) {
-  constexpr float from = 0.3F, to = 0.8F, deepest = 0.8F;
-  return deepest * std::clamp((lack - from) / (to - from), 0.0F, 1.0F);
+  constexpr float from = Smoothing::lack_from, to = Smoothing::lack_to;
+  return Smoothing::deepest * std::clamp((lack - from) / (to - from), 0.0F, 1.0F);
 }
 
 }  // namespace
@@ -80,7 +65,7 @@ std::size_t LabelSmoother::number_labels() {
         }
       }
   for (RegionIndex r : labels_) numbers_[r] = 0;
-  if (labels_.size() > max_labels) return labels_.size();
+  if (labels_.size() > Smoothing::max_labels) return labels_.size();
   if (fields_.size() < labels_.size()) {
     fields_.resize(labels_.size());
     missing_.resize(labels_.size());
@@ -216,7 +201,7 @@ void LabelSmoother::add_missing_shares(int margin) {
       std::array<float, 27> share;
       for (std::size_t l = 0; l < near.size(); ++l) {
         const float lead = samples[l][s] - (l == winner ? second : first);
-        share[l] = std::clamp(0.5F + lead / sure_lead, 0.0F, 1.0F);
+        share[l] = std::clamp(0.5F + lead / Smoothing::sure_lead, 0.0F, 1.0F);
         sum += share[l];
       }
       for (std::size_t l = 0; l < near.size(); ++l) got[l] += share[l] / (8 * sum);
@@ -235,7 +220,7 @@ void LabelSmoother::add_missing_shares(int margin) {
   }
   for (std::size_t l = 0; l < labels_.size(); ++l)
     if (missing_boxes_[l].low[0] < side) {
-      add_smoothed(missing_[l], missing_boxes_[l], margin + kernel_reach, given_back, fields_[l]);
+      add_smoothed(missing_[l], missing_boxes_[l], margin + kernel_reach, Smoothing::given_back, fields_[l]);
       clear(missing_[l], missing_boxes_[l]);
     }
 }
@@ -246,7 +231,7 @@ void LabelSmoother::enforce_own_labels() {
     for (std::uint16_t l : labels_near(n))
       if (l != n.own) others = std::max(others, fields_[l][n.place]);
     float& own = fields_[n.own][n.place];
-    own = std::max(own, others + min_lead);
+    own = std::max(own, others + Smoothing::min_lead);
   }
 }
 
@@ -277,7 +262,7 @@ void LabelSmoother::distances_from_shares(int margin, std::span<const float> gro
   for (const MixedNode& n : mixed_) {
     // A label that must shrink gets a smaller fixed depth.
     const float by_hand = distance_from_lack(n.lack) + std::min(0.0F, growth[labels_[n.own]]);
-    const float lead = 2 * std::max(min_distance, by_hand);
+    const float lead = 2 * std::max(Smoothing::min_distance, by_hand);
     float others = HUGE_VALF;
     for (std::uint16_t l : labels_near(n)) {
       if (l == n.own) continue;
@@ -335,7 +320,7 @@ void LabelSmoother::connect_edge(const MixedNode& n, int normal, std::vector<Lif
   for (const std::uint16_t other : connect_p ? std::array{q, q2} : std::array{p, p2}) {
     float lead = 0;
     for (int v : quad) lead += fields_[connected][v] - fields_[other][v];
-    lack = std::max(lack, lead + 4 * 2 * min_connection);
+    lack = std::max(lack, lead + 4 * 2 * Smoothing::min_connection);
   }
   if (lack <= 0) return;
   for (int v : quad)
@@ -357,7 +342,7 @@ void LabelSmoother::widen_contact(const MixedNode& n, int normal, std::vector<Li
   for (std::uint16_t l : labels_near(n)) {
     if (l == here || l == there) continue;
     const float third = fields_[l][p] + share * (fields_[l][q] - fields_[l][p]);
-    lack = std::max(lack, both + 2 * min_contact - third);
+    lack = std::max(lack, both + 2 * Smoothing::min_contact - third);
   }
   if (lack <= 0) return;
   for (int v : {p, q}) lifts.push_back({v, 2 * lack});
@@ -369,7 +354,7 @@ void LabelSmoother::grow(std::span<const float> growth) {
       float& u = fields_[l][n.place];
       // 1 at the label's interface, 0 far from it.
       const float near = std::clamp(4 * u * (1 - u), 0.0F, 1.0F);
-      u += share_per_voxel * growth[labels_[l]] * near;
+      u += Smoothing::share_per_voxel * growth[labels_[l]] * near;
     }
 }
 
@@ -387,14 +372,14 @@ void LabelSmoother::smooth(std::span<const float> growth) {
     clear(indicator, boxes_[l]);
   }
   int margin = kernel_reach;
-  for (int k = 0; k < back_projections; ++k) {
+  for (int k = 0; k < Smoothing::back_projections; ++k) {
     add_missing_shares(margin + 1);
     margin += 1 + kernel_reach;
     enforce_own_labels();
   }
   grow(growth);
   enforce_own_labels();
-  static_assert(kernel_reach + back_projections * (1 + kernel_reach) + 1 == reach);
+  static_assert(kernel_reach + Smoothing::back_projections * (1 + kernel_reach) + 1 == reach);
   distances_from_shares(margin, growth);
   enforce_contacts();
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mesher/domain/regions.h"
+#include "mesher/tuning/label_tuning.h"
 
 namespace tetwright {
 
@@ -65,15 +66,14 @@ class LabelSmoother {
   }
   /// The number of voxels of the volume in a part of the tile.
   double volume_of(const std::array<int, 3>& part) const;
-  /// Finds the labels and returns their number, which must not exceed max_labels: each takes a megabyte.
+  /// Finds the labels and returns their number, which must not exceed
+  /// LabelTuning::Smoothing::max_labels.
   std::size_t number_labels();
-  static constexpr std::size_t max_labels = 1024;
   /// Computes the distances.
   /// \param growth by region: how far each label is grown (or, if negative, shrunk) in all directions,
-  ///   voxels; at most max_growth in absolute value
+  ///   voxels; at most LabelTuning::Growth::max_growth in absolute value
   /// \pre number_labels() was called
   void smooth(std::span<const float> growth);
-  static constexpr float max_growth = 0.7F;
 
   /// The labels of the voxels, ascending.
   std::span<const RegionIndex> labels() const { return labels_; }
@@ -139,15 +139,13 @@ class LabelSmoother {
     return {near_.data() + n.first_label, n.label_count};
   }
 
-  /// Samples of shares() along each side of a cell.
-  static constexpr int samples_along = 4;
   /// The range of samples within the volume in the cell above node i (of the tile) along an axis.
   std::pair<int, int> samples_within(int axis, int i) const {
     return {i >= low_[axis]       ? 0
-            : i == low_[axis] - 1 ? samples_along / 2
-                                  : samples_along,
-            i < high_[axis] - 1    ? samples_along
-            : i == high_[axis] - 1 ? samples_along / 2
+            : i == low_[axis] - 1 ? LabelTuning::Smoothing::samples_along / 2
+                                  : LabelTuning::Smoothing::samples_along,
+            i < high_[axis] - 1    ? LabelTuning::Smoothing::samples_along
+            : i == high_[axis] - 1 ? LabelTuning::Smoothing::samples_along / 2
                                    : 0};
   }
 

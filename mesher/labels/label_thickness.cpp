@@ -6,6 +6,8 @@
 
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
+#include "mesher/tuning/domain_tuning.h"
+#include "mesher/tuning/label_tuning.h"
 
 namespace tetwright {
 
@@ -29,9 +31,8 @@ class Opening {
     // previous axes. Then every voxel of such a box is thick.
     for (int axis = 0; axis < 3; ++axis) sweep(axis, [&](int a, auto&&... p) { start_boxes(a, p...); });
     for (int axis = 0; axis < 3; ++axis) sweep(axis, [&](int a, auto&&... p) { fill_boxes(a, p...); });
-    constexpr std::size_t voxels_at_once = 1 << 18;
     return parallel_collect<std::size_t>(
-        0, holds_.size(), voxels_at_once,
+        0, holds_.size(), LabelGrains::voxels,
         [&](std::size_t begin, std::size_t end, std::vector<std::size_t>& out) {
           for (std::size_t i = begin; i < end; ++i)
             if (!holds_[i] && !beside_thick(i) &&
@@ -112,9 +113,7 @@ class Opening {
       near_border |= at[a] < sides_[a] - 1;
     }
     if (!near_border) return false;
-    // Larger boxes belong to cells much larger than voxels, where gaps this small hardly matter.
-    constexpr int max_tried = 512;
-    if (sides_[0] * sides_[1] * sides_[2] > max_tried) return true;
+    if (sides_[0] * sides_[1] * sides_[2] > LabelTuning::Thickness::max_tried) return true;
     for (low[2] = at[2] - sides_[2] + 1; low[2] <= at[2]; ++low[2])
       for (low[1] = at[1] - sides_[1] + 1; low[1] <= at[1]; ++low[1])
         for (low[0] = at[0] - sides_[0] + 1; low[0] <= at[0]; ++low[0])
@@ -191,7 +190,8 @@ class ThinLabelFinder {
   /// The highest level, up to `coarsest`, of cells that may contain an interface: those of at most half a
   /// voxel. Larger ones would break the promises for finer cells.
   int coarsest_interface_level(int coarsest) const {
-    constexpr double max_cell = 0.5 + tolerance::coinciding_cells;  // voxels
+    constexpr double max_cell =
+        1 / LabelTuning::Field::promised_cells_per_voxel + tolerance::coinciding_cells;  // voxels
     while (coarsest > 0 && std::ldexp(frame_.cell_size, coarsest) > max_cell * spacing_.minCoeff())
       --coarsest;
     return coarsest;
@@ -205,19 +205,16 @@ class ThinLabelFinder {
       voxels_ = Opening(labels_, sides, progress_).thin_voxels();
       return !voxels_.empty();
     }
-    // Two cells per voxel are too few for islands hardly larger than a voxel; eight or more are enough.
-    constexpr double cells_per_island_voxel = 8;
-    if (island_levels_ == 2 || cells_per_island_voxel * frame_.cell_size <= spacing_.minCoeff()) return false;
+    if (island_levels_ == 2 ||
+        LabelTuning::Thickness::cells_per_island_voxel * frame_.cell_size <= spacing_.minCoeff())
+      return false;
     ++island_levels_;
     if (depth == 0) voxels_ = Opening(labels_, {2, 2, 2}, progress_).thin_voxels();
-    // Islands of fewer voxels would have no shape with two cells per voxel.
-    constexpr std::size_t small_island = 8;
     std::erase_if(voxels_, [&](std::size_t v) {
-      return labels_.regions[v] == outside_region || !in_small_island(labels_, v, small_island);
+      return labels_.regions[v] == outside_region ||
+             !in_small_island(labels_, v, LabelTuning::Thickness::small_island);
     });
-    // Each takes thousands of tets, so this is not for noise.
-    constexpr std::size_t max_island_voxels = 32;
-    return !voxels_.empty() && voxels_.size() <= max_island_voxels;
+    return !voxels_.empty() && voxels_.size() <= LabelTuning::Thickness::max_island_voxels;
   }
 
   /// The voxels found, as parts of their regions that even the smallest cells do not resolve.
@@ -235,11 +232,10 @@ class ThinLabelFinder {
 
   /// The cells halved `depth` times around the voxels found, ascending.
   std::vector<MortonKey> cells_around(int depth) const {
-    // Maximum distance of interfaces from the centre of a thin voxel, voxels.
-    constexpr double around = 0.75;
-    const Vec3 reach = around * to_grid_.cwiseAbs().rowwise().sum();
+    const Vec3 reach = LabelTuning::Thickness::reach * to_grid_.cwiseAbs().rowwise().sum();
     std::vector<MortonKey> cells = parallel_collect<MortonKey>(
-        0, voxels_.size(), 1 << 12, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+        0, voxels_.size(), LabelGrains::thin_voxels,
+        [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
           for (std::size_t k = begin; k < end; ++k) {
             const Vec3 middle = centre(voxels_[k]);
             std::array<int, 3> from, to;
@@ -262,14 +258,13 @@ class ThinLabelFinder {
  private:
   /// The number of voxels along each axis that two cells, halved `depth` times, span.
   Sides sides_at(int depth) const {
-    constexpr double cells_enough = 2;
-    constexpr int longest_box = 200;
     const double cell = std::ldexp(frame_.cell_size, -depth);
     Sides sides;
     for (int a = 0; a < 3; ++a)
-      sides[a] = std::clamp(
-          static_cast<int>(std::ceil(cells_enough * cell / spacing_[a] - tolerance::coinciding_cells)), 1,
-          longest_box);
+      sides[a] =
+          std::clamp(static_cast<int>(std::ceil(LabelTuning::Thickness::min_cells * cell / spacing_[a] -
+                                                tolerance::coinciding_cells)),
+                     1, LabelTuning::Thickness::max_side);
     return sides;
   }
 
@@ -298,8 +293,8 @@ ThinLabels find_thin_labels(const LabelInput& labels, const GridFrame& frame, co
   int& coarsest = thin.finer.coarsest_interface_level;
   coarsest = finder.coarsest_interface_level(coarsest);
   std::vector<std::vector<MortonKey>> by_depth;
-  for (int depth = 0; depth <= max_refinement && finder.find_voxels(depth); ++depth) {
-    if (depth == max_refinement)
+  for (int depth = 0; depth <= DomainTuning::Refinement::max_levels && finder.find_voxels(depth); ++depth) {
+    if (depth == DomainTuning::Refinement::max_levels)
       thin.too_thin = finder.too_thin();
     else
       by_depth.push_back(finder.cells_around(depth));

@@ -20,7 +20,7 @@ struct ThinLabels {
 
 /// Finds the voxels where labels are thin. A label is thick at a voxel if a cube of two cells that contains
 /// the voxel fits into the label (an opening, Serra 1982), or the voxel is adjacent to such a cube. Elsewhere
-/// the cells around the voxel are halved until the cube fits or they have 1/2^max_refinement of their size.
+/// the cells around the voxel are halved until the cube fits or they have an eighth of their size.
 /// Islands of fewer than eight voxels, if there are few, get eight cells per voxel. Also determines how large
 /// cells at plain interfaces may be. Takes two bytes per voxel meanwhile.
 /// \param frame from label_frame()

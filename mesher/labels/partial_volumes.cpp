@@ -6,10 +6,13 @@
 #include <cmath>
 
 #include "mesher/labels/label_smoothing.h"
+#include "mesher/tuning/label_tuning.h"
 
 namespace tetwright {
 
 namespace {
+
+using Smoothing = LabelTuning::Smoothing;
 
 float mix(float a, float b, float share) { return a + share * (b - a); }
 
@@ -63,7 +66,7 @@ double LabelSmoother::volume_of(const std::array<int, 3>& part) const {
     int samples = 0;
     for (int i = part[a] * part_cells; i < (part[a] + 1) * part_cells; ++i)
       if (const auto [from, to] = samples_within(a, i); from < to) samples += to - from;
-    voxels *= static_cast<double>(samples) / samples_along;
+    voxels *= static_cast<double>(samples) / Smoothing::samples_along;
   }
   return voxels;
 }
@@ -72,8 +75,9 @@ std::vector<double> LabelSmoother::shares(const std::array<int, 3>& part) const 
   std::vector<double> sums(labels_.size(), 0.0);
   std::vector<std::uint16_t> candidates;
   std::vector<std::array<float, 8>> corners;
-  constexpr float sample_side = 1.0F / samples_along;
-  constexpr double sample_volume = 1.0 / (samples_along * samples_along * samples_along);
+  constexpr float sample_side = 1.0F / Smoothing::samples_along;
+  constexpr double sample_volume =
+      1.0 / (Smoothing::samples_along * Smoothing::samples_along * Smoothing::samples_along);
   std::array<int, 3> low, high;
   for (int a = 0; a < 3; ++a) {
     low[a] = reach + part[a] * part_cells;
@@ -107,9 +111,11 @@ std::vector<double> LabelSmoother::shares(const std::array<int, 3>& part) const 
         for (std::size_t l = 0; l < candidates.size(); ++l)
           for (int k = 0; k < 8; ++k) corners[l][k] = fields_[candidates[l]][places[k]];
         // Each sample represents the box around it, which is divided where an interface crosses it.
-        for (int i = 0; i < samples_along * samples_along * samples_along; ++i) {
-          const std::array<int, 3> step{i % samples_along, i / samples_along % samples_along,
-                                        i / (samples_along * samples_along)};
+        for (int i = 0; i < Smoothing::samples_along * Smoothing::samples_along * Smoothing::samples_along;
+             ++i) {
+          const std::array<int, 3> step{i % Smoothing::samples_along,
+                                        i / Smoothing::samples_along % Smoothing::samples_along,
+                                        i / (Smoothing::samples_along * Smoothing::samples_along)};
           std::array<float, 3> at;
           bool inside = true;
           for (int a = 0; a < 3; ++a) {

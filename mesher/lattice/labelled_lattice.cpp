@@ -8,13 +8,11 @@
 
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
+#include "mesher/tuning/lattice_tuning.h"
 
 namespace tetwright {
 
 namespace {
-
-constexpr std::size_t lattice_grain =
-    1 << 14;  // tets or points per parallel chunk; each takes some nanoseconds
 
 bool mixed(const std::vector<RegionIndex>& regions, const Tet& t) {
   const RegionIndex r = regions[t[0]];
@@ -28,7 +26,7 @@ void mark(std::uint8_t& flag) { std::atomic_ref<std::uint8_t>(flag).store(1, std
 std::vector<std::uint8_t> points_near_interfaces(const std::vector<RegionIndex>& regions,
                                                  const TetList& tets) {
   std::vector<std::uint8_t> near(regions.size(), 0);
-  parallel_for(0, tets.size(), lattice_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, tets.size(), LatticeGrains::tets, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       if (mixed(regions, tets[i]))
         for (Index v : tets[i]) mark(near[v]);
@@ -40,7 +38,7 @@ std::vector<std::uint8_t> points_near_interfaces(const std::vector<RegionIndex>&
 std::size_t relabel_isolated_vertices(std::vector<RegionIndex>& regions, const TetList& tets,
                                       const StarMap& stars) {
   std::vector<std::uint8_t> has_company(regions.size(), 0);
-  parallel_for(0, tets.size(), lattice_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, tets.size(), LatticeGrains::tets, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Tet& t = tets[i];
       if (!mixed(regions, t)) continue;  // mixed tets settle nearly all points; alone() decides the rest
@@ -124,7 +122,7 @@ void LabelledLattice::list_star_regions(std::size_t region_count) {
       for (Index q : tets[t])
         if (std::find(out.begin(), out.end(), first_region[q]) == out.end()) out.push_back(first_region[q]);
   };
-  parallel_for(0, points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, points.size(), LatticeGrains::sampled_points, [&](std::size_t begin, std::size_t end) {
     std::vector<RegionIndex> found;
     for (std::size_t s = begin; s < end; ++s) {
       regions_of(points[s], found);
@@ -133,7 +131,7 @@ void LabelledLattice::list_star_regions(std::size_t region_count) {
   });
   std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
   regions_.resize(starts_.back());
-  parallel_for(0, points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, points.size(), LatticeGrains::sampled_points, [&](std::size_t begin, std::size_t end) {
     std::vector<RegionIndex> found;
     for (std::size_t s = begin; s < end; ++s) {
       regions_of(points[s], found);
@@ -185,7 +183,7 @@ LabelledLattice label_lattice(LatticePoints points, std::vector<NearestRegion> n
 
 void read_star_values(LabelledLattice& lattice, const MaterialField& field) {
   const std::vector<Index>& points = lattice.stars.points();
-  parallel_for(0, points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, points.size(), LatticeGrains::sampled_points, [&](std::size_t begin, std::size_t end) {
     const std::unique_ptr<FieldSampler> owned = field.sampler();
     FieldSampler& sampler = *owned;
     for (std::size_t s = begin; s < end; ++s) {

@@ -5,12 +5,11 @@
 
 #include "common/geometry/predicates.h"
 #include "common/parallel/parallel_sort.h"
+#include "mesher/tuning/lattice_tuning.h"
 
 namespace tetwright {
 
 namespace {
-
-constexpr std::size_t leaf_grain = 1024;  // leaves per parallel chunk; each takes some microseconds
 
 /// A position on the lattice in half finest cells.
 using HalfCells = std::array<int, 3>;
@@ -153,7 +152,8 @@ LatticePoints lattice_points(const Octree& octree) {
   LatticePoints points;
   // The lowest bit below the key marks centres; corners come from up to eight leaves.
   std::vector<std::uint64_t> marked = parallel_collect<std::uint64_t>(
-      0, octree.size(), leaf_grain, [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& out) {
+      0, octree.size(), LatticeGrains::leaves,
+      [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& out) {
         for (std::size_t i = begin; i < end; ++i) {
           const LeafBox box = leaf_box(octree, i);
           out.push_back(morton_encode(box.centre()) << 1 | 1);
@@ -172,7 +172,7 @@ LatticePoints lattice_points(const Octree& octree) {
   points.keys = std::move(marked);
   points.positions.resize(points.size());
   points.is_centre.resize(points.size());
-  parallel_for(0, points.size(), 8 * leaf_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, points.size(), 8 * LatticeGrains::leaves, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       points.is_centre[i] = points.keys[i] & 1;
       points.keys[i] >>= 1;
@@ -190,7 +190,7 @@ LatticePoints lattice_points(const Octree& octree) {
 std::vector<NearestRegion> lattice_regions(const LatticePoints& points, const MaterialField& field) {
   std::vector<NearestRegion> regions(points.size());
   const int voxel = 2 << field.refinement();  // half lattice units
-  parallel_for(0, points.size(), 4 * leaf_grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(0, points.size(), 4 * LatticeGrains::leaves, [&](std::size_t begin, std::size_t end) {
     const std::unique_ptr<FieldSampler> owned = field.sampler();
     FieldSampler& sampler = *owned;
     for (std::size_t i = begin; i < end; ++i) {
@@ -212,11 +212,12 @@ std::vector<std::uint8_t> far_outside(const std::vector<NearestRegion>& regions,
 
 TetList lattice_tets(const Octree& octree, const LatticePoints& points,
                      const std::vector<std::uint8_t>* unwanted, int unwanted_level) {
-  std::vector<std::vector<Tet>> parts((octree.size() + leaf_grain - 1) / leaf_grain);
+  std::vector<std::vector<Tet>> parts((octree.size() + LatticeGrains::leaves - 1) / LatticeGrains::leaves);
   parallel_for(0, parts.size(), 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t part = first; part < last; ++part) {
       TetEmitter emitter(octree, points, unwanted, unwanted_level, parts[part]);
-      for (std::size_t i = part * leaf_grain; i < std::min(octree.size(), (part + 1) * leaf_grain); ++i)
+      for (std::size_t i = part * LatticeGrains::leaves;
+           i < std::min(octree.size(), (part + 1) * LatticeGrains::leaves); ++i)
         emitter.leaf(i);
     }
   });

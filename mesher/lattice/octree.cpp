@@ -5,13 +5,11 @@
 #include <cmath>
 
 #include "common/parallel/parallel_sort.h"
+#include "mesher/tuning/lattice_tuning.h"
 
 namespace tetwright {
 
 namespace {
-
-/// Cells per parallel chunk where a cell takes about a microsecond.
-constexpr std::size_t cell_grain = 2048;
 
 /// Appends the parents (level l + 1) that must be split because the cell `key` of level l is split: its own
 /// parent, and those of its neighbours across faces and edges, which must exist as cells of level l.
@@ -126,7 +124,7 @@ Octree build_octree(const std::array<int, 3>& cells, int root_level, const Split
     std::vector<MortonKey>& now = split_cells[static_cast<std::size_t>(level)];
     const std::vector<MortonKey>& below = split_cells[static_cast<std::size_t>(level - 1)];
     const std::array<int, 3> size{cells[0] >> (level - 1), cells[1] >> (level - 1), cells[2] >> (level - 1)};
-    now = parallel_collect<MortonKey>(0, below.size(), cell_grain,
+    now = parallel_collect<MortonKey>(0, below.size(), LatticeGrains::cells,
                                       [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
                                         for (std::size_t i = begin; i < end; ++i)
                                           append_parents(below[i], size, out);
@@ -158,7 +156,7 @@ Octree build_octree(const std::array<int, 3>& cells, int root_level, const Split
   for (int level = root_level; level > 0; --level) {
     const std::vector<MortonKey>& parents = split_cells[static_cast<std::size_t>(level)];
     const std::vector<std::uint64_t> children = parallel_collect<std::uint64_t>(
-        0, parents.size(), cell_grain,
+        0, parents.size(), LatticeGrains::cells,
         [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& out) {
           for (std::size_t i = begin; i < end; ++i)
             for (MortonKey child = 0; child < 8; ++child)
@@ -199,7 +197,8 @@ Octree build_octree(const MaterialField& field, const OctreeOptions& options,
       return sheets;
     }
     const std::vector<MortonKey> failed = parallel_collect<MortonKey>(
-        0, holding.size(), cell_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+        0, holding.size(), LatticeGrains::cells,
+        [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
           const std::unique_ptr<FieldSampler> owned = field.sampler();
           FieldSampler& sampler = *owned;
           for (std::size_t i = begin; i < end; ++i)
@@ -210,11 +209,13 @@ Octree build_octree(const MaterialField& field, const OctreeOptions& options,
     const std::array<int, 3> size{frame.cells[0] >> level, frame.cells[1] >> level, frame.cells[2] >> level};
     // Cut tets are worse where cells of two sizes meet at the interface, so coarse cells are used only in
     // groups, never singly.
-    std::vector<MortonKey> chosen = parallel_collect<MortonKey>(
-        0, holding.size(), cell_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
-          for (std::size_t i = begin; i < end; ++i)
-            if (has_split_neighbour(holding[i], size, failed)) out.push_back(holding[i]);
-        });
+    std::vector<MortonKey> chosen =
+        parallel_collect<MortonKey>(0, holding.size(), LatticeGrains::cells,
+                                    [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+                                      for (std::size_t i = begin; i < end; ++i)
+                                        if (has_split_neighbour(holding[i], size, failed))
+                                          out.push_back(holding[i]);
+                                    });
     chosen.insert(chosen.end(), failed.begin(), failed.end());
     chosen.insert(chosen.end(), sheets.begin(), sheets.end());
     return chosen;

@@ -8,13 +8,13 @@
 #include "common/memory.h"
 #include "common/message_text.h"
 #include "common/parallel/parallel_sort.h"
-#include "mesher/lattice/octree_memory.h"
+#include "mesher/tuning/domain_tuning.h"
+#include "mesher/tuning/estimate_tuning.h"
+#include "mesher/tuning/lattice_tuning.h"
 
 namespace tetwright {
 
 namespace {
-
-constexpr std::size_t sizing_grain = 1024;
 
 std::vector<MortonKey> root_cells(const GridFrame& frame) {
   std::vector<MortonKey> cells;
@@ -42,11 +42,13 @@ RefinementRegions find_sized_cells(const MaterialField& field, const MaxCell& ma
   std::vector<std::vector<MortonKey>> split_by_step;  // starting at the root cells
   std::vector<MortonKey> cells = root_cells(frame);
   double total = 0;
-  for (int level = frame.root_level; level > -max_refinement && !cells.empty(); --level) {
+  for (int level = frame.root_level; level > -DomainTuning::Refinement::max_levels && !cells.empty();
+       --level) {
     if (progress) progress->throw_if_stopped();
     const double side = std::ldexp(1, level);  // voxels
     std::vector<MortonKey> split = parallel_collect<MortonKey>(
-        0, cells.size(), sizing_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+        0, cells.size(), LatticeGrains::sized_cells,
+        [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
           const std::unique_ptr<FieldSampler> sampler = field.sampler();
           for (std::size_t i = begin; i < end; ++i) {
             const std::array<int, 3> low = morton_decode(cells[i]);
@@ -61,7 +63,7 @@ RefinementRegions find_sized_cells(const MaterialField& field, const MaxCell& ma
           }
         });
     total += 8 * static_cast<double>(split.size());
-    require_memory(program_bytes + bytes_per_leaf * total,
+    require_memory(EstimateTuning::Memory::program + EstimateTuning::Memory::per_leaf * total,
                    "cells of " + short_number(side / 2 * frame.cell_size) + ", for edges as short as asked,",
                    "give a larger --max-edge, or larger sizes");
     cells.clear();

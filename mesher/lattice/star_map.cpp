@@ -6,16 +6,11 @@
 #include <span>
 
 #include "common/parallel/parallel.h"
+#include "mesher/tuning/lattice_tuning.h"
 
 namespace tetwright {
 
 namespace {
-
-constexpr std::size_t star_grain = 1 << 14;  // tets per task, some nanoseconds each
-
-/// Number of passes over the tets, each for one part of the points: not all rows exist as plain numbers at a
-/// time.
-constexpr std::size_t row_passes = 4;
 
 void append_steps(std::span<const Index> ascending, std::vector<std::uint8_t>& out) {
   Index before = 0;
@@ -37,7 +32,7 @@ StarMap::StarMap(std::vector<Index> points, std::size_t point_count, const TetLi
   // order.
   std::vector<Index> counts(points_.size(), 0);
   const auto for_each_corner = [&](std::size_t first, std::size_t last, auto&& body) {
-    parallel_for(0, tets.size(), star_grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(0, tets.size(), LatticeGrains::tets, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
         for (Index v : tets[i])
           if (const Index s = slots_[v]; s >= first && s < last)
@@ -49,8 +44,9 @@ StarMap::StarMap(std::vector<Index> points, std::size_t point_count, const TetLi
   const std::size_t chunks = (points_.size() + chunk_rows - 1) / chunk_rows;
   chunks_.resize(chunks);
   offsets_.resize(points_.size() + chunks);
-  for (std::size_t pass = 0; pass < row_passes; ++pass) {
-    const std::size_t first_chunk = chunks * pass / row_passes, last_chunk = chunks * (pass + 1) / row_passes;
+  for (std::size_t pass = 0; pass < LatticeTuning::StarMap::passes; ++pass) {
+    const std::size_t first_chunk = chunks * pass / LatticeTuning::StarMap::passes,
+                      last_chunk = chunks * (pass + 1) / LatticeTuning::StarMap::passes;
     const std::size_t first = first_chunk * chunk_rows,
                       last = std::min(points_.size(), last_chunk * chunk_rows);
     if (first >= last) continue;

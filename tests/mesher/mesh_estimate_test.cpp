@@ -7,6 +7,7 @@
 
 #include "common/error.h"
 #include "common/samples/samples.h"
+#include "mesher/tuning/estimate_tuning.h"
 #include "tests/mesher/fields.h"
 #include "tests/mesher/label_volumes.h"
 
@@ -24,9 +25,10 @@ void expect_good_estimates(const DenseMesh& dense, double lattice_tolerance = 0.
   EXPECT_NEAR(static_cast<double>(r.estimate.tets), tets, tolerance * tets);
   EXPECT_NEAR(static_cast<double>(r.lattice_estimate.tets), tets, lattice_tolerance * tets);
   // The memory that the model predicts for the actual lattice.
-  const double lattice = surface_bytes_per_lattice_tet * static_cast<double>(r.lattice_tets);
-  EXPECT_NEAR(static_cast<double>(r.lattice_estimate.bytes), program_bytes + lattice,
-              tolerance * (program_bytes + lattice));
+  const double lattice =
+      EstimateTuning::Memory::per_surface_lattice_tet * static_cast<double>(r.lattice_tets);
+  EXPECT_NEAR(static_cast<double>(r.lattice_estimate.bytes), EstimateTuning::Memory::program + lattice,
+              tolerance * (EstimateTuning::Memory::program + lattice));
 }
 
 MesherOptions with_resolution(int resolution) {

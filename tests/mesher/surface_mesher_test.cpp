@@ -13,7 +13,7 @@
 #include "mesher/distance/material_field.h"
 #include "tests/mesher/test_surfaces.h"
 
-namespace tetwright::mesher_test {
+namespace tetwright::surface_mesher_test {
 namespace {
 
 DenseMesh mesh_of(const TriangleMesh& surface, const MesherOptions& options = {},
@@ -231,4 +231,4 @@ TEST(Mesher, ReportsStagesAndCanBeCancelledInEach) {
 }
 
 }  // namespace
-}  // namespace tetwright::mesher_test
+}  // namespace tetwright::surface_mesher_test

@@ -11,7 +11,7 @@
 #include "tests/common/temporary_folder.h"
 #include "tests/mesher/test_surfaces.h"
 
-namespace tetwright::field_builder_test {
+namespace tetwright::body_field_test {
 namespace {
 
 /// A ball of label 2 whose lower third is label 1, 32 voxels along each side, with the given directions.
@@ -83,4 +83,4 @@ TEST(FieldBuilder, FieldsOfTurnedAndMirroredLabels) {
 }
 
 }  // namespace
-}  // namespace tetwright::field_builder_test
+}  // namespace tetwright::body_field_test

@@ -5,7 +5,7 @@
 
 #include "tests/mesher/fields.h"
 
-namespace tetwright::thin_parts_test {
+namespace tetwright::field_thickness_test {
 namespace {
 
 TEST(ThinParts, ThickOnesAreNotNamed) {
@@ -47,4 +47,4 @@ TEST(ThinParts, SheetsAreRefinedAsFarAsTheyNeed) {
 }
 
 }  // namespace
-}  // namespace tetwright::thin_parts_test
+}  // namespace tetwright::field_thickness_test

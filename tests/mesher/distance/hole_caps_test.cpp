@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 
+#include "mesher/tuning/distance_tuning.h"
 #include "tests/mesher/test_surfaces.h"
 
 namespace tetwright::hole_caps_test {
@@ -16,8 +17,8 @@ constexpr double radius = 9.3;
 
 /// An inside without any surface: a ball whose winding number falls off slowly.
 GridReading ball(int x, int y, int z) {
-  const double w = inside_winding + 0.02 * (radius - (Vec3(x, y, z) - centre).norm());
-  return {w >= inside_winding ? -3.0 : 3.0, w};
+  const double w = DistanceTuning::Caps::inside_winding + 0.02 * (radius - (Vec3(x, y, z) - centre).norm());
+  return {w >= DistanceTuning::Caps::inside_winding ? -3.0 : 3.0, w};
 }
 
 std::vector<GridEdge> ball_seed() {

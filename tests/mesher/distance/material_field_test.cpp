@@ -135,13 +135,14 @@ TEST(MaterialField, FacesInContactLeaveNoSlivers) {
 
 TEST(MaterialField, SheetsAndTheirThickness) {
   const auto field = make_field({make_sphere(1, Vec3::Zero(), 6), make_sphere(0.9, Vec3::Zero(), 6)}, 0.05);
-  const std::unique_ptr<FieldSampler> owned = field->sampler();
-  FieldSampler& sampler = *owned;
-  const auto sheet = sampler.thinnest_sheet(field->frame().to_grid({0.57, 0.55, 0.54}), 0.5);
+  const std::unique_ptr<FieldSampler> sampler = field->sampler();
+  ASSERT_TRUE(sampler->sheets());
+  SheetSampler& sheets = *sampler->sheets();
+  const auto sheet = sheets.thinnest_sheet(field->frame().to_grid({0.57, 0.55, 0.54}), 0.5);
   ASSERT_TRUE(sheet);
   EXPECT_EQ(sheet->region, 1);
   EXPECT_NEAR(sheet->thickness, 2, 0.05);  // lattice units
-  EXPECT_FALSE(sampler.thinnest_sheet(field->frame().to_grid({0, 0, 0.5}), 0.5));
+  EXPECT_FALSE(sheets.thinnest_sheet(field->frame().to_grid({0, 0, 0.5}), 0.5));
 }
 
 TEST(MaterialField, TwoNearest) {

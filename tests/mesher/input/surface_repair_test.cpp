@@ -11,7 +11,7 @@
 #include "tests/mesher/prepared.h"
 #include "tests/mesher/test_surfaces.h"
 
-namespace tetwright::surface_input_test {
+namespace tetwright::surface_repair_test {
 namespace {
 
 constexpr double sphere_volume = 4 * std::numbers::pi / 3;
@@ -157,4 +157,4 @@ TEST(SurfaceRepair, IsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace tetwright::surface_input_test
+}  // namespace tetwright::surface_repair_test

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace tetwright {
+
+/// Frames of voxels and lattices; mesher/README.md, Tuned numbers, explains the terms.
+struct DomainTuning {
+  struct Frames {
+    /// Margin between the surface's bounding box and the box of the octree, cells. Points that may move and
+    /// their stars reach two cells from the surface; the third cell keeps the faces of the box away from
+    /// them.
+    static constexpr int margin = 3;
+    /// Cells along the longest side. Fewer hardly show a shape; a ball of the max has 1.5e9 dense tets,
+    /// nearly as many as can be numbered.
+    static constexpr int min_resolution = 4, max_resolution = 4096;
+    /// Max cells along a side with all halvings, as make_grid_frame() needs them.
+    static constexpr double max_cells = 1 << 18;
+    /// Coordinates must resolve this fraction of a finest cell, or rounding them could invert a thin tet.
+    static constexpr double share_of_rounding = 0x1p-20;
+    /// Max tets of a mesh. Indices have 32 bits, and a lattice has more tets than its mesh.
+    static constexpr double max_tets = 2e9;
+  };
+
+  struct Refinement {
+    /// Levels below a voxel that cells may reach for sheets between surfaces and for thin labels (the guide,
+    /// Regions): each level takes four times the tets along a sheet.
+    static constexpr int max_levels = 3;
+  };
+};
+
+}  // namespace tetwright

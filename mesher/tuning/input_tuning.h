@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+namespace tetwright {
+
+/// Items that a parallel loop hands out at a time: enough to outweigh the handing out, few enough to keep
+/// all threads busy to the end. Sums over triangles are added up in these blocks, which decides their
+/// rounding.
+struct InputGrains {
+  static constexpr std::size_t triangles = 4096;
+  static constexpr std::size_t components = 16;  ///< each is compared with others
+  static constexpr std::size_t voxels = 1 << 18;
+};
+
+/// Surfaces and volumes before there is a grid; mesher/README.md, Tuned numbers, explains the terms.
+struct InputTuning {
+  struct Limits {
+    /// Max materials and labels: regions have numbers of 16 bits, a few of them reserved.
+    static constexpr std::size_t max_materials = 60'000;
+  };
+
+  struct ExpectedSolids {
+    /// Number of queries of a surface above which a tree pays; each query without one visits every triangle.
+    static constexpr std::size_t max_plain_queries = 16;
+  };
+
+  /// Labels named in messages: enough to recognise a table of labels, few enough to read.
+  struct Messages {
+    static constexpr std::size_t max_listed_labels = 30;  ///< in one message
+    static constexpr std::size_t max_named_labels = 20;   ///< with a finding of their own
+  };
+};
+
+}  // namespace tetwright
