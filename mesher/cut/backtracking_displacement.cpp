@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <atomic>
 
-#include "common/geometry/quality.h"
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

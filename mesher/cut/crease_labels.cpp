@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <span>
 
-#include "common/error.h"
-#include "common/geometry/quality.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/cut/cut_tet.h"
+#include "tetwright/error.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "common/parallel/parallel.h"
 #include "mesher/lattice/labelled_lattice.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

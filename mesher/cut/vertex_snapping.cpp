@@ -8,12 +8,12 @@
 #include <optional>
 #include <span>
 
-#include "common/geometry/quality.h"
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
 #include "mesher/cut/cutting.h"
 #include "mesher/cut/independent_rounds.h"
 #include "mesher/cut/link_topology.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

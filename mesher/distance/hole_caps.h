@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/geometry/morton.h"
-#include "common/progress.h"
-#include "common/triangle_mesh.h"
+#include "tetwright/progress.h"
+#include "tetwright/surface_mesh.h"
 
 namespace tetwright {
 

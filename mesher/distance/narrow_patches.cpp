@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "common/geometry/projection_tree.h"
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -6,9 +6,9 @@
 
 #include "common/geometry/point_triangle.h"
 #include "common/geometry/ray_crossing.h"
-#include "common/parallel/parallel.h"
 #include "common/tolerances.h"
 #include "mesher/distance/hole_caps.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

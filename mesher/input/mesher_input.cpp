@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesher/input/mesher_input.h"
+#include "tetwright/mesher_input.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 #include <set>
 #include <utility>
 
-#include "common/error.h"
 #include "common/geometry/measurable.h"
 #include "common/message_text.h"
 #include "mesher/input/qualified_names.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

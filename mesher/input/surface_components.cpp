@@ -7,10 +7,10 @@
 #include <numeric>
 #include <span>
 
-#include "common/error.h"
 #include "common/mesh/disjoint_sets.h"
 #include "common/message_text.h"
 #include "common/parallel/parallel_sort.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -6,8 +6,8 @@
 #include <map>
 #include <numeric>
 
-#include "common/error.h"
-#include "common/parallel/parallel.h"
+#include "tetwright/error.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "mesher/domain/regions.h"
+#include "tetwright/mesher_input.h"
 
 namespace tetwright {
 

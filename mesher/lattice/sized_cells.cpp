@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 
-#include "common/memory.h"
 #include "common/message_text.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/lattice/octree_memory.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

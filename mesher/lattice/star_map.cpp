@@ -5,7 +5,7 @@
 #include <atomic>
 #include <span>
 
-#include "common/parallel/parallel.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

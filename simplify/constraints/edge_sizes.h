@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/sizes/size_field.h"
 #include "simplify/mesh/working_space.h"
+#include "tetwright/sizes.h"
 
 namespace tetwright {
 

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "simplify/mesh/local_numbers.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

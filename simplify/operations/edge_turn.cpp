@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "common/geometry/quality.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "common/geometry/quality.h"
 #include "simplify/constraints/edge_sizes.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

@@ -6,7 +6,7 @@
 
 #include "common/geometry/point_triangle.h"
 #include "common/geometry/predicates.h"
-#include "common/parallel/parallel.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

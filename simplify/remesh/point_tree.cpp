@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "common/error.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

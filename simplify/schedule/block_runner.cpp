@@ -10,7 +10,7 @@
 #include <thread>
 #endif
 
-#include "common/parallel/parallel.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

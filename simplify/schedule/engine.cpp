@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "common/geometry/point_triangle.h"
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
 #include "simplify/operations/collapse.h"
 #include "simplify/operations/fitting.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -5,10 +5,10 @@
 
 #include <limits>
 
-#include "common/error.h"
 #include "common/samples/samples.h"
 #include "tests/mesher/fields.h"
 #include "tests/mesher/label_volumes.h"
+#include "tetwright/error.h"
 
 namespace tetwright::mesh_estimate_test {
 namespace {

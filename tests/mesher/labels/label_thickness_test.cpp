@@ -8,10 +8,10 @@
 #include <cmath>
 #include <set>
 
-#include "common/parallel/parallel.h"
 #include "common/random.h"
 #include "mesher/labels/label_field.h"
 #include "tests/mesher/label_volumes.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::label_thickness_test {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "common/mesh/mesh_check.h"
 #include "simplify/schedule/engine.h"
 #include "tests/simplify/meshes.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 namespace {
