@@ -88,7 +88,7 @@ std::optional<Vec3> first_difference(const std::vector<SolidShell>& expected,
   return result[static_cast<std::size_t>(extra - found.begin())].place;
 }
 
-bool is_same_volume(double volume, double meant, double slack) {
+bool is_within(double volume, double meant, double slack) {
   return is_same_volume(volume, meant) || std::fabs(volume - meant) <= slack;
 }
 
@@ -109,7 +109,7 @@ SolidComparison compare(const ExpectedSolid& expected, const SolidShape& shape, 
     add_difference(f.difference, f.result.handles, f.expected.handles, "handle", "handles");
     add_difference(f.difference, f.result.cavities, f.expected.cavities, "cavity", "cavities");
   }
-  if (!is_same_volume(f.result.volume, f.expected.volume, expected.volume_slack)) add_volume(f);
+  if (!is_within(f.result.volume, f.expected.volume, expected.volume_slack)) add_volume(f);
   if (f.counted && !f.same_counts()) f.place = first_difference(was, is);
   return f;
 }
@@ -123,7 +123,7 @@ SolidComparison compare(const ExpectedSolid& expected, const SolidShape& result)
   SolidComparison by_surface = compare(expected, *expected.by_flawed_surface, result);
   by_surface.certain = f.certain =
       f.expected.same_counts(by_surface.expected) &&
-      is_same_volume(f.expected.volume, by_surface.expected.volume, expected.volume_slack);
+      is_within(f.expected.volume, by_surface.expected.volume, expected.volume_slack);
   return !f.same() && by_surface.same() ? by_surface : f;
 }
 

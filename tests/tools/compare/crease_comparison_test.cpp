@@ -7,11 +7,14 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "common/random.h"
 #include "tests/simplify/meshes.h"
 #include "tests/tools/program.h"
+#include "tetwright/io.h"
 #include "tetwright/mesh_quality.h"
 
 namespace tetwright::crease_comparison_test {
@@ -105,6 +108,21 @@ TEST(CreaseComparison, IsSaidOfPartsAndNotOfScans) {
   EXPECT_NE(a.out.find("features of 'ball': none; no edge turns far enough"), std::string::npos) << a.out;
   stats = nlohmann::json::parse(contents(f / "s.json"));
   EXPECT_EQ(stats["features"][0]["verdict"], "smooth");
+
+  // Few edges turn far, and most of them meet no other one.
+  TriangleMesh scan = read_surface(f / "ball.off");
+  Random random(3);
+  for (Vec3& p : scan.points) p *= 1 + 0.034 * (random.uniform() - 0.5);
+  write_surface(scan, f / "scan.off");
+  a = run("mesh " + (f / "scan.off") + " --resolution 8 -o " + (f / "o.vtu") + " --stats " + (f / "s.json"));
+  stats = nlohmann::json::parse(contents(f / "s.json"));
+  const double loose = stats["features"][0]["loose_ends"][1];
+  EXPECT_GT(loose, 1);
+  char said[80];
+  std::snprintf(said, sizeof said, " loose ends per 100 edges over 15 degrees, %.3g per 100 over 35)",
+                100 * loose);
+  EXPECT_NE(a.out.find(said), std::string::npos) << a.out;
+  EXPECT_EQ(a.out.find("% of"), std::string::npos) << a.out;
 
   ASSERT_EQ(run("sample organs -o " + (f / "organs.nrrd")).status, 0);
   a = run("mesh " + (f / "organs.nrrd") + " --feature-angle 30 -o " + (f / "o.vtu"));
