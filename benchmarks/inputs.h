@@ -7,9 +7,9 @@
 #include <variant>
 #include <vector>
 
-#include "common/io/formats.h"
 #include "common/samples/samples.h"
-#include "mesher/mesher.h"
+#include "tetwright/io.h"
+#include "tetwright/mesher.h"
 
 namespace tetwright {
 

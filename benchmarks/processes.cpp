@@ -13,8 +13,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "common/error.h"
-#include "common/files/atomic_file.h"
+#include "tetwright/error.h"
+#include "tetwright/files.h"
 
 namespace tetwright {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/diagnostic.h"
+#include "tetwright/diagnostic.h"
 
 #include <array>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/label_volume.h"
+#include "tetwright/label_volume.h"
 
 #include <cmath>
 
-#include "common/error.h"
 #include "common/number_text.h"
 #include "common/tolerances.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

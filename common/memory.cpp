@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/memory.h"
+#include "tetwright/resources.h"
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -9,8 +9,8 @@
 #include <fstream>
 #include <limits>
 
-#include "common/error.h"
 #include "common/message_text.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

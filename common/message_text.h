@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "common/types.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

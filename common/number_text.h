@@ -4,7 +4,7 @@
 #include <charconv>
 #include <string>
 
-#include "common/types.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

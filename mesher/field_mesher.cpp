@@ -5,12 +5,8 @@
 #include <bit>
 #include <cmath>
 
-#include "common/error.h"
 #include "common/geometry/predicates.h"
-#include "common/memory.h"
-#include "common/mesh/interfaces.h"
 #include "common/message_text.h"
-#include "common/parallel/parallel.h"
 #include "mesher/cut/cut_off_surface.h"
 #include "mesher/cut/cutting.h"
 #include "mesher/cut/thin_wall_recovery.h"
@@ -24,6 +20,9 @@
 #include "mesher/tuning/cell_tuning.h"
 #include "mesher/tuning/domain_tuning.h"
 #include "mesher/tuning/estimate_tuning.h"
+#include "tetwright/error.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

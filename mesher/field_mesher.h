@@ -11,7 +11,7 @@
 #include "mesher/distance/material_field.h"
 #include "mesher/domain/refinement_regions.h"
 #include "mesher/mesh_estimate.h"
-#include "mesher/mesher.h"
+#include "tetwright/mesher.h"
 
 namespace tetwright {
 

@@ -4,7 +4,7 @@
 
 #include "mesher/distance/material_field.h"
 #include "mesher/distance/vdb_writer.h"
-#include "mesher/mesher.h"
+#include "tetwright/mesher.h"
 
 namespace tetwright {
 

@@ -2,15 +2,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/error.h"
 #include "mesher/field_mesher.h"
 #include "mesher/labels/border_creases.h"
 #include "mesher/labels/label_field.h"
 #include "mesher/labels/label_thickness.h"
 #include "mesher/mesh_estimate.h"
-#include "mesher/mesher.h"
 #include "mesher/tuning/cell_tuning.h"
 #include "mesher/tuning/domain_tuning.h"
+#include "tetwright/error.h"
+#include "tetwright/mesher.h"
 
 namespace tetwright {
 

@@ -4,10 +4,10 @@
 #include <cstddef>
 
 #include "common/message_text.h"
-#include "mesher/input/label_input.h"
 #include "mesher/labels/label_thickness.h"
-#include "mesher/mesher.h"
 #include "mesher/tuning/estimate_tuning.h"
+#include "tetwright/mesher.h"
+#include "tetwright/mesher_input.h"
 
 namespace tetwright {
 

@@ -7,13 +7,13 @@
 
 #include "common/geometry/morton.h"
 #include "common/geometry/surface_tree.h"
-#include "common/parallel/parallel.h"
 #include "mesher/domain/grid_frame.h"
 #include "mesher/domain/refinement_regions.h"
 #include "mesher/mesh_estimate.h"
 #include "mesher/tuning/distance_tuning.h"
 #include "mesher/tuning/domain_tuning.h"
 #include "mesher/tuning/estimate_tuning.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesher/mesher.h"
+#include "tetwright/mesher.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 #include <set>
 #include <utility>
 
-#include "common/error.h"
 #include "common/message_text.h"
 #include "mesher/cut/crease_fitting.h"
 #include "mesher/cut/thin_wall_recovery.h"
@@ -20,6 +19,7 @@
 #include "mesher/input/expected_solids.h"
 #include "mesher/mesh_estimate.h"
 #include "mesher/tuning/cell_tuning.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -11,12 +11,9 @@
 #include <optional>
 #include <utility>
 
-#include "common/error.h"
 #include "common/geometry/low_discrepancy.h"
 #include "common/geometry/projection_tree.h"
-#include "common/memory.h"
 #include "common/message_text.h"
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/labels/label_faces.h"
 #include "mesher/labels/label_field.h"
@@ -25,6 +22,8 @@
 #include "mesher/tuning/distance_tuning.h"
 #include "mesher/tuning/domain_tuning.h"
 #include "mesher/tuning/estimate_tuning.h"
+#include "tetwright/error.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simplify/remesher.h"
+#include "tetwright/remesher.h"
 
 #include <algorithm>
 #include <array>
 #include <optional>
 
-#include "common/error.h"
-#include "common/mesh/interfaces.h"
-#include "common/parallel/parallel.h"
 #include "simplify/constraints/constrained_mesh.h"
 #include "simplify/constraints/surface_projection.h"
 #include "simplify/mesh/neighbourhood.h"
@@ -18,6 +15,9 @@
 #include "simplify/schedule/block_runner.h"
 #include "simplify/schedule/round_recorder.h"
 #include "simplify/tuning/tuning.h"
+#include "tetwright/error.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

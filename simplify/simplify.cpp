@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simplify/simplify.h"
+#include "tetwright/simplify.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "common/error.h"
-#include "common/memory.h"
-#include "common/mesh/interfaces.h"
 #include "common/message_text.h"
 #include "simplify/constraints/surface_samples.h"
-#include "simplify/remesher.h"
 #include "simplify/schedule/bulk_improvement.h"
 #include "simplify/schedule/edge_length_adaptation.h"
 #include "simplify/schedule/engine.h"
@@ -24,6 +20,10 @@
 #include "simplify/schedule/tuned_schedule.h"
 #include "simplify/schedule/whole_mesh.h"
 #include "simplify/tuning/tuning.h"
+#include "tetwright/error.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/remesher.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -12,18 +12,15 @@
 
 #include "benchmarks/processes.h"
 #include "common/geometry/surface_tree.h"
-#include "common/io/formats.h"
-#include "common/mesh/interfaces.h"
-#include "common/mesh/mesh_check.h"
-#include "common/mesh/mesh_statistics.h"
-#include "common/mesh/topology.h"
-#include "common/parallel/parallel.h"
 #include "common/random.h"
 #include "common/samples/samples.h"
-#include "mesher/mesher.h"
 #include "simplify/mesh/editable_mesh.h"
-#include "simplify/remesher.h"
-#include "simplify/simplify.h"
+#include "tetwright/io.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/mesher.h"
+#include "tetwright/remesher.h"
+#include "tetwright/resources.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright {
 namespace {

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/mesh_check.h"
+#include "tetwright/mesh_quality.h"
 
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/inputs.h"
-#include "common/mesh/mesh_statistics.h"
-#include "common/mesh/topology.h"
 
 namespace tetwright {
 namespace {

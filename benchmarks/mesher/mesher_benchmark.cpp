@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesher/mesher.h"
+#include "tetwright/mesher.h"
 
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
 #include "benchmarks/inputs.h"
-#include "common/parallel/parallel.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 namespace {

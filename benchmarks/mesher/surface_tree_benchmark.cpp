@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "common/random.h"
-#include "common/triangle_mesh.h"
+#include "tetwright/surface_mesh.h"
 
 namespace tetwright {
 namespace {

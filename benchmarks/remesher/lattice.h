@@ -4,7 +4,7 @@
 #include <array>
 
 #include "common/random.h"
-#include "common/tet_mesh.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

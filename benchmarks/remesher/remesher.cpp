@@ -8,11 +8,11 @@
 
 #include "benchmarks/processes.h"
 #include "benchmarks/remesher/lattice.h"
-#include "common/error.h"
 #include "common/geometry/box_tree.h"
-#include "common/mesh/mesh_check.h"
-#include "common/parallel/parallel.h"
-#include "simplify/remesher.h"
+#include "tetwright/error.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/remesher.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 namespace {

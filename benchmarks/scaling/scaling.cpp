@@ -10,9 +10,9 @@
 #include <thread>
 
 #include "benchmarks/processes.h"
-#include "common/error.h"
-#include "common/io/formats.h"
 #include "common/samples/samples.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simplify/simplify.h"
+#include "tetwright/simplify.h"
 
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/inputs.h"
-#include "common/mesh/mesh_statistics.h"
-#include "common/parallel/parallel.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 namespace {

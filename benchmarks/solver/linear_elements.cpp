@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "common/mesh/mesh_faces.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

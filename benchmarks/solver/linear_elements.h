@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/tet_mesh.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

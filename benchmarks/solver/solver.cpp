@@ -10,11 +10,9 @@
 #include "benchmarks/solver/problems.h"
 #include "benchmarks/solver/spectrum.h"
 #include "benchmarks/table1/surface_distance.h"
-#include "common/error.h"
-#include "common/io/formats.h"
-#include "common/mesh/import_cleanup.h"
-#include "common/mesh/mesh_faces.h"
-#include "common/mesh/mesh_statistics.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 namespace {

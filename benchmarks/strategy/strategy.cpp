@@ -8,8 +8,8 @@
 #include "benchmarks/inputs.h"
 #include "benchmarks/processes.h"
 #include "benchmarks/strategy/orderings.h"
-#include "common/mesh/mesh_statistics.h"
-#include "common/parallel/parallel.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 namespace {

@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "common/tet_mesh.h"
 #include "simplify/operations/workspace.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -5,13 +5,10 @@
 
 #include "benchmarks/processes.h"
 #include "benchmarks/table1/surface_distance.h"
-#include "common/io/formats.h"
-#include "common/mesh/interfaces.h"
-#include "common/mesh/mesh_check.h"
-#include "common/mesh/mesh_statistics.h"
-#include "common/mesh/topology.h"
-#include "common/parallel/parallel.h"
-#include "mesher/mesher.h"
+#include "tetwright/io.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/mesher.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "benchmarks/table1/paper_table.h"
-#include "simplify/simplify.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/geometry/surface_tree.h"
-#include "common/parallel/parallel.h"
 #include "common/random.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "common/triangle_mesh.h"
+#include "tetwright/surface_mesh.h"
 
 namespace tetwright {
 

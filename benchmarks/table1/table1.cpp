@@ -10,8 +10,8 @@
 
 #include "benchmarks/processes.h"
 #include "benchmarks/table1/rows.h"
-#include "common/error.h"
-#include "common/io/formats.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 namespace {

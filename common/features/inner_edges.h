@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/features/edge_uses.h"
-#include "common/types.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -4,9 +4,9 @@
 #include <set>
 
 #include "common/features/edge_uses.h"
-#include "common/features/surface_patches.h"
 #include "common/parallel/parallel_sort.h"
 #include "common/portable_math.h"
+#include "tetwright/surface_mesh.h"
 
 namespace tetwright {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/features/surface_patches.h"
+#include "tetwright/surface_mesh.h"
 
 #include <algorithm>
 #include <map>
 #include <set>
 
-#include "common/error.h"
 #include "common/features/edge_uses.h"
 #include "common/features/inner_edges.h"
 #include "common/mesh/disjoint_sets.h"
-#include "common/mesh/interfaces.h"
 #include "common/parallel/parallel_sort.h"
+#include "tetwright/error.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

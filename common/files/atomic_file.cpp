@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/files/atomic_file.h"
+#include "tetwright/files.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -16,8 +16,8 @@
 #include <mutex>
 #include <utility>
 
-#include "common/error.h"
-#include "common/progress.h"
+#include "tetwright/error.h"
+#include "tetwright/progress.h"
 
 namespace tetwright {
 

@@ -3,10 +3,10 @@
 
 #include <numeric>
 
-#include "common/error.h"
 #include "common/geometry/morton.h"
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
+#include "tetwright/error.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

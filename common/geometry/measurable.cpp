@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "common/error.h"
 #include "common/geometry/box_tree.h"
 #include "common/message_text.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "common/tet_mesh.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

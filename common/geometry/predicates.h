@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "common/types.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -2,8 +2,8 @@
 #include "common/geometry/projection_tree.h"
 
 #include "common/geometry/morton.h"
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

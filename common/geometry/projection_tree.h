@@ -8,7 +8,7 @@
 
 #include "common/geometry/box_tree.h"
 #include "common/geometry/point_triangle.h"
-#include "common/types.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/geometry/surface_deviation.h"
+#include "tetwright/mesh_quality.h"
 
 #include <algorithm>
 #include <array>
@@ -10,12 +10,12 @@
 #include <optional>
 #include <vector>
 
-#include "common/error.h"
 #include "common/geometry/low_discrepancy.h"
 #include "common/geometry/projection_tree.h"
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
-#include "common/progress.h"
+#include "tetwright/error.h"
+#include "tetwright/progress.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

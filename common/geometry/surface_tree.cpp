@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "common/geometry/point_triangle.h"
-#include "common/parallel/parallel.h"
 #include "common/portable_math.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/geometry/box_tree.h"
-#include "common/types.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

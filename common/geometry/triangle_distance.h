@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "common/types.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

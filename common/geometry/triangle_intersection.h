@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "common/types.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

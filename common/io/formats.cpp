@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/io/formats.h"
+#include "tetwright/io.h"
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
 
-#include "common/error.h"
-#include "common/files/atomic_file.h"
 #include "common/files/file_names.h"
 #include "common/geometry/measurable.h"
 #include "common/io/names/group_text.h"
@@ -29,6 +27,8 @@
 #include "common/io/volumes/metaimage.h"
 #include "common/io/volumes/nifti.h"
 #include "common/io/volumes/nrrd.h"
+#include "tetwright/error.h"
+#include "tetwright/files.h"
 
 namespace tetwright {
 

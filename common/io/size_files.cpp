@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "common/error.h"
-#include "common/io/formats.h"
 #include "common/message_text.h"
-#include "common/sizes/mesh_sizes.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
+#include "tetwright/sizes.h"
 
 namespace tetwright {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "common/sizes/size_source.h"
+#include "tetwright/sizes.h"
 
 namespace tetwright {
 

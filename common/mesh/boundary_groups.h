@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/tet_mesh.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "common/types.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/field_transfer.h"
+#include "tetwright/mesh_quality.h"
 
 #include <limits>
 
 #include "common/mesh/point_table.h"
 #include "common/mesh/tet_tree.h"
-#include "common/parallel/parallel.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

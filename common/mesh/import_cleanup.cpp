@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/import_cleanup.h"
+#include "tetwright/mesh_quality.h"
 
 #include <algorithm>
 #include <array>
@@ -11,10 +11,9 @@
 
 #include "common/geometry/predicates.h"
 #include "common/mesh/face_buckets.h"
-#include "common/mesh/interfaces.h"
 #include "common/mesh/point_table.h"
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

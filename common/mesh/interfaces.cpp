@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/interfaces.h"
+#include "tetwright/mesh_quality.h"
 
 #include <algorithm>
 
-#include "common/mesh/mesh_faces.h"
 #include "common/parallel/parallel_sort.h"
 
 namespace tetwright {

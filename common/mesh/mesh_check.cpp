@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/mesh_check.h"
+#include "tetwright/mesh_quality.h"
 
 #include <algorithm>
 #include <array>
@@ -10,9 +10,8 @@
 #include "common/geometry/self_intersection.h"
 #include "common/mesh/disjoint_sets.h"
 #include "common/mesh/surface_chains.h"
-#include "common/mesh/topology.h"
 #include "common/number_text.h"
-#include "common/parallel/parallel.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/mesh_faces.h"
+#include "tetwright/mesh_quality.h"
 
-#include "common/error.h"
 #include "common/mesh/face_buckets.h"
 #include "common/parallel/parallel_sort.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/mesh_statistics.h"
+#include "tetwright/mesh_quality.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "common/geometry/predicates.h"
-#include "common/geometry/quality.h"
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/midside_nodes.h"
+#include "tetwright/tet_mesh.h"
 
 #include <algorithm>
 #include <cmath>

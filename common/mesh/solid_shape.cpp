@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/solid_shape.h"
+#include "tetwright/mesh_quality.h"
 
 #include <algorithm>
 #include <compare>

@@ -6,9 +6,9 @@
 #include "common/geometry/morton.h"
 #include "common/geometry/point_triangle.h"
 #include "common/geometry/predicates.h"
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

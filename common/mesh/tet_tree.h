@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/geometry/box_tree.h"
-#include "common/tet_mesh.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/topology.h"
+#include "tetwright/mesh_quality.h"
 
 #include <algorithm>
 
 #include "common/mesh/disjoint_sets.h"
-#include "common/mesh/interfaces.h"
 #include "common/mesh/surface_chains.h"
-#include "common/parallel/parallel.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

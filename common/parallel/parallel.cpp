@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/parallel/parallel.h"
+#include "tetwright/resources.h"
 
 #include <algorithm>
 #include <atomic>
@@ -92,9 +92,7 @@ unsigned hardware_threads() { return tbb_concurrency(); }
 
 unsigned max_threads() { return std::max(16u, 4 * hardware_threads()); }
 
-ThreadLimit::ThreadLimit(unsigned threads) {
-  impl_ = std::make_unique<Impl>(sensible_threads(threads));
-}
+ThreadLimit::ThreadLimit(unsigned threads) { impl_ = std::make_unique<Impl>(sensible_threads(threads)); }
 
 ThreadLimit::~ThreadLimit() = default;
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/parallel/parallel.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

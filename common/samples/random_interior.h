@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "common/tet_mesh.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

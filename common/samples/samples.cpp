@@ -8,10 +8,10 @@
 #include <map>
 #include <numbers>
 
-#include "common/error.h"
 #include "common/message_text.h"
 #include "common/random.h"
 #include "common/samples/random_interior.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

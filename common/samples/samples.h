@@ -5,9 +5,9 @@
 #include <variant>
 #include <vector>
 
-#include "common/label_volume.h"
-#include "common/tet_mesh.h"
-#include "common/triangle_mesh.h"
+#include "tetwright/label_volume.h"
+#include "tetwright/surface_mesh.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

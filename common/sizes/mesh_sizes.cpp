@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/sizes/mesh_sizes.h"
+#include "tetwright/sizes.h"
 
 #include <array>
 #include <cstddef>
 #include <limits>
 #include <utility>
 
-#include "common/error.h"
 #include "common/geometry/box_tree.h"
 #include "common/geometry/point_triangle.h"
 #include "common/geometry/projection_tree.h"
 #include "common/mesh/tet_tree.h"
 #include "common/tolerances.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/sizes/size_field.h"
+#include "tetwright/sizes.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "common/parallel/parallel.h"
 #include "common/portable_math.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

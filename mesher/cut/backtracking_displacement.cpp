@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <atomic>
 
-#include "common/geometry/quality.h"
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/tuning/cut_tuning.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/types.h"
 #include "mesher/tuning/cut_tuning.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

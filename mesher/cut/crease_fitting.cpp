@@ -6,14 +6,13 @@
 #include <limits>
 
 #include "common/geometry/predicates.h"
-#include "common/geometry/quality.h"
-#include "common/mesh/interfaces.h"
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/cut/backtracking_displacement.h"
 #include "mesher/cut/crease_labels.h"
 #include "mesher/cut/undo_intersections.h"
 #include "mesher/tuning/cut_tuning.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/tet_mesh.h"
 #include "mesher/cut/feature_surface.h"
 #include "mesher/distance/material_field.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <map>
 
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/tuning/cut_tuning.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/tet_mesh.h"
 #include "mesher/cut/feature_surface.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "common/geometry/projection_tree.h"
-#include "common/reference_surface.h"
-#include "common/tet_mesh.h"
 #include "mesher/distance/material_field.h"
+#include "tetwright/surface_mesh.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdint>
 
-#include "common/types.h"
-#include "mesher/domain/regions.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

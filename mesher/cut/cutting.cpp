@@ -7,11 +7,11 @@
 #include <cmath>
 #include <span>
 
-#include "common/error.h"
-#include "common/geometry/quality.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/cut/cut_tet.h"
 #include "mesher/tuning/cut_tuning.h"
+#include "tetwright/error.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

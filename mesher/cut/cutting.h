@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "common/types.h"
 #include "mesher/lattice/labelled_lattice.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

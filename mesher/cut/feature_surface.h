@@ -9,13 +9,11 @@
 #include <optional>
 #include <vector>
 
-#include "common/features/surface_patches.h"
 #include "common/geometry/projection_tree.h"
-#include "common/reference_surface.h"
-#include "common/tet_mesh.h"
-#include "common/types.h"
 #include "mesher/distance/material_field.h"
-#include "mesher/input/mesher_input.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/surface_mesh.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

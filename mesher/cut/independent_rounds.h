@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "common/parallel/parallel.h"
 #include "mesher/lattice/labelled_lattice.h"
 #include "mesher/tuning/cut_tuning.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

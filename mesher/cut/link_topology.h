@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "common/types.h"
 #include "mesher/lattice/labelled_lattice.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

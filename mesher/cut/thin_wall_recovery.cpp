@@ -5,12 +5,12 @@
 #include <cmath>
 #include <memory>
 
-#include "common/mesh/mesh_faces.h"
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/cut/backtracking_displacement.h"
 #include "mesher/cut/undo_intersections.h"
 #include "mesher/tuning/cut_tuning.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -8,13 +8,13 @@
 #include <optional>
 #include <span>
 
-#include "common/geometry/quality.h"
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
 #include "mesher/cut/cutting.h"
 #include "mesher/cut/independent_rounds.h"
 #include "mesher/cut/link_topology.h"
 #include "mesher/tuning/cut_tuning.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

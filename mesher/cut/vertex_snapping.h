@@ -3,9 +3,9 @@
 
 #include <cstddef>
 
-#include "common/progress.h"
 #include "mesher/distance/material_field.h"
 #include "mesher/lattice/labelled_lattice.h"
+#include "tetwright/progress.h"
 
 namespace tetwright {
 

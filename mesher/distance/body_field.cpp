@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <iterator>
 
-#include "common/error.h"
 #include "mesher/distance/level_set_field.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
-#include "common/progress.h"
 #include "mesher/distance/level_set_field.h"
 #include "mesher/distance/local_thickness.h"
 #include "mesher/distance/narrow_patches.h"
-#include "mesher/input/mesher_input.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/progress.h"
 
 namespace tetwright {
 

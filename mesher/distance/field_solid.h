@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "common/mesh/solid_shape.h"
 #include "mesher/distance/material_field.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

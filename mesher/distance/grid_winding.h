@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "common/types.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "common/geometry/morton.h"
-#include "common/progress.h"
-#include "common/triangle_mesh.h"
 #include "mesher/tuning/distance_tuning.h"
+#include "tetwright/progress.h"
+#include "tetwright/surface_mesh.h"
 
 namespace tetwright {
 

@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "common/geometry/morton.h"
-#include "common/progress.h"
 #include "mesher/distance/narrow_band.h"
 #include "mesher/distance/openvdb_grids.h"
 #include "mesher/distance/thin_walls.h"
 #include "mesher/domain/grid_frame.h"
-#include "mesher/input/surface_repair.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/progress.h"
 
 namespace tetwright {
 

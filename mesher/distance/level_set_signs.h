@@ -6,10 +6,10 @@
 #include <span>
 
 #include "common/geometry/surface_tree.h"
-#include "common/progress.h"
-#include "common/triangle_mesh.h"
 #include "mesher/distance/grid_winding.h"
 #include "mesher/distance/openvdb_grids.h"
+#include "tetwright/progress.h"
+#include "tetwright/surface_mesh.h"
 
 namespace tetwright {
 

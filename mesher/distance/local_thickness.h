@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "common/geometry/morton.h"
-#include "common/progress.h"
 #include "mesher/distance/level_set.h"
 #include "mesher/distance/surface_distance.h"
 #include "mesher/distance/thin_walls.h"
 #include "mesher/domain/refinement_regions.h"
-#include "mesher/input/surface_repair.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/progress.h"
 
 namespace tetwright {
 

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "common/geometry/morton.h"
-#include "common/reference_surface.h"
 #include "mesher/distance/narrow_band.h"
 #include "mesher/domain/grid_frame.h"
-#include "mesher/domain/regions.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/surface_mesh.h"
 
 namespace tetwright {
 

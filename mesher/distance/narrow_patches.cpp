@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "common/geometry/projection_tree.h"
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/tuning/distance_tuning.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -3,11 +3,11 @@
 
 #include <vector>
 
-#include "common/features/surface_patches.h"
 #include "mesher/domain/grid_frame.h"
-#include "mesher/domain/refinement_region.h"
 #include "mesher/domain/refinement_regions.h"
-#include "mesher/input/surface_repair.h"
+#include "tetwright/mesher.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/surface_mesh.h"
 
 namespace tetwright {
 

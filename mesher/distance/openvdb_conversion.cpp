@@ -7,8 +7,8 @@
 
 #include <stdexcept>
 
-#include "common/parallel/parallel.h"
 #include "mesher/distance/openvdb_types.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

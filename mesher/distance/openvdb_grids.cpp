@@ -11,10 +11,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "common/error.h"
-#include "common/label_volume.h"
 #include "mesher/distance/openvdb_types.h"
 #include "mesher/distance/vdb_structure.h"
+#include "tetwright/error.h"
+#include "tetwright/label_volume.h"
 
 namespace tetwright {
 

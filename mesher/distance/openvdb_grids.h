@@ -11,12 +11,12 @@
 #include <type_traits>
 #include <vector>
 
-#include "common/label_volume.h"
-#include "common/progress.h"
-#include "common/triangle_mesh.h"
-#include "common/types.h"
 #include "mesher/distance/narrow_band.h"
 #include "mesher/domain/grid_frame.h"
+#include "tetwright/label_volume.h"
+#include "tetwright/progress.h"
+#include "tetwright/surface_mesh.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -6,10 +6,10 @@
 
 #include "common/geometry/point_triangle.h"
 #include "common/geometry/ray_crossing.h"
-#include "common/parallel/parallel.h"
 #include "common/tolerances.h"
 #include "mesher/distance/hole_caps.h"
 #include "mesher/tuning/distance_tuning.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -7,8 +7,8 @@
 
 #include "common/geometry/box_tree.h"
 #include "common/geometry/surface_tree.h"
-#include "common/triangle_mesh.h"
-#include "common/types.h"
+#include "tetwright/surface_mesh.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

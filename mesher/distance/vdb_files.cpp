@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesher/distance/vdb_files.h"
+#include "tetwright/mesher_input.h"
 
 #include <set>
 #include <stdexcept>
 
-#include "common/error.h"
-#include "common/files/atomic_file.h"
 #include "mesher/distance/openvdb_grids.h"
 #include "mesher/distance/vdb_structure.h"
+#include "tetwright/error.h"
+#include "tetwright/files.h"
 
 namespace tetwright {
 

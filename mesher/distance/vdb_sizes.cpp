@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "common/error.h"
-#include "common/files/atomic_file.h"
 #include "common/message_text.h"
 #include "common/tolerances.h"
 #include "mesher/distance/openvdb_grids.h"
 #include "mesher/distance/vdb_structure.h"
+#include "tetwright/error.h"
+#include "tetwright/files.h"
 
 namespace tetwright {
 

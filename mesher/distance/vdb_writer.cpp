@@ -8,12 +8,12 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "common/error.h"
-#include "common/files/atomic_file.h"
-#include "common/parallel/parallel.h"
 #include "common/tolerances.h"
 #include "mesher/distance/openvdb_grids.h"
 #include "mesher/tuning/distance_tuning.h"
+#include "tetwright/error.h"
+#include "tetwright/files.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

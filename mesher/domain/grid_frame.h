@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-#include "common/types.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "common/geometry/morton.h"
-#include "common/types.h"
-#include "mesher/domain/regions.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

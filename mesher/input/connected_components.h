@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
-#include "common/progress.h"
-#include "common/types.h"
-#include "mesher/domain/regions.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/progress.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

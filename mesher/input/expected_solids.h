@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "common/mesh/solid_shape.h"
-#include "mesher/input/mesher_input.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/mesher_input.h"
 
 namespace tetwright {
 

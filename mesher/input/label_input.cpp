@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesher/input/label_input.h"
+#include "tetwright/mesher_input.h"
 
 #include <algorithm>
 #include <optional>
@@ -7,10 +7,10 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "common/error.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/input/connected_components.h"
 #include "mesher/tuning/input_tuning.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

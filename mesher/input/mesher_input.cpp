@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesher/input/mesher_input.h"
+#include "tetwright/mesher_input.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,11 @@
 #include <set>
 #include <utility>
 
-#include "common/error.h"
 #include "common/geometry/measurable.h"
 #include "common/message_text.h"
 #include "mesher/input/qualified_names.h"
 #include "mesher/tuning/input_tuning.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

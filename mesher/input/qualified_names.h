@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "common/diagnostic.h"
 #include "common/unique_names.h"
+#include "tetwright/diagnostic.h"
 
 namespace tetwright {
 

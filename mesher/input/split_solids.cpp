@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesher/input/split_solids.h"
+#include "tetwright/mesher_input.h"
 
 #include <utility>
 

@@ -7,11 +7,11 @@
 #include <numeric>
 #include <span>
 
-#include "common/error.h"
 #include "common/mesh/disjoint_sets.h"
 #include "common/message_text.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/tuning/input_tuning.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

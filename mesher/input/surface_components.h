@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "common/types.h"
-#include "mesher/input/surface_repair.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "common/types.h"
 #include "mesher/input/surface_components.h"
-#include "mesher/input/surface_repair.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

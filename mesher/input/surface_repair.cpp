@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesher/input/surface_repair.h"
+#include "tetwright/mesher_input.h"
 
 #include <algorithm>
 #include <bit>
 
-#include "common/error.h"
 #include "common/geometry/predicates.h"
 #include "common/geometry/self_intersection.h"
 #include "common/parallel/parallel_sort.h"
@@ -12,6 +11,7 @@
 #include "mesher/input/surface_components.h"
 #include "mesher/input/surface_nesting.h"
 #include "mesher/tuning/input_tuning.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

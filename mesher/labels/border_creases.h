@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/features/surface_patches.h"
-#include "mesher/input/label_input.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/surface_mesh.h"
 
 namespace tetwright {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesher/input/label_input.h"
+#include "tetwright/mesher_input.h"
 
 namespace tetwright {
 

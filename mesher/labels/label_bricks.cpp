@@ -6,9 +6,9 @@
 #include <map>
 #include <numeric>
 
-#include "common/error.h"
-#include "common/parallel/parallel.h"
 #include "mesher/tuning/label_tuning.h"
+#include "tetwright/error.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

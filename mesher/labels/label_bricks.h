@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/progress.h"
-#include "mesher/input/label_input.h"
 #include "mesher/labels/label_smoothing.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/progress.h"
 
 namespace tetwright {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "common/parallel/parallel.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

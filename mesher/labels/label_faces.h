@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "mesher/input/label_input.h"
+#include "tetwright/mesher_input.h"
 
 namespace tetwright {
 

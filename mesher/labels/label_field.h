@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mesher/distance/material_field.h"
-#include "mesher/input/label_input.h"
+#include "tetwright/mesher_input.h"
 
 namespace tetwright {
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "mesher/domain/regions.h"
 #include "mesher/tuning/label_tuning.h"
+#include "tetwright/mesher_input.h"
 
 namespace tetwright {
 

@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "common/progress.h"
 #include "mesher/domain/grid_frame.h"
 #include "mesher/domain/refinement_regions.h"
-#include "mesher/input/label_input.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/progress.h"
 
 namespace tetwright {
 

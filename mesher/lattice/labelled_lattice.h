@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "common/types.h"
 #include "mesher/distance/material_field.h"
-#include "mesher/domain/regions.h"
 #include "mesher/lattice/lattice.h"
 #include "mesher/lattice/star_map.h"
 #include "mesher/lattice/tet_list.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

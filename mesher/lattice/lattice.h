@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/types.h"
 #include "mesher/distance/material_field.h"
 #include "mesher/lattice/octree.h"
 #include "mesher/lattice/tet_list.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

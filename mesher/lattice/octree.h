@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/geometry/morton.h"
-#include "common/progress.h"
 #include "mesher/distance/material_field.h"
+#include "tetwright/progress.h"
 
 namespace tetwright {
 

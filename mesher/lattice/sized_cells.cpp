@@ -5,12 +5,12 @@
 #include <array>
 #include <cmath>
 
-#include "common/memory.h"
 #include "common/message_text.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/tuning/domain_tuning.h"
 #include "mesher/tuning/estimate_tuning.h"
 #include "mesher/tuning/lattice_tuning.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

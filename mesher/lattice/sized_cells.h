@@ -3,9 +3,9 @@
 
 #include <functional>
 
-#include "common/progress.h"
 #include "mesher/distance/material_field.h"
 #include "mesher/domain/refinement_regions.h"
+#include "tetwright/progress.h"
 
 namespace tetwright {
 

@@ -5,8 +5,8 @@
 #include <atomic>
 #include <span>
 
-#include "common/parallel/parallel.h"
 #include "mesher/tuning/lattice_tuning.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

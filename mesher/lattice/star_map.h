@@ -6,8 +6,8 @@
 #include <iterator>
 #include <vector>
 
-#include "common/types.h"
 #include "mesher/lattice/tet_list.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

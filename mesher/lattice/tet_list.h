@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/parallel/parallel.h"
-#include "common/types.h"
+#include "tetwright/resources.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

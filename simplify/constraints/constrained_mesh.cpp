@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "common/error.h"
 #include "simplify/tuning/tuning.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

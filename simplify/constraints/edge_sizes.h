@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/sizes/size_field.h"
 #include "simplify/mesh/working_space.h"
 #include "simplify/tuning/tuning.h"
+#include "tetwright/sizes.h"
 
 namespace tetwright {
 

@@ -7,11 +7,11 @@
 #include <limits>
 #include <optional>
 
-#include "common/error.h"
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "simplify/constraints/surface_samples.h"
 #include "simplify/tuning/tuning.h"
+#include "tetwright/error.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

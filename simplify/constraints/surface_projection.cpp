@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "simplify/mesh/local_numbers.h"
 #include "simplify/tuning/tuning.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

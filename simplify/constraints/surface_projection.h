@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/geometry/projection_tree.h"
-#include "common/reference_surface.h"
 #include "simplify/mesh/editable_mesh.h"
+#include "tetwright/surface_mesh.h"
 
 namespace tetwright {
 

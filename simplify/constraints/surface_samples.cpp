@@ -8,13 +8,12 @@
 #include <optional>
 #include <utility>
 
-#include "common/error.h"
 #include "common/geometry/low_discrepancy.h"
-#include "common/memory.h"
 #include "common/message_text.h"
-#include "common/parallel/parallel.h"
 #include "common/tolerances.h"
 #include "simplify/tuning/tuning.h"
+#include "tetwright/error.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "common/geometry/projection_tree.h"
-#include "common/geometry/surface_deviation.h"
-#include "common/triangle_mesh.h"
 #include "simplify/constraints/surface_grid.h"
 #include "simplify/mesh/editable_mesh.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/surface_mesh.h"
 
 namespace tetwright {
 

@@ -7,10 +7,10 @@
 #include <type_traits>
 
 #include "common/geometry/morton.h"
-#include "common/mesh/interfaces.h"
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "simplify/tuning/tuning.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

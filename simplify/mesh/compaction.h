@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "common/tet_mesh.h"
 #include "simplify/mesh/editable_mesh.h"
 #include "simplify/mesh/face_patches.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

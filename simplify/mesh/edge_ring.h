@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "simplify/mesh/editable_mesh.h"
-#include "simplify/mesh/outcome.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright {
 

@@ -3,15 +3,15 @@
 
 #include <algorithm>
 
-#include "common/error.h"
 #include "common/geometry/box_tree.h"
 #include "common/geometry/predicates.h"
 #include "common/mesh/face_buckets.h"
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "simplify/mesh/compaction.h"
 #include "simplify/mesh/mesh_builder.h"
 #include "simplify/tuning/tuning.h"
+#include "tetwright/error.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

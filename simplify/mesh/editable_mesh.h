@@ -7,13 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "common/tet_mesh.h"
-#include "common/types.h"
 #include "simplify/mesh/face_patches.h"
 #include "simplify/mesh/free_slots.h"
 #include "simplify/mesh/reservations.h"
 #include "simplify/mesh/tet_record.h"
 #include "simplify/mesh/working_space.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -4,8 +4,8 @@
 #include <map>
 #include <vector>
 
-#include "common/tet_mesh.h"
 #include "simplify/mesh/tet_record.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

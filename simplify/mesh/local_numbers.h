@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/types.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

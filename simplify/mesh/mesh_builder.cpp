@@ -6,11 +6,11 @@
 #include <map>
 #include <numeric>
 
-#include "common/error.h"
 #include "common/mesh/face_buckets.h"
-#include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
 #include "simplify/tuning/tuning.h"
+#include "tetwright/error.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

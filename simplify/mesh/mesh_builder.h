@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "common/tet_mesh.h"
 #include "simplify/mesh/editable_mesh.h"
 #include "simplify/mesh/local_numbers.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

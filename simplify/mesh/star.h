@@ -6,7 +6,7 @@
 
 #include "simplify/mesh/editable_mesh.h"
 #include "simplify/mesh/local_numbers.h"
-#include "simplify/mesh/outcome.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright {
 

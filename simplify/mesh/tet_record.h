@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "common/types.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

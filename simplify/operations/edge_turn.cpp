@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 
-#include "common/geometry/quality.h"
 #include "simplify/tuning/tuning.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

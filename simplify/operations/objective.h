@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include "common/geometry/quality.h"
 #include "simplify/constraints/edge_sizes.h"
 #include "simplify/tuning/tuning.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "common/error.h"
 #include "common/mesh/face_buckets.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -7,9 +7,9 @@
 
 #include "simplify/constraints/surface_grid.h"
 #include "simplify/mesh/editable_mesh.h"
-#include "simplify/mesh/outcome.h"
 #include "simplify/mesh/star.h"
 #include "simplify/operations/block_rules.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright {
 

@@ -11,12 +11,12 @@
 #include "simplify/constraints/volume_ledger.h"
 #include "simplify/mesh/edge_ring.h"
 #include "simplify/mesh/editable_mesh.h"
-#include "simplify/mesh/outcome.h"
 #include "simplify/mesh/star.h"
 #include "simplify/mesh/star_walk.h"
 #include "simplify/operations/block_rules.h"
 #include "simplify/operations/proposal.h"
 #include "simplify/operations/ring_triangulation.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright {
 

@@ -6,8 +6,8 @@
 
 #include "common/geometry/point_triangle.h"
 #include "common/geometry/predicates.h"
-#include "common/parallel/parallel.h"
 #include "simplify/tuning/tuning.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

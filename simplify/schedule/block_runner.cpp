@@ -10,8 +10,8 @@
 #include <thread>
 #endif
 
-#include "common/parallel/parallel.h"
 #include "simplify/tuning/tuning.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "common/progress.h"
 #include "simplify/operations/workspace.h"
+#include "tetwright/progress.h"
 
 namespace tetwright {
 

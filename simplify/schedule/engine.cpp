@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "common/parallel/parallel.h"
 #include "simplify/tuning/tuning.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

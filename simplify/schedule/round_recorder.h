@@ -3,9 +3,9 @@
 
 #include <chrono>
 
-#include "common/progress.h"
 #include "simplify/schedule/block_runner.h"
-#include "simplify/schedule/options.h"
+#include "tetwright/progress.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright {
 

@@ -5,9 +5,9 @@
 #include <atomic>
 #include <bit>
 
-#include "common/parallel/parallel.h"
 #include "common/tolerances.h"
 #include "simplify/tuning/tuning.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "simplify/schedule/engine.h"
-#include "simplify/schedule/options.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright {
 

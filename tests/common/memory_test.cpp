@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/memory.h"
+#include "tetwright/resources.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "common/error.h"
 #include "tests/common/temporary_folder.h"
+#include "tetwright/error.h"
 
 namespace tetwright::memory_test {
 namespace {

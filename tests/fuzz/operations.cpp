@@ -7,9 +7,6 @@
 #include <cstdint>
 #include <memory>
 
-#include "common/error.h"
-#include "common/mesh/mesh_check.h"
-#include "common/mesh/topology.h"
 #include "simplify/constraints/surface_samples.h"
 #include "simplify/operations/collapse.h"
 #include "simplify/operations/edge_removal.h"
@@ -19,6 +16,8 @@
 #include "simplify/operations/smoothing.h"
 #include "tests/fuzz/targets.h"
 #include "tests/simplify/meshes.h"
+#include "tetwright/error.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::fuzz {
 namespace {

@@ -3,7 +3,6 @@
 // Readers of surfaces: each must return a surface whose indices are in range, or throw an InputError. The
 // surface must survive a round trip through a writer. Where points may have fields, reading them must give
 // the same surface and fields of the right size.
-#include "common/error.h"
 #include "common/io/surfaces/3mf.h"
 #include "common/io/surfaces/glb.h"
 #include "common/io/surfaces/obj.h"
@@ -14,6 +13,7 @@
 #include "common/io/tets/vtk.h"
 #include "tests/common/io/zip_of.h"
 #include "tests/fuzz/targets.h"
+#include "tetwright/error.h"
 
 namespace tetwright::fuzz {
 namespace {

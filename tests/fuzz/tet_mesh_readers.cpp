@@ -3,7 +3,6 @@
 // Readers of tet meshes: each must return a mesh whose indices are in range and whose fields have the right
 // sizes, or throw an InputError. The mesh must survive a round trip through a writer, and the functions that
 // work on meshes of other programs must accept it.
-#include "common/error.h"
 #include "common/io/tets/abaqus.h"
 #include "common/io/tets/medit.h"
 #include "common/io/tets/medit_binary.h"
@@ -13,12 +12,9 @@
 #include "common/io/tets/vtk.h"
 #include "common/io/tets/vtu.h"
 #include "common/io/tets/xdmf.h"
-#include "common/mesh/field_transfer.h"
-#include "common/mesh/import_cleanup.h"
-#include "common/mesh/mesh_check.h"
-#include "common/mesh/mesh_statistics.h"
-#include "common/mesh/topology.h"
 #include "tests/fuzz/targets.h"
+#include "tetwright/error.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::fuzz {
 namespace {

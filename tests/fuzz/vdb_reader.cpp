@@ -4,10 +4,10 @@
 // has validated. The result is a surface or a volume, or an InputError.
 #include <stdexcept>
 
-#include "common/error.h"
 #include "mesher/distance/openvdb_grids.h"
 #include "mesher/distance/vdb_structure.h"
 #include "tests/fuzz/targets.h"
+#include "tetwright/error.h"
 
 namespace tetwright::fuzz {
 

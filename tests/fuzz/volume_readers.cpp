@@ -3,12 +3,12 @@
 // Readers of volumes: each must return a volume that satisfies label_volume.h, or throw an InputError. The
 // volume must survive a round trip through the NRRD writer. The file that a header refers to follows a line
 // of equal signs.
-#include "common/error.h"
 #include "common/io/volumes/inr.h"
 #include "common/io/volumes/metaimage.h"
 #include "common/io/volumes/nifti.h"
 #include "common/io/volumes/nrrd.h"
 #include "tests/fuzz/targets.h"
+#include "tetwright/error.h"
 
 namespace tetwright::fuzz {
 namespace {

@@ -12,14 +12,12 @@
 #include <string>
 #include <variant>
 
-#include "common/io/formats.h"
-#include "common/mesh/mesh_check.h"
-#include "common/mesh/mesh_statistics.h"
-#include "common/mesh/topology.h"
-#include "common/parallel/parallel.h"
 #include "common/samples/samples.h"
-#include "mesher/mesher.h"
-#include "simplify/simplify.h"
+#include "tetwright/io.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/mesher.h"
+#include "tetwright/resources.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright::golden_test {
 namespace {

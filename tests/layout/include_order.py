@@ -50,11 +50,15 @@ def rank(path, top, order):
     return order.index(folder) if folder in order else None
 
 
+PUBLIC = {"tetwright/" + path.name: path.relative_to(ROOT).as_posix()
+          for path in ROOT.glob("**/include/tetwright/*.h") if "build" not in path.relative_to(ROOT).parts}
+
+
 def includes(path):
     for number, line in enumerate((ROOT / path).read_text(encoding="utf-8").splitlines(), 1):
         match = re.match(r'\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)', line)
         if match:
-            yield number, match.group(1), match.group(2)
+            yield number, PUBLIC.get(match.group(1), match.group(1)), match.group(2)
 
 
 def check_own(path, number, included, all_orders):
@@ -65,6 +69,8 @@ def check_own(path, number, included, all_orders):
         yield f"{path}:{number}: {top}/ includes {included}, and does without files"
     if included == OPENVDB_TYPES and path not in FILES_OF_LIBRARIES["openvdb/"]:
         yield f"{path}:{number}: OpenVDB's headers are for {' '.join(FILES_OF_LIBRARIES['openvdb/'])}"
+    if "/include/tetwright/" in path + included:
+        return  # public headers are of all folders of their library
     for folder, order in all_orders.items():
         if not (path.startswith(folder + "/") and included.startswith(folder + "/")):
             continue

@@ -8,10 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "common/mesh/interfaces.h"
-#include "common/mesh/mesh_check.h"
-#include "common/mesh/topology.h"
 #include "tests/mesher/label_volumes.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

@@ -6,10 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "common/geometry/quality.h"
-#include "common/mesh/mesh_statistics.h"
 #include "tests/mesher/checked_labels.h"
 #include "tests/mesher/label_volumes.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::label_border_test {
 namespace {

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/geometry/quality.h"
-#include "common/parallel/parallel.h"
 #include "common/random.h"
 #include "tests/mesher/checked_labels.h"
 #include "tests/mesher/label_volumes.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::label_mesher_test {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "common/geometry/quality.h"
-#include "common/parallel/parallel.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "mesher/mesher.h"
+#include "tetwright/mesher.h"
 
 namespace tetwright {
 

@@ -3,14 +3,11 @@
 
 #include <numbers>
 
-#include "common/error.h"
-#include "common/geometry/quality.h"
-#include "common/mesh/interfaces.h"
-#include "common/mesh/mesh_check.h"
-#include "common/mesh/topology.h"
-#include "common/parallel/parallel.h"
-#include "mesher/mesher.h"
 #include "tests/mesher/fields.h"
+#include "tetwright/error.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/mesher.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::materials_test {
 namespace {

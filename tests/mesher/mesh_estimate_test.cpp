@@ -5,11 +5,11 @@
 
 #include <limits>
 
-#include "common/error.h"
 #include "common/samples/samples.h"
 #include "mesher/tuning/estimate_tuning.h"
 #include "tests/mesher/fields.h"
 #include "tests/mesher/label_volumes.h"
+#include "tetwright/error.h"
 
 namespace tetwright::mesh_estimate_test {
 namespace {

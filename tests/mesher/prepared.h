@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/geometry/surface_tree.h"
-#include "mesher/input/surface_repair.h"
+#include "tetwright/mesher_input.h"
 
 namespace tetwright {
 

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesher/mesher.h"
+#include "tetwright/mesher.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <numbers>
 
-#include "common/error.h"
-#include "common/geometry/quality.h"
-#include "common/mesh/interfaces.h"
-#include "common/parallel/parallel.h"
 #include "mesher/distance/material_field.h"
 #include "tests/mesher/test_surfaces.h"
+#include "tetwright/error.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::surface_mesher_test {
 namespace {

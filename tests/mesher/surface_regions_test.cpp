@@ -7,10 +7,10 @@
 #include <set>
 #include <string>
 
-#include "mesher/input/split_solids.h"
-#include "mesher/mesher.h"
 #include "tests/common/features/parts.h"
 #include "tests/mesher/test_surfaces.h"
+#include "tetwright/mesher.h"
+#include "tetwright/mesher_input.h"
 
 namespace tetwright::surface_regions_test {
 namespace {

@@ -5,11 +5,11 @@
 
 #include <cmath>
 
-#include "common/error.h"
 #include "common/samples/samples.h"
-#include "mesher/mesher.h"
 #include "tests/mesher/fields.h"
 #include "tests/mesher/label_volumes.h"
+#include "tetwright/error.h"
+#include "tetwright/mesher.h"
 
 namespace tetwright::target_size_test {
 namespace {

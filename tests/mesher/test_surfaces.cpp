@@ -11,7 +11,7 @@
 #include <string>
 
 #include "common/geometry/predicates.h"
-#include "common/geometry/quality.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

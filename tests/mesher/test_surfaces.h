@@ -3,10 +3,9 @@
 
 #include <array>
 
-#include "common/tet_mesh.h"
-#include "common/triangle_mesh.h"
-#include "common/types.h"
 #include "mesher/cut/cutting.h"
+#include "tetwright/surface_mesh.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

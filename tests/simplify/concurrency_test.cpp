@@ -4,11 +4,10 @@
 // conflict. Built a second time with reservations ignored (test_without_reservations), it must fail.
 #include <gtest/gtest.h>
 
-#include "common/mesh/mesh_check.h"
-#include "common/mesh/topology.h"
-#include "common/parallel/parallel.h"
-#include "simplify/simplify.h"
 #include "tests/simplify/meshes.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright::concurrency_test {
 namespace {

@@ -6,14 +6,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/features/surface_patches.h"
-#include "common/mesh/interfaces.h"
-#include "common/mesh/mesh_check.h"
-#include "common/mesh/mesh_statistics.h"
 #include "simplify/operations/fitting.h"
-#include "simplify/simplify.h"
 #include "tests/simplify/meshes.h"
 #include "tests/simplify/workbench.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/simplify.h"
+#include "tetwright/surface_mesh.h"
 
 namespace tetwright::creases_test {
 namespace {

@@ -4,10 +4,9 @@
 // and improved aggressively: nothing may be lost or torn.
 #include <gtest/gtest.h>
 
-#include "common/mesh/mesh_check.h"
-#include "common/mesh/topology.h"
-#include "simplify/simplify.h"
 #include "tests/simplify/meshes.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright::degeneracy_test {
 namespace {

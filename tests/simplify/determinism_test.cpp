@@ -8,9 +8,9 @@
 #include <cstring>
 #include <numeric>
 
-#include "common/parallel/parallel.h"
-#include "simplify/simplify.h"
 #include "tests/simplify/meshes.h"
+#include "tetwright/resources.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright::determinism_test {
 namespace {

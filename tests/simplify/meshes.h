@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/random.h"
-#include "common/tet_mesh.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

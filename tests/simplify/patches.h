@@ -3,8 +3,8 @@
 
 #include <functional>
 
-#include "common/mesh/interfaces.h"
 #include "tests/simplify/meshes.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

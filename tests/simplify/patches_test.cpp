@@ -6,12 +6,11 @@
 #include <map>
 #include <set>
 
-#include "common/error.h"
-#include "common/mesh/mesh_check.h"
-#include "common/mesh/topology.h"
-#include "simplify/simplify.h"
 #include "tests/simplify/patches.h"
 #include "tests/simplify/workbench.h"
+#include "tetwright/error.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright::patches_test {
 namespace {

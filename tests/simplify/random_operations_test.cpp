@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Ten thousand random operations on small meshes of several materials, validated after each.
-#include "common/mesh/mesh_check.h"
-#include "common/mesh/topology.h"
 #include "simplify/operations/collapse.h"
 #include "simplify/operations/edge_removal.h"
 #include "simplify/operations/face_removal.h"
@@ -10,6 +8,7 @@
 #include "simplify/operations/insertion.h"
 #include "simplify/operations/smoothing.h"
 #include "tests/simplify/workbench.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::random_operations_test {
 namespace {

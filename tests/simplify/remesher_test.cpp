@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simplify/remesher.h"
+#include "tetwright/remesher.h"
 
 #include <gtest/gtest.h>
 
@@ -7,18 +7,16 @@
 #include <cmath>
 #include <set>
 
-#include "common/error.h"
 #include "common/geometry/box_tree.h"
 #include "common/geometry/predicates.h"
-#include "common/mesh/interfaces.h"
-#include "common/mesh/mesh_check.h"
-#include "common/mesh/topology.h"
-#include "common/parallel/parallel.h"
-#include "common/progress.h"
 #include "simplify/remesh/tet_overlap.h"
-#include "simplify/schedule/options.h"
 #include "tests/simplify/meshes.h"
 #include "tests/simplify/patches.h"
+#include "tetwright/error.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/progress.h"
+#include "tetwright/resources.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright::remesher_test {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/tet_mesh.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

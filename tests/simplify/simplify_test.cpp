@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simplify/simplify.h"
+#include "tetwright/simplify.h"
 
 #include <gtest/gtest.h>
 
@@ -7,11 +7,9 @@
 #include <cstring>
 #include <functional>
 
-#include "common/mesh/interfaces.h"
-#include "common/mesh/mesh_check.h"
-#include "common/mesh/topology.h"
-#include "common/parallel/parallel.h"
 #include "tests/simplify/meshes.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::simplify_test {
 namespace {

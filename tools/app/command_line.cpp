@@ -6,7 +6,7 @@
 #include <array>
 #include <iostream>
 
-#include "common/error.h"
+#include "tetwright/error.h"
 #include "tools/app/command_options.h"
 #include "tools/app/nearest_word.h"
 #include "tools/app/option_rules.h"

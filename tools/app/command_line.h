@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/prepare/options.h"
-#include "tools/prepare/run.h"
+#include "tetwright/prepare.h"
+#include "tetwright/prepare_steps.h"
 
 namespace tetwright {
 

@@ -5,8 +5,8 @@
 #include <limits>
 #include <map>
 
-#include "common/io/formats.h"
 #include "common/samples/samples.h"
+#include "tetwright/io.h"
 #include "tools/app/command_line.h"
 #include "tools/app/label_ranges.h"
 #include "tools/app/option_values.h"

@@ -6,7 +6,7 @@
 #include <system_error>
 #include <typeinfo>
 
-#include "common/error.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

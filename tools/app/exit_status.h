@@ -4,7 +4,7 @@
 #include <exception>
 #include <string>
 
-#include "common/diagnostic.h"
+#include "tetwright/diagnostic.h"
 
 namespace tetwright {
 

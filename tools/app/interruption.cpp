@@ -8,7 +8,7 @@
 #include <csignal>
 #include <cstring>
 
-#include "common/files/atomic_file.h"
+#include "tetwright/files.h"
 #include "tools/app/exit_status.h"
 
 namespace tetwright {

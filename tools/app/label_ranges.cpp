@@ -5,7 +5,7 @@
 #include <charconv>
 #include <string_view>
 
-#include "common/error.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -11,8 +11,8 @@
 #include <memory>
 #include <mutex>
 
-#include "common/error.h"
 #include "common/message_text.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

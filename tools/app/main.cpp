@@ -13,7 +13,7 @@
 #include <malloc.h>
 #endif
 
-#include "common/files/atomic_file.h"
+#include "tetwright/files.h"
 #include "tools/app/command_line.h"
 #include "tools/app/commands/commands.h"
 #include "tools/app/exit_status.h"

@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "common/error.h"
-#include "common/io/formats.h"
 #include "common/lower_case.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
+#include "tetwright/prepare_steps.h"
 #include "tools/app/commands/output_paths.h"
-#include "tools/prepare/carry_out.h"
 
 namespace tetwright {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "tetwright/prepare.h"
 #include "tools/app/command_line.h"
-#include "tools/prepare/report.h"
 
 namespace tetwright {
 

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <string>
 
-#include "common/progress.h"
+#include "tetwright/progress.h"
 #include "tools/app/command_line.h"
 
 namespace tetwright {

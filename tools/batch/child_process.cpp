@@ -17,7 +17,7 @@
 #include <new>
 #include <string>
 
-#include "common/error.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "common/error.h"
-#include "common/files/atomic_file.h"
 #include "common/io/names/mesh_fields.h"
+#include "tetwright/error.h"
+#include "tetwright/files.h"
 
 namespace tetwright {
 

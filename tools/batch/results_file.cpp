@@ -12,8 +12,8 @@
 #include <string_view>
 #include <utility>
 
-#include "common/error.h"
-#include "common/files/atomic_file.h"
+#include "tetwright/error.h"
+#include "tetwright/files.h"
 
 namespace tetwright {
 

@@ -12,10 +12,10 @@
 #include <system_error>
 #include <thread>
 
-#include "common/error.h"
-#include "common/files/atomic_file.h"
-#include "common/memory.h"
-#include "common/parallel/parallel.h"
+#include "tetwright/error.h"
+#include "tetwright/files.h"
+#include "tetwright/prepare_steps.h"
+#include "tetwright/resources.h"
 #include "tools/app/commands/commands.h"
 #include "tools/app/commands/output_paths.h"
 #include "tools/app/commands/result.h"
@@ -26,7 +26,6 @@
 #include "tools/batch/child_process.h"
 #include "tools/batch/jobs.h"
 #include "tools/batch/results_file.h"
-#include "tools/prepare/notes.h"
 #include "tools/report/stats_json.h"
 
 namespace tetwright {

@@ -3,6 +3,9 @@
 
 # The options of all of them.
 add_library(tetwright_options INTERFACE)
+# Headers that are not public, and those that are, for programs that compile sources of the libraries.
+target_include_directories(tetwright_options INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/common/include
+  ${PROJECT_SOURCE_DIR}/simplify/include ${PROJECT_SOURCE_DIR}/mesher/include)
 target_compile_options(tetwright_options INTERFACE
   -Wall -Wextra -Wnon-virtual-dtor -Wconversion -Wno-sign-conversion
   # g++ 12 sees overlapping and overlong copies in std::string that are not there (GCC bug 105651).
@@ -55,13 +58,25 @@ function(tetwright_compile_together target batch)
   endif()
 endfunction()
 
-# tetwright_library(TARGET [FUZZED]): a library that is installed, as tetwright::NAME. FUZZED: with TETWRIGHT_FUZZ it tells
+# tetwright_library(TARGET [FUZZED] [FOLDER...]): a library that is installed, as tetwright::NAME. Its public headers are in
+# include/ of its folder, or of these folders in it. FUZZED: with TETWRIGHT_FUZZ it tells
 # the fuzzer which way it went.
 function(tetwright_library target)
   string(REPLACE tetwright_ "" name ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
   add_library(tetwright::${name} ALIAS ${target})
-  target_link_libraries(${target} PRIVATE tetwright_options)
+  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:tetwright_options>)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set(folders ${ARGN})
+  list(REMOVE_ITEM folders FUZZED)
+  if(folders)
+    list(TRANSFORM folders REPLACE "(.+)" "${CMAKE_CURRENT_SOURCE_DIR}/\\1/include")
+  else()
+    set(folders ${CMAKE_CURRENT_SOURCE_DIR}/include)
+  endif()
+  set_target_properties(${target} PROPERTIES tetwright_public_folders "${folders}")
+  target_include_directories(${target} PUBLIC
+    "$<BUILD_INTERFACE:${folders}>" $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   set_property(GLOBAL APPEND PROPERTY tetwright_libraries ${target})
   if(TETWRIGHT_FUZZ AND "FUZZED" IN_LIST ARGN)
     target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)

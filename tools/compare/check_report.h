@@ -5,10 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "common/diagnostic.h"
-#include "common/mesh/mesh_check.h"
-#include "common/mesh/topology.h"
-#include "tools/compare/surface_comparison.h"
+#include "tetwright/compare.h"
+#include "tetwright/diagnostic.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

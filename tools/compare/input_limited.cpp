@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/geometry/projection_tree.h"
-#include "common/geometry/quality.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

@@ -3,8 +3,8 @@
 
 #include <cstddef>
 
-#include "common/features/surface_patches.h"
-#include "common/tet_mesh.h"
+#include "tetwright/surface_mesh.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/compare/solid_comparison.h"
+#include "tetwright/compare.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "common/geometry/projection_tree.h"
-#include "common/tet_mesh.h"
-#include "mesher/input/mesher_input.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

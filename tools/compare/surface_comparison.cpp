@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/compare/surface_comparison.h"
+#include "tetwright/compare.h"
 
 #include <algorithm>
 #include <array>
@@ -11,17 +11,15 @@
 #include <span>
 #include <utility>
 
-#include "common/error.h"
 #include "common/features/edge_uses.h"
 #include "common/features/inner_edges.h"
 #include "common/geometry/predicates.h"
 #include "common/geometry/projection_tree.h"
-#include "common/mesh/interfaces.h"
-#include "common/mesh/solid_shape.h"
 #include "common/message_text.h"
 #include "common/tolerances.h"
-#include "mesher/domain/regions.h"
-#include "mesher/input/mesher_input.h"
+#include "tetwright/error.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/mesher_input.h"
 #include "tools/compare/surface_caps.h"
 
 namespace tetwright {

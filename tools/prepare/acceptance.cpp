@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/prepare/acceptance.h"
+#include "tetwright/prepare_steps.h"
 
 #include <algorithm>
-
-#include "tools/prepare/notes.h"
 
 namespace tetwright {
 

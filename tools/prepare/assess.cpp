@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/prepare/assess.h"
+#include "tetwright/prepare_steps.h"
 
-#include "common/mesh/mesh_statistics.h"
+#include "tetwright/mesh_quality.h"
 #include "tools/compare/input_limited.h"
-#include "tools/prepare/acceptance.h"
 #include "tools/prepare/input_changes.h"
 #include "tools/prepare/request_shortfalls.h"
 

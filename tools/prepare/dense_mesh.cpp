@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/prepare/dense_mesh.h"
+#include "tetwright/prepare_steps.h"
 
 #include <cmath>
 #include <utility>
 
-#include "common/error.h"
-#include "common/memory.h"
 #include "mesher/mesh_estimate.h"
+#include "tetwright/error.h"
+#include "tetwright/resources.h"
 #include "tools/prepare/edge_sizes_input.h"
-#include "tools/prepare/simplification.h"
 
 namespace tetwright {
 

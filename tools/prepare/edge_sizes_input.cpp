@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "common/error.h"
 #include "common/message_text.h"
+#include "tetwright/error.h"
 #include "tools/prepare/size_field_file.h"
 
 namespace tetwright {

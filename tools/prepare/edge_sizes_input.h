@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/geometry/box_tree.h"
-#include "tools/prepare/run.h"
+#include "tetwright/prepare_steps.h"
 
 namespace tetwright {
 

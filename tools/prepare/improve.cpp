@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/prepare/improve.h"
+#include "tetwright/prepare_steps.h"
 
 #include <cmath>
 #include <cstdio>
 #include <utility>
 
-#include "common/mesh/mesh_statistics.h"
-#include "simplify/simplify.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/simplify.h"
 #include "tools/prepare/limiting_rules.h"
 
 namespace tetwright {

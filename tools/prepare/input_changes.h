@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/tet_mesh.h"
-#include "tools/prepare/run.h"
+#include "tetwright/prepare_steps.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/prepare/inputs.h"
+#include "tetwright/prepare.h"
 
 #include <filesystem>
 
 #include "common/geometry/measurable.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/lower_case.h"
-#include "tools/prepare/run.h"
+#include "tetwright/prepare_steps.h"
 
 namespace tetwright {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "simplify/simplify.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright {
 

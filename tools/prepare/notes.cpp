@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/prepare/notes.h"
+#include "tetwright/prepare_steps.h"
 
 namespace tetwright {
 

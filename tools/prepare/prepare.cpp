@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/prepare/prepare.h"
+#include "tetwright/prepare.h"
 
 #include <utility>
 
-#include "common/error.h"
-#include "common/mesh/field_transfer.h"
-#include "common/mesh/interfaces.h"
 #include "common/message_text.h"
 #include "common/parallel/host_threads.h"
-#include "simplify/simplify.h"
-#include "tools/prepare/assess.h"
-#include "tools/prepare/carry_out.h"
-#include "tools/prepare/dense_mesh.h"
-#include "tools/prepare/improve.h"
-#include "tools/prepare/scan_input.h"
-#include "tools/prepare/second_order.h"
-#include "tools/prepare/simplification.h"
-#include "tools/prepare/tet_input.h"
+#include "tetwright/error.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/prepare_steps.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/prepare/report.h"
+#include "tetwright/prepare.h"
 
 #include <algorithm>
 

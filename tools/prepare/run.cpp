@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/prepare/run.h"
+#include "tetwright/prepare_steps.h"
 
 #include <algorithm>
 #include <limits>

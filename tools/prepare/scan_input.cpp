@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/prepare/scan_input.h"
+#include "tetwright/prepare_steps.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <utility>
 
-#include "common/error.h"
-#include "common/io/formats.h"
-#include "common/io/volumes/label_names.h"
 #include "common/unique_names.h"
 #include "common/utf8.h"
-#include "mesher/distance/vdb_files.h"
 #include "mesher/input/qualified_names.h"
-#include "mesher/input/split_solids.h"
-#include "tools/compare/patch_comparison.h"
+#include "tetwright/compare.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
+#include "tetwright/mesher_input.h"
 
 namespace tetwright {
 

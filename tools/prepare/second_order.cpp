@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/prepare/second_order.h"
+#include "tetwright/prepare_steps.h"
 
-#include "common/mesh/interfaces.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

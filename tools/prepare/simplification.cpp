@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/prepare/simplification.h"
+#include "tetwright/prepare_steps.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <utility>
 
-#include "common/error.h"
 #include "common/geometry/box_tree.h"
 #include "common/tolerances.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/prepare/tet_input.h"
+#include "tetwright/prepare_steps.h"
 
 #include <utility>
 
-#include "common/error.h"
-#include "common/io/formats.h"
-#include "common/mesh/import_cleanup.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
+#include "tetwright/mesh_quality.h"
 #include "tools/prepare/edge_sizes_input.h"
-#include "tools/prepare/simplification.h"
 
 namespace tetwright {
 

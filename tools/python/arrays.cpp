@@ -7,10 +7,10 @@
 #include <utility>
 #include <variant>
 
-#include "common/error.h"
 #include "common/io/names/mesh_fields.h"
-#include "common/io/names/name_changes.h"
 #include "common/message_text.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
 
 namespace tetwright::python {
 

@@ -11,12 +11,10 @@
 #include <tuple>
 #include <vector>
 
-#include "common/io/contents/read_tet_mesh_result.h"
-#include "common/io/tets/file_triangles.h"
-#include "common/label_volume.h"
-#include "common/tet_mesh.h"
-#include "common/triangle_mesh.h"
-#include "common/types.h"
+#include "tetwright/io.h"
+#include "tetwright/label_volume.h"
+#include "tetwright/surface_mesh.h"
+#include "tetwright/tet_mesh.h"
 #include "tools/app/commands/named_inputs.h"
 
 // What the Python package makes of arrays of numpy. `name` is what messages call the input; all throw

@@ -7,18 +7,17 @@
 #include <memory>
 #include <utility>
 
-#include "common/error.h"
-#include "common/files/atomic_file.h"
-#include "common/io/contents/mesh_to_write.h"
-#include "common/io/formats.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/names/mesh_parts.h"
 #include "common/mesh/boundary_groups.h"
+#include "tetwright/compare.h"
+#include "tetwright/error.h"
+#include "tetwright/files.h"
+#include "tetwright/io.h"
+#include "tetwright/prepare_steps.h"
 #include "tools/app/commands/output_paths.h"
 #include "tools/app/commands/unwritten.h"
 #include "tools/app/option_rules.h"
-#include "tools/compare/patch_comparison.h"
-#include "tools/prepare/notes.h"
 #include "tools/python/text.h"
 
 namespace tetwright::python {

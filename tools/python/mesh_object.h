@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/mesh/midside_nodes.h"
-#include "common/tet_mesh.h"
+#include "tetwright/tet_mesh.h"
 #include "tools/app/command_line.h"
 
 namespace tetwright::python {

@@ -16,14 +16,14 @@
 #include <thread>
 #include <utility>
 
-#include "common/error.h"
-#include "common/io/formats.h"
 #include "common/io/names/label_groups.h"
 #include "common/parallel/host_threads.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
+#include "tetwright/prepare_steps.h"
 #include "tools/app/commands/commands.h"
 #include "tools/app/commands/output_paths.h"
 #include "tools/app/commands/result.h"
-#include "tools/prepare/notes.h"
 #include "tools/python/arrays.h"
 #include "tools/python/mesh_object.h"
 #include "tools/python/option_types.h"

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "common/parallel/parallel.h"
-#include "tools/prepare/notes.h"
+#include "tetwright/prepare_steps.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

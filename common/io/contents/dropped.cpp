@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/io/contents/dropped.h"
+#include "tetwright/io.h"
 
 #include <algorithm>
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/types.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "common/io/contents/read_tet_mesh_result.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

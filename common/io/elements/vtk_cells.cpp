@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/elements/vtk_cells.h"
 
-#include "common/error.h"
 #include "common/io/text/text_scanner.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/io/contents/dropped.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

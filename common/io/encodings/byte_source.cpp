@@ -8,8 +8,8 @@
 #include <memory>
 #include <new>
 
-#include "common/error.h"
 #include "common/io/encodings/byte_order.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "common/error.h"
 #include "common/message_text.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -10,13 +10,13 @@
 #include <new>
 #include <type_traits>
 
-#include "common/error.h"
 #include "common/io/encodings/base64.h"
 #include "common/io/encodings/byte_order.h"
 #include "common/io/encodings/vtu_blocks.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/text/text_scanner.h"
-#include "common/parallel/parallel.h"
+#include "tetwright/error.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -9,10 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "common/files/atomic_file.h"
-#include "common/io/contents/dropped.h"
-#include "common/tet_mesh.h"
-#include "common/types.h"
+#include "tetwright/files.h"
+#include "tetwright/io.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -7,8 +7,8 @@
 #include <array>
 #include <cstdint>
 
-#include "common/error.h"
 #include "common/message_text.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <string>
 
-#include "common/surface_region.h"
 #include "common/utf8.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/surface_region.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <set>
 
-#include "common/error.h"
 #include "common/io/text/text_scanner.h"
 #include "common/number_text.h"
 #include "common/utf8.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -5,8 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/io/contents/dropped.h"
-#include "common/io/contents/read_tet_mesh_result.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

@@ -6,11 +6,11 @@
 #include <set>
 #include <utility>
 
-#include "common/error.h"
-#include "common/unique_names.h"
 #include "common/mesh/boundary_groups.h"
 #include "common/mesh/face_buckets.h"
-#include "common/mesh/interfaces.h"
+#include "common/unique_names.h"
+#include "tetwright/error.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "common/tet_mesh.h"
-#include "common/triangle_mesh.h"
 #include "common/utf8.h"
+#include "tetwright/surface_mesh.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/io/names/name_changes.h"
+#include "tetwright/io.h"
 
 #include "common/io/names/mesh_parts.h"
 #include "common/message_text.h"

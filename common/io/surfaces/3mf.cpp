@@ -9,13 +9,13 @@
 #include <memory>
 #include <pugixml.hpp>
 
-#include "common/error.h"
 #include "common/io/encodings/zip_archive.h"
-#include "common/unique_names.h"
 #include "common/io/surfaces/placed_limit.h"
 #include "common/io/surfaces/surface_builder.h"
 #include "common/io/text/text_scanner.h"
 #include "common/message_text.h"
+#include "common/unique_names.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

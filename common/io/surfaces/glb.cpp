@@ -11,13 +11,13 @@
 #include <optional>
 #include <set>
 
-#include "common/error.h"
 #include "common/io/encodings/byte_order.h"
-#include "common/unique_names.h"
 #include "common/io/surfaces/placed_limit.h"
 #include "common/io/surfaces/point_merger.h"
 #include "common/io/surfaces/surface_builder.h"
 #include "common/message_text.h"
+#include "common/unique_names.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

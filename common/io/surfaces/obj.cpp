@@ -6,11 +6,11 @@
 #include <map>
 #include <utility>
 
-#include "common/error.h"
 #include "common/io/names/group_text.h"
 #include "common/io/surfaces/surface_builder.h"
 #include "common/io/text/text_scanner.h"
 #include "common/number_text.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "common/error.h"
 #include "common/io/surfaces/surface_builder.h"
 #include "common/io/text/text_scanner.h"
 #include "common/number_text.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include "common/error.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

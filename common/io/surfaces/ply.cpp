@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "common/error.h"
 #include "common/io/encodings/byte_order.h"
 #include "common/io/names/group_text.h"
 #include "common/io/names/label_groups.h"
@@ -15,6 +14,7 @@
 #include "common/io/surfaces/surface_builder.h"
 #include "common/io/text/text_scanner.h"
 #include "common/number_text.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -5,8 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/io/contents/dropped.h"
-#include "common/io/contents/surface_with_fields.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

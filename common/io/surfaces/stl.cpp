@@ -6,13 +6,13 @@
 #include <map>
 #include <vector>
 
-#include "common/error.h"
 #include "common/io/encodings/byte_order.h"
 #include "common/io/names/group_text.h"
 #include "common/io/surfaces/point_merger.h"
 #include "common/io/surfaces/surface_builder.h"
 #include "common/io/text/text_scanner.h"
 #include "common/number_text.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "common/io/contents/dropped.h"
-#include "common/triangle_mesh.h"
+#include "tetwright/io.h"
+#include "tetwright/surface_mesh.h"
 
 namespace tetwright {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "common/error.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "common/io/contents/dropped.h"
-#include "common/triangle_mesh.h"
+#include "tetwright/io.h"
+#include "tetwright/surface_mesh.h"
 
 namespace tetwright {
 

@@ -5,9 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "common/files/atomic_file.h"
-#include "common/io/contents/dropped.h"
-#include "common/io/contents/surface_with_fields.h"
+#include "tetwright/files.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

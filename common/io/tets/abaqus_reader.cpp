@@ -8,15 +8,15 @@
 #include <set>
 #include <vector>
 
-#include "common/error.h"
 #include "common/io/elements/file_numbers.h"
 #include "common/io/elements/midside_nodes_read.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/names/mesh_parts.h"
 #include "common/io/tets/abaqus.h"
-#include "common/io/tets/file_triangles.h"
 #include "common/io/text/text_scanner.h"
 #include "common/trimmed.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

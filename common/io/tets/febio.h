@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/io/contents/mesh_to_write.h"
 #include "common/io/names/mesh_parts.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

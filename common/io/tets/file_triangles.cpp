@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/io/tets/file_triangles.h"
+#include "tetwright/io.h"
 
 #include <algorithm>
 #include <array>
 #include <optional>
 #include <set>
 
-#include "common/error.h"
-#include "common/unique_names.h"
 #include "common/io/surfaces/surface_builder.h"
 #include "common/io/tets/msh_data.h"
 #include "common/io/text/text_scanner.h"
-#include "common/mesh/interfaces.h"
-#include "common/mesh/mesh_faces.h"
+#include "common/unique_names.h"
+#include "tetwright/error.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <utility>
 
-#include "common/error.h"
 #include "common/io/names/mesh_fields.h"
-#include "common/io/tets/file_triangles.h"
 #include "common/io/text/text_scanner.h"
 #include "common/mesh/boundary_groups.h"
-#include "common/mesh/interfaces.h"
 #include "common/number_text.h"
 #include "common/utf8.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

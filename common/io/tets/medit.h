@@ -5,10 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "common/io/contents/mesh_to_write.h"
-#include "common/io/contents/read_tet_mesh_result.h"
 #include "common/io/names/mesh_parts.h"
-#include "common/triangle_mesh.h"
+#include "tetwright/io.h"
+#include "tetwright/surface_mesh.h"
 
 namespace tetwright {
 

@@ -7,12 +7,12 @@
 #include <limits>
 #include <map>
 
-#include "common/error.h"
 #include "common/io/encodings/byte_order.h"
 #include "common/io/names/mesh_fields.h"
-#include "common/io/tets/file_triangles.h"
 #include "common/io/text/text_scanner.h"
 #include "common/mesh/boundary_groups.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

@@ -4,8 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "common/io/contents/mesh_to_write.h"
-#include "common/io/contents/read_tet_mesh_result.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

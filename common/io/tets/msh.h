@@ -6,9 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/io/contents/mesh_to_write.h"
-#include "common/io/contents/read_tet_mesh_result.h"
-#include "common/io/contents/surface_with_fields.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 
-#include "common/error.h"
 #include "common/io/encodings/byte_order.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/names/mesh_parts.h"
 #include "common/number_text.h"
 #include "common/utf8.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -8,7 +8,7 @@
 #include "common/io/elements/file_numbers.h"
 #include "common/io/encodings/msh_numbers.h"
 #include "common/io/text/text_scanner.h"
-#include "common/tet_mesh.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "common/error.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -10,8 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/io/contents/read_tet_mesh_result.h"
-#include "common/io/tets/file_triangles.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/tets/msh_groups.h"
 
-#include "common/unique_names.h"
 #include "common/io/tets/msh_data.h"
-#include "common/mesh/interfaces.h"
+#include "common/unique_names.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

@@ -7,7 +7,7 @@
 
 #include "common/io/names/mesh_parts.h"
 #include "common/mesh/boundary_groups.h"
-#include "common/tet_mesh.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

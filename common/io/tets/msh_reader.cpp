@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/tets/msh_reader.h"
 
-#include "common/error.h"
 #include "common/io/encodings/byte_order.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/tets/msh.h"
 #include "common/io/tets/msh_data.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -13,13 +13,12 @@
 #include <utility>
 #include <vector>
 
-#include "common/io/contents/read_tet_mesh_result.h"
-#include "common/io/contents/surface_with_fields.h"
 #include "common/io/elements/file_numbers.h"
 #include "common/io/elements/midside_nodes_read.h"
 #include "common/io/encodings/msh_numbers.h"
 #include "common/io/tets/msh_elements.h"
 #include "common/io/text/text_scanner.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/error.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/tets/msh_reader.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "common/error.h"
 #include "common/io/names/mesh_parts.h"
 #include "common/io/text/fixed_width_number.h"
 #include "common/io/text/text_writer.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

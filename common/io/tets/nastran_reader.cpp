@@ -7,14 +7,14 @@
 #include <set>
 #include <vector>
 
-#include "common/error.h"
 #include "common/io/elements/file_numbers.h"
 #include "common/io/elements/midside_nodes_read.h"
 #include "common/io/names/mesh_fields.h"
-#include "common/io/tets/file_triangles.h"
 #include "common/io/tets/nastran.h"
 #include "common/io/text/text_scanner.h"
 #include "common/utf8.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

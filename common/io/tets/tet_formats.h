@@ -5,11 +5,10 @@
 #include <string_view>
 #include <vector>
 
-#include "common/files/atomic_file.h"
-#include "common/io/contents/mesh_to_write.h"
-#include "common/io/contents/read_tet_mesh_result.h"
 #include "common/io/names/mesh_parts.h"
-#include "common/tet_mesh.h"
+#include "tetwright/files.h"
+#include "tetwright/io.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <map>
 
-#include "common/error.h"
 #include "common/io/elements/midside_nodes_read.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/names/mesh_parts.h"
-#include "common/io/tets/file_triangles.h"
 #include "common/io/text/text_scanner.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

@@ -5,9 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "common/io/contents/mesh_to_write.h"
-#include "common/io/contents/read_tet_mesh_result.h"
 #include "common/io/volumes/data_file.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

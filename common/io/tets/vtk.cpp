@@ -4,15 +4,15 @@
 #include <span>
 #include <vector>
 
-#include "common/error.h"
 #include "common/io/elements/midside_nodes_read.h"
 #include "common/io/elements/vtk_cells.h"
 #include "common/io/encodings/vtk_numbers.h"
 #include "common/io/names/mesh_fields.h"
-#include "common/io/tets/file_triangles.h"
 #include "common/io/tets/vtk_sections.h"
 #include "common/io/text/text_scanner.h"
 #include "common/lower_case.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

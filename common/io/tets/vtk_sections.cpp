@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <map>
 
-#include "common/error.h"
 #include "common/io/encodings/vtk_numbers.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/lower_case.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "common/io/contents/read_tet_mesh_result.h"
 #include "common/io/text/text_scanner.h"
-#include "common/types.h"
+#include "tetwright/io.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -9,16 +9,16 @@
 #include <utility>
 #include <vector>
 
-#include "common/error.h"
 #include "common/io/elements/vtk_cells.h"
 #include "common/io/encodings/vtk_numbers.h"
 #include "common/io/names/label_groups.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/surfaces/surface_builder.h"
-#include "common/io/tets/file_triangles.h"
 #include "common/io/tets/vtk.h"
 #include "common/io/tets/vtk_sections.h"
 #include "common/lower_case.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

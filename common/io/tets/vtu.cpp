@@ -10,15 +10,15 @@
 #include <utility>
 #include <vector>
 
-#include "common/error.h"
 #include "common/io/elements/midside_nodes_read.h"
 #include "common/io/elements/vtk_cells.h"
 #include "common/io/encodings/vtu_arrays.h"
 #include "common/io/encodings/vtu_data.h"
 #include "common/io/names/mesh_fields.h"
-#include "common/unique_names.h"
 #include "common/io/text/text_scanner.h"
 #include "common/io/text/xml_text.h"
+#include "common/unique_names.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

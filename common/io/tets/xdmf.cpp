@@ -11,17 +11,17 @@
 #include <span>
 #include <vector>
 
-#include "common/error.h"
 #include "common/io/elements/midside_nodes_read.h"
 #include "common/io/encodings/hdf5_image.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/names/mesh_parts.h"
-#include "common/io/tets/file_triangles.h"
 #include "common/io/text/text_scanner.h"
 #include "common/io/text/text_writer.h"
 #include "common/io/text/xml_text.h"
 #include "common/lower_case.h"
 #include "common/message_text.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

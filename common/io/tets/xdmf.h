@@ -5,10 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include "common/files/atomic_file.h"
-#include "common/io/contents/mesh_to_write.h"
-#include "common/io/contents/read_tet_mesh_result.h"
 #include "common/io/volumes/data_file.h"
+#include "tetwright/files.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <system_error>
 
-#include "common/error.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

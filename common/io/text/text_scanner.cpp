@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <limits>
 
-#include "common/error.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

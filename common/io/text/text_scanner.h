@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "common/message_text.h"
-#include "common/types.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <type_traits>
 
-#include "common/files/atomic_file.h"
 #include "common/number_text.h"
+#include "tetwright/files.h"
 
 namespace tetwright {
 

@@ -3,10 +3,10 @@
 
 #include <filesystem>
 
-#include "common/error.h"
 #include "common/io/encodings/vtk_numbers.h"
 #include "common/io/text/text_scanner.h"
 #include "common/lower_case.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/volumes/header_fields.h"
 
-#include "common/error.h"
 #include "common/io/encodings/vtk_numbers.h"
 #include "common/io/text/text_scanner.h"
 #include "common/lower_case.h"
 #include "common/trimmed.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "common/label_volume.h"
+#include "tetwright/label_volume.h"
 
 namespace tetwright {
 

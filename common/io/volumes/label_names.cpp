@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/io/volumes/label_names.h"
+#include "tetwright/io.h"
 
 #include <algorithm>
 #include <vector>
 
-#include "common/error.h"
-#include "common/files/atomic_file.h"
 #include "common/io/text/text_scanner.h"
 #include "common/trimmed.h"
+#include "tetwright/error.h"
+#include "tetwright/files.h"
 
 namespace tetwright {
 

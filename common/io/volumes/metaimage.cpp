@@ -3,12 +3,12 @@
 
 #include <array>
 
-#include "common/error.h"
 #include "common/io/encodings/byte_order.h"
 #include "common/io/encodings/vtk_numbers.h"
 #include "common/io/volumes/header_fields.h"
 #include "common/io/volumes/voxel_data.h"
 #include "common/trimmed.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <string_view>
 
-#include "common/files/atomic_file.h"
 #include "common/io/volumes/data_file.h"
-#include "common/label_volume.h"
+#include "tetwright/files.h"
+#include "tetwright/label_volume.h"
 
 namespace tetwright {
 

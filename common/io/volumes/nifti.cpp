@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "common/error.h"
 #include "common/io/encodings/byte_order.h"
 #include "common/io/volumes/voxel_data.h"
 #include "common/number_text.h"
 #include "common/tolerances.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

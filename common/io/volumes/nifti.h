@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "common/io/volumes/data_file.h"
-#include "common/label_volume.h"
+#include "tetwright/label_volume.h"
 
 namespace tetwright {
 

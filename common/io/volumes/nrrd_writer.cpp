@@ -6,10 +6,10 @@
 #include <bit>
 #include <new>
 
-#include "common/error.h"
 #include "common/io/encodings/byte_order.h"
 #include "common/io/volumes/nrrd.h"
 #include "common/number_text.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

@@ -9,10 +9,10 @@
 #include <type_traits>
 #include <utility>
 
-#include "common/error.h"
 #include "common/io/encodings/byte_order.h"
 #include "common/number_text.h"
-#include "common/parallel/parallel.h"
+#include "tetwright/error.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

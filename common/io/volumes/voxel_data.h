@@ -10,7 +10,7 @@
 
 #include "common/io/encodings/byte_source.h"
 #include "common/io/text/text_scanner.h"
-#include "common/label_volume.h"
+#include "tetwright/label_volume.h"
 
 namespace tetwright {
 

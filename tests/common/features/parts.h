@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "common/triangle_mesh.h"
+#include "tetwright/surface_mesh.h"
 
 namespace tetwright {
 

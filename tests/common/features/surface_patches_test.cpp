@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/features/surface_patches.h"
+#include "tetwright/surface_mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,12 @@
 #include <optional>
 #include <set>
 
-#include "common/error.h"
-#include "common/mesh/interfaces.h"
 #include "common/random.h"
 #include "tests/common/features/parts.h"
 #include "tests/mesher/test_surfaces.h"
 #include "tests/simplify/meshes.h"
+#include "tetwright/error.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::surface_patches_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/files/atomic_file.h"
+#include "tetwright/files.h"
 
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -7,9 +7,9 @@
 
 #include <csignal>
 
-#include "common/progress.h"
 #include "tests/common/io/expect_error.h"
 #include "tests/common/io/file_test.h"
+#include "tetwright/progress.h"
 
 namespace tetwright::atomic_file_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/geometry/quality.h"
+#include "tetwright/mesh_quality.h"
 
 #include <gtest/gtest.h>
 

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "common/geometry/triangle_intersection.h"
-#include "common/parallel/parallel.h"
 #include "common/random.h"
 #include "common/samples/samples.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::self_intersection_test {
 namespace {

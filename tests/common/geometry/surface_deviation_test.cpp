@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/geometry/surface_deviation.h"
+#include "tetwright/mesh_quality.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <numbers>
 
 #include "common/geometry/projection_tree.h"
-#include "common/parallel/parallel.h"
 #include "common/random.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 namespace {

@@ -8,9 +8,9 @@
 #include <limits>
 
 #include "common/geometry/point_triangle.h"
-#include "common/parallel/parallel.h"
 #include "common/random.h"
 #include "tests/mesher/test_surfaces.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::surface_tree_test {
 namespace {

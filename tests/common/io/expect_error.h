@@ -6,7 +6,7 @@
 #include <string>
 #include <type_traits>
 
-#include "common/error.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 

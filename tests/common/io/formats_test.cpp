@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/io/formats.h"
+#include "tetwright/io.h"
 
 #include "tests/common/io/expect_error.h"
 #include "tests/common/io/file_test.h"

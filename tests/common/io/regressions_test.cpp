@@ -6,11 +6,9 @@
 
 #include <filesystem>
 
-#include "common/error.h"
-#include "common/io/formats.h"
-#include "common/mesh/mesh_check.h"
-#include "common/mesh/mesh_statistics.h"
-#include "common/mesh/topology.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::regressions_test {
 namespace {

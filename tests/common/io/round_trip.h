@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include "common/io/contents/mesh_to_write.h"
-#include "common/mesh/interfaces.h"
-#include "common/mesh/midside_nodes.h"
 #include "tests/common/small_meshes.h"
+#include "tetwright/io.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

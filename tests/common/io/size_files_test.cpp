@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "common/io/formats.h"
 #include "tests/common/io/expect_error.h"
 #include "tests/common/io/file_test.h"
 #include "tests/common/small_meshes.h"
+#include "tetwright/io.h"
 
 namespace tetwright::size_files_test {
 namespace {

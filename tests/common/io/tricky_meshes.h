@@ -3,8 +3,8 @@
 
 #include <bit>
 
-#include "common/tet_mesh.h"
-#include "common/triangle_mesh.h"
+#include "tetwright/surface_mesh.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 

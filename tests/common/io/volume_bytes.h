@@ -11,8 +11,8 @@
 
 #include "common/io/encodings/byte_order.h"
 #include "common/io/volumes/data_file.h"
-#include "common/label_volume.h"
 #include "tests/common/io/expect_error.h"
+#include "tetwright/label_volume.h"
 
 namespace tetwright {
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/curved_elements.h"
+#include "tetwright/mesh_quality.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "common/mesh/interfaces.h"
 #include "common/samples/samples.h"
 #include "tests/common/small_meshes.h"
 

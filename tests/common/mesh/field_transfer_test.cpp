@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/field_transfer.h"
+#include "tetwright/mesh_quality.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <cstring>
 #include <limits>
 
-#include "common/parallel/parallel.h"
 #include "common/random.h"
 #include "tests/common/small_meshes.h"
 #include "tests/simplify/meshes.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::field_transfer_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/import_cleanup.h"
+#include "tetwright/mesh_quality.h"
 
 #include <gtest/gtest.h>
 
@@ -10,12 +10,11 @@
 #include <string>
 
 #include "common/geometry/predicates.h"
-#include "common/mesh/interfaces.h"
-#include "common/parallel/parallel.h"
 #include "common/random.h"
-#include "common/reference_surface.h"
 #include "tests/common/small_meshes.h"
 #include "tests/simplify/meshes.h"
+#include "tetwright/resources.h"
+#include "tetwright/surface_mesh.h"
 
 namespace tetwright::import_cleanup_test {
 namespace {

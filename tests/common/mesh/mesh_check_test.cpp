@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/mesh_check.h"
+#include "tetwright/mesh_quality.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "common/parallel/parallel.h"
 #include "common/samples/samples.h"
 #include "tests/common/small_meshes.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::mesh_check_test {
 namespace {

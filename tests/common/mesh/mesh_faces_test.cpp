@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/mesh_faces.h"
+#include "tetwright/mesh_quality.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
 
-#include "common/parallel/parallel.h"
 #include "common/random.h"
 #include "tests/common/small_meshes.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::mesh_faces_test {
 namespace {

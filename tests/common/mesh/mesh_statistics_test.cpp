@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/mesh_statistics.h"
+#include "tetwright/mesh_quality.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "common/geometry/quality.h"
-#include "common/mesh/interfaces.h"
-#include "common/parallel/parallel.h"
 #include "common/samples/samples.h"
 #include "tests/common/small_meshes.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::mesh_statistics_test {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/midside_nodes.h"
+#include "tetwright/tet_mesh.h"
 
 #include <gtest/gtest.h>
 
-#include "common/mesh/interfaces.h"
 #include "tests/common/small_meshes.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::midside_nodes_test {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/solid_shape.h"
+#include "tetwright/mesh_quality.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "common/samples/samples.h"
-#include "common/triangle_mesh.h"
+#include "tetwright/surface_mesh.h"
 
 namespace tetwright {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/topology.h"
+#include "tetwright/mesh_quality.h"
 
 #include <gtest/gtest.h>
 

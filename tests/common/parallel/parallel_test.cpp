@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/parallel/parallel.h"
+#include "tetwright/resources.h"
 
 #include <gtest/gtest.h>
 

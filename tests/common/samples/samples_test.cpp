@@ -6,9 +6,9 @@
 #include <map>
 #include <numbers>
 
-#include "common/mesh/mesh_check.h"
 #include "common/mesh/surface_chains.h"
 #include "tests/common/io/expect_error.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::samples_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/sizes/size_field.h"
+#include "tetwright/sizes.h"
 
 #include <gtest/gtest.h>
 

@@ -6,13 +6,12 @@
 #include <map>
 #include <set>
 
-#include "common/geometry/quality.h"
-#include "common/mesh/mesh_check.h"
-#include "common/parallel/parallel.h"
 #include "mesher/cut/crease_labels.h"
-#include "mesher/mesher.h"
 #include "tests/common/features/parts.h"
 #include "tests/mesher/test_surfaces.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/mesher.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::crease_fitting_test {
 namespace {

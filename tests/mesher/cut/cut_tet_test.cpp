@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "common/geometry/quality.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::cut_tet_test {
 namespace {

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <set>
 
-#include "common/geometry/quality.h"
 #include "common/random.h"
 #include "tests/mesher/lattices.h"
 #include "tests/mesher/test_surfaces.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::cutting_test {
 namespace {

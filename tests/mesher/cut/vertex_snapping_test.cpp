@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "common/geometry/quality.h"
-#include "common/parallel/parallel.h"
 #include "mesher/cut/cutting.h"
 #include "mesher/cut/link_topology.h"
 #include "tests/mesher/fields.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::vertex_snapping_test {
 namespace {

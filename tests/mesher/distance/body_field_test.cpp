@@ -5,11 +5,11 @@
 
 #include <numbers>
 
-#include "mesher/distance/vdb_files.h"
 #include "mesher/labels/label_field.h"
-#include "mesher/mesher.h"
 #include "tests/common/temporary_folder.h"
 #include "tests/mesher/test_surfaces.h"
+#include "tetwright/mesher.h"
+#include "tetwright/mesher_input.h"
 
 namespace tetwright::body_field_test {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "common/parallel/parallel.h"
 #include "common/random.h"
 #include "tests/mesher/test_surfaces.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::level_set_test {
 namespace {

@@ -7,10 +7,10 @@
 
 #include <cmath>
 
-#include "common/error.h"
 #include "common/geometry/self_intersection.h"
-#include "mesher/mesher.h"
 #include "tests/mesher/fields.h"
+#include "tetwright/error.h"
+#include "tetwright/mesher.h"
 
 namespace tetwright::local_thickness_test {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "common/parallel/parallel.h"
 #include "common/random.h"
 #include "tests/mesher/fields.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::material_field_test {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "mesher/input/mesher_input.h"
 #include "tests/common/features/parts.h"
+#include "tetwright/mesher_input.h"
 
 namespace tetwright::narrow_patches_test {
 namespace {

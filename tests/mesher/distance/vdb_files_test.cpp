@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesher/distance/vdb_files.h"
+#include "tetwright/mesher_input.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/io/File.h>
@@ -8,14 +8,14 @@
 
 #include <map>
 
-#include "common/error.h"
-#include "common/files/atomic_file.h"
-#include "common/parallel/parallel.h"
 #include "common/random.h"
 #include "mesher/distance/level_set.h"
 #include "mesher/distance/vdb_writer.h"
 #include "tests/common/temporary_folder.h"
 #include "tests/mesher/test_surfaces.h"
+#include "tetwright/error.h"
+#include "tetwright/files.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::vdb_files_test {
 namespace {

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <limits>
 
-#include "common/error.h"
-#include "common/files/atomic_file.h"
 #include "common/random.h"
 #include "tests/common/small_meshes.h"
 #include "tests/common/temporary_folder.h"
+#include "tetwright/error.h"
+#include "tetwright/files.h"
 
 namespace tetwright::vdb_sizes_test {
 namespace {

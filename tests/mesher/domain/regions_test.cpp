@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesher/domain/regions.h"
+#include "tetwright/mesher_input.h"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include <map>
 #include <set>
 
-#include "common/parallel/parallel.h"
 #include "common/random.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::connected_components_test {
 namespace {

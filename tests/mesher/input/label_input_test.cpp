@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesher/input/label_input.h"
+#include "tetwright/mesher_input.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "common/parallel/parallel.h"
 #include "common/random.h"
 #include "tests/common/io/expect_error.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::label_input_test {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "common/error.h"
 #include "tests/mesher/prepared.h"
 #include "tests/mesher/test_surfaces.h"
+#include "tetwright/error.h"
 
 namespace tetwright::surface_components_test {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesher/input/surface_repair.h"
+#include "tetwright/mesher_input.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <numbers>
 
-#include "common/error.h"
-#include "common/parallel/parallel.h"
 #include "tests/mesher/prepared.h"
 #include "tests/mesher/test_surfaces.h"
+#include "tetwright/error.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::surface_repair_test {
 namespace {

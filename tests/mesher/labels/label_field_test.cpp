@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/parallel/parallel.h"
 #include "common/random.h"
 #include "tests/mesher/label_volumes.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::label_field_test {
 namespace {

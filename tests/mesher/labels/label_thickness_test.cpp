@@ -8,11 +8,11 @@
 #include <cmath>
 #include <set>
 
-#include "common/parallel/parallel.h"
 #include "common/random.h"
 #include "mesher/labels/label_field.h"
 #include "mesher/tuning/domain_tuning.h"
 #include "tests/mesher/label_volumes.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::label_thickness_test {
 namespace {
@@ -164,7 +164,8 @@ TEST(LabelThickness, TheSameAsByBoxesTriedEverywhere) {
     EXPECT_TRUE(thin.finer.cells[0].empty());
     for (int depth = 0; depth < refinement; ++depth)
       ASSERT_EQ(thin.finer.cells[refinement - depth], cells_by_the_rules(labels, frame, depth)) << depth;
-    EXPECT_TRUE(refinement == DomainTuning::Refinement::max_levels || cells_by_the_rules(labels, frame, refinement).empty());
+    EXPECT_TRUE(refinement == DomainTuning::Refinement::max_levels ||
+                cells_by_the_rules(labels, frame, refinement).empty());
   }
   EXPECT_GT(thin_volumes, 40u);
 }

@@ -5,9 +5,9 @@
 
 #include <map>
 
-#include "common/geometry/quality.h"
 #include "tests/mesher/random_octree.h"
 #include "tests/mesher/test_surfaces.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::lattice_test {
 namespace {

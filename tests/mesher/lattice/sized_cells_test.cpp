@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "common/mesh/mesh_check.h"
-#include "mesher/mesher.h"
 #include "tests/mesher/test_surfaces.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/mesher.h"
 
 namespace tetwright::sized_cells_test {
 namespace {

@@ -3,7 +3,6 @@
 // The parallel stages from field to cut mesh on many threads, for the thread sanitizer.
 #include <gtest/gtest.h>
 
-#include "common/parallel/parallel.h"
 #include "mesher/cut/cutting.h"
 #include "mesher/cut/vertex_snapping.h"
 #include "mesher/distance/field_thickness.h"
@@ -11,6 +10,7 @@
 #include "mesher/labels/label_field.h"
 #include "mesher/labels/label_thickness.h"
 #include "tests/mesher/test_surfaces.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::threads_test {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "common/error.h"
 #include "tests/simplify/meshes.h"
+#include "tetwright/error.h"
 
 namespace tetwright::constrained_mesh_test {
 namespace {

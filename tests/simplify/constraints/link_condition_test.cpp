@@ -3,10 +3,9 @@
 
 #include <set>
 
-#include "common/mesh/mesh_faces.h"
-#include "common/mesh/topology.h"
 #include "simplify/operations/collapse.h"
 #include "tests/simplify/workbench.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::link_condition_test {
 namespace {

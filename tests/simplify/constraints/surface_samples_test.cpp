@@ -5,10 +5,10 @@
 #include <limits>
 #include <map>
 
-#include "common/mesh/interfaces.h"
 #include "simplify/operations/collapse.h"
 #include "simplify/operations/smoothing.h"
 #include "tests/simplify/workbench.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::surface_samples_test {
 namespace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <set>
 
-#include "common/error.h"
 #include "tests/simplify/meshes.h"
+#include "tetwright/error.h"
 
 namespace tetwright::editable_mesh_test {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <limits>
 
-#include "common/error.h"
 #include "simplify/mesh/free_slots.h"
 #include "simplify/operations/insertion.h"
 #include "tests/simplify/workbench.h"
+#include "tetwright/error.h"
 
 namespace tetwright::reservations_test {
 namespace {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/collapse.h"
 
-#include "common/mesh/mesh_check.h"
-#include "common/mesh/topology.h"
 #include "tests/simplify/workbench.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::collapse_test {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/fitting.h"
 
-#include "common/mesh/interfaces.h"
 #include "tests/simplify/workbench.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::fitting_test {
 namespace {

@@ -16,14 +16,14 @@
 #include <set>
 #include <utility>
 
-#include "common/error.h"
-#include "common/parallel/parallel.h"
 #include "simplify/operations/collapse.h"
 #include "simplify/operations/edge_removal.h"
 #include "simplify/operations/face_removal.h"
 #include "simplify/operations/insertion.h"
 #include "simplify/operations/smoothing.h"
 #include "tests/simplify/workbench.h"
+#include "tetwright/error.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::block_runner_test {
 namespace {

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "common/mesh/interfaces.h"
-#include "common/mesh/mesh_check.h"
-#include "common/mesh/mesh_statistics.h"
-#include "common/mesh/topology.h"
-#include "common/parallel/parallel.h"
 #include "common/samples/random_interior.h"
-#include "simplify/simplify.h"
 #include "tests/simplify/meshes.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright::improvement_test {
 namespace {

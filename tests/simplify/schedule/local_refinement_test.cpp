@@ -7,11 +7,11 @@
 #include <cmath>
 #include <limits>
 
-#include "common/mesh/mesh_check.h"
 #include "simplify/schedule/engine.h"
 #include "simplify/schedule/selection.h"
 #include "simplify/schedule/whole_mesh.h"
 #include "tests/simplify/meshes.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <system_error>
 
-#include "common/error.h"
+#include "tetwright/error.h"
 
 namespace tetwright::exit_status_test {
 namespace {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "common/io/formats.h"
-#include "common/mesh/interfaces.h"
 #include "tests/tools/program.h"
+#include "tetwright/io.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::improve_test {
 namespace {

@@ -8,9 +8,9 @@
 #include <set>
 #include <sstream>
 
-#include "common/io/formats.h"
-#include "common/mesh/mesh_statistics.h"
 #include "tests/tools/program.h"
+#include "tetwright/io.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::patches_test {
 namespace {

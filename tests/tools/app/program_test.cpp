@@ -7,9 +7,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "common/io/formats.h"
 #include "common/samples/samples.h"
 #include "tests/tools/program.h"
+#include "tetwright/io.h"
 
 namespace tetwright::program_test {
 namespace {

@@ -12,9 +12,9 @@
 #include <fstream>
 #include <thread>
 
-#include "common/io/formats.h"
 #include "tests/tools/process.h"
 #include "tests/tools/program.h"
+#include "tetwright/io.h"
 
 namespace tetwright::signals_test {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/io/formats.h"
-#include "common/mesh/interfaces.h"
 #include "common/message_text.h"
 #include "tests/tools/program.h"
+#include "tetwright/io.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::solver_formats_test {
 namespace {

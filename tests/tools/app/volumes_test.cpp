@@ -10,9 +10,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "common/io/formats.h"
 #include "common/samples/samples.h"
 #include "tests/tools/program.h"
+#include "tetwright/io.h"
 
 namespace tetwright::volumes_test {
 namespace {

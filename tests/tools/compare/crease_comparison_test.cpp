@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Whether a mesh has the creases of its input, and what the program says of them.
-#include "tools/compare/crease_comparison.h"
+#include "tetwright/compare.h"
 
 #include <gtest/gtest.h>
 
@@ -11,11 +11,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "common/io/formats.h"
-#include "common/mesh/interfaces.h"
 #include "common/random.h"
 #include "tests/simplify/meshes.h"
 #include "tests/tools/program.h"
+#include "tetwright/io.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::crease_comparison_test {
 namespace {

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/mesh/interfaces.h"
-#include "common/mesh/mesh_statistics.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::input_limited_test {
 namespace {

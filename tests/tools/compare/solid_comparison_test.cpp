@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Whether a mesh is the solid of its input, and what the program says where it is not.
-#include "tools/compare/solid_comparison.h"
+#include "tetwright/compare.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "common/io/formats.h"
-#include "common/mesh/interfaces.h"
 #include "tests/mesher/test_surfaces.h"
 #include "tests/tools/program.h"
+#include "tetwright/io.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::solid_comparison_test {
 namespace {

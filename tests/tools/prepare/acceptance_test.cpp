@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/prepare/acceptance.h"
+#include "tetwright/prepare_steps.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <sstream>
 #include <string>
-
-#include "tools/prepare/notes.h"
 
 namespace tetwright::acceptance_test {
 namespace {

@@ -2,7 +2,7 @@
 // The library does the program's whole job: the same bytes as the program and the Python package, for files
 // and values in memory; and it is a good guest: silent, with oneTBB's limits as they were, soon cancelled,
 // and callable from several threads at a time. This program links nothing of the program's own.
-#include "tools/prepare/prepare.h"
+#include "tetwright/prepare.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -17,12 +17,11 @@
 #include <functional>
 #include <thread>
 
-#include "common/io/contents/mesh_to_write.h"
-#include "common/io/formats.h"
-#include "common/parallel/parallel.h"
 #include "common/samples/samples.h"
 #include "tests/common/io/expect_error.h"
 #include "tests/tools/program.h"
+#include "tetwright/io.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::prepare_test {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "common/error.h"
-#include "common/files/atomic_file.h"
-#include "common/io/formats.h"
 #include "tests/common/small_meshes.h"
 #include "tests/common/temporary_folder.h"
+#include "tetwright/error.h"
+#include "tetwright/files.h"
+#include "tetwright/io.h"
 
 namespace tetwright::size_field_file_test {
 namespace {

@@ -3,7 +3,7 @@
 // A program of another project that improves a mesh of its own and reads no files.
 #include <cstdio>
 
-#include "simplify/simplify.h"
+#include <tetwright/simplify.h>
 
 int main() {
   tetwright::TetMesh mesh;

@@ -4,20 +4,18 @@
 #include <utility>
 #include <vector>
 
-#include "common/error.h"
-#include "common/files/atomic_file.h"
-#include "common/io/formats.h"
-#include "common/memory.h"
-#include "common/mesh/interfaces.h"
-#include "common/mesh/topology.h"
-#include "mesher/distance/vdb_files.h"
+#include "tetwright/error.h"
+#include "tetwright/files.h"
+#include "tetwright/io.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/prepare_steps.h"
+#include "tetwright/resources.h"
 #include "tools/app/commands/command_run.h"
 #include "tools/app/commands/commands.h"
 #include "tools/app/commands/output_paths.h"
 #include "tools/app/commands/report_file.h"
 #include "tools/app/printed_report.h"
-#include "tools/prepare/notes.h"
-#include "tools/prepare/simplification.h"
 #include "tools/report/stats_json.h"
 
 namespace tetwright {

@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "common/files/atomic_file.h"
-#include "common/memory.h"
-#include "common/progress.h"
+#include "tetwright/files.h"
+#include "tetwright/prepare.h"
+#include "tetwright/prepare_steps.h"
+#include "tetwright/progress.h"
+#include "tetwright/resources.h"
 #include "tools/app/command_line.h"
 #include "tools/app/commands/named_inputs.h"
 #include "tools/app/exit_status.h"
-#include "tools/prepare/report.h"
-#include "tools/prepare/run.h"
 #include "tools/report/page/surface_distances.h"
 
 namespace tetwright {

@@ -6,16 +6,15 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "common/error.h"
-#include "common/parallel/parallel.h"
+#include "tetwright/error.h"
+#include "tetwright/prepare_steps.h"
+#include "tetwright/resources.h"
 #include "tools/app/commands/output_paths.h"
 #include "tools/app/commands/report_file.h"
 #include "tools/app/commands/result.h"
 #include "tools/app/commands/unwritten.h"
 #include "tools/app/printed_report.h"
 #include "tools/app/progress_report.h"
-#include "tools/prepare/acceptance.h"
-#include "tools/prepare/carry_out.h"
 #include "tools/report/stats_json.h"
 
 namespace tetwright {

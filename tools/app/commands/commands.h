@@ -3,11 +3,11 @@
 
 #include <exception>
 
+#include "tetwright/prepare.h"
 #include "tools/app/command_line.h"
 #include "tools/app/commands/command_run.h"
 #include "tools/app/exit_status.h"
 #include "tools/compare/check_report.h"
-#include "tools/prepare/prepare.h"
 
 namespace tetwright {
 

@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "common/files/atomic_file.h"
-#include "common/sizes/mesh_sizes.h"
+#include "tetwright/files.h"
+#include "tetwright/sizes.h"
 
 namespace tetwright {
 

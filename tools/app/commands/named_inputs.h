@@ -6,10 +6,10 @@
 #include <variant>
 #include <vector>
 
-#include "common/tet_mesh.h"
-#include "common/triangle_mesh.h"
+#include "tetwright/prepare.h"
+#include "tetwright/surface_mesh.h"
+#include "tetwright/tet_mesh.h"
 #include "tools/app/command_line.h"
-#include "tools/prepare/inputs.h"
 
 namespace tetwright {
 

@@ -4,10 +4,10 @@
 #include <cctype>
 #include <filesystem>
 
-#include "common/error.h"
-#include "common/files/atomic_file.h"
-#include "common/io/formats.h"
 #include "common/lower_case.h"
+#include "tetwright/error.h"
+#include "tetwright/files.h"
+#include "tetwright/io.h"
 #include "tools/app/commands/command_run.h"
 #include "tools/app/log_file.h"
 

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "common/files/atomic_file.h"
-#include "common/tet_mesh.h"
-#include "common/triangle_mesh.h"
+#include "tetwright/files.h"
+#include "tetwright/surface_mesh.h"
+#include "tetwright/tet_mesh.h"
 #include "tools/app/commands/command_run.h"
 #include "tools/compare/check_report.h"
 

@@ -3,11 +3,11 @@
 
 #include <cstdio>
 
-#include "common/files/atomic_file.h"
-#include "common/io/formats.h"
+#include "tetwright/files.h"
+#include "tetwright/io.h"
+#include "tetwright/prepare_steps.h"
 #include "tools/app/commands/report_file.h"
 #include "tools/app/printed_report.h"
-#include "tools/prepare/notes.h"
 #include "tools/report/stats_json.h"
 
 namespace tetwright {

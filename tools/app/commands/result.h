@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tetwright/prepare.h"
 #include "tools/app/commands/command_run.h"
-#include "tools/prepare/prepare.h"
 
 namespace tetwright {
 

@@ -3,8 +3,8 @@
 
 #include <cstdio>
 
-#include "common/files/atomic_file.h"
-#include "common/io/formats.h"
+#include "tetwright/files.h"
+#include "tetwright/io.h"
 #include "tools/app/commands/command_run.h"
 #include "tools/app/commands/commands.h"
 #include "tools/app/commands/output_paths.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/io/formats.h"
+#include "tetwright/io.h"
 
 namespace tetwright {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/tet_mesh.h"
+#include "tetwright/prepare.h"
+#include "tetwright/tet_mesh.h"
 #include "tools/app/command_line.h"
-#include "tools/prepare/report.h"
 
 namespace tetwright {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "common/mesh/mesh_statistics.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright {
 

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "common/geometry/predicates.h"
-#include "common/geometry/quality.h"
-#include "common/parallel/parallel.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
 #include "tools/report/page/html_text.h"
 
 namespace tetwright {

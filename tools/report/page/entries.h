@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "common/types.h"
+#include "tetwright/prepare.h"
+#include "tetwright/tet_mesh.h"
 #include "tools/compare/check_report.h"
-#include "tools/prepare/report.h"
 
 namespace tetwright {
 

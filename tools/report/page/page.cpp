@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "common/geometry/quality.h"
 #include "common/io/encodings/base64.h"
+#include "tetwright/mesh_quality.h"
 #include "tools/report/page/charts.h"
 #include "tools/report/page/embedded.h"
 #include "tools/report/page/entries.h"

@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include "common/files/atomic_file.h"
+#include "tetwright/files.h"
+#include "tetwright/prepare.h"
 #include "tools/app/command_line.h"
 #include "tools/compare/check_report.h"
-#include "tools/prepare/report.h"
 #include "tools/report/page/page_mesh.h"
 
 namespace tetwright {

@@ -9,8 +9,8 @@
 
 #include "common/geometry/box_tree.h"
 #include "common/geometry/predicates.h"
-#include "common/geometry/quality.h"
-#include "common/parallel/parallel.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
 #include "tools/report/page/little_endian.h"
 #include "tools/report/page/skin.h"
 

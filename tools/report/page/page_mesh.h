@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/tet_mesh.h"
+#include "tetwright/tet_mesh.h"
 #include "tools/report/page/quantised_points.h"
 #include "tools/report/page/surface_distances.h"
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/geometry/projection_tree.h"
-#include "common/parallel/parallel.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

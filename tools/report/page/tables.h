@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/prepare/report.h"
+#include "tetwright/prepare.h"
 #include "tools/report/page/charts.h"
 #include "tools/report/page/entries.h"
 

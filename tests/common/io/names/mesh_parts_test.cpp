@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
-#include "common/mesh/interfaces.h"
 #include "common/samples/samples.h"
-#include "common/types.h"
 #include "tests/common/small_meshes.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/tet_mesh.h"
 
 namespace tetwright::mesh_parts_test {
 namespace {

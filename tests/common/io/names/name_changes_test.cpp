@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/io/names/name_changes.h"
+#include "tetwright/io.h"
 
 #include <gtest/gtest.h>
 
-#include "common/io/formats.h"
 #include "tests/common/io/round_trip.h"
 
 namespace tetwright::name_changes_test {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/tets/medit.h"
 
-#include "common/mesh/interfaces.h"
 #include "tests/common/io/expect_error.h"
 #include "tests/common/io/tricky_meshes.h"
 #include "tests/common/small_meshes.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::medit_test {
 namespace {

@@ -5,11 +5,11 @@
 #include <limits>
 #include <set>
 
-#include "common/mesh/interfaces.h"
 #include "tests/common/io/expect_error.h"
 #include "tests/common/io/same_values.h"
 #include "tests/common/io/tricky_meshes.h"
 #include "tests/common/small_meshes.h"
+#include "tetwright/mesh_quality.h"
 
 namespace tetwright::msh_test {
 namespace {

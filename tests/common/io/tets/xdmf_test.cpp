@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/tets/xdmf.h"
 
-#include "common/io/formats.h"
 #include "tests/common/io/expect_error.h"
 #include "tests/common/io/file_test.h"
 #include "tests/common/io/round_trip.h"
 #include "tests/common/io/tricky_meshes.h"
+#include "tetwright/io.h"
 
 namespace tetwright::xdmf_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/io/volumes/label_names.h"
+#include "tetwright/io.h"
 
 #include <gtest/gtest.h>
 

@@ -9,9 +9,9 @@
 #include <random>
 
 #include "common/io/encodings/base64.h"
-#include "common/mesh/interfaces.h"
 #include "common/samples/samples.h"
 #include "tests/tools/program.h"
+#include "tetwright/mesh_quality.h"
 #include "tools/report/page/html_text.h"
 #include "tools/report/page/page.h"
 #include "tools/report/page/skin.h"

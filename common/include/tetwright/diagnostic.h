@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tetwright/tet_mesh.h"
+
+namespace tetwright {
+
+/// How much a diagnostic matters.
+enum class Severity : std::uint8_t {
+  note,       ///< something was repaired or left out, or is worth knowing
+  shortfall,  ///< the mesh is valid, but a request was not met
+  warning,    ///< of `check`: the mesh is valid all the same
+  error       ///< of `check`: the mesh is not valid; of a run: there is no result
+};
+
+/// Each kind of diagnostic. diagnostic_kinds() has their names, data/guide/messages.md causes and remedies.
+enum class DiagnosticCode : std::uint8_t {
+  // Requests that were not met.
+  target_missed,
+  angle_missed,
+  tolerance_missed,
+  surface_not_shown,
+  edges_too_long,
+  edges_too_short,
+  sizes_missed,
+  solid_changed,
+  thin_walls_changed,
+  creases_changed,
+  patches_lost,
+  labels_lost,
+  time_limit_reached,
+  cells_enlarged,
+  notes_not_allowed,
+  // The result.
+  angles_below_bound,
+  tets_still_below,
+  volume_changed,
+  parts_touch,
+  gap_closed,
+  wall_left_out,
+  crease_patches_dropped,
+  specks_dropped,
+  not_compared,
+  solid_uncertain,
+  thin_parts,
+  thin_parts_uncertain,
+  not_written,
+  names_changed,
+  // Surfaces.
+  points_merged,
+  points_unused,
+  triangles_collapsed,
+  triangles_repeated,
+  triangles_flat,
+  edges_non_manifold,
+  inner_walls_dropped,
+  triangles_turned,
+  holes_closed,
+  surface_self_intersects,
+  components_turned,
+  components_unclear,
+  components_alike,
+  components_alternate,
+  cavities_filled,
+  components_separated,
+  names_qualified,
+  // Segmented volumes.
+  no_outside,
+  islands_merged,
+  islands_all_small,
+  // Tet meshes.
+  tet_points_merged,
+  tets_collapsed,
+  tets_turned,
+  tets_inverted,
+  patch_faces_lost,
+  // Files.
+  input_dropped,
+  input_restored,
+  // Findings of `check`, in the order of MeshFault.
+  materials_missing,
+  index_out_of_range,
+  coordinates_not_finite,
+  degenerate_tets,
+  duplicate_tets,
+  unused_points,
+  inverted,
+  face_over_shared,
+  boundary_edges_not_two,
+  boundary_points_non_manifold,
+  point_star_split,
+  self_intersections,
+  topology_differs,
+  tolerance_exceeded,
+  // Runs without a result.
+  usage,
+  input,
+  nothing_to_mesh,
+  output,
+  internal,
+  interrupted
+};
+
+/// Decides when a shortfall becomes a note.
+enum class Yields : std::uint8_t {
+  never,
+  to_acceptance,            ///< --accept-changes
+  to_acceptance_or_purpose  ///< that, and gaps or walls that were closed or left out because it was asked
+};
+
+struct DiagnosticKind {
+  DiagnosticCode code;
+  const char* name;  ///< "target-missed"; stays the same from version to version
+  Severity severity;
+  Yields yields;
+  const char* title;  ///< a few words for lists
+  /// False: the result differs from an estimate, which may be what is wrong. Never counts as a note for
+  /// --strict.
+  bool certain = true;
+};
+
+/// All kinds, in the order of DiagnosticCode.
+std::span<const DiagnosticKind> diagnostic_kinds();
+const DiagnosticKind& kind_of(DiagnosticCode code);
+/// "note", "shortfall", "warning", "error"
+const char* name_of(Severity severity);
+
+/// Something that a user should know about an input or a result.
+struct Diagnostic {
+  DiagnosticCode code;
+  Severity severity = kind_of(code).severity;
+  std::string file = {};  ///< that it is about; empty: the result
+  std::string what = {};  ///< with a count the plural of what is counted, "repeated triangles"; else a clause
+  std::size_t count = 0;  ///< 0: `what` says all
+  std::string done = {};  ///< what was done about it
+  std::string remedy = {};                         ///< what the user can do
+  std::optional<double> asked = {}, reached = {};  ///< of a request, in its unit
+  std::string limited_by = {};                     ///< what prevented more
+  std::vector<Vec3> places = {};                   ///< the first ones, input units
+};
+
+/// "12 repeated triangles (one of each kept)"; without the file.
+std::string diagnostic_text(const Diagnostic& diagnostic);
+
+}  // namespace tetwright

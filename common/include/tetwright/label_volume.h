@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tetwright/tet_mesh.h"
+
+namespace tetwright {
+
+/// A segmented volume: a label for each voxel of a regular grid, whose axes need be neither perpendicular nor
+/// right-handed.
+///
+/// Voxels are cell-centred: index (i, j, k) is the centre of a voxel, which extends half a step to each side.
+struct LabelVolume {
+  std::array<int, 3> size{};   ///< voxels along each axis, 1 or more
+  Vec3 origin = Vec3::Zero();  ///< centre of voxel (0, 0, 0), input units
+  /// Column a is the step from one voxel to the next along axis a, input units; of rank 3.
+  Eigen::Matrix3d directions = Eigen::Matrix3d::Identity();
+  /// Coordinate system that the file names: "left-posterior-superior", "right-anterior-superior" and so on,
+  /// or empty. Readers do not convert between them.
+  std::string space;
+  std::vector<MaterialTag> labels;  ///< the first axis fastest
+  /// Names of labels in the file, including labels that no voxel has; names may repeat.
+  std::map<MaterialTag, std::string> names = {};
+  /// Colours of labels in the file: red, green, blue, each 0 to 1.
+  std::map<MaterialTag, std::array<double, 3>> colours = {};
+
+  /// Position of a voxel index, input units. `index` may be fractional.
+  Vec3 to_input(const Vec3& index) const;
+};
+
+/// Checks the grid of a volume.
+/// \param file named in messages
+/// \throws InputError unless origin and directions are finite and the directions are invertible
+void check_geometry(const LabelVolume& volume, const std::string& file);
+
+}  // namespace tetwright

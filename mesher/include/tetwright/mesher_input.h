@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tetwright/diagnostic.h"
+#include "tetwright/label_volume.h"
+#include "tetwright/progress.h"
+#include "tetwright/surface_mesh.h"
+#include "tetwright/tet_mesh.h"
+
+namespace tetwright {
+
+/// Index of a region of space: 0 is the outside, the materials follow.
+using RegionIndex = std::uint16_t;
+inline constexpr RegionIndex outside_region = 0;
+/// Tag and name of the outside as a material of a mesh that keeps it.
+inline constexpr MaterialTag outside_tag = 0;
+inline constexpr const char* outside_name = "outside";
+/// Marks a point on an interface, in place of its region.
+inline constexpr RegionIndex on_interface = 0xffff;
+
+/// How many times cells are halved where walls and gaps of a surface are thin: by default, and at most.
+inline constexpr int default_wall_refinement = 3, max_wall_refinement = 8;
+
+/// The regions that meet at a point, ascending: two on an interface, three on a junction curve, four at a
+/// corner. More than four do not meet in general position; a lattice point where they appear to is not moved.
+class RegionSet {
+ public:
+  static constexpr int capacity = 4;
+
+  int size() const { return size_; }
+  RegionIndex operator[](int i) const { return items_[i]; }
+  const RegionIndex* begin() const { return items_.data(); }
+  const RegionIndex* end() const { return items_.data() + size_; }
+  bool contains(RegionIndex r) const { return std::find(begin(), end(), r) != end(); }
+  /// Returns false, without inserting, if the set is full.
+  bool insert(RegionIndex r) {
+    int i = 0;
+    while (i < size_ && items_[i] < r) ++i;
+    if (i < size_ && items_[i] == r) return true;
+    if (size_ == capacity) return false;
+    for (int k = size_; k > i; --k) items_[k] = items_[k - 1];
+    items_[i] = r;
+    ++size_;
+    return true;
+  }
+  bool operator==(const RegionSet& o) const { return std::equal(begin(), end(), o.begin(), o.end()); }
+
+ private:
+  std::array<RegionIndex, capacity> items_{};
+  int size_ = 0;
+};
+
+/// Treatment of components that lie inside other components without intersecting them.
+enum class NestedRule {
+  automatic,  ///< oriented against the encloser: a cavity, or a body in a cavity; oriented alike: no effect
+  cavity,     ///< solids and cavities alternate from the outside to the inside
+  solid,      ///< no cavities
+  material    ///< closed ones become surfaces of their own
+};
+
+/// A surface from which signed distances can be computed: inside is where the generalised winding number is
+/// at least 0.5.
+struct RepairedSurface {
+  std::vector<Vec3> points;  ///< input units, no two equal, all used
+  /// Consistently oriented in each component; no repeated triangles, three different corners each.
+  std::vector<Triangle> triangles;
+  /// Index of each triangle's group in the file (TriangleMesh::groups); empty if the file has none.
+  std::vector<std::uint32_t> groups;
+  /// The number of triangles of closed components, which come first. All their edges balance, so their
+  /// winding number is an integer everywhere off the surface.
+  std::size_t closed = 0;
+  bool intersects_itself = false;  ///< some triangles meet elsewhere than in shared points and edges
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< bounding box
+  double area = 0;                               ///< input units squared
+  /// Input units cubed, without cavities; for open components the volume of their cone from the centre of the
+  /// box.
+  double volume = 0;
+};
+
+struct SurfaceRepair {
+  RepairedSurface surface;
+  /// With NestedRule::material the enclosed components, oriented outwards; enclosers come first, so that
+  /// later surfaces carve earlier ones.
+  std::vector<RepairedSurface> nested;
+  std::vector<Diagnostic> findings;  ///< without the file
+};
+
+/// Repairs a surface and reports every change, so that a clean closed surface has no findings. Steps, in this
+/// order:
+///
+/// - equal points are merged; unused points, triangles with fewer than three different points and repeated
+///   triangles (of either orientation) are removed;
+/// - triangles are oriented consistently and split into components, inner walls are removed
+///   (surface_components.h);
+/// - components that nothing encloses are turned outwards together with those they enclose; enclosed ones are
+///   oriented according to `nested` (surface_nesting.h). Only a component that does not intersect the other
+///   one counts as enclosed. An open component whose outside is unclear is not turned.
+///
+/// Holes and self-intersections are kept, since the winding number handles them. A cavity that two
+/// overlapping components both enclose is filled, because the winding number there is 1 + 1 - 1.
+///
+/// Cost: O(n log n + pairs of triangles that intersect). The result does not depend on the number of threads.
+/// \throws InputError beginning with `file`: no triangles or only flat ones, coordinates that are not finite,
+///   indices out of range, a one-sided surface
+SurfaceRepair repair_surface(const TriangleMesh& surface, const std::string& file,
+                             NestedRule nested = NestedRule::automatic);
+
+/// A surface and the material that it encloses.
+struct MaterialSurface {
+  std::string name;
+  MaterialTag tag = 0;
+  TriangleMesh surface;
+  std::string file;  ///< for messages
+};
+
+/// A layer below the first surface that becomes a material of its own.
+struct MaterialLayer {
+  std::string name;
+  MaterialTag tag = 0;
+  double thickness = 0;  ///< input units
+};
+
+/// Repaired surfaces, ready to be meshed.
+struct MesherInput {
+  struct Body {
+    std::string name;
+    MaterialTag tag;
+    std::string file;
+    RepairedSurface surface;
+    std::vector<SurfaceRegion> groups;  ///< groups of the file, see RepairedSurface::groups
+  };
+  /// A group of triangles of a file, before any repair.
+  struct Group {
+    SurfaceRegion group;
+    double area = 0;            ///< input units squared
+    Vec3 place = Vec3::Zero();  ///< the centre of its largest triangle, input units
+  };
+  std::vector<Body> bodies;           ///< later bodies carve earlier ones
+  std::vector<MaterialLayer> layers;  ///< of the first body, outermost first
+  std::vector<Diagnostic> findings;
+  std::vector<Group> groups;  ///< groups with triangles, ascending; repair may leave nothing of them
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< bounding box of all bodies, input units
+};
+
+/// Why surfaces do not define the solid of a material for certain: a flaw of its own surface or of one that
+/// carves it.
+enum class SurfaceFlaw : std::uint8_t {
+  none,
+  open,
+  touching,      ///< edges have not just two triangles, or points more than one fan of them
+  intersecting,  ///< itself
+  meeting        ///< the surface of another material
+};
+
+/// Validates and repairs the surfaces, see repair_surface(). With NestedRule::material every enclosed
+/// component becomes a body directly after its encloser, with the smallest free tag from 1 up. Where more
+/// than one surface has groups of triangles, names that several have are qualified, see qualify_names(), and
+/// groups that have only a number are named after their surface.
+///
+/// \pre non-empty names differ, and so do tags
+/// \throws InputError as repair_surface() does; for coordinates too large or a size too small for areas and
+///   volumes in double precision
+/// \throws UsageError for no surface, two materials of one name or tag, a layer whose thickness is not above
+///   0, or more than 60,000 materials
+MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers = {},
+                              NestedRule nested = NestedRule::automatic);
+
+/// The longest side of the bounding box, input units.
+double longest_side(const MesherInput& input);
+
+/// The largest absolute coordinate of the bounding box, input units.
+double largest_coordinate(const MesherInput& input);
+
+/// Selects the labels of a segmented volume that are meshed, and names them.
+struct LabelChoice {
+  /// Labels that become materials, as inclusive ranges; all others are outside. Empty: all but the outside
+  /// label.
+  std::vector<std::pair<MaterialTag, MaterialTag>> labels;
+  std::map<MaterialTag, std::string> names;  ///< labels without a name are called label_N
+  /// The file that `names` were read from, and the line of each, for messages; may be empty.
+  std::string names_file;
+  std::map<MaterialTag, std::size_t> name_lines;
+  MaterialTag outside_label = 0;
+  /// Face-connected islands of fewer voxels are merged into the region they touch most; 0 or 1: none.
+  std::size_t min_voxels = 8;
+};
+
+/// Range of the number of parts that a region of voxels may have: at least those that touch at a corner or
+/// more, at most those connected by faces. Unlimited if not counted.
+struct LabelParts {
+  std::size_t touching = 0, by_faces = std::numeric_limits<std::size_t>::max();
+  std::optional<Vec3> smallest_place;  ///< centre of a voxel of the smallest part by faces, input units
+};
+
+/// A label that is meshed.
+struct LabelMaterial {
+  std::string name;
+  MaterialTag tag = 0;             ///< the label
+  std::size_t voxels = 0;          ///< after merging small islands, 1 or more
+  std::size_t voxels_in_file = 0;  ///< before merging
+  LabelParts parts = {};           ///< after merging
+};
+
+/// A chosen label that is not meshed because all of it was in small islands.
+struct LostLabel {
+  MaterialTag tag = 0;
+  std::string name;
+  std::size_t voxels = 0;
+  Vec3 place = Vec3::Zero();  ///< centre of one of its voxels, input units
+};
+
+/// A segmented volume, ready to be meshed.
+struct LabelInput {
+  std::string file;
+  std::array<int, 3> size{};
+  Vec3 origin = Vec3::Zero();
+  Eigen::Matrix3d directions = Eigen::Matrix3d::Identity();
+  std::string space;  ///< see LabelVolume
+  /// Region of each voxel, first axis fastest: 0 is outside, i + 1 is materials[i].
+  std::vector<RegionIndex> regions;
+  std::vector<LabelMaterial> materials;  ///< by ascending tag
+  std::vector<LostLabel> lost;           ///< by ascending tag
+  std::size_t merged_islands = 0;        ///< including those of the outside
+  std::size_t merged_voxels = 0;
+  /// Parts of the outside that do not reach the border of the volume. Parts are not counted in volumes of
+  /// 2^32 voxels or more.
+  LabelParts outside_parts;
+  std::vector<Diagnostic> findings;  ///< changes to the input, for the user
+
+  std::size_t voxel_count() const { return regions.size(); }
+};
+
+/// Chooses the labels and merges islands of fewer than `min_voxels` voxels into their neighbours, see
+/// merge_small_islands(). If no island has that many voxels, nothing is merged and a finding says so. The
+/// result does not depend on the number of threads.
+///
+/// \param progress may be null
+/// \throws UsageError for impossible ranges and names: the outside label is chosen, two labels share a name,
+///   a label is called "outside"
+/// \throws InputError for impossible names that come from a file, a chosen label that does not exist (with a
+///   list of those that do), or more than 60,000 labels
+/// \throws NothingToMeshError if all voxels are outside
+/// \throws Interrupted
+LabelInput make_label_input(LabelVolume volume, const std::string& file, const LabelChoice& choice,
+                            Progress* progress);
+
+/// Splits a surface into one for each group of triangles, in the order of their first triangles and without
+/// groups of their own. A surface without groups is returned as it is, called `name`. A group without a name
+/// is called after `name` and its number; triangles in no group form a surface called `name`.
+std::vector<NamedSurface> split_solids(TriangleMesh surface, const std::string& name);
+
+// OpenVDB files (.vdb), the exchange format of level sets; they may also hold segmented volumes.
+
+/// Reads the level sets of a file as surfaces, in the file's order: their zero levels in the file's world
+/// coordinates, oriented with the negative side inside, and closed unless the level set itself ends. Memory
+/// grows with the file.
+///
+/// A level set is a grid of floats of the class "level set", or without a class but with a positive
+/// background and values of both signs. Other grids are ignored.
+///
+/// \throws InputError beginning with `file`: not a .vdb file, damaged or cut short, no level set in it (with
+///   a list of the grids), two of one name, one without a surface
+std::vector<NamedSurface> read_level_sets(const std::string& file);
+
+/// Reads the labels of a file that has no level set but one grid of int32 or int64. The volume is the
+/// bounding box of the active voxels; inactive voxels in it have the values that OpenVDB gives them, usually
+/// the background. Index coordinates are those of voxel centres. Memory grows with the file and by 4 bytes
+/// per voxel.
+///
+/// \param max_voxels 2^31 or fewer
+/// \return nothing for a file with a level set or without such a grid
+/// \throws InputError beginning with `file`: not a .vdb file, damaged or cut short, several such grids (with
+///   their names), no active voxel, more than `max_voxels` voxels, values beyond 32 bits, a transform that is
+///   not linear or not invertible
+std::optional<LabelVolume> read_label_grid(const std::string& file,
+                                           std::size_t max_voxels = std::size_t{1} << 31);
+
+}  // namespace tetwright

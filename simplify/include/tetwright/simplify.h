@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tetwright/mesh_quality.h"
+#include "tetwright/progress.h"
+#include "tetwright/sizes.h"
+#include "tetwright/surface_mesh.h"
+#include "tetwright/tet_mesh.h"
+
+namespace tetwright {
+
+/// Result of an attempted operation. Only `done` changes something; the statistics count all.
+enum class Outcome : std::uint8_t {
+  done,
+  conflict,           ///< an earlier winner of the batch has claimed part of its read set: retried
+  stale,              ///< the element changed since it was listed
+  no_candidate,       ///< the element does not admit this operation
+  material_rule,      ///< the dimensions of point and edge forbid it (interfaces, junction curves, spanning
+                      ///< edges)
+  surface_error,      ///< Weight or Error above E
+  inverts,            ///< a tet would become flat or negative
+  quality,            ///< the worst tet would get worse, and annealing did not allow it
+  link_condition,     ///< the topology would change
+  self_intersection,  ///< a boundary or interface triangle would intersect another
+  no_room,            ///< never returned, since arrays grow (kept because the statistics' keys are fixed)
+  count,              ///< the number of tets would leave CountBounds
+  too_large,          ///< the star or ring is too large to be worth the time
+  volume,             ///< a material's volume would leave its bounds (VolumeLedger)
+  edge_length,        ///< an edge would leave its bounds (EdgeSizes)
+};
+inline constexpr std::size_t outcome_count = 15;
+
+/// Keys of the statistics: fixed.
+inline constexpr std::array<std::string_view, outcome_count> outcome_names{
+    "done",          "lock_taken", "stale",     "no_candidate",   "material_rule",
+    "surface_error", "inverts",    "quality",   "link_condition", "self_intersection",
+    "no_room",       "count",      "too_large", "volume",         "edge_length"};
+
+/// The kinds of operation that are counted.
+enum class Operation : std::uint8_t {
+  flip23,
+  flip32,
+  flip22,
+  flip44,
+  collapse,
+  smooth,
+  insert_in_tet,
+  insert_in_face,
+  insert_in_edge,
+  optimise,
+  edge_removal,
+  face_removal,
+  fit
+};
+inline constexpr std::size_t operation_count = 13;
+inline constexpr std::array<std::string_view, operation_count> operation_names{
+    "flip23",         "flip32",         "flip22",   "flip44",       "collapse",     "smooth", "insert_in_tet",
+    "insert_in_face", "insert_in_edge", "optimise", "edge_removal", "face_removal", "fit"};
+
+/// How often each operation had each outcome.
+struct OperationCounts {
+  std::array<std::array<std::uint64_t, outcome_count>, operation_count> counts{};
+
+  void add(Operation operation, Outcome outcome) {
+    ++counts[static_cast<std::size_t>(operation)][static_cast<std::size_t>(outcome)];
+  }
+  std::uint64_t of(Operation operation, Outcome outcome) const {
+    return counts[static_cast<std::size_t>(operation)][static_cast<std::size_t>(outcome)];
+  }
+  std::uint64_t tried(Operation operation) const {
+    std::uint64_t sum = 0;
+    for (std::uint64_t n : counts[static_cast<std::size_t>(operation)]) sum += n;
+    return sum;
+  }
+  void add(const OperationCounts& other) {
+    for (std::size_t i = 0; i < operation_count; ++i)
+      for (std::size_t j = 0; j < outcome_count; ++j) counts[i][j] += other.counts[i][j];
+  }
+};
+
+/// Schedule of the block loop.
+enum class Schedule : std::uint8_t {
+  tuned,  ///< README.md, The tuned schedule: best in experiments; closes with improvement
+  paper   ///< Figure 3 of the paper, with its operations in its order; nothing after it
+};
+
+struct SimplifyOptions {
+  std::size_t target_tets = 10000;  ///< at least 1; with a tolerance 0: as few as it allows
+  double min_solid_angle = 0.1;     ///< steradians; the closing rounds work on tets below it
+  double beta = 5;                  ///< the paper's: max edge, in ideal edges, that Quality does not penalise
+  double gamma = 10;                ///< the paper's: weight of the volume error against the length of an edge
+  int max_iterations = 100;         ///< of the block loop
+  Schedule schedule = Schedule::tuned;
+  ShapeObjective objective = ShapeObjective::both;  ///< of the closing improvement
+  /// Target of the projection of boundary and interface points; null: they stay in planes of constant volume.
+  /// Must outlive the call.
+  const ReferenceSurface* reference = nullptr;
+  /// The given surface (input units), if there is one: the mesh's surface is fitted to it and kept near it.
+  /// Null: the input mesh's own surface. Must outlive the call.
+  const TriangleMesh* surface = nullptr;
+  /// Max distance of any point of the mesh's surface from `surface` and vice versa, input units; without
+  /// `surface`, from the input mesh's own surface. 0: only the count bounds it. Parts that start farther away
+  /// are not moved nearer for it: SimplifyReport::deviation has the distance reached. Tuned schedule only.
+  double tolerance = 0;
+  /// Target edge lengths (may be null) and their bounds, input units; tuned schedule only. A target length
+  /// decides the number of tets, so target_tets may be 0. `sizes` must outlive the call.
+  const SizeField* sizes = nullptr;
+  double min_edge = 0, max_edge = std::numeric_limits<double>::infinity();
+  std::uint64_t seed = 1;
+  /// Max points or tets of a batch (BlockRunner); 0: chosen from the number of items. Results depend on it,
+  /// never on the number of threads.
+  std::size_t batch_size = 0;
+  /// One value for each point of the mesh, nonzero: frozen, never moved nor removed; tets with frozen points
+  /// only stay. Empty: none.
+  std::vector<std::uint8_t> frozen;
+  bool fix_boundary = false;  ///< freezes all points of boundary and interfaces, and so their faces
+  std::string name = "mesh";  ///< the mesh's name in messages
+};
+
+/// Options of improve(): shapes only; the count stays within 5 % unless it is free.
+struct ImproveOptions {
+  /// Works only on tets worse, by the objective, than the shape_quality_bound() of this solid angle
+  /// (steradians), and on their surroundings. 0: all below 1.5 times min_solid_angle, and by cheap operations
+  /// all below 0.2.
+  double only_below = 0;
+  double min_solid_angle = 0.1;  ///< steradians; the work ends early once all are well above it
+  ShapeObjective objective = ShapeObjective::both;
+  /// Lets the count follow the shapes' needs: between 0.8 and 4 times the input's.
+  bool free_count = false;
+  int max_iterations = 100;  ///< rounds
+  std::uint64_t seed = 1;
+  std::size_t batch_size = 0;  ///< as in SimplifyOptions
+  const ReferenceSurface* reference = nullptr;
+  std::vector<std::uint8_t> frozen;  ///< as in SimplifyOptions, like fix_boundary
+  bool fix_boundary = false;
+  std::string name = "mesh";
+};
+
+/// Record of one round of the block loop or of the improvement.
+struct IterationReport {
+  std::string kind;  ///< "simplify", "close" (the end of simplify()) or "improve"
+  std::size_t tets_before = 0, tets_after = 0;
+  /// Quality(t) below which tets are worked on; in the closing, the solid angle in steradians.
+  double cutoff = 0;
+  double percent = 0;    ///< percentage of tets worked on
+  double max_error = 0;  ///< E, input units
+  OperationCounts counts;
+  /// Proposals that lost to an earlier one of their batch, and were decided again.
+  std::uint64_t conflicts = 0;
+  std::uint64_t repeats = 0;  ///< items that were decided again
+  std::uint64_t batches = 0;
+  double seconds = 0;
+};
+
+struct SimplifyReport {
+  std::vector<IterationReport> iterations;
+  std::size_t touching_points = 0;  ///< points where parts touch without a common face: they stay as they are
+  std::vector<std::uint64_t> decided_by_worker;  ///< decided items; the sum does not depend on the threads
+  std::optional<DeviationReport> deviation;      ///< with a tolerance
+  bool out_of_time = false;                      ///< ended early by the deadline of the Progress
+  double seconds_build = 0, seconds_simplify = 0, seconds_close = 0;
+};
+
+/// Simplifies a valid mesh to about `target_tets` (within 1 % where topology and shapes allow) and improves
+/// its shapes: the block iteration of Cutler, Dorsey & McMillan 2004 with a tuned schedule (README.md), then
+/// closing rounds at that count. A mesh with fewer tets than the target is only improved.
+///
+/// Every material, component, handle, cavity and interface survives; the boundary does not come to intersect
+/// itself; all tets stay positive by exact sign. The result has its interface triangles. Uses thread_count()
+/// threads; the same input, options and seed give the same bytes for any number of them.
+///
+/// The deadline of `progress` ends the work with the current mesh, as valid as ever (the input, perhaps
+/// renumbered, if nothing has changed yet). The loop ends earlier, so that shapes can still be improved, and
+/// with a tolerance the improvement ends earlier, so that distances can be measured. The final renumbering,
+/// and the least work that bounds the distances, exceed the deadline.
+///
+/// \param report gets the record of the work; may be null.
+/// \param progress may be null.
+/// \throws InputError if a coordinate is not finite, a tet repeats a point or a face has more than two tets.
+/// \throws OutputError if there is too little memory.
+/// \throws UsageError for impossible options.
+/// \throws Interrupted when cancelled.
+TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report = nullptr,
+                 Progress* progress = nullptr);
+
+/// Two-sided distance between a mesh's surface and the surface that it was made from, with proven bounds.
+/// Works on a copy. Parallel; the result does not depend on the threads.
+///
+/// \param surface wound outwards, input units.
+/// \param progress ends it as it ends surface_deviation(); may be null.
+/// \throws InputError as simplify().
+DeviationReport deviation(const TetMesh& mesh, const TriangleMesh& surface,
+                          const Progress* progress = nullptr);
+
+/// Improves the shapes of a mesh at about its count, like the end of simplify(), with the same guarantees,
+/// threads and errors.
+TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* report = nullptr,
+                Progress* progress = nullptr);
+
+}  // namespace tetwright
