@@ -5,6 +5,7 @@
 #include <atomic>
 #include <bit>
 
+#include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
 #include "simplify/tuning/tuning.h"
 #include "tetwright/resources.h"
