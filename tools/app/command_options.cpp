@@ -292,7 +292,7 @@ void add_material_field(CLI::App& app, CommandLine& c) {
       ->type_name("NAME");
 }
 
-/// Of commands whose input may be a stream.
+/// Adds --input-format, for commands that can read standard input.
 void add_input_format(CLI::App& app, CommandLine& c) {
   app.add_option("--input-format", c.input_format,
                  "Format of standard input, which the input - is: " + streamed_extensions())

@@ -20,14 +20,14 @@ enum class ExitStatus : int {
   interrupted = 130
 };
 
-/// The status with which the program ends when `error` reaches main(), and what it says then.
+/// The exit status and the message of the program when `error` reaches main().
 ExitStatus exit_status(const std::exception& error);
 std::string failure_message(const std::exception& error);
 
 /// The code of an error with this status.
 DiagnosticCode error_code(ExitStatus status);
 
-/// What follows a message about a bug here.
+/// Ends the message of an internal error.
 inline constexpr const char* report_this =
     "; this is a bug in tetwright: please report it with this line, the version, the command and its input";
 

@@ -14,7 +14,7 @@ namespace tetwright {
 /// Call it first in main(), before there are threads.
 void handle_interruptions();
 
-/// What is said instead when the process ends in this way; a string literal.
+/// Replaces the line printed on interruption. `line` must be a string literal.
 void say_when_interrupted(const char* line);
 
 }  // namespace tetwright

@@ -31,12 +31,12 @@ inline constexpr Range solid_angle{0, 0.5513, true, "a solid angle from 0 to 0.5
 /// inf.
 double parse_number(const std::string& option, const std::string& text, const Range& range);
 
-/// The same of a whole number. Not the parser's own conversion, which takes numbers with a leading 0 for
-/// octal and lets negative ones wrap around.
+/// Parses a whole number from `low` to `high`; throws CLI::ValidationError likewise. CLI11's own conversion
+/// reads a leading 0 as octal and lets negative numbers wrap around.
 std::uint64_t parse_whole_number(const std::string& option, const std::string& text, std::uint64_t low,
                                  std::uint64_t high);
 
-/// NAME=VALUE; `value` is what messages call the latter.
+/// Splits NAME=VALUE. Messages call VALUE by `value`.
 NamedValue split_named(const std::string& text, const char* option, const char* value);
 
 /// For defaults in the help, "0.05".

@@ -30,7 +30,7 @@ constexpr double bytes_per_tet = 180;
 /// Reads a mesh to be checked or compared with; `field_found` becomes true if it has --material-field.
 TetMesh read_checked(Input input, CommandRun& run, bool& field_found) {
   const std::string& file = input.name;
-  // Of two meshes one may have the field under the name `material`, if it was made from the other.
+  // With --before, one of the meshes may lack the field: a mesh made from the other calls it `material`.
   double waited = 0;
   ReadTetMesh read =
       take_tet_mesh(input, {run.line.options.material_field, run.line.check.before.empty()}, waited);

@@ -31,7 +31,7 @@ void run_meshing(CommandRun& run) {
   print_result(run);
 }
 
-/// What estimates do not see ends as memory that runs out.
+/// Makes allocations fail at the memory limit, for memory that the estimates miss.
 void limit_process_memory(const CommandLine& line) {
   // The system counts what is reserved, too: the stacks of threads, and what their heaps may grow into.
   constexpr double reserved = 64 << 20, reserved_by_thread = 16 << 20;

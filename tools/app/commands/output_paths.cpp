@@ -67,7 +67,7 @@ void check_files_are_different(const CommandLine& line, Which which) {
   // These may replace what they read.
   const bool in_place = line.command == Command::simplify || line.command == Command::improve;
   const std::vector<Written> written = files_written(line);
-  // Those that say how the run went come last, so that each is compared with all others.
+  // Reports of the run come last, so that each is compared with all other files.
   const std::size_t first =
       which == Which::all || line.command == Command::batch ? 0 : written.size() - report_count(line);
   for (std::size_t i = first; i < written.size(); ++i) {

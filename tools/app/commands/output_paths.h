@@ -24,7 +24,7 @@ std::vector<std::string> read_files(const CommandLine& line);
 /// The file of a batch's results.
 std::string results_file_of(const CommandLine& line);
 
-/// The same for --stats and --log-file, which then say how the rest went; opens the log.
+/// Checks --stats and --log-file likewise, so that they can report later errors, and opens the log.
 void check_stats_path(const CommandLine& line);
 
 }  // namespace tetwright

@@ -24,8 +24,8 @@ struct PageEntries {
   std::vector<PageEntry> worst;     ///< the worst shapes of the mesh
 };
 
-/// What a run reports; of `check` with what it found in the mesh. Parallel; the result does not depend on the
-/// threads.
+/// Collects the entries of a run's report. `check` adds its findings in the mesh; null for other commands.
+/// Parallel; the result does not depend on the number of threads.
 PageEntries page_entries(const PrepareReport& run, const TetMesh& mesh, const CheckReport* check);
 
 }  // namespace tetwright

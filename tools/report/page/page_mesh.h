@@ -12,7 +12,7 @@
 
 namespace tetwright {
 
-/// What bounds the size of the page. With these it has at most 17 MB.
+/// Bounds on the size of the page: at most 17 MB with the defaults.
 struct PageLimits {
   std::size_t tets = 500'000;  ///< a mesh with more is shown by its skin and the layers behind three cuts
   std::size_t triangles = 250'000;   ///< of that skin
