@@ -110,14 +110,15 @@ struct CreaseComparison {
 /// \param found creases to measure to; their corners are ignored
 /// \param points candidates for the counterpart of a corner
 /// \param diagonal of the bounding box, input units, above 0
-/// \return the comparison; distances are infinite if `found` or `points` is empty
+/// \return the comparison; distances of creases are infinite if `found` has no segments, those of corners if
+/// `points` is empty
 CreaseComparison compare_creases(const CreaseCurves& expected, const std::vector<CreaseCurves>& found,
                                  std::span<const Vec3> points, double diagonal);
 
 /// Measures creases to the creases and junctions of a mesh, and corners to the points of its interfaces.
 ///
-/// \return the comparison; distances are the diagonal if the mesh has no creases, and all 0 if it has no
-/// interfaces
+/// \return the comparison; distances of creases are the diagonal if the mesh has no creases; all is 0 if it
+/// has no interfaces
 /// \pre `mesh` has its interfaces with their patches.
 CreaseComparison compare_creases(const CreaseCurves& expected, const TetMesh& mesh);
 
