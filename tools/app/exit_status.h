@@ -16,7 +16,7 @@ enum class ExitStatus : int {
   bad_input = 3,
   nothing_to_mesh = 4,
   output_failed = 5,    ///< output could not be written, or memory or time ran out
-  internal_error = 70,  ///< a broken invariant, which is a bug here (EX_SOFTWARE of sysexits.h)
+  internal_error = 70,  ///< broken invariant, a bug in tetwright (EX_SOFTWARE of sysexits.h)
   interrupted = 130
 };
 
@@ -24,7 +24,7 @@ enum class ExitStatus : int {
 ExitStatus exit_status(const std::exception& error);
 std::string failure_message(const std::exception& error);
 
-/// The code of an error with this status.
+/// The diagnostic code of errors with this status.
 DiagnosticCode error_code(ExitStatus status);
 
 /// Ends the message of an internal error.
