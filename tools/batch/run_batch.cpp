@@ -116,8 +116,9 @@ void carry_out(CommandRun& run, Ended& ended) {
   ended.status = run.status;
 }
 
-/// All that a job throws becomes its status: another one may do better.
-/// `memory`: bytes that it may use.
+/// Runs one job. Exceptions become its status, so that other jobs go on.
+///
+/// \param memory limit, bytes
 Ended run_job(const Job& job, unsigned threads, double memory) {
   const Stopwatch watch;
   Ended ended;
@@ -158,8 +159,7 @@ std::string result_line(const Job& job, const Ended& ended) {
       .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// Whether another attempt may end otherwise: no room for the output, a limit on time, a bug, an
-/// interruption.
+/// Whether another attempt may succeed: after no room for the output, a time limit, a bug or an interruption.
 bool worth_another_attempt(int status) {
   return status == static_cast<int>(ExitStatus::output_failed) ||
          status == static_cast<int>(ExitStatus::internal_error) ||
@@ -204,7 +204,7 @@ Ended ended_by(const ProcessEnd& end, double seconds) {
   return ended;
 }
 
-/// Appends what a job came to, and says it.
+/// Appends the result of a job to the file and prints it.
 class Recorder {
  public:
   Recorder(const std::vector<const Job*>& jobs, JobStates& states, ResultsFile& results, CommandRun& run)
@@ -280,7 +280,7 @@ class Batch {
       try {
         recorder_.record(list[i], ended);
       } catch (...) {
-        // Without results nobody would know what is done.
+        // Stop, since the results of further jobs would be lost.
         const std::lock_guard lock(mutex_);
         if (!failure_) failure_ = std::current_exception();
         stop_ = true;

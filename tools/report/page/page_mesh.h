@@ -44,8 +44,10 @@ struct PageMesh {
 /// The smallest dihedral angle of the regular tet, degrees.
 inline constexpr double regular_dihedral = 70.528779365509308;
 
-/// `mesh` has its interfaces, and its ids are in range; `distances` may be null. Parallel; the result does
-/// not depend on the threads.
+/// Makes the arrays of a mesh. Parallel; the result does not depend on the number of threads.
+///
+/// \param distances may be null
+/// \pre `mesh` has its interfaces, and its ids are in range.
 PageMesh page_mesh(const TetMesh& mesh, const SurfaceDistances* distances, const PageLimits& limits = {});
 
 }  // namespace tetwright
