@@ -45,7 +45,7 @@ constexpr std::array<CommandEntry, 7> commands{{
     {Command::sample, "Writes a built-in sample", add_sample},
 }};
 
-/// Refuses a call without a command, and a first argument that is none.
+/// Refuses a call without a command or with an unknown one.
 void check_command(int argc, char** argv) {
   if (argc > 1 && argv[1][0] == '-') return;
   std::vector<std::string> names;
@@ -60,8 +60,8 @@ void check_command(int argc, char** argv) {
                    "' (commands: " + comma_separated(names) + ")");
 }
 
-/// Says of the first argument that looks like an option and is none which option is the nearest; empty if
-/// there is no such argument.
+/// Names the nearest option for the first argument that looks like an option but is unknown; empty if
+/// there is none.
 std::string unknown_option(const CLI::App& app) {
   const CLI::App* chosen = app.get_subcommands().empty() ? &app : app.get_subcommands().front();
   for (const std::string& argument : app.remaining(true)) {
@@ -107,7 +107,7 @@ bool parse_arguments(CLI::App& app, int argc, char** argv) {
     std::cout << "tetwright " << TETWRIGHT_VERSION << "\n";
     return false;
   } catch (const CLI::ParseError& e) {
-    // An option that is misspelt may be reported as one that is missing.
+    // The parser may report a misspelt option as a missing one.
     const std::string unknown = unknown_option(app);
     if (unknown.empty()) check_one_positional(app);
     if (const auto* mismatch = dynamic_cast<const CLI::ArgumentMismatch*>(&e); mismatch && unknown.empty()) {

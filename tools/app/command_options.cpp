@@ -23,7 +23,7 @@ constexpr std::uint64_t max_jobs = 64;
 /// More voxels than any volume has.
 constexpr std::uint64_t max_min_voxels = 1'000'000'000'000'000'000;
 
-/// An option whose value is the name of one of `values`.
+/// Adds an option whose value is the name of one of `values`.
 template <class Value>
 void add_choice(CLI::App& app, const char* option, Value& to, std::initializer_list<Value> values,
                 const char* description) {
@@ -95,7 +95,7 @@ void add_output(CLI::App& app, CommandLine& c, const char* formats) {
   app.add_option("-o,--output", c.outputs.mesh, formats)->required(!c.in_memory)->type_name("FILE");
 }
 
-/// Options of commands that write a tet mesh.
+/// Adds the options of commands that write a tet mesh.
 void add_mesh_output(CLI::App& app, CommandLine& c) {
   add_output(app, c, ("The mesh to write: " + known_extensions(FileKind::tet_mesh, FileUse::write)).c_str());
   std::string formats;
@@ -120,7 +120,7 @@ void add_mesh_output(CLI::App& app, CommandLine& c) {
   add_report(app, c);
 }
 
-/// Options of segmented volumes.
+/// Adds the options of segmented volumes.
 void add_labels(CLI::App& app, CommandLine& c) {
   app.add_option_function<std::vector<std::string>>(
          "--labels",
@@ -233,7 +233,7 @@ void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) 
       ->type_name("FILE");
 }
 
-/// Options of both simplification and improvement.
+/// Adds the options of both simplification and improvement.
 void add_shaping(CLI::App& app, CommandLine& c, const char* iterations) {
   add_number(app, "--min-solid-angle", c.options.shapes.min_solid_angle, solid_angle,
              "Improve tets with a smaller solid angle (steradians); if given and some are left, status 1")
@@ -292,7 +292,7 @@ void add_material_field(CLI::App& app, CommandLine& c) {
       ->type_name("NAME");
 }
 
-/// Of commands whose input may be a stream.
+/// Adds --input-format, for commands that can read standard input.
 void add_input_format(CLI::App& app, CommandLine& c) {
   app.add_option("--input-format", c.input_format,
                  "Format of standard input, which the input - is: " + streamed_extensions())

@@ -9,8 +9,9 @@ namespace tetwright {
 
 struct CommandLine;
 
-/// Adds a command's options and arguments, with their help, to its parser, which then sets `line`: both must
-/// outlive it.
+/// Add a command's options and arguments, with their help, to its parser, which sets `line`.
+///
+/// \pre `line` outlives `app`.
 void add_prepare(CLI::App& app, CommandLine& line);
 void add_mesh(CLI::App& app, CommandLine& line);
 void add_simplify(CLI::App& app, CommandLine& line);

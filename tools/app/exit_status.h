@@ -16,18 +16,18 @@ enum class ExitStatus : int {
   bad_input = 3,
   nothing_to_mesh = 4,
   output_failed = 5,    ///< output could not be written, or memory or time ran out
-  internal_error = 70,  ///< a broken invariant, which is a bug here (EX_SOFTWARE of sysexits.h)
+  internal_error = 70,  ///< broken invariant, a bug in tetwright (EX_SOFTWARE of sysexits.h)
   interrupted = 130
 };
 
-/// The status with which the program ends when `error` reaches main(), and what it says then.
+/// The exit status and the message of the program when `error` reaches main().
 ExitStatus exit_status(const std::exception& error);
 std::string failure_message(const std::exception& error);
 
-/// The code of an error with this status.
+/// The diagnostic code of errors with this status.
 DiagnosticCode error_code(ExitStatus status);
 
-/// What follows a message about a bug here.
+/// Ends the message of an internal error.
 inline constexpr const char* report_this =
     "; this is a bug in tetwright: please report it with this line, the version, the command and its input";
 

@@ -3,18 +3,17 @@
 
 namespace tetwright {
 
-/// After this call SIGHUP, SIGINT and SIGTERM end the process immediately with status 130 and one line on
-/// stderr that says whether the output was written. Files that are being written are removed; existing files
-/// stay as they were. A signal that arrives while the finished files are renamed takes effect once all of
-/// them are in place.
+/// Makes SIGHUP, SIGINT and SIGTERM end the process immediately with status 130 and one line on stderr that
+/// says whether the output was written. Unfinished files are removed; existing files are kept. A signal
+/// during the renaming of finished files takes effect once all are renamed.
 ///
-/// The stack is not unwound, so that nothing has to poll for signals, and waiting for a pipe ends as well. A
-/// SIGHUP that the parent process ignores stays ignored, as nohup requires.
+/// The stack is not unwound: nothing has to poll for signals, and waiting for a pipe ends as well. A SIGHUP
+/// that the parent process ignores stays ignored, as nohup requires.
 ///
-/// Call it first in main(), before there are threads.
+/// \pre Called first in main(), before threads start.
 void handle_interruptions();
 
-/// What is said instead when the process ends in this way; a string literal.
+/// Replaces the line printed on interruption. `line` must be a string literal.
 void say_when_interrupted(const char* line);
 
 }  // namespace tetwright

@@ -9,14 +9,18 @@
 
 namespace tetwright {
 
-/// A range of labels with both ends.
+/// An inclusive range of labels.
 using LabelRange = std::pair<MaterialTag, MaterialTag>;
 
-/// Parses a label: a whole number of 32 bits. Throws UsageError that names `option` and the text.
+/// Parses a label, a 32-bit integer.
+///
+/// \throws UsageError that names `option` and `text`
 MaterialTag parse_label(const std::string& option, const std::string& text);
 
 /// Parses labels and ranges of labels, such as "1,5-9,-3--1": a minus after a number makes a range, before a
-/// number it is a sign. Throws UsageError that names `option` and the part that is wrong.
+/// number it is a sign.
+///
+/// \throws UsageError that names `option` and the wrong part
 std::vector<LabelRange> parse_label_ranges(const std::string& option, const std::string& text);
 
 }  // namespace tetwright

@@ -28,7 +28,7 @@ std::size_t typing_errors(std::string_view a, std::string_view b) {
 }
 
 std::string nearest_word(std::string_view typed, std::span<const std::string> words) {
-  // No name of ours is longer, and an argument may be of any length.
+  // Bounds the cost: arguments may have any length, and no known name is longer.
   constexpr std::size_t max_compared = 64;
   std::string nearest;
   std::size_t min_errors = std::numeric_limits<std::size_t>::max();

@@ -8,12 +8,11 @@
 
 namespace tetwright {
 
-/// The number of typing errors that turn one word into the other: characters inserted, removed or replaced,
-/// and neighbours swapped (optimal string alignment, Damerau 1964). Takes time and memory in proportion to
-/// the product of the lengths.
+/// Min number of insertions, removals, replacements and swaps of neighbours that turn one word into the other
+/// (optimal string alignment, Damerau 1964). Time and memory grow with the product of the lengths.
 std::size_t typing_errors(std::string_view a, std::string_view b);
 
-/// The word with the fewest typing errors, the first of several; empty if there are no words.
+/// The first word with the fewest typing errors; empty if there are no words.
 std::string nearest_word(std::string_view typed, std::span<const std::string> words);
 
 }  // namespace tetwright

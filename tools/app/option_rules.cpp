@@ -16,7 +16,7 @@ namespace tetwright {
 
 namespace {
 
-/// Refuses "-" where only files will do.
+/// Refuses "-" for options that need a file.
 void check_no_stream(const CommandLine& out) {
   const auto check = [](const char* option, const std::string& file) {
     if (file == "-")

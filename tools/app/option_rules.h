@@ -7,10 +7,14 @@
 
 namespace tetwright {
 
-/// Throws UsageError where the mesh would be written in a format without ten-node tets.
+/// Checks that the format of the output has ten-node tets.
+///
+/// \throws UsageError if not
 void check_holds_second_order(const std::string& output, const std::string& format);
 
-/// Adds to a parsed command line what its streams are. Throws UsageError for options that do not go together.
+/// Resolves the streams of a parsed command line and checks its options.
+///
+/// \throws UsageError if options do not go together, or an input is missing
 void complete_command_line(CommandLine& out);
 
 }  // namespace tetwright

@@ -24,28 +24,31 @@ struct Range {
 inline constexpr double max_number = std::numeric_limits<double>::max();
 inline constexpr Range positive{0, max_number, false, "a number above 0"};
 inline constexpr Range not_negative{0, max_number, true, "a number of at least 0"};
-/// Up to the solid angle of a vertex of the regular tet, steradians: no tet has a larger smallest one.
+/// Steradians, up to the solid angle at a vertex of the regular tet: the max of a tet's min solid angle.
 inline constexpr Range solid_angle{0, 0.5513, true, "a solid angle from 0 to 0.5513, the regular tet's"};
 
-/// Throws CLI::ValidationError unless all of the text is a number within the range; no range contains nan or
-/// inf.
+/// Parses a number.
+///
+/// \throws CLI::ValidationError unless all of the text is a number within the range; none contains nan or inf
 double parse_number(const std::string& option, const std::string& text, const Range& range);
 
-/// The same of a whole number. Not the parser's own conversion, which takes numbers with a leading 0 for
-/// octal and lets negative ones wrap around.
+/// Parses a whole number from `low` to `high`. CLI11's own conversion reads a leading 0 as octal and lets
+/// negative numbers wrap around.
+///
+/// \throws CLI::ValidationError unless all of the text is such a number
 std::uint64_t parse_whole_number(const std::string& option, const std::string& text, std::uint64_t low,
                                  std::uint64_t high);
 
-/// NAME=VALUE; `value` is what messages call the latter.
+/// Splits NAME=VALUE. Messages call VALUE by `value`.
 NamedValue split_named(const std::string& text, const char* option, const char* value);
 
-/// For defaults in the help, "0.05".
+/// Formats a default for the help, "0.05".
 std::string short_text(double value);
 
-/// For lists in the help and in messages, "a, b".
+/// Formats a list for help and messages, "a, b".
 std::string comma_separated(const std::vector<std::string>& names);
 
-/// An option whose value `parse` makes of the text.
+/// Adds an option whose value is the result of `parse`.
 template <class Value>
 CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& to, const char* type,
                         std::function<Value(const std::string&)> parse, const std::string& description) {
@@ -55,7 +58,7 @@ CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& to, const
       ->type_name(type);
 }
 
-/// The type of an option's value, which may be one that need not be there.
+/// The type of an option's value, without std::optional.
 template <class Value>
 struct PlainOf {
   using Type = Value;
@@ -67,7 +70,7 @@ struct PlainOf<std::optional<Value>> {
 template <class Value>
 using Plain = typename PlainOf<Value>::Type;
 
-/// An option whose value is a whole number from `low` to `high`.
+/// Adds an option whose value is a whole number from `low` to `high`.
 template <class Whole>
 CLI::Option* add_whole_number(CLI::App& app, const std::string& name, Whole& to, std::uint64_t low,
                               std::uint64_t high, const std::string& description) {
@@ -77,7 +80,7 @@ CLI::Option* add_whole_number(CLI::App& app, const std::string& name, Whole& to,
   return add_parsed<Whole>(app, name, to, "N", parse, description);
 }
 
-/// An option whose value is a number within `range`, a double or one that need not be there.
+/// Adds an option whose value is a number within `range`; `Number` is double or std::optional<double>.
 template <class Number>
 CLI::Option* add_number(CLI::App& app, const std::string& name, Number& to, const Range& range,
                         const std::string& description) {
@@ -87,11 +90,11 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, Number& to, cons
       description);
 }
 
-/// An option whose value is a length, in input units or as a share of the diagonal.
+/// Adds an option whose value is a length, in input units or percent of the diagonal.
 CLI::Option* add_length(CLI::App& app, const std::string& name, std::optional<Length>& to,
                         const std::string& description);
 
-/// --feature-angle.
+/// Adds --feature-angle.
 CLI::Option* add_feature_angle(CLI::App& app, FeatureAngle& to);
 
 }  // namespace tetwright

@@ -12,11 +12,11 @@ namespace tetwright {
 /// Prints the table of the meshes before and after to stdout.
 void print_report(const CommandLine& line, const PrepareReport& run);
 
-/// Prints notes to stderr, a line each.
+/// Prints notes to stderr, one line each.
 void print_notes(const std::vector<std::string>& notes);
 
-/// Prints "tetwright: TEXT" as one line to stderr, and appends it to the log; control characters, which names
-/// may contain, become question marks.
+/// Prints "tetwright: TEXT" as one line to stderr and appends it to the log. Control characters, as in file
+/// names, become question marks.
 void print_line(const std::string& text);
 
 }  // namespace tetwright

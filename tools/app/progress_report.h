@@ -9,8 +9,8 @@
 
 namespace tetwright {
 
-/// Tells on stderr how far a command is: a bar on a terminal, redrawn at most ten times a second, or lines of
-/// JSON, one for each stage and percent. Stages go to the log, too. The destructor clears the bar.
+/// Shows progress on stderr: a bar on a terminal, redrawn at most ten times a second, or lines of JSON, one
+/// for each stage and percent. Logs the stages. The destructor clears the bar.
 class ProgressReport : public Progress {
  public:
   explicit ProgressReport(ProgressStyle style) : style_(style) {}
@@ -34,7 +34,7 @@ class ProgressReport : public Progress {
   bool drawn_ = false;
 };
 
-/// The style that `line` asks for: by default a bar where stderr is a terminal.
+/// The requested style; by default a bar if stderr is a terminal.
 ProgressStyle progress_style(const CommandLine& line);
 
 }  // namespace tetwright

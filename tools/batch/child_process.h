@@ -8,16 +8,18 @@
 
 namespace tetwright {
 
-/// How far a job is. `recorded` is a moment in which its result may or may not be in the file.
+/// Progress of a job. While it is `recorded`, its result may or may not be in the file yet.
 enum class JobState : unsigned char { waiting, running, recorded, ended };
 
-/// How far jobs are, in memory that a process shares with its children: it outlives the child that does them.
-/// All functions may be called concurrently, by threads and by processes.
+/// Progress of all jobs, in memory shared with child processes, so that it outlives the child that runs them.
+/// All functions are safe to call concurrently from threads and processes.
 class JobStates {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// All wait. Throws OutputError where there is no memory.
+  /// All jobs are waiting.
+  ///
+  /// \throws OutputError if there is no memory
   explicit JobStates(std::size_t count);
   ~JobStates();
   JobStates(const JobStates&) = delete;
@@ -26,7 +28,7 @@ class JobStates {
   std::size_t size() const { return count_; }
   JobState operator[](std::size_t job) const { return entries_[job].state; }
   void set(std::size_t job, JobState state) { entries_[job].state = state; }
-  /// Sets it running, from now.
+  /// Marks the job as running and starts its clock.
   void begin(std::size_t job);
   /// Seconds since begin().
   double seconds(std::size_t job) const;
@@ -42,19 +44,21 @@ class JobStates {
   std::size_t count_;
 };
 
-/// How a process ended: with a status of its own, or by a signal, which is 0 in the first case.
+/// End of a process: its exit status, or the signal that ended it, else 0.
 struct ProcessEnd {
   int id = 0;
   int status = 0;
   int signal = 0;
 };
 
-/// Lets a child process do the work, and waits until it has ended. The child is a copy of this process, and
-/// ends with the status that `work` returns (which must not throw) without the destructors of global objects:
-/// libraries may have started threads, which a child does not have. Under Linux it is killed when this
-/// process ends. SIGHUP, SIGINT and SIGTERM are handed on to it; one that finds it dying of something else
-/// takes effect here when it has gone. Call it before there are threads that matter to the work. Throws
-/// OutputError where no process can be started or waited for.
+/// Forks a child process for the work and waits for its end. The child exits without destructors of global
+/// objects, since it lacks threads that libraries may have started. On Linux it is killed when this process
+/// ends. SIGHUP, SIGINT and SIGTERM are forwarded to it; a signal that arrives while it dies of another cause
+/// takes effect here afterwards.
+///
+/// \param work returns the child's exit status; must not throw
+/// \throws OutputError if no process can be started or waited for
+/// \pre No threads that the work needs have been started.
 ProcessEnd run_in_child_process(const std::function<int()>& work);
 
 }  // namespace tetwright

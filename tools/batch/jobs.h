@@ -8,12 +8,13 @@ namespace tetwright {
 
 /// One line of a file of jobs: {"id": "case-7", "args": ["prepare", "case-7.nrrd", "-o", "case-7.vtu"]}.
 struct Job {
-  std::string id;  ///< of the line, or its number as text
+  std::string id;  ///< from the line, or its line number
   std::vector<std::string> arguments;
 };
 
-/// Reads a file of jobs; empty lines are skipped. Throws InputError, with the line, where one is no such
-/// object or repeats an id.
+/// Reads a file of jobs; skips empty lines.
+///
+/// \throws InputError with the line if it is no such object or repeats an id
 std::vector<Job> read_jobs(const std::string& file);
 
 }  // namespace tetwright

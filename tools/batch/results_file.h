@@ -11,28 +11,33 @@
 
 namespace tetwright {
 
-/// The results of a batch, a line of JSON for each job that ended, in the order in which they did:
-/// {"id", "args", "status", "seconds", "messages", "stats"}. A line is appended whole and synced to the disk
-/// once the job's files are in place, so that what it says is there. A kill can leave part of a line at the
-/// end, which is cut off when the file is read again.
+/// The results of a batch, one line of JSON for each ended job, in the order of their ends:
+/// {"id", "args", "status", "seconds", "messages", "stats"}. A line is appended whole and synced to disk
+/// after the job's files are in place. A kill can leave a partial last line, which the next read cuts off.
 class ResultsFile {
  public:
-  /// Opens or creates the file, which no other process may have open in this way. Throws InputError where a
-  /// line is not such a result (with its number), OutputError where the file cannot be written or is in use.
+  /// Opens or creates the file, and locks it against other batches.
+  ///
+  /// \throws InputError with the line number if a line is no such result
+  /// \throws OutputError if the file cannot be written or is in use
   explicit ResultsFile(const std::string& path);
   ~ResultsFile();
   ResultsFile(const ResultsFile&) = delete;
   ResultsFile& operator=(const ResultsFile&) = delete;
 
-  /// Reads what a child process, which shares the file, has appended. Throws as the constructor does.
+  /// Reads the lines that a child process, which shares the file, has appended.
+  ///
+  /// \throws Error as the constructor
   void reload();
-  /// The status with which a job of this id and these arguments ended last, or -1.
+  /// The last exit status of a job with this id and these arguments; -1 if it has not ended.
   int status_of(const Job& job) const;
-  /// Appends the line of a job that ended. May be called concurrently. Throws OutputError.
+  /// Appends the line of an ended job. Thread-safe.
+  ///
+  /// \throws OutputError if it cannot be written
   void append(const Job& job, int status, const std::string& line);
 
  private:
-  /// False where it is no result.
+  /// Returns false if the line is no result.
   bool read_line(const std::string& text);
   void write_whole(const std::string& text);
 

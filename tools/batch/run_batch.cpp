@@ -32,11 +32,11 @@ namespace tetwright {
 
 namespace {
 
-/// What a job came to.
+/// Result of a job.
 struct Ended {
   ExitStatus status = ExitStatus::done;
   std::vector<std::string> messages;
-  nlohmann::json stats;  ///< those of --stats; of `check` its report; null where there are none
+  nlohmann::json stats;  ///< as --stats writes; for `check` its report; null if there are none
   double seconds = 0;
 };
 
@@ -116,8 +116,9 @@ void carry_out(CommandRun& run, Ended& ended) {
   ended.status = run.status;
 }
 
-/// All that a job throws becomes its status: another one may do better.
-/// `memory`: bytes that it may use.
+/// Runs one job. Exceptions become its status, so that other jobs go on.
+///
+/// \param memory limit, bytes
 Ended run_job(const Job& job, unsigned threads, double memory) {
   const Stopwatch watch;
   Ended ended;
@@ -158,8 +159,7 @@ std::string result_line(const Job& job, const Ended& ended) {
       .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// Whether another attempt may end otherwise: no room for the output, a limit on time, a bug, an
-/// interruption.
+/// Whether another attempt may succeed: after no room for the output, a time limit, a bug or an interruption.
 bool worth_another_attempt(int status) {
   return status == static_cast<int>(ExitStatus::output_failed) ||
          status == static_cast<int>(ExitStatus::internal_error) ||
@@ -183,7 +183,7 @@ std::string death_text(const ProcessEnd& end) {
   return "died of signal " + std::to_string(end.signal) + " (" + strsignal(end.signal) + ")";
 }
 
-/// What a job comes to in which the process died.
+/// Result of a job whose process died.
 Ended ended_by(const ProcessEnd& end, double seconds) {
   Ended ended;
   ended.seconds = seconds;
@@ -204,7 +204,7 @@ Ended ended_by(const ProcessEnd& end, double seconds) {
   return ended;
 }
 
-/// Appends what a job came to, and says it.
+/// Appends the result of a job to the file and prints it.
 class Recorder {
  public:
   Recorder(const std::vector<const Job*>& jobs, JobStates& states, ResultsFile& results, CommandRun& run)
@@ -248,12 +248,12 @@ class Batch {
   Batch(const std::vector<const Job*>& jobs, JobStates& states, Recorder& recorder)
       : jobs_(jobs), states_(states), recorder_(recorder) {}
 
-  /// Those of the list, at most `at_once` at a time.
+  /// Runs the jobs of the list, at most `at_once` at a time.
   void carry_out(const std::vector<std::size_t>& list, std::size_t at_once) {
     const unsigned all = thread_count();
     const auto workers = static_cast<unsigned>(std::min(at_once, list.size()));
     if (workers == 0) return;
-    // What each may use of the memory: nobody else tells them of the others.
+    // Share of the memory for each worker: a job does not see the others.
     const double memory = available_memory() / workers;
     std::atomic<std::size_t> next{0};
     std::vector<std::thread> threads;
@@ -262,7 +262,7 @@ class Batch {
     try {
       for (unsigned w = 0; w < workers; ++w) threads.emplace_back([&] { work(list, next, each, memory); });
     } catch (const std::exception& e) {
-      // Those that could be started do all jobs.
+      // The threads that did start run all jobs.
       if (threads.empty())
         throw OutputError(std::string("cannot start a thread: ") + e.what() +
                           "; free some memory or processes");
@@ -280,7 +280,7 @@ class Batch {
       try {
         recorder_.record(list[i], ended);
       } catch (...) {
-        // Without results nobody would know what is done.
+        // Stop, since the results of further jobs would be lost.
         const std::lock_guard lock(mutex_);
         if (!failure_) failure_ = std::current_exception();
         stop_ = true;
@@ -297,7 +297,7 @@ class Batch {
   std::exception_ptr failure_;
 };
 
-/// What a process that died has left of a job's outputs.
+/// Removes the temporary files that a dead process left for a job's outputs.
 void remove_temporary_files_of(const Job& job, int process) {
   try {
     for (const std::string& path : written_files(parse(job))) remove_temporary_files(path, process);
@@ -313,8 +313,8 @@ std::vector<std::size_t> jobs_that_are(JobState state, const JobStates& states) 
   return found;
 }
 
-/// What a child process does: all jobs that wait; first, each alone, the suspects, which ran when a child
-/// died.
+/// Runs all waiting jobs in a child process. The suspects, which ran when a child died, come first, one at a
+/// time.
 void carry_out_waiting(const std::vector<const Job*>& jobs, JobStates& states,
                        const std::vector<std::size_t>& suspects, Recorder& recorder, CommandRun& run) {
   Batch batch(jobs, states, recorder);
@@ -370,7 +370,7 @@ void run_batch(CommandRun& run) {
       next.insert(next.end(), recorded.begin(), recorded.end());
     }
     for (const std::size_t job : next) states.set(job, JobState::waiting);
-    // Those before them whose turn has not come.
+    // Keep earlier suspects that have not run yet.
     for (const std::size_t job : suspects)
       if (states[job] == JobState::waiting && std::find(next.begin(), next.end(), job) == next.end())
         next.push_back(job);

@@ -14,7 +14,7 @@ namespace tetwright {
 /// Findings of `check` in a mesh.
 struct CheckReport {
   std::vector<MeshFinding> findings;
-  /// False if indices or coordinates are unsound: then there are no statistics and no topology.
+  /// False if indices or coordinates are unsound, so that there are no statistics and no topology.
   bool measurable = true;
   std::optional<Topology> topology, topology_before;             ///< of the mesh, and of that of --before
   std::optional<std::vector<std::string>> topology_differences;  ///< from the mesh of --before, if given
@@ -26,7 +26,7 @@ struct CheckReport {
   bool topology_kept() const { return !topology_differences || topology_differences->empty(); }
 };
 
-/// The findings, and the requests that the mesh does not meet, as diagnostics.
+/// The findings and unmet requests as diagnostics.
 std::vector<Diagnostic> diagnostics_of(const CheckReport& check);
 
 }  // namespace tetwright

@@ -8,15 +8,19 @@
 
 namespace tetwright {
 
-/// The narrowest wedge between two planes, radians, in which a tet with an edge where they meet can have
-/// solid angles of at least `solid_angle` (steradians, up to the regular tet's): one that is symmetric to
-/// both.
+/// The min angle between two planes, radians, that admits a tet with an edge on their intersection and solid
+/// angles of at least `solid_angle`. The optimal tet is symmetric to both planes.
+///
+/// \param solid_angle steradians, at most the regular tet's
 double narrowest_wedge(double solid_angle);
 
-/// Tets with a smaller solid angle than `threshold` (steradians) that cannot have a larger one, since angles
-/// of the input leave no room: with an edge on a crease along which the material is narrower than
-/// narrowest_wedge(), or a vertex at a corner where the material has less than `threshold`. `creases` are
-/// those of the input; ids must be in range. One look at every tet, where any is below.
+/// Number of tets below a solid angle that angles of the input force to be: they have an edge on a crease
+/// where the material's angle is below narrowest_wedge(), or a vertex at a corner where its solid angle is
+/// below `threshold`. Linear in the number of tets.
+///
+/// \param creases of the input
+/// \param threshold solid angle, steradians
+/// \pre All ids are in range.
 std::size_t input_limited_tets(const TetMesh& mesh, const CreaseCurves& creases, double threshold);
 
 }  // namespace tetwright

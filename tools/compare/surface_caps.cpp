@@ -26,7 +26,7 @@ using Corners = std::array<Vec3, 3>;
 
 double area_of(const Corners& c) { return (c[1] - c[0]).cross(c[2] - c[0]).norm() / 2; }
 
-/// Distance of the nearest item, infinite where there is none.
+/// Distance of the nearest item; infinite if there is none.
 double distance_from(const ProjectionTree& tree, const Vec3& p) {
   const auto on = tree.nearest(p, {}, infinity);
   return on ? (*on - p).norm() : infinity;
@@ -112,7 +112,7 @@ CapFinder::Parts CapFinder::split(const TetMesh& mesh) const {
         parts.cap_area += area_of(piece);
         continue;
       }
-      // Neither distance changes faster than the place.
+      // Both distances are 1-Lipschitz.
       const bool small = longest <= (beyond > 0 ? cut_piece : cap_free_piece) * diagonal_;
       if (small || !rims_.any_within(centre, distance_from(surfaces_, centre) + 2 * radius)) {
         kept_pieces.push_back(piece);

@@ -10,34 +10,34 @@
 
 namespace tetwright {
 
-/// Where surfaces are open.
+/// The boundary edges of surfaces.
 struct OpenEdges {
   std::size_t count = 0;  ///< edges with one triangle
-  /// Open edges beyond which there is nothing. Edges of cracks, where another one runs along within a quarter
-  /// of the edge's length, are left out.
+  /// Boundary edges except those of cracks, which have another one within a quarter of their length.
   ProjectionTree rims;
 };
 
 OpenEdges find_open_edges(const MesherInput& surfaces);
 
-/// Tells what closes a surface from what stands for it. Input units.
+/// Tells the parts of a mesh that close holes of a surface (caps) from those that follow it. Input units.
 class CapFinder {
  public:
-  /// `surfaces` and `rims` must outlive this.
+  /// \pre `surfaces` and `rims` outlive this.
   CapFinder(const ProjectionTree& surfaces, const ProjectionTree& rims, double diagonal)
       : surfaces_(surfaces), rims_(rims), diagonal_(diagonal) {}
 
-  /// Whether the place is on a cap: the nearest point of the surfaces is on a rim.
+  /// Whether the point is on a cap: the closest point of the surfaces is on a rim.
   bool is_beyond_rim(const Vec3& place) const;
 
-  /// Triangles of a mesh, of which those that are partly caps are cut into pieces.
+  /// Triangles of a mesh; those that are partly caps are cut into pieces.
   struct Parts {
     ProjectionTree kept, caps;
     double cap_area = 0, area = 0;  ///< of all caps, and of all triangles
   };
-  /// A piece of at most 2 % of the diagonal is a cap if its corners and its centre are. Where only some are
-  /// it is cut until it is smaller than 0.05 % of the diagonal, and kept then: no distance of what is kept is
-  /// more than that too large. Caps over holes that no corner of pieces of 0.5 % shows are kept, too.
+  /// Splits a mesh into caps and the rest. A piece of at most 2 % of the diagonal is a cap if its corners and
+  /// centre are. If only some are, it is cut until it is below 0.05 % of the diagonal, and then kept; so
+  /// distances of kept pieces are at most that much too large. Caps over holes that no corner of pieces of
+  /// 0.5 % hits are kept, too.
   Parts split(const TetMesh& mesh) const;
 
  private:

@@ -30,7 +30,7 @@ MesherOptions common_options(const PrepareRun& run) {
   return options;
 }
 
-/// Makes cells that nobody asked for larger until memory holds what they take, by estimate.
+/// Enlarges cells whose size was not requested until the mesh fits into memory by estimate.
 template <class Scan>
 void fit_memory(const Scan& input, MesherOptions& options, PrepareRun& run) {
   constexpr double growth = 1.25;
@@ -113,7 +113,7 @@ DenseMesh mesh_input(const LabelInput& labels, PrepareRun& run) {
   return dense;
 }
 
-/// The points of tets that are not of the outside.
+/// The points of tets that are not outside.
 std::vector<Vec3> inner_points(const TetMesh& mesh) {
   std::vector<std::uint8_t> used(mesh.points.size(), 0);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)

@@ -8,11 +8,16 @@
 
 namespace tetwright {
 
-/// Puts the size field, its bounds and its grading into `run.report.sizes`; `box` is that of the input.
-/// Throws UsageError for bounds that contradict each other and what read_size_field() throws.
+/// Reads the size field with its bounds and grading into `run.report.sizes`.
+///
+/// \param box bounding box of the input
+/// \throws UsageError if bounds contradict each other
+/// \throws Error as read_size_field()
 void read_sizes(PrepareRun& run, const Box3& box);
 
-/// Throws InputError about a size field that does not reach all of these places of the body.
+/// Checks that the size field covers these points of the body.
+///
+/// \throws InputError if not
 void require_sizes_at(const PrepareRun& run, const std::vector<Vec3>& places);
 
 }  // namespace tetwright

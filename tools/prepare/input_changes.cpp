@@ -12,10 +12,10 @@ namespace tetwright {
 
 namespace {
 
-/// Lost labels that are named one by one.
+/// Max number of lost labels that a note names.
 constexpr std::size_t max_lost_named = 5;
 
-/// Labels that were to be meshed and are not in the mesh.
+/// Reports requested labels that the mesh lacks.
 void find_lost_labels(PrepareRun& run) {
   const PrepareOptions& options = run.options;
   PrepareReport& report = run.report;
@@ -65,7 +65,7 @@ void find_uncertain_changes(PrepareReport& report) {
                                     .places = f.place ? std::vector<Vec3>{*f.place} : std::vector<Vec3>{}});
 }
 
-/// Materials that are certainly not the solid of the input.
+/// Reports materials that certainly differ from the solid of the input.
 void find_changed_solids(const TetMesh& mesh, PrepareRun& run) {
   const PrepareOptions& options = run.options;
   PrepareReport& report = run.report;
@@ -115,8 +115,7 @@ void find_changed_solids(const TetMesh& mesh, PrepareRun& run) {
                                 .places = places});
 }
 
-/// Walls that are too thick and gaps that are closed because cells are too large, and those that were changed
-/// on purpose.
+/// Reports walls thickened and gaps closed by large cells, and those that were changed on purpose.
 void find_thin_walls(PrepareRun& run) {
   const PrepareOptions& options = run.options;
   PrepareReport& report = run.report;
@@ -163,7 +162,7 @@ void find_thin_walls(PrepareRun& run) {
                                 .places = places});
 }
 
-/// Creases and corners that are not where they are in the input.
+/// Reports creases and corners that moved from those of the input.
 void find_changed_creases(const TetMesh& mesh, PrepareRun& run) {
   PrepareReport& report = run.report;
   if (report.creases.segments.empty()) return;
@@ -195,7 +194,7 @@ void find_changed_creases(const TetMesh& mesh, PrepareRun& run) {
        .places = places});
 }
 
-/// Patches of the user of which the mesh has nothing.
+/// Reports named or numbered patches that the mesh lacks.
 void find_lost_patches(const TetMesh& mesh, PrepareRun& run) {
   PrepareReport& report = run.report;
   compare_patches(mesh, report.patches);
@@ -222,7 +221,7 @@ void find_lost_patches(const TetMesh& mesh, PrepareRun& run) {
        .places = places});
 }
 
-/// Says whether the comparison with the input rules out changes of a material.
+/// Whether the comparison with the input rules out changes of a material.
 enum class Change : std::uint8_t { none, none_by_estimate, possible };
 
 Change change_of(const PrepareReport& report, MaterialTag tag) {
@@ -261,7 +260,7 @@ void find_thin_part(const ThinPartReport& thin, PrepareReport& report) {
        .places = {thin.first}});
 }
 
-/// Parts that are small or thin for the cells.
+/// Notes parts that are small or thin for the cells.
 void find_small_parts(PrepareReport& report) {
   for (const FeatureReport& f : report.features)
     if (f.found.dropped > 0)

@@ -7,7 +7,9 @@
 namespace tetwright {
 
 /// Compares the result with the input: labels, solids, thin walls, creases and patches. Adds diagnostics to
-/// `run.report`. `mesh` has its interfaces.
+/// `run.report`.
+///
+/// \pre `mesh` has its interfaces.
 void find_input_changes(const TetMesh& mesh, PrepareRun& run);
 
 }  // namespace tetwright

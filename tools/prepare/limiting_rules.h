@@ -8,10 +8,9 @@
 
 namespace tetwright {
 
-/// The rules that refused most attempts of `operations`, each with its share of all refusals, such as
-/// "link_condition 61 %, surface_error 30 %": at most three, of which all but the first have a share of at
-/// least 5 %. Conflicts between threads and elements without a candidate are not refusals. Empty if no rule
-/// refused anything.
+/// The rules that refused most attempts of `operations`, with their percentages of all refusals, such as
+/// "link_condition 61 %, surface_error 30 %": at most three, and only the first may be below 5 %. Conflicts
+/// between threads and elements without a candidate do not count. Empty if nothing was refused.
 std::string main_refusals(const OperationCounts& counts, const std::vector<Operation>& operations);
 
 /// Why the count of tets stayed above its target: the refusals of collapses in the last iteration of the

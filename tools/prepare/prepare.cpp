@@ -29,7 +29,7 @@ TriangleMesh surface_of(const TetMesh& mesh) {
   return surface;
 }
 
-/// Makes the mesh's own surface, as it is now, the reference, if that is to be kept.
+/// Makes the current surface of the mesh the reference, if KeepOptions::reference.
 void refer_to(const TetMesh& mesh, const char* name, const PrepareRun& run, Prepared& result) {
   if (!run.options.keep.reference) return;
   result.reference = std::make_shared<const TriangleMesh>(surface_of(mesh));
@@ -114,7 +114,7 @@ Prepared carry_out(std::vector<Input> inputs, PrepareRun& run) {
                     "'), and nothing was written; give more time" +
                     (of_scans ? ", or larger cells by --resolution" : ""));
   }
-  // The mesh that there is, is compared and handed out.
+  // No deadline for comparing and returning the mesh.
   run.progress.set_deadline(Progress::no_deadline);
   assess(result.mesh, run);
   result.midside = std::move(run.midside);

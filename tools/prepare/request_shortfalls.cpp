@@ -12,7 +12,7 @@ namespace tetwright {
 
 namespace {
 
-// How far the count may be from what was asked, as a share of it.
+// Max relative deviation of the count from its target.
 constexpr double target_slack = 0.01;
 constexpr double improve_slack = 0.05;
 
@@ -105,7 +105,7 @@ void find_count_and_shapes(PrepareRun& run) {
         report.result->min_solid_angle, rules_limiting_shapes(*report.simplify));
 }
 
-/// Work that --time-limit or memory has cut short.
+/// Reports work that --time-limit or memory has cut short.
 void find_limits(PrepareRun& run) {
   const PrepareOptions& options = run.options;
   PrepareReport& report = run.report;
@@ -136,7 +136,7 @@ void find_limits(PrepareRun& run) {
                                   .limited_by = "memory"});
 }
 
-/// A tolerance that is not proven to be held.
+/// Reports a tolerance that is not proven to hold.
 void find_deviation(PrepareRun& run) {
   PrepareReport& report = run.report;
   if (!report.deviation) return;
@@ -173,7 +173,7 @@ void find_deviation(PrepareRun& run) {
                                 .places = {worst.place}});
 }
 
-/// Edges that have not the lengths that are asked for.
+/// Reports edges without the requested lengths.
 void find_edge_lengths(const TetMesh& mesh, PrepareRun& run) {
   PrepareReport& report = run.report;
   const RequestedSizes& sizes = report.sizes;
@@ -211,7 +211,7 @@ void find_edge_lengths(const TetMesh& mesh, PrepareRun& run) {
                                 .limited_by = held});
 }
 
-/// Tets below the bound where it is the default: a finding and no shortfall.
+/// Notes tets below the default bound, which are no shortfall.
 void report_bad_shapes(PrepareRun& run) {
   const PrepareOptions& options = run.options;
   PrepareReport& report = run.report;

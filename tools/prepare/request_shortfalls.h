@@ -6,8 +6,10 @@
 
 namespace tetwright {
 
-/// Compares the result with what was asked of it: count, shapes, edge lengths, tolerance, and limits on time
-/// and memory. Adds diagnostics to `run.report`, which has the statistics of the meshes.
+/// Compares the result with the request: count, shapes, edge lengths, tolerance, and limits on time and
+/// memory. Adds diagnostics to `run.report`.
+///
+/// \pre `run.report` has the statistics of the meshes.
 void find_request_shortfalls(const TetMesh& mesh, PrepareRun& run);
 
 }  // namespace tetwright

@@ -8,9 +8,9 @@ namespace tetwright {
 
 namespace {
 
-/// A clock cannot count to more seconds than these; more are no limit.
+/// Max time limit, seconds, which keeps the clock from overflowing.
 constexpr double max_seconds = 1e9;
-/// Share of the time that is kept at least for comparing and writing the mesh.
+/// Min fraction of the time limit reserved for comparing and writing the mesh.
 constexpr double min_reserve = 0.1;
 
 }  // namespace

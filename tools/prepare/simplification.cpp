@@ -65,7 +65,7 @@ TetMesh simplify_to_target(TetMesh mesh, const ReferenceSurface* reference, cons
   options.name = run.report.inputs.front();
   run.report.simplify.emplace();
   TetMesh result = simplify(std::move(mesh), options, &*run.report.simplify, &run.progress);
-  // The deadline has done its work: all that follows belongs to this mesh.
+  // The deadline is for simplification only: all later steps finish this mesh.
   run.progress.set_deadline(Progress::no_deadline);
   run.report.deviation = run.report.simplify->deviation;
   return result;

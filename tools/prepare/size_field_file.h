@@ -8,12 +8,14 @@
 
 namespace tetwright {
 
-/// Throws UsageError, which lists what is read, unless the extension is one that read_size_field() knows. To
-/// be called before any work.
+/// Checks the extension of a size field's file, before any work.
+///
+/// \throws UsageError, with the list of known extensions, unless read_size_field() reads it
 void check_size_field_path(const std::string& file);
 
-/// Reads the edge lengths that a user wants: of a .vdb file as read_vdb_sizes() does, of meshes as
-/// read_mesh_sizes() does, with their errors.
+/// Reads target edge lengths: from a .vdb file by read_vdb_sizes(), from a mesh by read_mesh_sizes().
+///
+/// \throws Error as these
 std::unique_ptr<const SizeSource> read_size_field(const std::string& file);
 
 }  // namespace tetwright

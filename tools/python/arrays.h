@@ -17,8 +17,7 @@
 #include "tetwright/tet_mesh.h"
 #include "tools/app/commands/named_inputs.h"
 
-// What the Python package makes of arrays of numpy. `name` is what messages call the input; all throw
-// InputError.
+// Conversions from NumPy arrays. `name` names the input in messages. All throw InputError.
 namespace tetwright::python {
 
 namespace py = pybind11;
@@ -28,31 +27,31 @@ using Cells = py::array_t<std::int64_t, py::array::c_style | py::array::forcecas
 using Tags = py::array_t<MaterialTag, py::array::c_style | py::array::forcecast>;
 using Values = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Labels = py::array_t<MaterialTag, py::array::f_style | py::array::forcecast>;
-/// Name, whether its numbers are whole ones, and these.
+/// Name, whether the values are integers, and the values.
 using Fields = std::vector<std::tuple<std::string, bool, Values>>;
-/// What it is (plural), how many, and whether it is found again from the rest.
+/// Kind of item (plural), count, and whether it is restored from the rest.
 using DroppedItems = std::vector<std::tuple<std::string, std::size_t, bool>>;
-/// Triangles of shape (m, 3), the number of each one's group, 0 for none, of shape (m,), and the names of
-/// groups that have one.
+/// Triangles of shape (m, 3), their group numbers of shape (m,) with 0 for none, and the names of named
+/// groups.
 using GroupedTriangles = std::tuple<Cells, Cells, std::map<std::int64_t, std::string>>;
 
 /// Points of shape (n, 3), all finite.
 std::vector<Vec3> to_points(const Points& array, const std::string& name);
-/// At least one triangle, of numbers of points from 0 on.
+/// Needs at least one triangle; point indices start at 0.
 TriangleMesh to_surface(const std::string& name, const Points& points, const GroupedTriangles& triangles);
-/// Those of a mesh of so many points.
+/// Triangles listed beside the tets of a mesh with `points` points.
 FileTriangles to_triangles(const std::string& name, std::size_t points, const GroupedTriangles& triangles);
-/// Tets of shape (m, 4), at least one, and the material of each, of shape (m,); without them a cell field may
-/// give it, as with files. Numbers of points and tets are fields of shape (n, components).
+/// Tets of shape (m, 4), at least one, and their materials of shape (m,); without these a cell field may give
+/// them, as in files. Point and cell fields have shape (n, components).
 ReadTetMesh to_mesh(const std::string& name, const Points& points, const Cells& tets,
                     const std::optional<Tags>& materials, const std::map<MaterialTag, std::string>& names,
                     const Fields& point_fields, const Fields& cell_fields, const DroppedItems& dropped);
-/// What the host's object had and its arrays have not.
+/// Items of the host's object that its arrays lack.
 std::vector<Dropped> to_dropped(const DroppedItems& items);
 /// Edge lengths of shape (n,) at the points of tets (m, 4) or triangles (m, 3).
 SizesObject to_sizes(const std::string& name, const Points& points, const Cells& cells,
                      const Values& lengths);
-/// Labels of shape (i, j, k); a step along the axis a is the column a of `directions`.
+/// Labels of shape (i, j, k); column a of `directions` is one voxel step along axis a.
 LabelVolume to_volume(const std::string& name, const Labels& labels, const std::array<double, 3>& origin,
                       const std::array<std::array<double, 3>, 3>& directions);
 

@@ -208,7 +208,7 @@ nlohmann::json diagnostics_json(const std::vector<Diagnostic>& all) {
   return j;
 }
 
-/// What "shortfall" calls a request that was not met. Codes are newer and say the same.
+/// Name of an unmet request in "shortfall", which is older than the codes and equivalent to them.
 const char* request_name(DiagnosticCode code) {
   switch (code) {
     case DiagnosticCode::target_missed:
@@ -410,7 +410,7 @@ nlohmann::json seconds_json(const PrepareReport& run) {
   return seconds;
 }
 
-/// Those of the report, and why there is no result.
+/// Diagnostics of the report, and the error if there is no result.
 std::vector<Diagnostic> diagnostics_of(const CommandRun& ended) {
   std::vector<Diagnostic> all = ended.report.diagnostics;
   if (!ended.error.empty()) all.push_back({.code = error_code(ended.status), .what = ended.error});

@@ -9,14 +9,14 @@
 
 namespace tetwright {
 
-/// The largest resident size of this process so far, bytes.
+/// Peak resident memory of this process so far, bytes.
 std::size_t peak_bytes();
 
-/// The JSON text that --stats writes, with the keys of data/stats.schema.json. Bytes that are not UTF-8,
-/// which names may contain, become replacement characters.
+/// The JSON text of --stats, with the keys of data/stats.schema.json. Bytes that are not UTF-8, as in file
+/// names, become replacement characters.
 std::string stats_json(const CommandRun& run);
 
-/// The JSON text that `check --json` prints. The statistics are those of the result.
+/// The JSON text of `check --json`, with the statistics of the result.
 std::string check_json(const CommandRun& run, const CheckReport& check);
 
 }  // namespace tetwright

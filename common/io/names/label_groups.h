@@ -35,7 +35,7 @@ class LabelGroups {
     if (added) groups_.push_back({label, {}});
     return known->second;
   }
-  /// The same by its name. The empty name is none.
+  /// Index of the group with this name. The empty name is none.
   std::uint32_t index_of_name(std::string_view name) {
     auto known = named_.find(name);
     if (known == named_.end()) {

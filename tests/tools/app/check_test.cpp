@@ -110,7 +110,7 @@ TEST(Check, DistancesFromASurfaceAreProven) {
   EXPECT_NE(words.out.find("distance of the surface from the mesh: at most 0.25"), std::string::npos)
       << words.out;
   EXPECT_TRUE(words.out.ends_with("\nvalid, but not within the tolerance\n")) << words.out;
-  // What falls short is all that --quiet leaves.
+  // --quiet prints shortfalls only.
   const Answer quiet = run(check + (f / "longer.off") + " --tolerance 0.2 --quiet");
   EXPECT_EQ(quiet.status, 1);
   EXPECT_EQ(quiet.out, "");
@@ -295,7 +295,7 @@ TEST(Check, CapsAreLeftOutAndReported) {
   EXPECT_EQ(patch.status, 1) << patch.out;
   EXPECT_NE(patch.out.find("most of the mesh has no counterpart on the surface: "), std::string::npos)
       << patch.out;
-  // What is not beyond a rim counts: the bottom is elsewhere.
+  // Deviations that are not beyond a rim count: the bottom is elsewhere.
   put(f / "lower.off", [&] {
     std::string text = open;
     for (const std::string from : {"0.000000\n"})

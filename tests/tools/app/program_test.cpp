@@ -153,7 +153,7 @@ TEST(Program, WhatAFileHoldsBesideTheMeshIsNamed) {
   put(f / "hexa.mesh", head + tets + "Hexahedra\n1\n1 2 3 4 1 2 3 4 0\nEnd\n");
   expect_refused("check " + (f / "hexa.mesh"), 3,
                  {"hexa.mesh: line 12: 1 hexahedra", "convert them to tets"});
-  // The same for surfaces.
+  // Surfaces drop faces of fewer than three vertices and say so.
   put(f / "t.off", tetrahedron_off);
   std::string with_edge = tetrahedron_off + "2 0 1\n";
   with_edge.replace(4, 5, "4 5 6");

@@ -46,7 +46,7 @@ TEST_F(Sizes, DecideTheNumberOfTets) {
   const double ratio = fine["result"]["tets"].get<double>() / coarse["result"]["tets"].get<double>();
   EXPECT_GT(ratio, 5);
   EXPECT_LT(ratio, 12);
-  // The same from a tet mesh.
+  // Simplifying a tet mesh reports --max-edge as well.
   const Answer a = run("simplify " + out + " -o " + (f / "t.vtu") + " --max-edge 0.5 --target-tets 500");
   EXPECT_EQ(a.status, 1) << a.err;
   EXPECT_NE(a.err.find("--max-edge"), std::string::npos) << a.err;

@@ -58,7 +58,7 @@ TEST(WrongCalls, NameTheNearestCommandAndOption) {
   expect_refused("mesh a.off -o b.vtu --resolutoin=5", 2,
                  {"--resolutoin of mesh", "nearest is --resolution"});
   expect_refused("simplify a.vtu b.vtu -o c.vtu --target-tets 5", 2, {"simplify takes one MESH; 'b.vtu'"});
-  // What follows -- are names, and what is wrong is the value before it.
+  // Arguments after -- are names; the error is the value before it.
   expect_refused("check --threads=0 -- a.vtu", 2, {"--threads", "'0'"});
   expect_refused("mesh a.off -o b.vtu -o c.vtu", 2, {"--output was given more than once"});
   expect_refused("--verson", 2, {"no option --verson;", "nearest is --version"});

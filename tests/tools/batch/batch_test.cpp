@@ -121,7 +121,7 @@ TEST_F(Batch, RefusesWhatIsNoBatch) {
           {"reads", "'a' writes"});
   refused(job("a", "300") + R"({"args": ["check", "x.vtu", "--before", ")" + (f / "a.vtu") + R"("]})",
           {"reads", "'a' writes"});
-  // Of one file that is not there yet by two links.
+  // Two jobs write one file, which does not exist yet, once through a link.
   std::filesystem::create_symlink("real.vtu", f / "link.vtu");
   refused(R"({"args": ["improve", "x.vtu", "-o", ")" + (f / "link.vtu") + R"("]})" + "\n" +
               R"({"args": ["improve", "x.vtu", "-o", ")" + (f / "real.vtu") + R"("]})",
@@ -161,7 +161,7 @@ TEST_F(Batch, AJobThatCrashesEndsAlone) {
     const int end = open_when_read(pipe, process);
     ASSERT_GE(end, 0) << contents(f / "err");
     ASSERT_GT(process.child(), 0);
-    // What it would leave of a file that is being written.
+    // A temporary file as the process leaves it when killed while writing.
     const std::string left = f / (".tetwright-" + std::to_string(process.child()) + "-7.tmp");
     put(left, "part of a mesh");
     kill(process.child(), signal);

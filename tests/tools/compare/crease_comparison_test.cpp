@@ -93,7 +93,7 @@ TEST(CreaseComparison, IsSaidOfPartsAndNotOfScans) {
   EXPECT_FALSE(stats.contains("creases"));
   EXPECT_LT(stats["result"]["volume"].get<double>(), 8 - 1e-3);
 
-  // Of a tet mesh likewise.
+  // Tet meshes keep their features likewise.
   ASSERT_EQ(run("mesh " + (f / "cube.off") + " --resolution 16 -o " + (f / "dense.vtu")).status, 0);
   a = run("simplify " + (f / "dense.vtu") + " --target-tets 500 -o " + (f / "o.vtu") + " --stats " +
           (f / "s.json"));
@@ -163,7 +163,7 @@ TEST(CreaseComparison, KnowsWhatCarvesAndWhatTouches) {
                          (f / "o.vtu"));
     EXPECT_EQ(a.err.find("creases are off"), std::string::npos) << a.err;
   }
-  // Of one surface whose parts overlap nobody knows the creases between them.
+  // Creases between overlapping parts of one surface are unknown.
   std::ofstream(f / "both.off") << [&] {
     const auto points = [](double shift) {
       std::string text;

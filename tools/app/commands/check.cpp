@@ -22,15 +22,15 @@ namespace tetwright {
 
 namespace {
 
-/// Peak memory of the process: its libraries, and the mesh with its topology for each tet, of which a knot of
-/// 116,000 takes 20 MB.
+/// Peak memory of the process: its libraries, and per tet the mesh with its topology. A knot of 116,000 tets
+/// takes 20 MB.
 constexpr double program_bytes = 40e6;
 constexpr double bytes_per_tet = 180;
 
-/// Reads a mesh to be checked or compared with; `field_found` becomes true if it has --material-field.
+/// Reads a mesh to check or compare with. Sets `field_found` if the mesh has --material-field.
 TetMesh read_checked(Input input, CommandRun& run, bool& field_found) {
   const std::string& file = input.name;
-  // Of two meshes one may have the field under the name `material`, if it was made from the other.
+  // With --before, one of the meshes may lack the field: a mesh made from the other calls it `material`.
   double waited = 0;
   ReadTetMesh read =
       take_tet_mesh(input, {run.line.options.material_field, run.line.check.before.empty()}, waited);
@@ -40,7 +40,7 @@ TetMesh read_checked(Input input, CommandRun& run, bool& field_found) {
   return std::move(read.mesh);
 }
 
-/// Checks and measures the mesh. Its topology is left out where its arrays are unsound.
+/// Checks and measures the mesh; only checks it if its arrays are unsound.
 CheckReport examine(TetMesh& mesh, CommandRun& run) {
   CheckReport check;
   check.findings = check_mesh(mesh);
@@ -112,7 +112,7 @@ void print_check(const CheckReport& check, const CommandRun& run) {
   std::printf("%s\n", verdict(check));
 }
 
-/// The errors and what falls short, to stderr: all that --quiet leaves.
+/// Prints errors and shortfalls to stderr, the only output with --quiet.
 void print_shortfalls(const CheckReport& check) {
   for (const MeshFinding& f : check.findings)
     if (!is_warning(f.fault)) print_line(mesh_finding_line(f));
@@ -129,7 +129,7 @@ CheckReport make_check(CommandRun& run) {
   bool field_found = false;
   run.progress.begin_stage("read");
   Input input = input_named(line.inputs.front(), line, run.in_memory);
-  // The error of the reader lists the fields that there are. Streams and values cannot be read twice.
+  // Read again for the reader's error, which lists the fields. Streams and values cannot be read twice.
   const bool read_once = !std::holds_alternative<InputFile>(input.value);
   TetMesh mesh = read_checked(std::move(input), run, field_found);
   require_memory(program_bytes + bytes_per_tet * static_cast<double>(mesh.tets.size()),

@@ -17,10 +17,12 @@
 
 namespace tetwright {
 
-/// A command that is being carried out, and how it ended.
+/// State and outcome of a running command.
 struct CommandRun {
-  /// All arguments must outlive it. Inputs are moved out of `in_memory` as they are read. The memory of
-  /// --memory-limit is that of its life, on the thread that makes it.
+  /// Starts the limit of --memory-limit, which holds for the constructing thread until destruction.
+  ///
+  /// \param in_memory may be null; inputs are moved out of it when read
+  /// \pre All arguments outlive the run.
   CommandRun(const CommandLine& line, Progress& progress, NamedInputs* in_memory = nullptr);
 
   const CommandLine& line;
@@ -30,11 +32,11 @@ struct CommandRun {
   NamedInputs* in_memory;
   PrepareReport report;
   ExitStatus status = ExitStatus::done;
-  std::string error, stage;  ///< of a run that failed: its message, and the stage in which it did
-  std::optional<SurfaceDistances> distances;  ///< of the result, with --report where there is a surface
+  std::string error, stage;                   ///< of a failed run: its message, and its stage
+  std::optional<SurfaceDistances> distances;  ///< of the result; with --report and a surface
 };
 
-/// Adds the statistics to the files, unless there are none or they go to standard output.
+/// Adds the statistics to the files, unless --stats is missing or standard output.
 void write_stats(const CommandRun& run, OutputFiles& files);
 
 /// The names of the inputs: the positional ones, then those of --material. Empty for `sample`.

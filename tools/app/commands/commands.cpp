@@ -21,7 +21,7 @@ namespace tetwright {
 
 namespace {
 
-/// More than any machine has, and what fits into 64 bits.
+/// More than any machine has; in bytes it fits into 64 bits.
 constexpr double max_gigabytes = 1e9;
 
 void run_meshing(CommandRun& run) {
@@ -31,9 +31,9 @@ void run_meshing(CommandRun& run) {
   print_result(run);
 }
 
-/// What estimates do not see ends as memory that runs out.
+/// Makes allocations fail at the memory limit, for memory that the estimates miss.
 void limit_process_memory(const CommandLine& line) {
-  // The system counts what is reserved, too: the stacks of threads, and what their heaps may grow into.
+  // The system also counts reserved memory: the stacks of threads and the room for their heaps.
   constexpr double reserved = 64 << 20, reserved_by_thread = 16 << 20;
   rlimit limit;
   if (!line.options.limits.memory || getrlimit(RLIMIT_DATA, &limit) != 0) return;
@@ -52,7 +52,7 @@ Prepared make_result(CommandRun& run) {
   if (run.in_memory) take_sizes(*run.in_memory, options.sizes);
   options.keep.reference = !line.outputs.report.empty();
   options.keep.field = !line.outputs.distances.empty();
-  // Measured: the text of a file, which is held in memory beside the mesh.
+  // Measured: the text of a file is in memory beside the mesh.
   constexpr double text_bytes = 130;
   if (!line.outputs.mesh.ends_with(".vtu")) options.limits.later_bytes_per_tet = text_bytes;
   PrepareRun preparing(task_of(line.command), options, run.progress, run.report);

@@ -11,23 +11,28 @@
 
 namespace tetwright {
 
-/// Carries out the command of `line`, writes and prints its result. Throws Error for everything that ends it
-/// early.
+/// Runs the command of `line`; writes and prints its result.
+///
+/// \throws Error if the command ends early
 ExitStatus run_command(const CommandLine& line);
 
-/// Carries out prepare, mesh, simplify or improve; `run.report` says all of the result. Neither writes nor
-/// prints. Throws as run_command() does.
+/// Runs prepare, mesh, simplify or improve without writing or printing. The report of the result is in
+/// `run.report`.
+///
+/// \throws Error as run_command()
 Prepared make_result(CommandRun& run);
 
-/// Writes the statistics of a run that failed. That they cannot be written either is said, and the run's own
-/// error matters more.
+/// Records the error of a failed run and writes its statistics. Does not throw: if they cannot be written
+/// either, a line says so.
 void report_failure(const std::exception& error, CommandRun& run);
 
-/// `check`, without printing: writes the files that `run.line` asks for. Throws as run_command() does.
+/// Runs `check` without printing; writes the files of `run.line`.
+///
+/// \throws Error as run_command()
 CheckReport make_check(CommandRun& run);
 
 void run_check(CommandRun& run);
-/// Prints a line for each job that ends.
+/// Runs the jobs of a batch and prints a line when one ends.
 void run_batch(CommandRun& run);
 void run_sample(CommandRun& run);
 

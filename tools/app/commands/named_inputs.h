@@ -13,22 +13,22 @@
 
 namespace tetwright {
 
-/// Edge lengths at the points of a tet mesh or a surface; each is finite and above 0 where an element uses
-/// the point.
+/// Edge lengths at the points of a tet mesh or surface, finite and above 0 at points that an element uses.
 struct SizesObject {
   std::variant<TetMesh, TriangleMesh> elements;
   std::vector<double> lengths;  ///< input units
 };
 
-/// Inputs that a host program has in memory, by what stands for them in a CommandLine where a file's name
-/// would: it names them in messages, and materials, whole. What is not among them is a file.
+/// Inputs in memory of a host program, by the names that stand for them in a CommandLine. A name appears
+/// whole in messages and as a material's name. Names that are not listed are files.
 struct NamedInputs {
   std::map<std::string, Input::Value> values;
   std::map<std::string, SizesObject> sizes;  ///< of --size-field
 };
 
-/// The input that a name on the command line stands for: standard input, a file, or what `in_memory` (may be
-/// null) has, which is moved out of.
+/// The input for a name on the command line: standard input, a file, or a value moved out of `in_memory`.
+///
+/// \param in_memory may be null
 Input input_named(const std::string& name, const CommandLine& line, NamedInputs* in_memory);
 
 /// The positional inputs, then those of --material.

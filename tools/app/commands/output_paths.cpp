@@ -15,7 +15,7 @@ namespace tetwright {
 
 namespace {
 
-/// True if both names lead to the same file, which need not exist.
+/// Whether both names lead to the same file, which need not exist.
 bool same_file(const std::string& a, const std::string& b) {
   if (a.empty() || b.empty()) return false;
   std::error_code not_there;
@@ -54,20 +54,20 @@ std::vector<Written> files_written(const CommandLine& line) {
   return files;
 }
 
-/// How many of them are --stats and --log-file, which come last.
+/// The number of --stats and --log-file among the written files; they come last.
 std::size_t report_count(const CommandLine& line) {
   return static_cast<std::size_t>(!line.outputs.stats.empty() && line.outputs.stats != "-") +
          static_cast<std::size_t>(!line.console.log_file.empty());
 }
 
-/// Which of the written files: those that say how the run went, or all.
+/// Selects the reports of the run or all written files.
 enum class Which { reports, all };
 
 void check_files_are_different(const CommandLine& line, Which which) {
-  // These may replace what they read.
+  // These commands may replace their input.
   const bool in_place = line.command == Command::simplify || line.command == Command::improve;
   const std::vector<Written> written = files_written(line);
-  // Those that say how the run went come last, so that each is compared with all others.
+  // Reports of the run come last, so that each is compared with all other files.
   const std::size_t first =
       which == Which::all || line.command == Command::batch ? 0 : written.size() - report_count(line);
   for (std::size_t i = first; i < written.size(); ++i) {

@@ -11,13 +11,16 @@
 
 namespace tetwright {
 
-// The page of --report. All of these do nothing unless `run.line` asks for it.
+// The page of --report. These functions do nothing without --report.
 
-/// How far the boundary and the interfaces of the result are from `surface`; not measured where that has no
-/// triangles. `from` says what it is.
+/// Measures the distance of the result's boundary and interfaces from `surface`, unless that is empty.
+///
+/// \param from names `surface` on the page
 void measure_distances(const TetMesh& result, const TriangleMesh& surface, std::string from, CommandRun& run);
 
-/// Adds the page to the files. `check` may be null.
+/// Adds the page to the files.
+///
+/// \param check null unless the command is `check`
 void write_report(const TetMesh& mesh, const CommandRun& run, OutputFiles& files,
                   const CheckReport* check = nullptr);
 

@@ -6,10 +6,13 @@
 
 namespace tetwright {
 
-/// Writes all files that `run.line` asks for, or none. Throws OutputError and Interrupted.
+/// Writes all output files of the run, or none.
+///
+/// \throws OutputError if one cannot be written
+/// \throws Interrupted if the run was cancelled
 void write_result(Prepared& result, CommandRun& run);
 
-/// Prints the report to stdout, notes and what falls short to stderr.
+/// Prints the report to stdout, notes and shortfalls to stderr.
 void print_result(const CommandRun& run);
 
 }  // namespace tetwright

@@ -11,10 +11,10 @@ namespace tetwright {
 
 namespace {
 
-/// What notes call a file that is written.
+/// Name of an output file in notes.
 std::string shown(const std::string& file) { return file == "-" ? "standard output" : file; }
 
-/// Notes what `file` has in place of numbers and names of the user's.
+/// Adds a note on numbers and names that `file` replaces by others.
 void note_changes(const std::string& file, const std::string& extension, const char* what,
                   const std::vector<NameChange>& changed, PrepareReport& report) {
   if (changed.empty()) return;
@@ -58,7 +58,7 @@ std::size_t named_patches(const PrepareReport& report) {
                     [](const PatchComparison& p) { return !p.group.name.empty(); }));
 }
 
-/// What neither the mesh nor --boundary tells of patches.
+/// Notes the patches that neither the mesh nor the --boundary file can hold.
 void find_unwritten_patches(const CommandLine& line, const TetFormatInfo& format, PrepareReport& report) {
   const bool boundary_lacks =
       !line.outputs.boundary.empty() &&

@@ -7,8 +7,8 @@
 
 namespace tetwright {
 
-/// Adds to the diagnostics what the format of -o has no place for, and no other file that is written, and the
-/// tags, numbers and names that it cannot hold as they are.
+/// Adds diagnostics for data that neither the format of -o nor another output file can hold, and for tags,
+/// numbers and names that the format changes.
 void find_unwritten(const CommandLine& line, const TetMesh& mesh, PrepareReport& report);
 
 }  // namespace tetwright

@@ -137,7 +137,7 @@ std::string shade_legend() {
 
 // Charts of one dimension.
 
-/// What a chart of one dimension shows of a mesh.
+/// Histogram of one mesh in a one-dimensional chart.
 struct Bars {
   std::string name;
   std::vector<double> shares;  ///< of each bin, 0 to 1

@@ -16,12 +16,12 @@ struct ChartMesh {
 
 // The charts as HTML: figures with drawings (SVG) that need no script. At most two meshes, the result last.
 
-/// How many tets there are of each volume and smallest solid angle, for each mesh: Figure 2 of Cutler, Dorsey
-/// & McMillan 2004 seen from above.
+/// Two-dimensional histograms of the tets' volume and min solid angle, one for each mesh: Figure 2 of Cutler,
+/// Dorsey & McMillan 2004 seen from above.
 std::string quality_charts(std::span<const ChartMesh> meshes);
-/// Shares of the tets by their smallest solid angle, all meshes in one drawing.
+/// Histogram of the tets' min solid angles, all meshes in one drawing.
 std::string solid_angle_chart(std::span<const ChartMesh> meshes);
-/// Shares of the dihedral angles.
+/// Histogram of the dihedral angles, all meshes in one drawing.
 std::string dihedral_chart(std::span<const ChartMesh> meshes);
 
 }  // namespace tetwright

@@ -10,22 +10,22 @@
 
 namespace tetwright {
 
-/// Something that the page lists, and shows in the mesh where its places are known.
+/// An entry of a list on the page, shown in the mesh if it has locations.
 struct PageEntry {
   std::string text;          ///< what it is
-  std::string detail;        ///< what was done about it, or can be; may be empty
+  std::string detail;        ///< what was done about it, or a remedy; may be empty
   std::vector<Vec3> places;  ///< input units
   std::string code;          ///< of the diagnostic; empty: it is none
 };
 
 struct PageEntries {
-  std::vector<PageEntry> short_of;  ///< what was asked and not reached
-  std::vector<PageEntry> found;     ///< in the input, and other notes
+  std::vector<PageEntry> short_of;  ///< unmet requests
+  std::vector<PageEntry> found;     ///< findings in the input, and other notes
   std::vector<PageEntry> worst;     ///< the worst shapes of the mesh
 };
 
-/// What a run reports; of `check` with what it found in the mesh. Parallel; the result does not depend on the
-/// threads.
+/// Collects the entries of a run's report. `check` adds its findings in the mesh; null for other commands.
+/// Parallel; the result does not depend on the number of threads.
 PageEntries page_entries(const PrepareReport& run, const TetMesh& mesh, const CheckReport* check);
 
 }  // namespace tetwright

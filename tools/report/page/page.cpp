@@ -108,7 +108,7 @@ std::string arrays(const PageMesh& page) {
   return out;
 }
 
-/// What of a large mesh the page does not show; empty if all of it is there.
+/// Notice on the parts of a large mesh that the page leaves out; empty if it shows the whole mesh.
 std::string not_shown(const PageMesh& page, const TetMesh& mesh) {
   if (page.whole) return "";
   std::string out = "The mesh has " + grouped_number(mesh.tets.size()) +

@@ -11,9 +11,12 @@
 
 namespace tetwright {
 
-/// The page of --report, README.md says what is on it: HTML that needs no other file and no network. No time
-/// and nothing of the machine is in it, so that the same call gives the same bytes. `mesh` has its
-/// interfaces; `distances` and `check` may be null.
+/// The page of --report as described in README.md: HTML that needs no other file and no network. It has no
+/// time and no data of the machine, so that equal calls give equal bytes.
+///
+/// \param distances may be null
+/// \param check may be null
+/// \pre `mesh` has its interfaces.
 std::string report_page(const CommandLine& line, const PrepareReport& run, const TetMesh& mesh,
                         const SurfaceDistances* distances, const CheckReport* check = nullptr,
                         const PageLimits& limits = {});

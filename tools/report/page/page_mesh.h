@@ -12,7 +12,7 @@
 
 namespace tetwright {
 
-/// What bounds the size of the page. With these it has at most 17 MB.
+/// Bounds on the size of the page: at most 17 MB with the defaults.
 struct PageLimits {
   std::size_t tets = 500'000;  ///< a mesh with more is shown by its skin and the layers behind three cuts
   std::size_t triangles = 250'000;   ///< of that skin
@@ -44,8 +44,10 @@ struct PageMesh {
 /// The smallest dihedral angle of the regular tet, degrees.
 inline constexpr double regular_dihedral = 70.528779365509308;
 
-/// `mesh` has its interfaces, and its ids are in range; `distances` may be null. Parallel; the result does
-/// not depend on the threads.
+/// Makes the arrays of a mesh. Parallel; the result does not depend on the number of threads.
+///
+/// \param distances may be null
+/// \pre `mesh` has its interfaces, and its ids are in range.
 PageMesh page_mesh(const TetMesh& mesh, const SurfaceDistances* distances, const PageLimits& limits = {});
 
 }  // namespace tetwright

@@ -8,9 +8,8 @@
 
 namespace tetwright {
 
-/// Points as whole numbers of 16 bits: origin + step * (x, y, z), one step for all axes so that shapes stay
-/// what they are. No coordinate is off by more than half a step, about 1 / 131,000 of the longest side of
-/// their box.
+/// Points in 16-bit coordinates: origin + step * (x, y, z), with one step for all axes to keep proportions.
+/// The max error of a coordinate is half a step, about 1 / 131,000 of the longest side of their box.
 struct QuantisedPoints {
   static constexpr double max_coordinate = 65535;
 
@@ -19,7 +18,7 @@ struct QuantisedPoints {
   std::string bytes;           ///< x, y and z of each point, 16 bits each, little-endian
 };
 
-/// Points must be finite.
+/// \pre All points are finite.
 QuantisedPoints quantise(std::span<const Vec3> points);
 
 }  // namespace tetwright

@@ -9,13 +9,15 @@
 
 namespace tetwright {
 
-/// How far the points of a mesh's boundary and interfaces are from a surface.
+/// Distances of the points of a mesh's boundary and interfaces from a surface.
 struct SurfaceDistances {
-  std::string from;           ///< what the surface is, such as "the scan"
-  std::vector<float> values;  ///< for each point, input units; not a number where it is on no interface
+  std::string from;           ///< names the surface, such as "the scan"
+  std::vector<float> values;  ///< for each point, input units; NaN if it is on no interface
 };
 
-/// `mesh` has its interfaces; `surface` has triangles. Parallel; the result does not depend on the threads.
+/// Measures the distances. Parallel; the result does not depend on the number of threads.
+///
+/// \pre `mesh` has its interfaces; `surface` has triangles.
 SurfaceDistances surface_distances(const TetMesh& mesh, const TriangleMesh& surface, std::string from);
 
 }  // namespace tetwright

@@ -11,14 +11,17 @@
 
 namespace tetwright {
 
-/// The figures of each mesh side by side; `threshold` is the solid angle that the statistics were made with.
+/// The figures of the meshes side by side.
+///
+/// \param threshold solid angle that the statistics were made with, steradians
 std::string figures_table(std::span<const ChartMesh> meshes, double threshold);
 
 /// The materials of the result, with their tets and volumes.
 std::string materials_table(const PrepareReport& run);
 
-/// The list, with a button for each place; `first_mark` is the number of the first of them and becomes that
-/// of the next list.
+/// A list of entries with a button for each location.
+///
+/// \param first_mark number of the first location; becomes that of the next list
 std::string entries_list(const std::vector<PageEntry>& entries, std::size_t& first_mark);
 
 }  // namespace tetwright
