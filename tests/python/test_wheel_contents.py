@@ -68,8 +68,8 @@ def test_versions_are_those_of_the_systems_libraries_alone():
 def test_licences_are_found_with_the_common_ones_that_they_name(tmp_path):
     libraries = wheel_contents.needed_libraries(os.environ["TETWRIGHT_PROGRAM"], tmp_path)
     name = next(n for n in libraries if wheel_contents.stem(n) == "tbb")
-    package, version, text = wheel_contents.licence_of(libraries[name], name, tmp_path)
-    assert package.startswith("libtbb") and version[0].isdigit() and "Apache" in text
+    package, source, text = wheel_contents.licence_of_library(libraries[name], tmp_path)
+    assert package.startswith("libtbb") and source.startswith("onetbb ") and "Apache" in text
     wheel_contents.write_licences({package: text}, tmp_path / "licenses")
     assert (tmp_path / "licenses" / package / "copyright").read_text() == text
     assert "Apache License" in (tmp_path / "licenses/common-licenses/Apache-2.0").read_text()

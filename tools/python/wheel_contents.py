@@ -17,8 +17,8 @@ import zipfile
 OF_SYSTEM = {"libc.so.6", "libm.so.6", "libpthread.so.0", "libdl.so.2", "librt.so.1", "libgcc_s.so.1", "libstdc++.so.6",
              "ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1"}
 # The libraries that may be inside: their licences let us, and none of them opens connections.
-INSIDE = {"Imath", "aec", "blosc", "boost_iostreams", "bz2", "deflate", "fmt", "hdf5_serial", "log4cplus", "lz4", "lzma", "openvdb",
-          "pugixml", "snappy", "spdlog", "sz", "tbb", "tbbmalloc", "z", "zip", "zstd"}
+INSIDE = {"Imath", "aec", "blosc", "boost_iostreams", "bz2", "deflate", "hdf5_serial", "log4cplus", "lz4", "lzma", "openvdb",
+          "pugixml", "snappy", "sz", "tbb", "tbbmalloc", "z", "zip", "zstd"}
 # Debian's packages whose code is compiled into ours.
 HEADERS = ["libcli11-dev", "libeigen3-dev", "libjs-three", "nlohmann-json3-dev"]
 # The first glibc that distributions had together with these versions of g++'s runtime library.
@@ -42,14 +42,14 @@ def stem(library):
     return re.sub(r"-[0-9][0-9_.]*$", "", library.removeprefix("lib").split(".so")[0])
 
 
-def needed_libraries(file, first_folder):
+def needed_libraries(file, first_folder=""):
     """From the names of all libraries that the file needs, also by way of others, to their paths. Those in the folder
     are taken before the system's."""
     libraries = {}
     for line in output_of("ldd", file, LD_LIBRARY_PATH=str(first_folder)).splitlines():
         name, arrow, path = line.strip().partition(" => ")
-        if "not found" in line or "no version information" in line:
-            sys.exit(f"{file}: {line.strip()}")
+        if not re.search(r"\(0x\w+\)$", line):
+            sys.exit(f"ldd of {file}: {line.strip()}")
         if arrow and name not in OF_SYSTEM:
             libraries[name] = pathlib.Path(path.split(" (")[0])
     return libraries
@@ -60,6 +60,10 @@ def check_inside(libraries, file):
         if stem(name) not in INSIDE:
             sys.exit(f"{file} needs {name} ({path}), which a wheel must not have inside; build without it, or add it "
                      "to INSIDE in tools/python/wheel_contents.py")
+
+
+def compiled_files(folder):
+    return [f for f in sorted(folder.rglob("*")) if f.is_file() and f.read_bytes()[:4] == b"\x7fELF"]
 
 
 def symbol_versions(file):
@@ -99,22 +103,23 @@ def platform_tag(versions, machine):
     return f"manylinux_{glibc.replace('.', '_')}_{machine}"
 
 
-def licence_of(path, name, parts):
-    """The package that a library is of, its version and its licence."""
+def licence_of_package(package):
+    """The source that a package of this system is of, with its version, and its licence."""
+    return (output_of("dpkg-query", "-W", "-f", "${source:Package} ${source:Version}", package),
+            pathlib.Path(f"/usr/share/doc/{package}/copyright").read_text(errors="replace"))
+
+
+def licence_of_library(path, parts):
+    """The package that a library is of, its source and its licence."""
     if parts in path.parents:
         for file in (parts / "libraries" / "licences").iterdir():
-            if stem(name).startswith(file.name.removeprefix("lib")):
-                return file.name, file.read_text().split(",")[0].split()[1], file.read_text()
+            if stem(path.name).startswith(file.name.removeprefix("lib")):
+                return file.name, file.read_text().split(",")[0], file.read_text()
     real = path.resolve()
     # Debian 12 knows some files of /usr/lib as of /lib.
     owners = [line.split(":")[0] for line in output_of("dpkg-query", "-S", "*/" + real.name).splitlines()
               if str(real).endswith(line.split(": ")[1])]
     return owners[0], *licence_of_package(owners[0])
-
-
-def licence_of_package(package):
-    return (output_of("dpkg-query", "-W", "-f", "${Version}", package),
-            pathlib.Path(f"/usr/share/doc/{package}/copyright").read_text(errors="replace"))
 
 
 def write_licences(licences, folder):
@@ -148,15 +153,20 @@ def settle(file, new_names, run_path):
     """Makes a file of ours find its libraries in the wheel."""
     file.chmod(0o755)
     subprocess.run(["strip", "--strip-unneeded", file], check=True)
-    change = ["patchelf", "--set-rpath", run_path]
-    if file.name in new_names.values():
-        change += ["--set-soname", file.name]
-    for needed in output_of("patchelf", "--print-needed", file).split():
-        if needed in new_names:
-            change += ["--replace-needed", needed, new_names[needed]]
-        elif needed not in OF_SYSTEM:
-            sys.exit(f"{file.name} needs {needed}, which is not in the wheel")
-    subprocess.run([*change, file], check=True)
+    replaced = [word for needed in output_of("patchelf", "--print-needed", file).split() if needed in new_names
+                for word in ("--replace-needed", needed, new_names[needed])]
+    # One call for each: patchelf 0.14 forgets the new names if it sets the path as well.
+    for change in (["--set-rpath", run_path], replaced, ["--set-soname", file.name] if ".so." in file.name else []):
+        if change:
+            subprocess.run(["patchelf", *change, file], check=True)
+
+
+def check_linkage(folder):
+    """All that files of the wheel need must be in it, or be the system's."""
+    for file in compiled_files(folder):
+        for name, path in needed_libraries(file).items():
+            if folder not in path.resolve().parents:
+                sys.exit(f"{file.relative_to(folder)} would take {name} from the system")
 
 
 def metadata(source):
@@ -206,32 +216,30 @@ def make(build, python, parts, output):
     name, version, described = metadata(source)
     dist_info = f"{name}-{version}.dist-info"
     with tempfile.TemporaryDirectory() as folder_name:
-        folder = pathlib.Path(folder_name)
+        folder = pathlib.Path(folder_name).resolve()
         package = shutil.copytree(source / "tools/python/tetwright", folder / "tetwright", ignore=shutil.ignore_patterns("__pycache__"))
         shutil.copytree(source / "tools/python/wheel_program", folder / "tetwright_program", ignore=shutil.ignore_patterns("__pycache__"))
         new_names = add_libraries(libraries, folder / "tetwright.libs")
-        compiled = [package / f"_core.cpython-{cpython}-{machine}-linux-gnu.so", folder / "tetwright_program" / "tetwright"]
-        shutil.copy(module, compiled[0])
-        shutil.copy(program, compiled[1])
-        for file in compiled:
-            settle(file, new_names, "$ORIGIN/../tetwright.libs")
-        for file in (folder / "tetwright.libs").iterdir():
-            compiled.append(file)
-            settle(file, new_names, "$ORIGIN")
-
-        tag = f"cp{cpython}-cp{cpython}-{platform_tag(set().union(*map(symbol_versions, compiled)), machine)}"
+        shutil.copy(module, package / f"_core.cpython-{cpython}-{machine}-linux-gnu.so")
+        shutil.copy(program, folder / "tetwright_program")
+        for file in compiled_files(folder):
+            settle(file, new_names, "$ORIGIN" if file.parent.name == "tetwright.libs" else "$ORIGIN/../tetwright.libs")
+        check_linkage(folder)
+        versions = set().union(*map(symbol_versions, compiled_files(folder)))
+        tag = f"cp{cpython}-cp{cpython}-{platform_tag(versions, machine)}"
 
         information = folder / dist_info
         licences = {}
-        listing = ["Code of others in this wheel, and the package that it is of. The sources are Debian's: apt-get source PACKAGE=VERSION"]
+        listing = ["Code of others in this wheel, the package of Debian that it is of, and the source of that:"]
         for library, path in libraries.items():
-            owner, owner_version, licences[owner] = licence_of(path, library, parts)
-            listing.append(f"{new_names[library]}: {owner} {owner_version}")
+            owner, owner_source, licences[owner] = licence_of_library(path, parts)
+            listing.append(f"{new_names[library]}: {owner}, {owner_source}")
         for owner in HEADERS:
-            owner_version, licences[owner] = licence_of_package(owner)
-            listing.append(f"headers: {owner} {owner_version}")
+            owner_source, licences[owner] = licence_of_package(owner)
+            listing.append(f"headers: {owner}, {owner_source}")
         licences["pybind11-dev"] = (parts / "pybind11/usr/share/doc/pybind11-dev/copyright").read_text()
-        listing.append("headers: pybind11-dev")
+        pybind11_version = output_of("dpkg-deb", "-f", *(parts / "pybind11").glob("*.deb"), "Version").strip()
+        listing.append(f"headers: pybind11-dev, pybind11 {pybind11_version}")
         write_licences(licences, information / "licenses")
         shutil.copyfile(source / "LICENSE", information / "licenses" / "LICENSE")
         (information / "licenses" / "bundled.txt").write_text("\n".join(listing) + "\n")
