@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """What tools/bench --ci and --compare do; benchmarks/README.md says how to read it.
 
 Each benchmark runs in a process of its own, so that its peak of memory is its own.

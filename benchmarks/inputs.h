@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdlib>
@@ -6,8 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include "common/formats/formats.h"
-#include "common/samples.h"
+#include "common/io/formats.h"
+#include "common/samples/samples.h"
 #include "mesher/mesher.h"
 
 namespace tetwright {

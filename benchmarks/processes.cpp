@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "benchmarks/processes.h"
 
 #include <fcntl.h>
@@ -13,7 +14,7 @@
 #include <fstream>
 
 #include "common/error.h"
-#include "common/formats/atomic_file.h"
+#include "common/files/atomic_file.h"
 
 namespace tetwright {
 

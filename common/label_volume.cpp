@@ -1,7 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/label_volume.h"
+
+#include <cmath>
+
+#include "common/error.h"
+#include "common/number_text.h"
+#include "common/tolerances.h"
 
 namespace tetwright {
 
 Vec3 LabelVolume::to_input(const Vec3& index) const { return origin + directions * index; }
+
+void check_geometry(const LabelVolume& volume, const std::string& file) {
+  const auto written = [](const Vec3& v) {
+    std::string out;
+    append_point(out, v);
+    return "(" + out + ")";
+  };
+  if (!volume.origin.allFinite())
+    throw InputError(file + ": the origin " + written(volume.origin) + " is not finite; repair the header");
+  Eigen::Matrix3d units;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 step = volume.directions.col(k);
+    const double length = step.norm();
+    if (!std::isfinite(length) || !(length > 0))
+      throw InputError(file + ": the step " + written(step) + " between voxels along axis " +
+                       std::to_string(k) + " is zero or not finite; repair the spacing in the header");
+    units.col(k) = step / length;
+  }
+  if (!(std::fabs(units.determinant()) > tolerance::coplanar_directions))
+    throw InputError(file + ": the directions " + written(volume.directions.col(0)) + ", " +
+                     written(volume.directions.col(1)) + " and " + written(volume.directions.col(2)) +
+                     " of the axes lie in one plane; repair the header");
+}
 
 }  // namespace tetwright

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -30,5 +31,8 @@ struct LabelVolume {
   /// The position of a voxel index, which need not be whole, input units.
   Vec3 to_input(const Vec3& index) const;
 };
+
+/// Throws InputError unless origin and directions are finite and the directions can be inverted.
+void check_geometry(const LabelVolume& volume, const std::string& file);
 
 }  // namespace tetwright

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <map>
@@ -6,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/face_group.h"
+#include "common/surface_region.h"
 #include "common/types.h"
 
 namespace tetwright {
@@ -53,7 +54,7 @@ struct TetMesh {
   /// clears it or fills it anew.
   std::vector<InterfaceTriangle> interfaces = {};
   /// The groups that patches of the interfaces belong to, of those that do.
-  std::map<InterfacePatch, FaceGroup> patch_groups = {};
+  std::map<InterfacePatch, SurfaceRegion> patch_groups = {};
   /// What else a file says of points and tets; materials are not among them.
   std::vector<MeshField> point_fields = {};
   std::vector<MeshField> cell_fields = {};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 /// Numbers that allow for rounding, or below which something counts as zero. What can be decided exactly has

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "common/face_group.h"
+#include "common/surface_region.h"
 #include "common/types.h"
 
 namespace tetwright {
@@ -16,7 +17,7 @@ struct TriangleMesh {
       triangles;  ///< indices into points; counter-clockwise seen from outside where it is closed
   /// What a file tells apart, and for each triangle an index into it; both are empty where it does not. One
   /// of them may be no group.
-  std::vector<FaceGroup> groups = {};
+  std::vector<SurfaceRegion> groups = {};
   std::vector<std::uint32_t> triangle_groups = {};
 };
 

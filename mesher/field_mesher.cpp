@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/field_mesher.h"
 
 #include <algorithm>
@@ -12,9 +13,9 @@
 #include "common/parallel/parallel.h"
 #include "mesher/cut/cut_off_surface.h"
 #include "mesher/cut/cutting.h"
-#include "mesher/cut/point_mover.h"
-#include "mesher/cut/wall_restoring.h"
-#include "mesher/distance/thin_survey.h"
+#include "mesher/cut/thin_wall_recovery.h"
+#include "mesher/cut/vertex_snapping.h"
+#include "mesher/distance/local_thickness.h"
 #include "mesher/lattice/labelled_lattice.h"
 #include "mesher/lattice/lattice.h"
 #include "mesher/lattice/octree.h"
@@ -186,7 +187,7 @@ ThickenedWallsReport thickened_report(const ThickenedWalls& left, const GridFram
 }
 
 DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<MortonKey> interface_voxels,
-                     FinerCells finer, const MesherOptions& options, const MemoryModel& memory,
+                     RefinementRegions finer, const MesherOptions& options, const MemoryModel& memory,
                      MesherReport report, Stages& stages,
                      const std::function<void(const std::vector<std::uint8_t>&)>& validate_regions) {
   DenseMesh result;
@@ -231,7 +232,7 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   report.seconds_lattice = stages.seconds();
 
   stages.begin("moving points");
-  move_points(lattice, *field, progress);
+  snap_vertices(lattice, *field, progress);
   report.seconds_move = stages.seconds();
 
   stages.begin("cutting");
@@ -241,7 +242,7 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   // A region with few lattice points may have vanished by moves or as an isolated vertex.
   validate_regions(regions_there(*field, cut.regions));
   if (std::shared_ptr<const MaterialField> as_is = field->with_true_walls()) {
-    report.thickened = thickened_report(restore_walls(cut, *field, *as_is), field->frame());
+    report.thickened = thickened_report(recover_thin_walls(cut, *field, *as_is), field->frame());
     field = std::move(as_is);
   }
   result.mesh = to_input_units(std::move(cut), *field);

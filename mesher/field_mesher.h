@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <chrono>
@@ -6,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "mesher/cut/wall_restoring.h"
+#include "mesher/cut/thin_wall_recovery.h"
 #include "mesher/distance/material_field.h"
-#include "mesher/domain/finer_cells.h"
+#include "mesher/domain/refinement_regions.h"
 #include "mesher/mesh_estimate.h"
 #include "mesher/mesher.h"
 
@@ -58,7 +59,7 @@ ThickenedWallsReport thickened_report(const ThickenedWalls& left, const GridFram
 /// of `report` are filled in. Throws what `validate_regions` throws, OutputError (not enough memory),
 /// Interrupted.
 DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<MortonKey> interface_voxels,
-                     FinerCells finer, const MesherOptions& options, const MemoryModel& memory,
+                     RefinementRegions finer, const MesherOptions& options, const MemoryModel& memory,
                      MesherReport report, Stages& stages,
                      const std::function<void(const std::vector<std::uint8_t>&)>& validate_regions);
 

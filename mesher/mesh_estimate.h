@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -5,6 +6,7 @@
 #include "common/message_text.h"
 #include "mesher/input/label_input.h"
 #include "mesher/labels/label_thickness.h"
+#include "mesher/lattice/octree_memory.h"
 #include "mesher/mesher.h"
 
 namespace tetwright {
@@ -15,8 +17,6 @@ namespace tetwright {
 
 inline constexpr int max_resolution = 4096;  ///< finest cells along the longest side
 
-/// Memory of the program and its libraries, bytes.
-inline constexpr double program_bytes = 38e6;
 /// Peak memory for each tet of the lattice, bytes, while its points are moved and it is cut.
 inline constexpr double surface_bytes_per_lattice_tet = 40, label_bytes_per_lattice_tet = 33;
 /// Uniform cells have their peak while the lattice is laid out, as most of their leaves are far from
@@ -24,8 +24,6 @@ inline constexpr double surface_bytes_per_lattice_tet = 40, label_bytes_per_latt
 inline constexpr double uniform_bytes_per_lattice_tet = 19, uniform_bytes_per_leaf = 124;
 /// For each voxel of a volume: its region and the labels' distances.
 inline constexpr double bytes_per_voxel = 4;
-/// Peak memory for each leaf of an octree and its lattice points, bytes, before there is any tet.
-inline constexpr double bytes_per_leaf = 150;
 
 /// Dense tets at interfaces as a share of those that finest cells would give, where some of the interface is
 /// so flat that its cells have twice the size, and some of that so flat that they have four times the size.

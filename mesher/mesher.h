@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -14,7 +15,7 @@
 #include "common/sizes/size_field.h"
 #include "common/tet_mesh.h"
 #include "mesher/distance/vdb_files.h"
-#include "mesher/domain/fine_place.h"
+#include "mesher/domain/refinement_region.h"
 #include "mesher/domain/regions.h"
 #include "mesher/input/label_input.h"
 #include "mesher/input/mesher_input.h"
@@ -34,7 +35,7 @@ struct MesherOptions {
   double min_gap = 0, min_thickness = 0;
   /// Where cells are halved besides, up to max_refinement times, as long as that at most doubles the mesh;
   /// input units.
-  std::vector<FinePlace> fine_places;
+  std::vector<RefinementRegion> refinement_regions;
   /// The largest cell that is wanted at a place, input units: cells inside, and with keep_outside all, are
   /// split until they are no larger, at surfaces down to a finest cell. Empty: any. Not with `uniform`.
   std::function<double(const Vec3&)> max_cell;
@@ -195,9 +196,9 @@ double cell_size_for_target(const LabelInput& labels, std::size_t target_tets, c
 int resolution_for_target(const MesherInput& input, std::size_t target_tets, const FeatureAngle& angle);
 
 /// Sets the resolution, at least that of `options`, and the fine places of `options` so that dense cells are
-/// small enough for edges of the lengths that `wish` wants at the surfaces, or that are at most `max_edge`
-/// long. `wish` may be null, `max_edge` infinite.
-void choose_cells_for_sizes(const MesherInput& input, const SizeField* wish, double max_edge,
+/// small enough for edges of the lengths that `target_length` asks for at the surfaces, or that are at most
+/// `max_edge` long. `target_length` may be null, `max_edge` infinite.
+void choose_cells_for_sizes(const MesherInput& input, const SizeField* target_length, double max_edge,
                             MesherOptions& options);
 
 }  // namespace tetwright

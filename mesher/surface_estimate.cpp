@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -7,8 +8,8 @@
 #include "common/geometry/morton.h"
 #include "common/geometry/surface_tree.h"
 #include "common/parallel/parallel.h"
-#include "mesher/domain/finer_cells.h"
 #include "mesher/domain/grid_frame.h"
+#include "mesher/domain/refinement_regions.h"
 #include "mesher/mesh_estimate.h"
 
 namespace tetwright {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/mesher.h"
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 #include "common/error.h"
 #include "common/message_text.h"
 #include "mesher/cut/crease_fitting.h"
-#include "mesher/cut/wall_restoring.h"
+#include "mesher/cut/thin_wall_recovery.h"
 #include "mesher/distance/body_field.h"
 #include "mesher/distance/field_solid.h"
 #include "mesher/distance/field_thickness.h"
@@ -353,7 +354,7 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   std::vector<SurfacePatches> patches = patches_of(input, options, report.cell_size);
   const auto has_patches = [](const SurfacePatches& p) { return p.any(); };
   const int max_depth = std::min(budget.max_depth, budget.max_possible);
-  const NarrowPatches asked = cells_around(options.fine_places, voxels, max_depth, budget.base_tets);
+  const NarrowPatches asked = cells_around(options.refinement_regions, voxels, max_depth, budget.base_tets);
   std::vector<BodyCells> cells;
   for (std::size_t b = 0; b < input.bodies.size(); ++b)
     cells.push_back(
@@ -410,7 +411,7 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
     fit_creases(dense.mesh, *features, *field, dense.report.cell_size);
     measure_walls(dense, *field);
     for (const InterfaceTriangle& t : dense.mesh.interfaces)
-      if (const FaceGroup group = features->group_of(t.patch))
+      if (const SurfaceRegion group = features->group_of(t.patch))
         dense.mesh.patch_groups[{t.pair(), t.patch}] = group;
     // Where surfaces meet the borders of groups are known to a cell, as the curves are in which they meet.
     if (std::none_of(patches.begin(), patches.end(), [](const SurfacePatches& p) {

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Cells for a wanted number of tets. These rules of thumb only have to be roughly right, but must not change
 // with estimate_mesh(): they decide what mesh a user gets.
 
@@ -10,7 +12,7 @@
 #include <utility>
 
 #include "common/error.h"
-#include "common/geometry/even_points.h"
+#include "common/geometry/low_discrepancy.h"
 #include "common/geometry/projection_tree.h"
 #include "common/memory.h"
 #include "common/message_text.h"
@@ -133,7 +135,7 @@ std::vector<Vec3> places_on(const ProjectionTree& surface) {
 
 /// Where a dense mesh and its surface are too far from each other.
 struct Misfit {
-  std::vector<FinePlace>
+  std::vector<RefinementRegion>
       places;  ///< with the halvings of cells that would do if distances fell in proportion
   double worst = 0;
 };
@@ -143,7 +145,7 @@ struct Misfit {
 void add_misfit(const ProjectionTree& from, const ProjectionTree& to, double allowed, double reach,
                 Misfit& misfit) {
   struct Far {
-    FinePlace place;
+    RefinementRegion place;
     double distance;
   };
   const std::vector<Vec3> places = places_on(from);
@@ -225,15 +227,16 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
   options.voxel_size = 0;
   if (!(cells <= max_resolution)) {
     options.resolution = max_resolution;
-    const MesherEstimate most = estimate_mesh(input, options);
+    const MesherEstimate estimate = estimate_mesh(input, options);
     const double more = (cells / max_resolution) * (cells / max_resolution);
     char text[250];
     std::snprintf(
         text, sizeof text,
         "a tolerance of %.6g takes %.0f cells along the longest side, about %.3g tets and %.3g GB; at "
         "most %d cells are possible, for %.6g or more",
-        tolerance, cells, more * static_cast<double>(most.tets), more * static_cast<double>(most.bytes) / 1e9,
-        max_resolution, longest / (first_cell * max_resolution));
+        tolerance, cells, more * static_cast<double>(estimate.tets),
+        more * static_cast<double>(estimate.bytes) / 1e9, max_resolution,
+        longest / (first_cell * max_resolution));
     throw UsageError(text);
   }
   // Cells that a count takes are more than the tolerance alone would: what samples can keep is enough then.
@@ -246,7 +249,7 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
                  "give a larger one");
   // What cells cannot show is shown thicker by as much as a tolerance is wide, or closed.
   if (!options.max_refinement) options.max_refinement = max_wall_refinement;
-  const std::vector<FinePlace> fine_places = options.fine_places;  // of wanted sizes
+  const std::vector<RefinementRegion> refinement_regions = options.refinement_regions;  // of wanted sizes
   const double allowed = dense_tolerance_share * tolerance;
   const int coarse = std::max({min_tolerance_resolution, counted ? options.resolution : 0,
                                static_cast<int>(std::ceil(longest / (first_cell_of_part * tolerance)))});
@@ -286,16 +289,17 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
     }
     if (++round <= max_fine_rounds && worse < max_worse_rounds && !options.uniform) {
       // Where cells were halved before, once more.
-      for (FinePlace& place : misfit.places)
+      for (RefinementRegion& place : misfit.places)
         place.halvings = std::min(max_refinement, place.halvings + round - 1);
-      options.fine_places.insert(options.fine_places.end(), misfit.places.begin(), misfit.places.end());
+      options.refinement_regions.insert(options.refinement_regions.end(), misfit.places.begin(),
+                                        misfit.places.end());
       continue;
     }
     if (of_best.worst <= enough_share * tolerance || of_best.worst > min_level_gain * level_worst) break;
     level_worst = of_best.worst;
     // Smaller cells everywhere.
     round = worse = 0;
-    options.fine_places = fine_places;
+    options.refinement_regions = refinement_regions;
     options.resolution = static_cast<int>(std::ceil(resolution_growth * options.resolution));
     if (options.resolution > max_resolution ||
         static_cast<double>(estimate_mesh(input, options).tets) > max_dense_tets)
@@ -304,19 +308,19 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
   return std::move(*best);
 }
 
-void choose_cells_for_sizes(const MesherInput& input, const SizeField* wish, double max_edge,
+void choose_cells_for_sizes(const MesherInput& input, const SizeField* target_length, double max_edge,
                             MesherOptions& options) {
   const double longest = longest_side(input);
-  const double most = std::min<double>(max_resolution, max_sized_resolution);
+  const double max_cells = std::min<double>(max_resolution, max_sized_resolution);
   const auto need = [&](double cell) {
     options.resolution = std::max({options.resolution, min_target_resolution,
-                                   static_cast<int>(std::min(most, std::ceil(longest / cell)))});
+                                   static_cast<int>(std::min(max_cells, std::ceil(longest / cell)))});
   };
-  if (!wish && !std::isfinite(max_edge)) return;
-  options.max_cell = [wish, max_edge](const Vec3& place) {
-    return inner_cell_per_edge * (wish ? wish->at(place) : max_edge);
+  if (!target_length && !std::isfinite(max_edge)) return;
+  options.max_cell = [target_length, max_edge](const Vec3& place) {
+    return inner_cell_per_edge * (target_length ? target_length->at(place) : max_edge);
   };
-  if (!wish) {
+  if (!target_length) {
     need(cell_per_edge * max_edge);
     return;
   }
@@ -335,9 +339,9 @@ void choose_cells_for_sizes(const MesherInput& input, const SizeField* wish, dou
       const Vec3 &a = s.points[t[0]], u = s.points[t[1]] - a, v = s.points[t[2]] - a;
       const double of_triangle = u.cross(v).norm() / 2;
       for (due += of_triangle / area_each; due >= 1; --due) {
-        const auto [x, y] = even_barycentric(drawn++);
+        const auto [x, y] = low_discrepancy_barycentric(drawn++);
         const Vec3 place = a + x * u + y * v;
-        const double cell = cell_per_edge * wish->at(place);
+        const double cell = cell_per_edge * target_length->at(place);
         places.push_back({place, cell});
         area += area_each;
         cells += area_each / (cell * cell);
@@ -355,7 +359,8 @@ void choose_cells_for_sizes(const MesherInput& input, const SizeField* wish, dou
   const double base = longest / options.resolution;
   for (const SizedPlace& p : places)
     if (const double halvings = std::ceil(std::log2(base / p.cell) - 0.5); halvings >= 1)
-      options.fine_places.push_back({p.place, static_cast<int>(std::min<double>(halvings, max_refinement))});
+      options.refinement_regions.push_back(
+          {p.place, static_cast<int>(std::min<double>(halvings, max_refinement))});
 }
 
 double cell_size_for_target(const LabelInput& labels, std::size_t target_tets, const MesherOptions& options) {

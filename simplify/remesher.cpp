@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/remesher.h"
 
 #include <algorithm>
@@ -25,7 +26,7 @@ constexpr std::size_t remesh_grain = 8192;  ///< tets a parallel loop hands out 
 /// Free slots at first, as a share of what there is: the arrays grow in place beyond them.
 constexpr std::size_t remesh_spare_share = 64, min_remesh_spare = 4096;
 /// Over min_solid_angle: what is improved, and what may leave the surface a little for it, as in improve().
-constexpr double poor_margin = 1.27, leave_surface_margin = 1;
+constexpr double bad_margin = 1.27, leave_surface_margin = 1;
 /// Of the bound: what coarsening and refining must leave of shapes that were good.
 constexpr double floor_share = 0.3;
 
@@ -174,7 +175,7 @@ SurfaceProjection Remesher::Impl::project_onto(const std::vector<Index>& points)
 }
 
 RemeshAim Remesher::Impl::usual_aim() const {
-  return {.angle = poor_margin * options.min_solid_angle,
+  return {.angle = bad_margin * options.min_solid_angle,
           .leave_surface_angle = leave_surface_margin * options.min_solid_angle};
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/simplify.h"
 
 #include <algorithm>
@@ -13,12 +14,12 @@
 #include "simplify/constraints/surface_samples.h"
 #include "simplify/remesher.h"
 #include "simplify/schedule/bulk_improvement.h"
+#include "simplify/schedule/edge_length_adaptation.h"
 #include "simplify/schedule/engine.h"
 #include "simplify/schedule/improve_area.h"
+#include "simplify/schedule/local_refinement.h"
 #include "simplify/schedule/paper_schedule.h"
 #include "simplify/schedule/schedule_constants.h"
-#include "simplify/schedule/size_rounds.h"
-#include "simplify/schedule/spot_refinement.h"
 #include "simplify/schedule/tuned_schedule.h"
 
 namespace tetwright {
@@ -52,7 +53,7 @@ constexpr double polish_below = 0.2;
 constexpr int max_polish_rounds = 3;
 /// Rounds kept for that and for what comes after it.
 constexpr int max_last_rounds = 20;
-/// Of the poor tets, that a call of a Remesher must leave fewer than for another one.
+/// Of the bad tets, that a call of a Remesher must leave fewer than for another one.
 constexpr double min_call_gain = 0.95;
 /// Factors by which the count may change with ImproveOptions::free_count, so that detail is not lost by the
 /// way and no mesh grows for ever.
@@ -185,11 +186,11 @@ void close(Engine& engine, const SimplifyOptions& options, std::size_t target, s
   engine.begin_improvement();
   if (bounded) {
     WholeMesh whole(engine);
-    run_size_rounds(tools_of(engine), whole,
-                    {.kind = "close",
-                     .angle = closing_margin * options.min_solid_angle,
-                     .min_tets = 1,
-                     .max_tets = std::numeric_limits<std::int64_t>::max()});
+    adapt_edge_lengths(tools_of(engine), whole,
+                       {.kind = "close",
+                        .angle = closing_margin * options.min_solid_angle,
+                        .min_tets = 1,
+                        .max_tets = std::numeric_limits<std::int64_t>::max()});
   }
   const auto near_target = [&](std::size_t tets) {
     return std::fabs(static_cast<double>(tets) - static_cast<double>(target)) <=
@@ -214,11 +215,11 @@ void close(Engine& engine, const SimplifyOptions& options, std::size_t target, s
   fit(engine, sweeps_before_closing, quality_at(engine, plan.angle));
   WholeMesh whole(engine);
   improve_area(tools_of(engine), whole, plan, 1);
-  if (!counted) refine_poor_spots(tools_of(engine), whole, plan, options.min_solid_angle);
+  if (!counted) refine_bad_tets(tools_of(engine), whole, plan, options.min_solid_angle);
   // Shapes were had at the cost of places.
   fit(engine, sweeps_after_closing, quality_at(engine, plan.angle));
   // Fitting may cost a tet that is just above the bound.
-  if (!counted) refine_poor_spots(tools_of(engine), whole, plan, options.min_solid_angle);
+  if (!counted) refine_bad_tets(tools_of(engine), whole, plan, options.min_solid_angle);
   if (options.tolerance == 0) return;
   deviation = engine.deviation();
   if (deviation->upper() <= options.tolerance) return;
@@ -229,8 +230,9 @@ void close(Engine& engine, const SimplifyOptions& options, std::size_t target, s
   const auto live = static_cast<double>(engine.mesh().live_tets());
   if (live > static_cast<double>(plan.max_tets))
     holding.max_tets = static_cast<std::size_t>(live * (1 + free_closing_slack));
-  refine_far_spots(engine, whole, holding, options.min_solid_angle,
-                   options.tolerance * engine.mesh().space().scale() / (1 + relative_deviation_accuracy));
+  refine_beyond_tolerance(
+      engine, whole, holding, options.min_solid_angle,
+      options.tolerance * engine.mesh().space().scale() / (1 + relative_deviation_accuracy));
 }
 
 }  // namespace
@@ -312,9 +314,9 @@ DeviationReport deviation(const TetMesh& mesh, const TriangleMesh& surface, cons
 
 namespace {
 
-/// improve() with `only_below`: a Remesher works on the regions of poor tets alone.
-TetMesh improve_poor_regions(TetMesh&& mesh, const ImproveOptions& options, std::size_t min_tets,
-                             std::size_t max_tets, SimplifyReport* report, Progress* progress) {
+/// improve() with `only_below`: a Remesher works on the regions of bad tets alone.
+TetMesh improve_bad_regions(TetMesh&& mesh, const ImproveOptions& options, std::size_t min_tets,
+                            std::size_t max_tets, SimplifyReport* report, Progress* progress) {
   const auto start = std::chrono::steady_clock::now();
   const std::size_t count = mesh.tets.size();
   Remesher remesher(std::move(mesh), {.objective = options.objective,
@@ -333,14 +335,14 @@ TetMesh improve_poor_regions(TetMesh&& mesh, const ImproveOptions& options, std:
     const double bound = shape_quality_bound(options.objective, angle);
     // The last bound gets what is left, each other one half of it.
     const int kept = angle < options.only_below ? rounds / 2 : 0;
-    for (double fewest = std::numeric_limits<double>::infinity(); rounds > kept;) {
-      std::vector<Index> poor;
+    for (double min_bad = std::numeric_limits<double>::infinity(); rounds > kept;) {
+      std::vector<Index> bad;
       for (Index t = 0; t < remesher.tet_slots(); ++t)
-        if (remesher.has_tet(t) && remesher.quality(t) <= bound) poor.push_back(t);
-      if (poor.empty() || static_cast<double>(poor.size()) > min_call_gain * fewest) break;
-      fewest = static_cast<double>(poor.size());
+        if (remesher.has_tet(t) && remesher.quality(t) <= bound) bad.push_back(t);
+      if (bad.empty() || static_cast<double>(bad.size()) > min_call_gain * min_bad) break;
+      min_bad = static_cast<double>(bad.size());
       const RemeshChanges changes =
-          remesher.improve(RemeshRegion::tets(std::move(poor)),
+          remesher.improve(RemeshRegion::tets(std::move(bad)),
                            {.angle = angle,
                             .leave_surface_angle = improve_margin * options.min_solid_angle,
                             .target_tets = count,
@@ -376,7 +378,7 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
       static_cast<std::size_t>(std::ceil(count * (options.free_count ? min_free : 1 - improve_slack)));
   const auto max_tets = static_cast<std::size_t>(count * (options.free_count ? max_free : 1 + improve_slack));
   if (options.only_below > 0)
-    return improve_poor_regions(std::move(mesh), options, min_tets, max_tets, report, progress);
+    return improve_bad_regions(std::move(mesh), options, min_tets, max_tets, report, progress);
   const SimplifyOptions defaults;
   Engine engine(std::move(mesh),
                 {options.name, count, defaults.beta, defaults.gamma, options.seed, options.batch_size,
@@ -411,7 +413,7 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
     if (plan.max_rounds <= 0) return;
     plan.max_rounds -= run_bulk_improvement(tools, whole,
                                             {.kind = plan.kind,
-                                             .poor = quality_at(engine, std::max(below, polish_below)),
+                                             .bad_quality = quality_at(engine, std::max(below, polish_below)),
                                              .min_tets = plan.min_tets,
                                              .max_tets = plan.max_tets,
                                              .max_rounds = std::min(plan.max_rounds, max_polish_rounds),

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lists the tests that CTest skipped, and fails if there are others than those whose optional package is missing.
 
 usage: skipped.py RESULTS.xml OPTIONAL    (what ctest --output-junit wrote; tools/optional)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """skipped.py on results of CTest: what may be skipped, and what may not."""
 import pathlib
 import subprocess

@@ -1,6 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Every hot stage on inputs that are made here: what tools/bench --ci measures and --compare compares.
-// benchmarks/bench.py reads the counters: peak_MB, poor_% (tets under 0.1 sr) and those that end in _s, seconds of
-// a stage.
+// benchmarks/bench.py reads the counters: peak_MB, poor_% (tets under 0.1 sr) and those that end in _s,
+// seconds of a stage.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -9,15 +11,15 @@
 #include <variant>
 
 #include "benchmarks/processes.h"
-#include "common/formats/formats.h"
 #include "common/geometry/surface_tree.h"
+#include "common/io/formats.h"
 #include "common/mesh/interfaces.h"
 #include "common/mesh/mesh_check.h"
 #include "common/mesh/mesh_statistics.h"
 #include "common/mesh/topology.h"
 #include "common/parallel/parallel.h"
 #include "common/random.h"
-#include "common/samples.h"
+#include "common/samples/samples.h"
 #include "mesher/mesher.h"
 #include "simplify/mesh/editable_mesh.h"
 #include "simplify/remesher.h"
@@ -254,16 +256,16 @@ void simplify_layers(benchmark::State& state) { run_simplify(state, layered_mesh
 TETWRIGHT_CI(simplify_layers, "simplify/layered");
 
 void improve_again(benchmark::State& state) {
-  static const TetMesh poor = [] {
+  static const TetMesh bad = [] {
     const ThreadLimit one(1);
     SimplifyOptions options;
     options.target_tets = knot_mesh().tets.size() / 15;
-    options.schedule = Schedule::paper;  // leaves poor tets
+    options.schedule = Schedule::paper;  // leaves bad tets
     return simplify(knot_mesh(), options);
   }();
   const ThreadLimit one(1);
   TetMesh result;
-  on_copies(state, poor, [&](TetMesh&& copy) { result = improve(std::move(copy), {}); });
+  on_copies(state, bad, [&](TetMesh&& copy) { result = improve(std::move(copy), {}); });
   count_mesh(state, result);
 }
 TETWRIGHT_CI(improve_again, "improve");

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Time of a Remesher's calls by the size of their region and of the mesh, and what many calls leave behind.
 #include <CLI/CLI.hpp>
 #include <algorithm>

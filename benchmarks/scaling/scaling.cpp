@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Time and memory of `tetwright simplify` by the size of its input, with one thread and two.
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -9,8 +11,8 @@
 
 #include "benchmarks/processes.h"
 #include "common/error.h"
-#include "common/formats/formats.h"
-#include "common/samples.h"
+#include "common/io/formats.h"
+#include "common/samples/samples.h"
 
 namespace tetwright {
 namespace {

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Meshes the same bodies with Tetwright, Gmsh, TetGen and Netgen and compares what the meshes are worth to a solver.
 
 usage: compare.py [--help]    (Debian's python3; gmsh, tetgen and python3-netgen where they are installed)

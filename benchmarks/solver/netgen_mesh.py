@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fills a closed surface with Netgen's tets; the surface's triangles stay.
 
 usage: netgen_mesh.py SURFACE.off GRADING OUT.msh    (Debian's python3-netgen; prints the number of tets)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Surfaces between the programs: reads the .off files that tetwright writes, and writes .stl for Gmsh."""
 
 

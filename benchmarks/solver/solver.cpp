@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // What a mesh is worth to a solver: iterations, time steps, eigenvalues and errors of linear finite elements.
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -9,8 +11,8 @@
 #include "benchmarks/solver/spectrum.h"
 #include "benchmarks/table1/surface_distance.h"
 #include "common/error.h"
-#include "common/formats/formats.h"
-#include "common/mesh/foreign_mesh.h"
+#include "common/io/formats.h"
+#include "common/mesh/import_cleanup.h"
 #include "common/mesh/mesh_faces.h"
 #include "common/mesh/mesh_statistics.h"
 
@@ -21,7 +23,7 @@ namespace {
 /// since a solver could not use them.
 TetMesh read_for_solver(const std::string& path) {
   TetMesh mesh = read_tet_mesh(path).mesh;
-  const ForeignReport report = make_coherent(mesh);
+  const ImportCleanupReport report = make_coherent(mesh);
   if (mesh.tets.empty()) throw InputError(path, 0, "has no tets");
   if (report.inverted_tets > 0)
     throw InputError(path, 0, "has " + std::to_string(report.inverted_tets) + " flat or negative tets");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "benchmarks/solver/tet_quadrature.h"
 
 #include <cmath>

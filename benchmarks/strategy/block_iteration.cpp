@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
 
@@ -23,8 +24,8 @@ float cutoff(const EditableMesh& mesh, double percent) {
   return qualities[k];
 }
 
-std::vector<ListedTet> poor_tets(const EditableMesh& mesh, float limit) {
-  std::vector<ListedTet> list;
+std::vector<TetSnapshot> bad_tets(const EditableMesh& mesh, float limit) {
+  std::vector<TetSnapshot> list;
   for (Index t = 0; t < mesh.tet_slots(); ++t) {
     if (!mesh.dead(t) && mesh.quality(t) <= limit) list.push_back({t, mesh.points(t)});
   }
@@ -63,8 +64,8 @@ void block_of_tets(Workpiece& piece, std::uint64_t seed) {
   std::vector<WeighedCollapse> candidates;
   const auto block = [&](float limit) {
     runner.tets(
-        poor_tets(piece.mesh, limit),
-        [&](Workspace& ws, const ListedTet& item, int) {
+        bad_tets(piece.mesh, limit),
+        [&](Workspace& ws, const TetSnapshot& item, int) {
           if (!exists(piece.mesh, item) || piece.mesh.quality(item.tet) > limit) return Outcome::stale;
           candidates.clear();
           const auto of_the_tet = [&](Index p) {
@@ -96,7 +97,7 @@ void block_of_points(Workpiece& piece, std::uint64_t seed) {
   std::vector<WeighedCollapse> candidates;
   const auto block = [&](float limit) {
     std::vector<Index> points;
-    for (const ListedTet& t : poor_tets(piece.mesh, limit))
+    for (const TetSnapshot& t : bad_tets(piece.mesh, limit))
       points.insert(points.end(), t.points.begin(), t.points.end());
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "benchmarks/table1/rows.h"
 
 #include <cmath>
 
 #include "benchmarks/processes.h"
 #include "benchmarks/table1/surface_distance.h"
-#include "common/formats/formats.h"
+#include "common/io/formats.h"
 #include "common/mesh/interfaces.h"
 #include "common/mesh/mesh_check.h"
 #include "common/mesh/mesh_statistics.h"

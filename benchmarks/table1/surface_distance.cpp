@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "benchmarks/table1/surface_distance.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Table 1 of Cutler, Dorsey & McMillan 2004, measured again: the paper's columns beside ours.
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -9,7 +11,7 @@
 #include "benchmarks/processes.h"
 #include "benchmarks/table1/rows.h"
 #include "common/error.h"
-#include "common/formats/formats.h"
+#include "common/io/formats.h"
 
 namespace tetwright {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/features/surface_patches.h"
 
 #include <algorithm>
@@ -286,7 +287,7 @@ SurfacePatches find_mesh_patches(TetMesh& mesh, const FeatureAngle& angle, const
   }
   FoundParts found = find_parts(mesh.points, triangles, {angle, 0}, groups);
   std::map<MaterialPair, std::map<Index, std::uint16_t>> of_pair;
-  const std::map<InterfacePatch, FaceGroup> given = std::move(mesh.patch_groups);
+  const std::map<InterfacePatch, SurfaceRegion> given = std::move(mesh.patch_groups);
   mesh.patch_groups.clear();
   found.found.count = 0;
   for (std::size_t i = 0; i < triangles.size(); ++i) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/geometry/projection_tree.h"
 
 #include "common/geometry/morton.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/geometry/quality.h"
 
 #include <algorithm>
@@ -140,10 +141,10 @@ double min_sine(double det, const Vec3& a, const Vec3& b, const Vec3& c, const V
   // Squared doubled areas of the faces opposite a, b, c, d.
   const double fa = bc.cross(bd).squaredNorm(), fb = ac.cross(ad).squaredNorm(),
                fc = ab.cross(ad).squaredNorm(), fd = ab.cross(ac).squaredNorm();
-  const double least =
+  const double min_factor =
       std::min({ab.squaredNorm() / (fc * fd), ac.squaredNorm() / (fb * fd), ad.squaredNorm() / (fb * fc),
                 bc.squaredNorm() / (fa * fd), bd.squaredNorm() / (fa * fc), cd.squaredNorm() / (fa * fb)});
-  return det * std::sqrt(least);
+  return det * std::sqrt(min_factor);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/geometry/ray_crossing.h"
 
 #include "common/geometry/predicates.h"

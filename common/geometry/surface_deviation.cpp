@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/geometry/surface_deviation.h"
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 #include <vector>
 
 #include "common/error.h"
-#include "common/geometry/even_points.h"
+#include "common/geometry/low_discrepancy.h"
 #include "common/geometry/projection_tree.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
@@ -209,7 +210,7 @@ double rms_of(const ProjectionTree& from, const ProjectionTree& to) {
   for (const ProjectionTree::Item& item : from.items()) {
     const Vec3& a = from.corner(item, 0);
     for (due += area(item) / total * rms_points; due >= 1; --due) {
-      const auto [u, v] = even_barycentric(points.size());
+      const auto [u, v] = low_discrepancy_barycentric(points.size());
       points.emplace_back(a + u * (from.corner(item, 1) - a) + v * (from.corner(item, 2) - a));
     }
   }

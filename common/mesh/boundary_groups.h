@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -17,7 +18,7 @@ class BoundaryGroups {
  public:
   struct Group {
     std::int64_t number;               ///< above 0, no two are the same
-    FaceGroup face_group;              ///< of the user
+    SurfaceRegion surface_region;      ///< of the user
     std::optional<MaterialPair> pair;  ///< of faces that are in no group of the user
   };
 

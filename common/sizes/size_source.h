@@ -1,13 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "common/types.h"
 
 namespace tetwright {
+
+/// Names of fields that are known to be edge lengths: the first of them that a file has is taken.
+inline constexpr std::array<std::string_view, 4> size_names{"size", "sizing", "edge_length", "h"};
 
 /// An edge length that a user wants, and how far from the place in question. Input units.
 struct WantedLength {

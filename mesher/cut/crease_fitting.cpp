@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/cut/crease_fitting.h"
 
 #include <algorithm>
@@ -9,8 +10,8 @@
 #include "common/mesh/interfaces.h"
 #include "common/parallel/parallel.h"
 #include "common/parallel/parallel_sort.h"
+#include "mesher/cut/backtracking_displacement.h"
 #include "mesher/cut/crease_labels.h"
-#include "mesher/cut/joint_moves.h"
 #include "mesher/cut/undo_intersections.h"
 
 namespace tetwright {
@@ -22,7 +23,7 @@ using Kind = FeatureLabel::Kind;
 constexpr std::size_t fitting_grain = 512, fitted_tet_grain = 1 << 13;
 /// How far a point may be from where it belongs, cells.
 constexpr double target_reach = 4;
-/// What tets must keep in each pass, shares of tangent_of_poor_tet: shapes first, then exact creases.
+/// What tets must keep in each pass, shares of tangent_of_bad_tet: shapes first, then exact creases.
 constexpr double pass_floors[] = {1, 1, 0.5, 0.5, 0.2, 0.2, 0.05, 0.05};
 /// Walls that cells have thickened go back as long as tets keep this, and else are reported.
 constexpr double wall_floor = 0.2;
@@ -43,12 +44,12 @@ class Fitter {
     for (const double floor : pass_floors) {
       std::vector<PointMove> moves = remaining_moves(floor);
       if (moves.empty()) return;
-      move_jointly(mesh_.points, mesh_.tets, moves, floor * tangent_of_poor_tet);
+      displace_with_backtracking(mesh_.points, mesh_.tets, moves, floor * tangent_of_bad_tet);
       make_room(remaining_moves(floor));
     }
     std::vector<PointMove> moves = remaining_moves(pass_floors[std::size(pass_floors) - 1]);
-    move_jointly(mesh_.points, mesh_.tets, moves,
-                 pass_floors[std::size(pass_floors) - 1] * tangent_of_poor_tet);
+    displace_with_backtracking(mesh_.points, mesh_.tets, moves,
+                               pass_floors[std::size(pass_floors) - 1] * tangent_of_bad_tet);
   }
 
  private:
@@ -147,7 +148,7 @@ class Fitter {
     const Vec3 from = at;
     Index worst_tet = star.front();
     double best = worst_at(from, &worst_tet);
-    if (best >= tangent_of_poor_tet) return;
+    if (best >= tangent_of_bad_tet) return;
     Vec3 centre = Vec3::Zero();
     double edges = 0, count = 0;
     for (const Index t : star)

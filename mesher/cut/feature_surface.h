@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -86,7 +87,9 @@ class FeatureSurface : public ReferenceSurface {
   }
   const std::vector<Corner>& corners() const { return corners_; }
   /// The group of the input that a patch belongs to, or none.
-  FaceGroup group_of(Patch patch) const { return patch < groups_.size() ? groups_[patch] : FaceGroup{}; }
+  SurfaceRegion group_of(Patch patch) const {
+    return patch < groups_.size() ? groups_[patch] : SurfaceRegion{};
+  }
 
  private:
   std::shared_ptr<const MaterialField> field_;
@@ -95,7 +98,7 @@ class FeatureSurface : public ReferenceSurface {
   ProjectionTree triangles_, creases_, corner_points_;
   std::vector<Vec3> normals_;  ///< of the items of triangles_
   std::vector<Corner> corners_;
-  std::vector<FaceGroup> groups_;  ///< by patch
+  std::vector<SurfaceRegion> groups_;  ///< by patch
 };
 
 }  // namespace tetwright

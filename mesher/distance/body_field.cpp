@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/distance/body_field.h"
 
 #include <algorithm>
@@ -13,9 +14,9 @@ BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool ke
                       std::vector<BodyCells> cells, Progress* progress) {
   BodyField result;
   std::vector<std::shared_ptr<const LevelSet>> surfaces;
-  std::vector<ThinSurvey> surveys(input.bodies.size());
+  std::vector<LocalThickness> all_measured(input.bodies.size());
   cells.resize(input.bodies.size());
-  std::vector<ThinSurvey*> all;
+  std::vector<LocalThickness*> all;
   for (std::size_t b = 0; b < input.bodies.size(); ++b) {
     const RepairedSurface& surface = input.bodies[b].surface;
     NarrowPatches &narrow = cells[b].narrow, &asked = cells[b].asked;
@@ -23,19 +24,19 @@ BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool ke
     std::set_union(narrow.voxels.begin(), narrow.voxels.end(), asked.voxels.begin(), asked.voxels.end(),
                    std::back_inserter(exact));
     surfaces.push_back(LevelSet::of_surface(surface, voxels, progress));
-    surveys[b] =
-        survey_thin_walls(surface, *surfaces[b], voxels,
-                          {limits.min_gap / voxels.cell_size, limits.min_thickness / voxels.cell_size},
-                          std::move(exact), progress);
+    all_measured[b] =
+        measure_local_thickness(surface, *surfaces[b], voxels,
+                                {limits.min_gap / voxels.cell_size, limits.min_thickness / voxels.cell_size},
+                                std::move(exact), progress);
     // Smaller cells in narrow patches would tear thin walls beside them.
-    if (!surveys[b].voxels.empty()) {
+    if (!all_measured[b].voxels.empty()) {
       narrow = {};
-      surveys[b].exact = std::move(asked.voxels);
-      follow_cells(surveys[b], asked.finer);
+      all_measured[b].exact = std::move(asked.voxels);
+      follow_cells(all_measured[b], asked.finer);
     }
     result.finer = combine(std::move(result.finer), std::move(narrow.finer));
     result.finer = combine(std::move(result.finer), std::move(asked.finer));
-    all.push_back(&surveys[b]);
+    all.push_back(&all_measured[b]);
     if (progress) progress->throw_if_stopped();
   }
   choose_depths(all, budget);
@@ -49,8 +50,8 @@ BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool ke
   for (std::size_t b = 0; b < input.bodies.size(); ++b) {
     const MesherInput::Body& body = input.bodies[b];
     const auto number = static_cast<std::uint16_t>(b);
-    ThinWallPlan plan = plan_thin_walls(surveys[b]);
-    surveys[b] = {};
+    ThinWallPlan plan = plan_thin_walls(all_measured[b]);
+    all_measured[b] = {};
     if (progress) progress->throw_if_stopped();
     const std::uint16_t surface =
         add(plan.walls ? LevelSet::with_walls(*surfaces[b], std::move(plan.walls)) : surfaces[b]);

@@ -1,16 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <vector>
 
 #include "mesher/distance/material_field.h"
-#include "mesher/domain/finer_cells.h"
+#include "mesher/domain/refinement_regions.h"
 
 namespace tetwright {
 
 /// Sheets between two level sets (layers, gaps between nested surfaces) that are thinner than one and a half
 /// cells. They would tear in a lattice of voxels, although the level sets represent them exactly.
 struct ThinSheets {
-  FinerCells finer;
+  RefinementRegions finer;
   std::vector<ThinPart> too_thin;  ///< thinner than one and a half of the smallest possible cells
 };
 

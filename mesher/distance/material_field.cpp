@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/distance/material_field.h"
 
 #include <Eigen/Dense>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/distance/narrow_patches.h"
 
 #include <algorithm>
@@ -31,8 +32,8 @@ struct Split {
 };
 
 /// In voxels.
-std::vector<FinePlace> narrow_places(const RepairedSurface& surface, const SurfacePatches& patches,
-                                     const GridFrame& frame, int max_depth) {
+std::vector<RefinementRegion> narrow_places(const RepairedSurface& surface, const SurfacePatches& patches,
+                                            const GridFrame& frame, int max_depth) {
   const SurfaceCreases creases = find_creases(surface.points, surface.triangles, patches.patches);
   std::vector<Vec3> points;
   points.reserve(surface.points.size());
@@ -42,9 +43,9 @@ std::vector<FinePlace> narrow_places(const RepairedSurface& surface, const Surfa
     segments.push_back({{s.ends[0], s.ends[1], s.ends[1]}, {s.patches[0], s.patches[1], 0}});
   for (const Index c : creases.corners) corners.push_back({{c, c, c}, {}});
   const ProjectionTree segment_tree(points, std::move(segments)), corner_tree(points, std::move(corners));
-  return parallel_collect<FinePlace>(
+  return parallel_collect<RefinementRegion>(
       0, creases.segments.size(), segment_grain,
-      [&](std::size_t begin, std::size_t end, std::vector<FinePlace>& out) {
+      [&](std::size_t begin, std::size_t end, std::vector<RefinementRegion>& out) {
         for (std::size_t i = begin; i < end; ++i) {
           const SurfaceCreases::Segment& segment = creases.segments[i];
           const std::array<std::uint16_t, 2>& own = segment.patches;
@@ -71,10 +72,10 @@ std::vector<FinePlace> narrow_places(const RepairedSurface& surface, const Surfa
 }
 
 /// Halves cells at places in voxels and around them, at most so often that `max_tets` hold.
-NarrowPatches halve_cells(const std::vector<FinePlace>& places, int max_depth, double max_tets) {
+NarrowPatches halve_cells(const std::vector<RefinementRegion>& places, int max_depth, double max_tets) {
   for (; max_depth > 0; --max_depth) {
     std::vector<Split> splits;
-    for (const FinePlace& n : places)
+    for (const RefinementRegion& n : places)
       for (int depth = 0; depth < std::min(n.halvings, max_depth); ++depth) {
         const Vec3 cell = n.place * std::ldexp(1, depth);
         const auto along = [&](int axis, int step) {
@@ -89,7 +90,7 @@ NarrowPatches halve_cells(const std::vector<FinePlace>& places, int max_depth, d
     if (splits.empty()) return {};
     if (tets_of_split * static_cast<double>(splits.size()) > max_tets) continue;
     NarrowPatches narrow;
-    FinerCells& finer = narrow.finer;
+    RefinementRegions& finer = narrow.finer;
     finer.refinement = splits.back().depth + 1;
     finer.cells.resize(static_cast<std::size_t>(finer.refinement) + 2);
     for (const Split& s : splits) {
@@ -114,11 +115,11 @@ NarrowPatches find_narrow_patches(const RepairedSurface& surface, const SurfaceP
   return halve_cells(narrow_places(surface, patches, frame, max_depth), max_depth, max_tets);
 }
 
-NarrowPatches cells_around(const std::vector<FinePlace>& asked, const GridFrame& frame, int max_depth,
+NarrowPatches cells_around(const std::vector<RefinementRegion>& asked, const GridFrame& frame, int max_depth,
                            double max_tets) {
-  std::vector<FinePlace> places;
+  std::vector<RefinementRegion> places;
   places.reserve(asked.size());
-  for (const FinePlace& p : asked) places.push_back({frame.to_grid(p.place), p.halvings});
+  for (const RefinementRegion& p : asked) places.push_back({frame.to_grid(p.place), p.halvings});
   return halve_cells(places, max_depth, max_tets);
 }
 

@@ -1,18 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <vector>
 
 #include "common/features/surface_patches.h"
-#include "mesher/domain/fine_place.h"
-#include "mesher/domain/finer_cells.h"
 #include "mesher/domain/grid_frame.h"
+#include "mesher/domain/refinement_region.h"
+#include "mesher/domain/refinement_regions.h"
 #include "mesher/input/surface_repair.h"
 
 namespace tetwright {
 
 /// Where patches are narrow, or cells smaller for other reasons.
 struct NarrowPatches {
-  FinerCells finer;
+  RefinementRegions finer;
   std::vector<MortonKey> voxels;  ///< of which cells are smaller, ascending: their distances must be exact
 };
 
@@ -23,7 +24,7 @@ NarrowPatches find_narrow_patches(const RepairedSurface& surface, const SurfaceP
                                   const GridFrame& frame, int max_depth, double max_tets);
 
 /// The same around places that are asked for, input units.
-NarrowPatches cells_around(const std::vector<FinePlace>& asked, const GridFrame& frame, int max_depth,
+NarrowPatches cells_around(const std::vector<RefinementRegion>& asked, const GridFrame& frame, int max_depth,
                            double max_tets);
 
 }  // namespace tetwright

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/distance/openvdb_grids.h"
 
 #include <openvdb/io/Stream.h>
@@ -11,7 +12,7 @@
 #include <utility>
 
 #include "common/error.h"
-#include "common/formats/voxel_data.h"
+#include "common/label_volume.h"
 #include "mesher/distance/openvdb_types.h"
 #include "mesher/distance/vdb_structure.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // OpenVDB's own types behind openvdb_grids.h. Included by openvdb_conversion.cpp and openvdb_grids.cpp alone:

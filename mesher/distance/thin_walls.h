@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -9,8 +10,8 @@
 #include "common/geometry/morton.h"
 #include "mesher/distance/narrow_band.h"
 #include "mesher/distance/surface_distance.h"
-#include "mesher/domain/finer_cells.h"
 #include "mesher/domain/grid_frame.h"
+#include "mesher/domain/refinement_regions.h"
 
 namespace tetwright {
 

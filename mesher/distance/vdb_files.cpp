@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/distance/vdb_files.h"
 
 #include <set>
 #include <stdexcept>
 
 #include "common/error.h"
-#include "common/formats/atomic_file.h"
+#include "common/files/atomic_file.h"
 #include "mesher/distance/openvdb_grids.h"
 #include "mesher/distance/vdb_structure.h"
 

@@ -1,19 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/distance/vdb_sizes.h"
 
 #include <Eigen/LU>  // inverse()
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "common/error.h"
-#include "common/formats/atomic_file.h"
+#include "common/files/atomic_file.h"
 #include "common/message_text.h"
-#include "common/sizes/size_files.h"
 #include "common/tolerances.h"
 #include "mesher/distance/openvdb_grids.h"
 #include "mesher/distance/vdb_structure.h"
@@ -23,12 +21,6 @@ namespace tetwright {
 namespace {
 
 using IndexPlace = DistanceGrid::IndexPlace;
-
-bool is_vdb_path(const std::string& file) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == ".vdb";
-}
 
 /// The voxels around a place along one axis, and the share of the second, 0 where it isn't needed.
 struct Between {
@@ -148,15 +140,6 @@ VdbGrid& choose_grid(std::vector<VdbGrid>& grids, const std::string& file) {
 }
 
 }  // namespace
-
-void check_size_field_path(const std::string& file) {
-  if (!is_vdb_path(file)) check_mesh_sizes_path(file, ".vdb");
-}
-
-std::unique_ptr<const SizeSource> read_size_field(const std::string& file) {
-  check_size_field_path(file);
-  return is_vdb_path(file) ? read_vdb_sizes(file) : read_mesh_sizes(file);
-}
 
 std::unique_ptr<const SizeSource> read_vdb_sizes(const std::string& file) {
   std::vector<VdbGrid> grids;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -7,16 +8,9 @@
 
 namespace tetwright {
 
-/// Throws UsageError, which lists what is read, unless the extension is one that read_size_field() knows. To
-/// be called before any work.
-void check_size_field_path(const std::string& file);
-
-/// Reads the edge lengths that a user wants: of a .vdb file as read_vdb_sizes() does, of meshes as
-/// read_mesh_sizes() of common/sizes/size_files.h does, with their errors.
-std::unique_ptr<const SizeSource> read_size_field(const std::string& file);
-
 /// Reads edge lengths from a grid of floats or doubles in a .vdb file: the first of the names size_names
-/// (common/sizes/size_files.h) that a grid has, else the only such grid that is not of the class "level set".
+/// (common/sizes/size_source.h) that a grid has, else the only such grid that is not of the class "level
+/// set".
 ///
 /// Lengths are at active voxels' centres, where the grid's transform puts them, and trilinear between. at()
 /// gives nothing where one of the voxels that it would need is inactive, also beyond the outermost centres;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/distance/vdb_writer.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 #include <stdexcept>
 
 #include "common/error.h"
-#include "common/formats/atomic_file.h"
+#include "common/files/atomic_file.h"
 #include "common/parallel/parallel.h"
 #include "common/tolerances.h"
 #include "mesher/distance/openvdb_grids.h"

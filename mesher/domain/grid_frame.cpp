@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/domain/grid_frame.h"
 
 #include <algorithm>

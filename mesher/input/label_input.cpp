@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/input/label_input.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 
 #include "common/error.h"
 #include "common/parallel/parallel_sort.h"
-#include "mesher/input/label_islands.h"
+#include "mesher/input/connected_components.h"
 
 namespace tetwright {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/input/mesher_input.h"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 #include <utility>
 
 #include "common/error.h"
-#include "common/measurable.h"
+#include "common/geometry/measurable.h"
 #include "common/message_text.h"
 
 namespace tetwright {
@@ -39,7 +40,7 @@ void name_groups(std::vector<MaterialSurface>& surfaces) {
   if (with_groups < 2) return;
   std::map<std::string, const MaterialSurface*> known;
   for (MaterialSurface& s : surfaces)
-    for (FaceGroup& group : s.surface.groups) {
+    for (SurfaceRegion& group : s.surface.groups) {
       if (!group) continue;
       const std::int64_t number = group.number;
       const bool numbered = group.name.empty();
@@ -58,11 +59,11 @@ void name_groups(std::vector<MaterialSurface>& surfaces) {
 
 /// The groups that have triangles of which the points are there.
 std::vector<MesherInput::Group> measure_groups(const std::vector<MaterialSurface>& surfaces) {
-  std::map<FaceGroup, MesherInput::Group> measured;
-  std::map<FaceGroup, double> largest;
+  std::map<SurfaceRegion, MesherInput::Group> measured;
+  std::map<SurfaceRegion, double> largest;
   for (const MaterialSurface& s : surfaces)
     for (std::size_t t = 0; t < s.surface.triangle_groups.size(); ++t) {
-      const FaceGroup& group = s.surface.groups[s.surface.triangle_groups[t]];
+      const SurfaceRegion& group = s.surface.groups[s.surface.triangle_groups[t]];
       const Triangle& corners = s.surface.triangles[t];
       const std::vector<Vec3>& points = s.surface.points;
       if (!group || std::any_of(corners.begin(), corners.end(), [&](Index p) { return p >= points.size(); }))
@@ -88,7 +89,7 @@ void add_bodies(std::vector<MaterialSurface> surfaces, std::set<MaterialTag> tag
   MaterialTag next_tag = 1;
   for (MaterialSurface& s : surfaces) {
     SurfaceRepair repaired = repair_surface(s.surface, s.file, nested);
-    const std::vector<FaceGroup> groups = std::move(s.surface.groups);
+    const std::vector<SurfaceRegion> groups = std::move(s.surface.groups);
     s.surface = {};
     for (SurfaceFinding& f : repaired.findings) input.findings.push_back({s.file, std::move(f)});
     input.bodies.push_back({s.name, s.tag, s.file, std::move(repaired.surface), groups});

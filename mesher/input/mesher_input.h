@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>
@@ -31,11 +32,11 @@ struct MesherInput {
     MaterialTag tag;
     std::string file;
     RepairedSurface surface;
-    std::vector<FaceGroup> groups;  ///< of the file, see RepairedSurface::groups
+    std::vector<SurfaceRegion> groups;  ///< of the file, see RepairedSurface::groups
   };
   /// A group of the triangles as a file has them, before any repair.
   struct Group {
-    FaceGroup group;
+    SurfaceRegion group;
     double area = 0;            ///< input units squared
     Vec3 place = Vec3::Zero();  ///< the centre of its largest triangle, input units
   };

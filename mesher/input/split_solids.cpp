@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/input/split_solids.h"
 
 #include <utility>
@@ -19,7 +20,7 @@ std::vector<NamedSurface> split_solids(TriangleMesh surface, const std::string& 
   }
   std::vector<Index> number(surface.points.size(), no_index);
   for (const std::size_t group : order) {
-    const FaceGroup& from = surface.groups[group];
+    const SurfaceRegion& from = surface.groups[group];
     NamedSurface solid{from.name, {}};
     if (from.name.empty()) solid.name = from ? name + "_" + std::to_string(from.number) : name;
     std::vector<Index> used;

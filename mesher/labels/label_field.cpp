@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/labels/label_field.h"
 
 #include <algorithm>
@@ -5,8 +6,8 @@
 
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
+#include "mesher/labels/distance_transform.h"
 #include "mesher/labels/label_bricks.h"
-#include "mesher/labels/label_depth.h"
 
 namespace tetwright {
 
@@ -72,7 +73,7 @@ struct LabelField::Shared {
       voxels_per_cell;  ///< of the frame, along each axis; below 0 where an axis is taken the other way round
   Vec3 first_node;      ///< the frame's origin, in nodes
   /// For cells larger than a voxel, whose corners may be farther than the band from an interface; else empty.
-  LabelDepths depths;
+  DistanceTransform depths;
 };
 
 std::shared_ptr<const LabelField> LabelField::make(const LabelInput& labels, const GridFrame& frame,
@@ -87,7 +88,8 @@ std::shared_ptr<const LabelField> LabelField::make(const LabelInput& labels, con
     made->voxels_per_cell[2] = -made->voxels_per_cell[2];
     made->first_node[2] += labels.size[2];
   }
-  if (frame.cell_size > (1 + tolerance::coinciding_cells) * made->voxel) made->depths = label_depths(labels);
+  if (frame.cell_size > (1 + tolerance::coinciding_cells) * made->voxel)
+    made->depths = distance_transform(labels);
   std::vector<FieldRegion> regions{{keep_outside ? outside_name : "", outside_tag}};
   for (const LabelMaterial& m : labels.materials) regions.push_back({m.name, m.tag});
   return std::shared_ptr<const LabelField>(new LabelField(std::move(made), frame, std::move(regions), 0));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/labels/label_thickness.h"
 
 #include <algorithm>
@@ -310,7 +311,7 @@ ThinLabels find_thin_labels(const LabelInput& labels, const GridFrame& frame, co
   return thin;
 }
 
-ThinCells count_thin_cells(const LabelInput& labels, const GridFrame& frame, const FinerCells& finer) {
+ThinCells count_thin_cells(const LabelInput& labels, const GridFrame& frame, const RefinementRegions& finer) {
   const Eigen::Matrix3d to_index = labels.directions.inverse();
   ThinCells count;
   for (std::size_t level = 0; level < finer.cells.size(); ++level) {

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <vector>
 
 #include "common/progress.h"
-#include "mesher/domain/finer_cells.h"
 #include "mesher/domain/grid_frame.h"
+#include "mesher/domain/refinement_regions.h"
 #include "mesher/input/label_input.h"
 
 namespace tetwright {
@@ -12,7 +13,7 @@ namespace tetwright {
 /// Where cells must be smaller than those of a frame because a label, or the outside, is thinner than two of
 /// them.
 struct ThinLabels {
-  FinerCells finer;
+  RefinementRegions finer;
   /// Still thinner than two of the smallest cells; places are voxels of the volume, in cells of the frame.
   std::vector<ThinPart> too_thin;
 };
@@ -29,6 +30,6 @@ ThinLabels find_thin_labels(const LabelInput& labels, const GridFrame& frame, co
 struct ThinCells {
   double inside = 0, outside = 0;
 };
-ThinCells count_thin_cells(const LabelInput& labels, const GridFrame& frame, const FinerCells& finer);
+ThinCells count_thin_cells(const LabelInput& labels, const GridFrame& frame, const RefinementRegions& finer);
 
 }  // namespace tetwright

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/lattice/sized_cells.h"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 #include "common/memory.h"
 #include "common/message_text.h"
 #include "common/parallel/parallel_sort.h"
-#include "mesher/mesh_estimate.h"
+#include "mesher/lattice/octree_memory.h"
 
 namespace tetwright {
 
@@ -27,8 +28,8 @@ std::vector<MortonKey> root_cells(const GridFrame& frame) {
 
 }  // namespace
 
-FinerCells find_sized_cells(const MaterialField& field, const MaxCell& max_cell, bool outside,
-                            Progress* progress) {
+RefinementRegions find_sized_cells(const MaterialField& field, const MaxCell& max_cell, bool outside,
+                                   Progress* progress) {
   const GridFrame& frame = field.frame();
   // At the centre and the corners: lengths that grow slowly are not much smaller anywhere between.
   const auto too_large = [&](const Vec3& centre, double side) {
@@ -69,7 +70,7 @@ FinerCells find_sized_cells(const MaterialField& field, const MaxCell& max_cell,
     split_by_step.push_back(std::move(split));
   }
   while (!split_by_step.empty() && split_by_step.back().empty()) split_by_step.pop_back();
-  FinerCells finer;
+  RefinementRegions finer;
   const int steps = static_cast<int>(split_by_step.size());
   // The cells of the last step are of level root_level - steps + 1 above a voxel.
   finer.refinement = std::max(0, steps - frame.root_level);

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <functional>
 
 #include "common/progress.h"
 #include "mesher/distance/material_field.h"
-#include "mesher/domain/finer_cells.h"
+#include "mesher/domain/refinement_regions.h"
 
 namespace tetwright {
 
@@ -15,7 +16,7 @@ using MaxCell = std::function<double(const Vec3&)>;
 /// by up to max_refinement levels below a voxel; at interfaces down to a voxel, which their distances show.
 /// With `outside` there as well. The field must not be refined. Throws OutputError where these are more cells
 /// than memory is there for, Interrupted.
-FinerCells find_sized_cells(const MaterialField& field, const MaxCell& max_cell, bool outside,
-                            Progress* progress);
+RefinementRegions find_sized_cells(const MaterialField& field, const MaxCell& max_cell, bool outside,
+                                   Progress* progress);
 
 }  // namespace tetwright

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/constraints/constrained_mesh.h"
 
 #include <utility>

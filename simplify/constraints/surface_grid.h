@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -31,7 +32,7 @@ class SurfaceGrid {
     RegionId inside = outside_id, across = outside_id;  ///< that it separates
   };
   /// A sample of the input's surface that one of the triangles that come in takes over (SurfaceSamples).
-  struct HandedSample {
+  struct ReassignedSample {
     std::uint32_t sample;
     std::uint32_t added;  ///< place in Edit::added
     float distance;       ///< between them
@@ -48,7 +49,7 @@ class SurfaceGrid {
     std::vector<std::array<Index, 2>> narrow_edges;
     /// Records for those that come in: filled by take_records().
     std::vector<std::uint32_t> added_records;
-    std::vector<HandedSample> handed;  ///< filled by SurfaceSamples::hand_over()
+    std::vector<ReassignedSample> reassigned;  ///< filled by SurfaceSamples::reassign_samples()
     // Its memory.
     std::vector<TriangleDistance> distances;
     std::vector<std::uint32_t> takers;
@@ -60,7 +61,7 @@ class SurfaceGrid {
       removed_records.clear();
       narrow_edges.clear();
       added_records.clear();
-      handed.clear();
+      reassigned.clear();
     }
     bool empty() const { return removed.empty() && added.empty(); }
   };

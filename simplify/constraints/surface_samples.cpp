@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/constraints/surface_samples.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 #include <utility>
 
 #include "common/error.h"
-#include "common/geometry/even_points.h"
+#include "common/geometry/low_discrepancy.h"
 #include "common/memory.h"
 #include "common/message_text.h"
 #include "common/parallel/parallel.h"
@@ -22,7 +23,7 @@ constexpr std::size_t sample_grain = 1024;
 /// Of memory with all that belongs to a sample: 190 measured for 7 million on a cube.
 constexpr double bytes_per_sample = 200;
 /// Samples for each equilateral triangle of the mesh to come. Its triangles are about twice as large: more
-/// than 12 for each make the result no better, 8 of them a twentieth poorer.
+/// than 12 for each make the result no better, 8 of them a twentieth worse.
 constexpr double samples_per_triangle = 6;
 /// Area of an equilateral triangle over its edge squared: sqrt(3) / 4.
 constexpr double equilateral_area = 0.4330127018922193;
@@ -57,7 +58,7 @@ std::vector<Place> spread_places(const ProjectionTree& surface, double area_each
         --due;
       }
     for (; due > 0; --due) {
-      const auto [u, v] = even_barycentric(drawn++);
+      const auto [u, v] = low_discrepancy_barycentric(drawn++);
       places.push_back({a + u * (b - a) + v * (c - a), i});
     }
   }
@@ -267,12 +268,12 @@ void SurfaceSamples::resize(std::size_t records) {
   kinds_.resize(records);
 }
 
-bool SurfaceSamples::hand_over(SurfaceGrid::Edit& edit, double max_distance) const {
-  return hand_samples(edit, max_distance) && stays_near_surface(edit, max_distance);
+bool SurfaceSamples::reassign_samples(SurfaceGrid::Edit& edit, double max_distance) const {
+  return choose_new_owners(edit, max_distance) && stays_near_surface(edit, max_distance);
 }
 
-bool SurfaceSamples::hand_samples(SurfaceGrid::Edit& edit, double max_distance) const {
-  edit.handed.clear();
+bool SurfaceSamples::choose_new_owners(SurfaceGrid::Edit& edit, double max_distance) const {
+  edit.reassigned.clear();
   edit.distances.clear();
   for (const SurfaceGrid::Added& a : edit.added)
     edit.distances.emplace_back(a.triangle.points[0], a.triangle.points[1], a.triangle.points[2]);
@@ -301,7 +302,7 @@ bool SurfaceSamples::hand_samples(SurfaceGrid::Edit& edit, double max_distance) 
       const double d = std::sqrt(best2);
       // As it is remembered: what stays where it was is no farther than before.
       if (d > max_distance && static_cast<float>(d) > sample.distance) return false;
-      edit.handed.push_back({s, best, static_cast<float>(d)});
+      edit.reassigned.push_back({s, best, static_cast<float>(d)});
     }
   }
   return true;
@@ -329,7 +330,7 @@ bool SurfaceSamples::stays_near_surface(SurfaceGrid::Edit& edit, double max_dist
       const auto last = [](double x, int end) {
         return static_cast<int>(std::floor(std::min<double>(x, end)));
       };
-      for (const SurfaceGrid::HandedSample& h : edit.handed) {
+      for (const SurfaceGrid::ReassignedSample& h : edit.reassigned) {
         if (h.added != added) continue;
         const Vec3 from = samples_[h.sample].position - p[0];
         const double at_i = from.dot(to_i), at_j = from.dot(to_j);
@@ -349,7 +350,7 @@ bool SurfaceSamples::stays_near_surface(SurfaceGrid::Edit& edit, double max_dist
   // Samples are on the surface.
   const auto near = [&](const Vec3& p) {
     const double allowed2 = allowed * allowed;
-    for (const SurfaceGrid::HandedSample& h : edit.handed)
+    for (const SurfaceGrid::ReassignedSample& h : edit.reassigned)
       if ((samples_[h.sample].position - p).squaredNorm() <= allowed2) return true;
     return surface_.any_within(p, allowed);
   };
@@ -357,7 +358,7 @@ bool SurfaceSamples::stays_near_surface(SurfaceGrid::Edit& edit, double max_dist
     if (near(p)) return true;
     if (measured) return false;
     measured = true;
-    for (const SurfaceGrid::HandedSample& h : edit.handed)
+    for (const SurfaceGrid::ReassignedSample& h : edit.reassigned)
       allowed = std::max(allowed, static_cast<double>(samples_[h.sample].distance));
     return allowed > max_distance && near(p);
   };
@@ -408,7 +409,7 @@ void SurfaceSamples::commit(const SurfaceGrid::Edit& edit) {
     first_[edit.added_records[k]] = none;
     kinds_[edit.added_records[k]] = InputSurface::kind_of(a.inside, a.across, a.patch);
   }
-  for (const SurfaceGrid::HandedSample& h : edit.handed) {
+  for (const SurfaceGrid::ReassignedSample& h : edit.reassigned) {
     const std::uint32_t record = edit.added_records[h.added];
     samples_[h.sample].distance = h.distance;
     samples_[h.sample].next = std::exchange(first_[record], h.sample);

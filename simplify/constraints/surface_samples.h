@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -84,7 +85,7 @@ class SurfaceSamples {
   /// sample would be farther from its triangle than `max_distance`, and than before; or a place on an added
   /// triangle farther from the surface than that, and than one of the samples was: its centre, the middles of
   /// its new edges, and a corner that moved. Safe while nothing is committed.
-  bool hand_over(SurfaceGrid::Edit& edit, double max_distance) const;
+  bool reassign_samples(SurfaceGrid::Edit& edit, double max_distance) const;
   /// From now on the places on an added triangle that are tested are at most this far from each other.
   void set_spacing(double spacing) { spacing_ = spacing; }
 
@@ -117,7 +118,7 @@ class SurfaceSamples {
     float distance;      ///< from its triangle
     std::uint32_t next;  ///< of the same triangle
   };
-  bool hand_samples(SurfaceGrid::Edit& edit, double max_distance) const;
+  bool choose_new_owners(SurfaceGrid::Edit& edit, double max_distance) const;
   bool stays_near_surface(SurfaceGrid::Edit& edit, double max_distance) const;
 
   const ProjectionTree& surface_;

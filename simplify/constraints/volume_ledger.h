@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -23,7 +24,7 @@ class VolumeLedger {
     for (double& a : allowed_) a = std::fabs(a);
   }
 
-  /// Whether no change takes a volume out of its bounds or farther out of them. Safe while nobody books.
+  /// Whether no change takes a volume out of its bounds or farther out of them. Safe while no thread commits.
   template <class Changes>
   bool allows(const Changes& changes) const {
     for (const VolumeChange& c : changes) {
@@ -35,13 +36,13 @@ class VolumeLedger {
   }
   /// One thread at a time.
   template <class Changes>
-  void book(const Changes& changes) {
+  void commit(const Changes& changes) {
     for (const VolumeChange& c : changes)
       if (c.region != outside_id && !allowed_.empty()) net_[c.region] += c.volume;
   }
 
   /// How much of its bounds the worst region has used: 1 is all. Only while no task runs.
-  double strain() const {
+  double utilization() const {
     double largest = 0;
     for (std::size_t r = 0; r < allowed_.size(); ++r)
       if (allowed_[r] > 0) largest = std::max(largest, std::fabs(net_[r]) / allowed_[r]);

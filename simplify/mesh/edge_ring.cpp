@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/mesh/edge_ring.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <atomic>
@@ -26,7 +27,7 @@ struct SlotNumbers {
 ///
 /// Who may write what (README.md has the whole protocol): while operations are decided, nobody writes. While
 /// they are committed, each writes the tets that it changes, and across a hull face the link of the tet
-/// outside; all points of such tets and faces are marked with it (Reservations). WriteRule asserts it.
+/// outside; all points of such tets and faces are in its write set (Reservations). WriteRule asserts it.
 class EditableMesh {
  public:
   /// Takes a mesh over. Working coordinates are shifted along each axis on which that is exact for every
@@ -49,7 +50,7 @@ class EditableMesh {
   std::size_t region_count() const { return tags_.size(); }
   MaterialTag tag(RegionId region) const { return tags_[region]; }
   const std::map<MaterialTag, std::string>& names() const { return names_; }
-  const std::map<InterfacePatch, FaceGroup>& patch_groups() const { return patch_groups_; }
+  const std::map<InterfacePatch, SurfaceRegion>& patch_groups() const { return patch_groups_; }
   const WorkingSpace& space() const { return space_; }
   Vec3 snap(const Vec3& working) const { return space_.snap(working); }
 
@@ -109,7 +110,7 @@ class EditableMesh {
   }
   void prefetch_point(Index p) const { __builtin_prefetch(&positions_[p]); }
 
-  // Writing: while no task runs, or by who marked the points concerned.
+  // Writing: while no task runs, or by the winner whose write set has the points concerned.
   void set_position(Index point, const Vec3& position) {
     WriteRule::check(point);
     positions_[point] = position;
@@ -218,7 +219,7 @@ class EditableMesh {
   FacePatches interface_patches_;
   std::vector<MaterialTag> tags_;  ///< of each region
   std::map<MaterialTag, std::string> names_;
-  std::map<InterfacePatch, FaceGroup> patch_groups_;
+  std::map<InterfacePatch, SurfaceRegion> patch_groups_;
   WorkingSpace space_;
 };
 

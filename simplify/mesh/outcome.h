@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -10,7 +11,7 @@ namespace tetwright {
 /// What an attempted operation answers. Every one but `done` changes nothing; the statistics count them.
 enum class Outcome : std::uint8_t {
   done,
-  conflict,           ///< an earlier one of the batch changes what it needs: it comes again
+  conflict,           ///< an earlier winner of the batch claims some of its read set: tried again
   stale,              ///< the element changed since it was listed
   no_candidate,       ///< the element has no such operation
   material_rule,      ///< the dimensions of point and edge forbid it (interfaces, junction curves, spanning

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/mesh/reservations.h"
 
 #include <algorithm>
@@ -28,9 +29,9 @@ thread_local std::span<const Index> may_write;
 WriteRule::Deciding::Deciding() { phase = Phase::deciding; }
 WriteRule::Deciding::~Deciding() { phase = Phase::serial; }
 
-WriteRule::Committing::Committing(std::span<const Index> marked) {
+WriteRule::Committing::Committing(std::span<const Index> write_set) {
   phase = Phase::committing;
-  may_write = marked;
+  may_write = write_set;
 }
 WriteRule::Committing::~Committing() { phase = Phase::serial; }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -8,9 +9,9 @@
 
 namespace tetwright {
 
-/// One word for each vertex: which winner of which batch marked it (deterministic reservations: Blelloch,
-/// Fineman, Gibbons & Shun 2012, "Internally deterministic parallel algorithms can be fast"). Winners are
-/// numbered through, so that words of earlier batches need no clearing.
+/// One word for each vertex: the winner of a batch that claimed it last (deterministic reservations:
+/// Blelloch, Fineman, Gibbons & Shun 2012, "Internally deterministic parallel algorithms can be fast").
+/// Winners are numbered through, so that words of earlier batches need no clearing.
 class Reservations {
  public:
   /// All free. Only while no task runs. `first` is the number of the first winner, for tests.
@@ -21,23 +22,23 @@ class Reservations {
   void reserve(std::size_t vertices) { words_.reserve(vertices); }
   /// More vertices, free ones.
   void grow(std::size_t vertices) { words_.resize(vertices, 0); }
-  /// What was marked before is free. At most so many items win.
+  /// Frees all vertices. At most `items` items win.
   void begin_batch(std::size_t items);
 
-  /// Whether no winner of this batch has marked one of these vertices.
-  bool free(std::span<const Index> needed) const {
+  /// Whether no winner of this batch has claimed a vertex of the read set.
+  bool free(std::span<const Index> read_set) const {
 #ifndef TETWRIGHT_IGNORE_RESERVATIONS  // defined only in the test that shows that the others notice
-    for (Index v : needed)
+    for (Index v : read_set)
       if (words_[v] >= first_) return false;
 #else
-    (void)needed;
+    (void)read_set;
 #endif
     return true;
   }
-  /// Gives vertices to the next winner, also such that earlier winners marked: it needs none of them, so what
-  /// it has read is what it would read after them.
-  void mark(std::span<const Index> marked) {
-    for (Index v : marked) words_[v] = next_;
+  /// Claims a write set for the next winner, also vertices of earlier winners: none of them is in its read
+  /// set, so it has read what it would read after they commit.
+  void claim(std::span<const Index> write_set) {
+    for (Index v : write_set) words_[v] = next_;
     ++next_;
   }
 
@@ -48,7 +49,7 @@ class Reservations {
 };
 
 /// The rule that makes results independent of threads, asserted in builds without NDEBUG: a thread that
-/// decides writes nothing, one that commits writes only what its operation marked. What breaks it throws
+/// decides writes nothing, one that commits writes only its write set. What breaks it throws
 /// InternalError at once. In release builds these do nothing.
 class WriteRule {
  public:
@@ -64,7 +65,7 @@ class WriteRule {
   /// While it exists, this thread may write at these vertices alone.
   class Committing {
    public:
-    explicit Committing(std::span<const Index> marked);
+    explicit Committing(std::span<const Index> write_set);
     ~Committing();
     Committing(const Committing&) = delete;
     Committing& operator=(const Committing&) = delete;

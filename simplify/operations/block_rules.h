@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -47,7 +48,7 @@ struct BlockRules {
   double max_collapsed_edge = std::numeric_limits<double>::infinity(),
          max_edge = std::numeric_limits<double>::infinity();
   /// What lengths edges should have; null: any. No operation then leaves an edge that is longer, or shorter,
-  /// than its bound and than all edges that it changes were. Where there is a wish, `max_error`,
+  /// than its bound and than all edges that it changes were. Where there is a target length, `max_error`,
   /// `max_distance` and `max_deviation` are for edges of the average length, see scale_at().
   const EdgeSizes* sizes = nullptr;
   /// Collapses take only edges that `sizes` calls too short.
@@ -79,9 +80,10 @@ struct BlockRules {
   /// volume.
   const SurfaceProjection* projection = nullptr;
 
-  /// The wanted length of edges at a place over the average one of the mesh to come; 1 without a wish.
+  /// The wanted length of edges at a place over the average one of the mesh to come; 1 without a target
+  /// length.
   double scale_at(const Vec3& place) const {
-    return sizes && sizes->has_wish() ? objective.scale_at(place) : 1;
+    return sizes && sizes->has_target_length() ? objective.scale_at(place) : 1;
   }
   /// Sets `projection`, and what keeps patches where there are some. `diagonal` of the mesh's bounding box.
   void project_onto(const SurfaceProjection& surfaces, double diagonal);

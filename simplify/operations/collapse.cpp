@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/collapse.h"
 
 #include <algorithm>
@@ -95,10 +96,10 @@ void propose(Workspace& ws, std::size_t b) {
   proposal.change = Proposal::Change::collapse;
   proposal.centre = star.centre;
   proposal.target = star.points[b];
-  proposal.mark_star(star);
+  proposal.claim_star(star);
   // The target's star was read, too.
-  std::swap(proposal.marks[1], proposal.marks[1 + b]);
-  proposal.needs = 2;
+  std::swap(proposal.write_set[1], proposal.write_set[1 + b]);
+  proposal.read_set_size = 2;
   proposal.rated.clear();
   proposal.removed.clear();
   proposal.relinks.clear();
@@ -121,14 +122,14 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
   const Vec3& to = star.positions[b];
   // Orientation first: the cheapest test, and the one that fails most often.
   std::size_t left = 0;
-  double least = std::numeric_limits<double>::infinity();
+  double min_det = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < star.tets.size(); ++k) {
     const Star::StarTet& t = star.tets[k];
     if (t.links(b)) continue;
     ++left;
     const double det = (star.positions[t.link[0]] - to).dot(star.normals[k]);
     if (!(det > 0)) return Outcome::inverts;
-    least = std::min(least, det);
+    min_det = std::min(min_det, det);
   }
   // The whole star vanishes where each of its tets stands on another: an ear of the boundary is cut off.
   if (left == 0)
@@ -143,7 +144,7 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
   ws.proposal.volumes = star.volume_changes(to - star.centre_position);
   if (!ws.ledger.allows(ws.proposal.volumes)) return Outcome::volume;
   const float limit = ws.acceptance_limit(rules, star.worst);
-  if (!(rules.objective.max_for_volume(least) > limit)) return Outcome::quality;
+  if (!(rules.objective.max_for_volume(min_det) > limit)) return Outcome::quality;
   qualities.resize(star.tets.size());
   for (std::size_t k = 0; k < star.tets.size(); ++k) {
     const Star::StarTet& t = star.tets[k];

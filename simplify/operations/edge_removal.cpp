@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/edge_removal.h"
 
 #include <algorithm>
@@ -197,7 +198,7 @@ class EdgeRemoval {
     }
     proposal.change = Proposal::Change::replace;
     proposal.has_new_point = false;
-    proposal.mark_cavity(ws_.mesh);
+    proposal.claim_cavity(ws_.mesh);
     return ws_.within_bounds(rules_, static_cast<std::int64_t>(proposal.added.size()) -
                                          static_cast<std::int64_t>(proposal.removed.size()));
   }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/edge_turn.h"
 
 #include <algorithm>
@@ -88,11 +89,11 @@ bool folds_over(Workspace& ws) {
                            (p.change == Proposal::Change::collapse && point == p.target);
       return (original == ends[0] || original == ends[1]) && !changes;
     };
-    const auto at = std::find_if(p.marks.begin(), p.marks.end(), stays);
-    if (at == p.marks.end()) continue;
+    const auto at = std::find_if(p.write_set.begin(), p.write_set.end(), stays);
+    if (at == p.write_set.end()) continue;
     if (EdgeTurn(ws, ends).around(*at) > full_turn) return true;
-    const auto read = static_cast<std::size_t>(at - p.marks.begin());
-    if (read >= p.needs) std::swap(p.marks[read], p.marks[p.needs++]);
+    const auto read = static_cast<std::size_t>(at - p.write_set.begin());
+    if (read >= p.read_set_size) std::swap(p.write_set[read], p.write_set[p.read_set_size++]);
   }
   return false;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "simplify/operations/workspace.h"
@@ -8,7 +9,7 @@ namespace tetwright {
 /// edges: their dihedral angles there are more than a full turn. A surface that closes around a cavity of few
 /// triangles can be turned inside out without any two of them meeting, and all tets stay positive.
 ///
-/// Adds the ends whose stars it reads to what the proposal needs.
+/// Adds the ends whose stars it reads to the proposal's read set.
 bool folds_over(Workspace& ws);
 
 }  // namespace tetwright

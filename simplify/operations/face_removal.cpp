@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/face_removal.h"
 
 #include <algorithm>
@@ -30,7 +31,7 @@ class FaceTree {
     if (mesh_.region(next_a) != region_ || mesh_.region(next_b) != region_) return keep(plain);
     const Index w = fourth(mesh_.points(next_a), a_, x, y);
     if (w == no_index || w != fourth(mesh_.points(next_b), b_, x, y)) return keep(plain);
-    // Only where they are poor themselves, or stand in the way.
+    // Only where they are bad themselves, or stand in the way.
     if (std::find(removed.begin(), removed.end(), next_a) != removed.end()) return keep(plain);
     const std::size_t added_before = added.size(), removed_before = removed.size(), faces_before = faces_;
     removed.push_back(next_a);
@@ -110,7 +111,7 @@ Outcome try_remove(Workspace& ws, const BlockRules& rules, Index tet, int face, 
   proposal.has_new_point = false;
   proposal.edit.clear();
   proposal.volumes.clear();
-  proposal.mark_cavity(mesh);
+  proposal.claim_cavity(mesh);
   return ws.within_bounds(
       rules, static_cast<std::int64_t>(proposal.added.size()) - static_cast<std::int64_t>(removed.size()));
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/insertion.h"
 
 #include <algorithm>
@@ -164,7 +165,7 @@ Outcome propose(Workspace& ws, const BlockRules& rules, InsertionPlace place) {
          t.region,
          placement.qualities[k]});
   }
-  proposal.mark_cavity(mesh);
+  proposal.claim_cavity(mesh);
   return ws.within_bounds(rules, static_cast<std::int64_t>(proposal.added.size()) -
                                      static_cast<std::int64_t>(proposal.removed.size()));
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/movement.h"
 
 #include <algorithm>
@@ -89,7 +90,7 @@ Outcome move_to(Workspace& ws, const BlockRules& rules, const Vec3& to, const st
   proposal.change = Proposal::Change::move;
   proposal.centre = star.centre;
   proposal.position = to;
-  proposal.mark_star(star);
+  proposal.claim_star(star);
   proposal.rated.clear();
   for (std::size_t k = 0; k < star.tets.size(); ++k)
     proposal.rated.push_back({star.tets[k].tet, star.tets[k].slot, qualities[k]});

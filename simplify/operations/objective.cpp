@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/objective.h"
 
 #include <algorithm>
@@ -19,7 +20,7 @@ double Objective::precise_signed_value(const Vec3& a, const Vec3& b, const Vec3&
 
 double Objective::sized_quality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
   TetQuality local = quality;
-  local.ideal_edge = sizes->wish((a + b + c + d) / 4) / edge_to_ideal;
+  local.ideal_edge = sizes->target_length((a + b + c + d) / 4) / edge_to_ideal;
   local.ideal_volume = local.ideal_edge * local.ideal_edge * local.ideal_edge;
   return local.cubed(a, b, c, d);
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/proposal.h"
 
 #include <algorithm>
@@ -107,8 +108,8 @@ void commit_replace(EditableMesh& mesh, const Proposal& p, CommitWorkspace& ws) 
 void Proposal::clear() {
   change = Change::none;
   next_stage = -1;
-  marks.clear();
-  needs = 0;
+  write_set.clear();
+  read_set_size = 0;
   rated.clear();
   relinks.clear();
   incidents.clear();
@@ -124,14 +125,14 @@ void Proposal::clear() {
   new_point_id = no_index;
 }
 
-void Proposal::mark_star(const Star& star) {
-  marks.assign(1, star.centre);
-  marks.insert(marks.end(), star.points.begin(), star.points.end());
-  needs = 1;
+void Proposal::claim_star(const Star& star) {
+  write_set.assign(1, star.centre);
+  write_set.insert(write_set.end(), star.points.begin(), star.points.end());
+  read_set_size = 1;
 }
 
-void Proposal::mark_cavity(const EditableMesh& mesh) {
-  marks.clear();
+void Proposal::claim_cavity(const EditableMesh& mesh) {
+  write_set.clear();
   hull.clear();
   orphans.clear();
   const auto is_removed = [&](Index t) {
@@ -140,8 +141,8 @@ void Proposal::mark_cavity(const EditableMesh& mesh) {
   for (Index t : removed) {
     const Tet& points = mesh.points(t);
     for (Index p : points)
-      if (std::find(marks.begin(), marks.end(), p) == marks.end()) {
-        marks.push_back(p);
+      if (std::find(write_set.begin(), write_set.end(), p) == write_set.end()) {
+        write_set.push_back(p);
         if (is_removed(mesh.incident_tet(p))) orphans.push_back(p);
       }
     for (int f = 0; f < 4; ++f) {
@@ -162,7 +163,7 @@ void Proposal::mark_cavity(const EditableMesh& mesh) {
       hull.push_back({key, across, static_cast<std::uint8_t>(back), mesh.region(across), 0});
     }
   }
-  needs = marks.size();
+  read_set_size = write_set.size();
 }
 
 void begin_batch(EditableMesh& mesh, std::size_t proposals, std::size_t new_tets, std::size_t new_points) {
@@ -180,18 +181,18 @@ void grant(EditableMesh& mesh, SurfaceGrid& grid, Proposal& p) {
       p.new_tets.push_back(mesh.free_tets().take());
     if (p.has_new_point) {
       p.new_point_id = mesh.free_points().take();
-      p.marks.push_back(p.new_point_id);
+      p.write_set.push_back(p.new_point_id);
       for (SurfaceGrid::Added& a : p.edit.added)
         std::replace(a.triangle.ids.begin(), a.triangle.ids.end(), unnumbered_point, p.new_point_id);
     }
   }
   mesh.change_count(p.count_change);
   if (!p.edit.empty()) grid.take_records(p.edit);
-  mesh.reservations().mark(p.marks);
+  mesh.reservations().claim(p.write_set);
 }
 
 void commit(EditableMesh& mesh, SurfaceGrid& grid, const Proposal& p, CommitWorkspace& ws) {
-  const WriteRule::Committing rule(p.marks);
+  const WriteRule::Committing rule(p.write_set);
   switch (p.change) {
     case Proposal::Change::none:
       return;
@@ -205,7 +206,7 @@ void commit(EditableMesh& mesh, SurfaceGrid& grid, const Proposal& p, CommitWork
       commit_replace(mesh, p, ws);
       break;
   }
-  for (Index point : p.marks) mesh.touch(point);
+  for (Index point : p.write_set) mesh.touch(point);
   if (!p.edit.empty()) grid.commit(p.edit);
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -34,10 +35,10 @@ struct Proposal {
   /// The turn goes on with this stage of its list's attempt when this is committed; below 0: it ends.
   int next_stage = -1;
 
-  /// The points of all tets that change; the first `needs` of them are those whose stars were read, among
-  /// them two points of each tet that goes.
-  std::vector<Index> marks;
-  std::size_t needs = 0;
+  /// The points of all tets that change. The first `read_set_size` of them are the read set: points whose
+  /// stars were read, among them two points of each removed tet.
+  std::vector<Index> write_set;
+  std::size_t read_set_size = 0;
 
   Index centre = no_index;       ///< move, collapse: the point
   Index target = no_index;       ///< collapse: what it is drawn onto
@@ -88,12 +89,12 @@ struct Proposal {
   Index new_point_id = no_index;
 
   void clear();
-  std::span<const Index> needed() const { return std::span(marks).first(needs); }
-  /// Marks a star's points and its centre, which is needed.
-  void mark_star(const Star& star);
-  /// Marks all points of the removed tets, all of which are needed, and collects the hull and the orphans;
-  /// `removed` is filled.
-  void mark_cavity(const EditableMesh& mesh);
+  std::span<const Index> read_set() const { return std::span(write_set).first(read_set_size); }
+  /// The write set becomes the star's points and its centre, the read set the centre.
+  void claim_star(const Star& star);
+  /// Write set and read set become all points of the removed tets; collects the hull and the orphans.
+  /// `removed` must be filled.
+  void claim_cavity(const EditableMesh& mesh);
 };
 
 // The steps of a batch of proposals. One thread at a time, but for commit().
@@ -101,8 +102,8 @@ struct Proposal {
 /// Makes room for so many tets, beyond those that go, and points. All vertices are free; at most so many
 /// proposals may win.
 void begin_batch(EditableMesh& mesh, std::size_t proposals, std::size_t new_tets, std::size_t new_points);
-/// Marks a proposal as a winner, for which mesh.reservations().free(proposal.needed()): gives it the slots
-/// that it needs and the vertices that it changes, and takes the slots of what goes back.
+/// Makes a proposal a winner: claims its write set, gives it free slots, and takes back those of removed
+/// tets. \pre mesh.reservations().free(proposal.read_set()).
 void grant(EditableMesh& mesh, SurfaceGrid& grid, Proposal& proposal);
 
 /// Memory of commit().
@@ -119,7 +120,7 @@ struct CommitWorkspace {
   std::vector<Index> slots;
 };
 
-/// Carries out a proposal that has won: writes what it marked. Safe concurrently with other winners of its
+/// Carries out a proposal that has won: writes its write set. Safe concurrently with other winners of its
 /// batch.
 void commit(EditableMesh& mesh, SurfaceGrid& grid, const Proposal& proposal, CommitWorkspace& ws);
 /// After the last commit: what its winners gave back may be given again.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/workspace.h"
 
 #include <algorithm>
@@ -70,7 +71,7 @@ Outcome Workspace::test_surface(const BlockRules& rules) {
   if (!samples || proposal.edit.removed.empty()) return Outcome::done;
   const double allowed = std::min(
       rules.tolerance, rules.max_deviation * rules.scale_at(proposal.edit.removed.front().points.front()));
-  return samples->hand_over(proposal.edit, allowed) ? Outcome::done : Outcome::surface_error;
+  return samples->reassign_samples(proposal.edit, allowed) ? Outcome::done : Outcome::surface_error;
 }
 
 Outcome Workspace::within_bounds(const BlockRules& rules, std::int64_t count_change) {

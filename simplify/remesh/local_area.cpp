@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/remesh/local_area.h"
 
 #include <algorithm>
@@ -47,12 +48,12 @@ void LocalArea::set_place(Index point, Place place) {
 
 void LocalArea::observe(const Proposal& p) {
   ++operations_;
-  changed_points_.insert(changed_points_.end(), p.marks.begin(), p.marks.end());
+  changed_points_.insert(changed_points_.end(), p.write_set.begin(), p.write_set.end());
   journal_.note(mesh_, p);
   if (!p.has_new_point) return;
   // Next to a point beyond the rim it counts as one of the rim, so that work does not spread. Its number may
   // be that of a point which has gone.
-  const bool amid = std::all_of(p.marks.begin(), p.marks.end(),
+  const bool amid = std::all_of(p.write_set.begin(), p.write_set.end(),
                                 [&](Index q) { return q == p.new_point_id || place(q) != Place::beyond; });
   set_place(p.new_point_id, amid ? Place::inner : Place::rim);
 }
@@ -74,8 +75,8 @@ std::vector<Index> LocalArea::tets_at(const std::vector<Index>& points, Part par
   return near_.tets_at(mesh_, points, [&](Index t) { return has(mesh_.points(t), part); });
 }
 
-std::vector<ListedTet> LocalArea::poor_tets(float limit) {
-  // Every tet that was made or changed has only points that were marked, or a new one beside them.
+std::vector<TetSnapshot> LocalArea::bad_tets(float limit) {
+  // All points of a tet that was made or changed are in a write set.
   const std::vector<Index> changed = tets_at(take_changed_points(Part::with_rim), Part::with_rim);
   candidates_.insert(candidates_.end(), changed.begin(), changed.end());
   near_.make_distinct(candidates_);
@@ -86,9 +87,9 @@ std::vector<ListedTet> LocalArea::poor_tets(float limit) {
   return listed(candidates_);
 }
 
-std::vector<Index> LocalArea::poor_points(float limit) {
+std::vector<Index> LocalArea::bad_points(float limit) {
   std::vector<Index> points;
-  for (const ListedTet& t : poor_tets(limit)) points.insert(points.end(), t.points.begin(), t.points.end());
+  for (const TetSnapshot& t : bad_tets(limit)) points.insert(points.end(), t.points.begin(), t.points.end());
   near_.make_distinct(points);
   return points;
 }
@@ -103,22 +104,22 @@ void LocalArea::look_around(std::vector<Index>&& points) {
   candidates_ = tets_around_living(std::move(points));
 }
 
-std::vector<Index> LocalArea::numbers_around(const std::vector<ListedTet>& tets) {
+std::vector<Index> LocalArea::numbers_around(const std::vector<TetSnapshot>& tets) {
   std::vector<Index> points;
-  for (const ListedTet& t : tets) points.insert(points.end(), t.points.begin(), t.points.end());
+  for (const TetSnapshot& t : tets) points.insert(points.end(), t.points.begin(), t.points.end());
   return tets_around_living(std::move(points));
 }
 
-std::vector<ListedTet> LocalArea::tets_around(const std::vector<ListedTet>& tets) {
+std::vector<TetSnapshot> LocalArea::tets_around(const std::vector<TetSnapshot>& tets) {
   return listed(numbers_around(tets));
 }
 
-std::vector<Index> LocalArea::points_around(const std::vector<ListedTet>& tets) {
+std::vector<Index> LocalArea::points_around(const std::vector<TetSnapshot>& tets) {
   return near_.points_of(mesh_, numbers_around(tets));
 }
 
-std::vector<ListedTet> LocalArea::listed(const std::vector<Index>& tets) const {
-  std::vector<ListedTet> list;
+std::vector<TetSnapshot> LocalArea::listed(const std::vector<Index>& tets) const {
+  std::vector<TetSnapshot> list;
   list.reserve(tets.size());
   for (Index t : tets) list.push_back({t, mesh_.points(t)});
   return list;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -28,12 +29,12 @@ class LocalArea final : public ImprovementArea {
   /// The mean of those of its tets that there were at first.
   double usual_edge() const override { return usual_edge_; }
   /// The limit may not rise: what was above it before and has not changed since is not listed.
-  std::vector<ListedTet> poor_tets(float limit) override;
-  std::vector<Index> poor_points(float limit) override;
-  std::vector<ListedTet> tets_around(const std::vector<ListedTet>& tets) override;
-  std::vector<Index> points_around(const std::vector<ListedTet>& tets) override;
-  std::vector<Index> points_to_thin(const std::vector<ListedTet>& poor) override {
-    return points_around(poor);
+  std::vector<TetSnapshot> bad_tets(float limit) override;
+  std::vector<Index> bad_points(float limit) override;
+  std::vector<TetSnapshot> tets_around(const std::vector<TetSnapshot>& tets) override;
+  std::vector<Index> points_around(const std::vector<TetSnapshot>& tets) override;
+  std::vector<Index> points_to_thin(const std::vector<TetSnapshot>& bad) override {
+    return points_around(bad);
   }
 
   /// The points of the tets that there were at first, ascending.
@@ -45,7 +46,7 @@ class LocalArea final : public ImprovementArea {
   std::vector<Index> take_changed_points(Part part);
   /// The tets of the area at points, each once, ascending.
   std::vector<Index> tets_at(const std::vector<Index>& points, Part part);
-  /// From now on poor_tets() looks at the tets around these points, some of which may have gone since, and at
+  /// From now on bad_tets() looks at the tets around these points, some of which may have gone since, and at
   /// what changes.
   void look_around(std::vector<Index>&& points);
   /// Operations that were carried out.
@@ -61,8 +62,8 @@ class LocalArea final : public ImprovementArea {
   }
   bool has(const Tet& tet, Part part) const;
   std::vector<Index> tets_around_living(std::vector<Index>&& points);
-  std::vector<Index> numbers_around(const std::vector<ListedTet>& tets);
-  std::vector<ListedTet> listed(const std::vector<Index>& tets) const;
+  std::vector<Index> numbers_around(const std::vector<TetSnapshot>& tets);
+  std::vector<TetSnapshot> listed(const std::vector<Index>& tets) const;
 
   const EditableMesh& mesh_;
   BlockRunner& runner_;
@@ -72,7 +73,7 @@ class LocalArea final : public ImprovementArea {
   LocalNumbers point_numbers_;
   std::vector<Place> places_;  ///< by these
   std::vector<Index> first_points_;
-  std::vector<Index> candidates_;      ///< tets that poor_tets() looks at
+  std::vector<Index> candidates_;      ///< tets that bad_tets() looks at
   std::vector<Index> changed_points_;  ///< since they were last taken
   Neighbourhood near_;
   std::uint64_t operations_ = 0;

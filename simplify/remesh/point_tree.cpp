@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/remesh/point_tree.h"
 
 #include <algorithm>
@@ -42,13 +43,13 @@ void PointTree::build(const EditableMesh& mesh) {
   halve(mesh, root, first_leaf_points);
 }
 
-void PointTree::halve(const EditableMesh& mesh, Index first, std::size_t most) {
+void PointTree::halve(const EditableMesh& mesh, Index first, std::size_t max_points) {
   std::vector<Index> open{first};
   while (!open.empty()) {
     const Index node = open.back();
     open.pop_back();
     std::vector<Index>& points = nodes_[node].points;
-    if (points.size() <= most) continue;
+    if (points.size() <= max_points) continue;
     Box3 box;
     for (const Index p : points) box.add(mesh.position(p));
     int axis;

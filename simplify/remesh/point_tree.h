@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -45,7 +46,7 @@ class PointTree {
   void free_node(Index node);
   Index leaf_of(const Vec3& position) const;
   /// Halves a leaf while it has more than `most` points at different places.
-  void halve(const EditableMesh& mesh, Index node, std::size_t most);
+  void halve(const EditableMesh& mesh, Index node, std::size_t max_points);
   /// Puts few points of two leaves into one, and takes an empty leaf out.
   void shrink(Index node);
 

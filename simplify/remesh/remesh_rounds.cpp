@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/remesh/remesh_rounds.h"
 
 #include <limits>
@@ -53,12 +54,12 @@ void RemeshRounds::refine(double size, float floor) {
   const double limit = long_edge * size;
   std::vector<Index> tets = region_, changed;
   for (int round = 0; round < max_refining_rounds && !tets.empty(); ++round) {
-    std::vector<ListedTet> items;
+    std::vector<TetSnapshot> items;
     items.reserve(tets.size());
     for (Index t : tets) items.push_back({t, mesh.points(t)});
     tools_.runner.tets(
         items,
-        [&](Workspace& ws, const ListedTet& item, int) {
+        [&](Workspace& ws, const TetSnapshot& item, int) {
           if (!exists(mesh, item)) return Outcome::stale;
           int longest = -1;
           double length = limit;

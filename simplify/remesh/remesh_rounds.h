@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <vector>
@@ -21,7 +22,7 @@ class RemeshRounds {
   /// `size` in working coordinates; `floor`: the shape_quality() that they leave.
   void coarsen(double size, float floor);
   void refine(double size, float floor);
-  /// What is poor of the region, or, with the rim around it, of what coarsen() and refine() have changed.
+  /// What is bad of the region, or, with the rim around it, of what coarsen() and refine() have changed.
   /// Returns the number of rounds.
   int improve(const ImprovementPlan& plan);
   /// Operations that were carried out.

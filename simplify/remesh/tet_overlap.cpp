@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/remesh/tet_overlap.h"
 
 #include <algorithm>
@@ -123,16 +124,16 @@ void clip(const Piece& piece, int plane, Pieces& out) {
 struct Relation {
   Relation(const PlanedTet& tet, const PlanedTet& planes) : volume(tet.volume()) {
     for (int k = 0; k < 4; ++k) distances[k] = planes.distances(tet.corners()[k]);
-    const Eigen::Array4d most = distances[0].max(distances[1]).max(distances[2].max(distances[3]));
-    apart = (most <= 0).any();
+    const Eigen::Array4d max_distances = distances[0].max(distances[1]).max(distances[2].max(distances[3]));
+    apart = (max_distances <= 0).any();
     if (apart) return;
-    const Eigen::Array4d least = distances[0].min(distances[1]).min(distances[2].min(distances[3])),
+    const Eigen::Array4d min_distances = distances[0].min(distances[1]).min(distances[2].min(distances[3])),
                          // What rounding alone puts across a plane, such as the halves of an edge, does not
                          // count as such.
-        tolerance = rounding * most.max(-least);
-    apart = (most <= tolerance).any();
+        tolerance = rounding * max_distances.max(-min_distances);
+    apart = (max_distances <= tolerance).any();
     for (int f = 0; f < 4; ++f)
-      if (least[f] < -tolerance[f]) crossed[count++] = f;
+      if (min_distances[f] < -tolerance[f]) crossed[count++] = f;
   }
   /// The tet by its distances from the planes that cross it.
   Piece piece() const {

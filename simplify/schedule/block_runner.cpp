@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/schedule/block_runner.h"
 
 #include <algorithm>
@@ -136,13 +137,13 @@ void BlockRunner::decide(const std::function<Outcome(Workspace&, const Entry&)>&
 }
 
 Outcome BlockRunner::admit(Proposal& p) {
-  if (!mesh_.reservations().free(p.needed())) return Outcome::conflict;
+  if (!mesh_.reservations().free(p.read_set())) return Outcome::conflict;
   if (!p.edit.empty())
     for (std::uint32_t w : surface_winners_)
       if (!SurfaceGrid::apart(proposals_[w].edit, p.edit)) return Outcome::conflict;
   if (!ledger_.allows(p.volumes)) return Outcome::volume;
   if (!p.count_bounds.allow(mesh_.live_tets(), p.count_change)) return Outcome::count;
-  ledger_.book(p.volumes);
+  ledger_.commit(p.volumes);
   grant(mesh_, grid_, p);
   return Outcome::done;
 }
@@ -191,9 +192,9 @@ void BlockRunner::commit_winners() {
 
 std::size_t BlockRunner::next_batch_size(std::size_t size, std::size_t max_size) const {
   const auto lost = static_cast<double>(lost_);
-  const double most = max_lost_share * static_cast<double>(lost_ + winners_.size());
-  if (lost > most) return std::max(std::min(min_shrunk_batch, max_size), size - size / 4);
-  return lost < most / 2 ? std::min(max_size, size + size / 4) : size;
+  const double max_lost = max_lost_share * static_cast<double>(lost_ + winners_.size());
+  if (lost > max_lost) return std::max(std::min(min_shrunk_batch, max_size), size - size / 4);
+  return lost < max_lost / 2 ? std::min(max_size, size + size / 4) : size;
 }
 
 template <class Item, class Attempt>
@@ -206,7 +207,7 @@ void BlockRunner::run(const std::vector<Item>& items, bool in_order, const Attem
   if (step == 0)
     step = in_order ? std::clamp(n / ordered_batches, min_ordered_batch, max_ordered_batch)
                     : std::clamp(n / batches_of_large_blocks, min_batch, max_batch);
-  constexpr std::size_t spacing = std::is_same_v<Item, ListedTet> ? tet_spacing : point_spacing;
+  constexpr std::size_t spacing = std::is_same_v<Item, TetSnapshot> ? tet_spacing : point_spacing;
   BlockOrder order(n, in_order ? 0 : step, spacing, Random(seed_, block, ~std::uint64_t{0}));
   const auto decide_entry = [&](Workspace& ws, const Entry& entry) {
     ws.random = Random(seed_, block, entry.item);
@@ -236,7 +237,7 @@ void BlockRunner::points(const std::vector<Index>& items, const PointAttempt& at
       items, false, [&](Workspace& ws, Index p, int) { return attempt(ws, p); }, stop);
 }
 
-void BlockRunner::tets(const std::vector<ListedTet>& items, const TetAttempt& attempt, const Stop& stop) {
+void BlockRunner::tets(const std::vector<TetSnapshot>& items, const TetAttempt& attempt, const Stop& stop) {
   run(items, false, attempt, stop);
 }
 
@@ -252,7 +253,7 @@ void BlockRunner::each_star(const std::vector<Index>& points, Operation kind,
       stop);
 }
 
-void BlockRunner::tets_in_order(const std::vector<ListedTet>& items, const TetAttempt& attempt) {
+void BlockRunner::tets_in_order(const std::vector<TetSnapshot>& items, const TetAttempt& attempt) {
   run(items, true, attempt, [] { return false; });
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <functional>
@@ -10,7 +11,7 @@
 namespace tetwright {
 
 /// A tet and its four points at the time it was listed: equal points mean that the tet still exists.
-struct ListedTet {
+struct TetSnapshot {
   Index tet;
   Tet points;
 };
@@ -20,9 +21,10 @@ struct ListedTet {
 /// Shun 2012):
 ///
 /// - decide, in parallel: each item's operation reads the mesh, which nobody changes, and leaves a Proposal;
-/// - select, in the batch's order: a proposal wins if no earlier winner marked what it needs. Winners book
-///   their volumes, their count and their slots. What lost comes again in the next batch, before the others;
-/// - commit, in parallel: winners write what they marked.
+/// - select, in the batch's order: a proposal wins if no earlier winner's write set meets its read set.
+/// Winners commit their volumes to the ledger and get their slots. What lost comes again in the next batch,
+/// before the others;
+/// - commit, in parallel: winners write their write sets.
 ///
 /// Random numbers come from (seed, block, item). Nothing depends on which thread does what, or when.
 class BlockRunner {
@@ -35,7 +37,7 @@ class BlockRunner {
   /// An operation or several on an item: done with a proposal, or a refusal. `stage` is 0, or what the
   /// proposal that was committed for this item asked for (Proposal::next_stage).
   using PointAttempt = std::function<Outcome(Workspace&, Index)>;
-  using TetAttempt = std::function<Outcome(Workspace&, const ListedTet&, int stage)>;
+  using TetAttempt = std::function<Outcome(Workspace&, const TetSnapshot&, int stage)>;
   /// Asked before each winner is chosen; true ends the block.
   using Stop = std::function<bool()>;
 
@@ -43,13 +45,13 @@ class BlockRunner {
   /// which is in the order of the mesh's curve; so that few meet and memory is near. Throws Interrupted when
   /// cancelled.
   void points(const std::vector<Index>& items, const PointAttempt& attempt, const Stop& stop);
-  void tets(const std::vector<ListedTet>& items, const TetAttempt& attempt, const Stop& stop);
+  void tets(const std::vector<TetSnapshot>& items, const TetAttempt& attempt, const Stop& stop);
   /// One try at each of the points with an operation on its star, which may answer anything.
   void each_star(
       const std::vector<Index>& points, Operation kind, const std::function<Outcome(Workspace&)>& operation,
       const Stop& stop = [] { return false; });
   /// In the order given.
-  void tets_in_order(const std::vector<ListedTet>& items, const TetAttempt& attempt);
+  void tets_in_order(const std::vector<TetSnapshot>& items, const TetAttempt& attempt);
 
   /// Is shown each winner before any of its batch is committed, in their order.
   void set_observer(std::function<void(const Proposal&)> observer) { observer_ = std::move(observer); }
@@ -101,7 +103,7 @@ class BlockRunner {
 };
 
 /// Whether a listed tet is still there.
-inline bool exists(const EditableMesh& mesh, const ListedTet& item) {
+inline bool exists(const EditableMesh& mesh, const TetSnapshot& item) {
   return mesh.points(item.tet) == item.points;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/schedule/bulk_improvement.h"
 
 #include <algorithm>
@@ -12,15 +13,15 @@
 #include "simplify/operations/face_removal.h"
 #include "simplify/operations/insertion.h"
 #include "simplify/operations/smoothing.h"
-#include "simplify/schedule/improve_turn.h"
+#include "simplify/schedule/improve_step.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Sizes are changed where more than this share of all tets is poor: of fewer, shapes alone are mended.
+/// Sizes are changed where more than this share of all tets is bad: of fewer, shapes alone are mended.
 constexpr double resize_above = 0.01;
-/// A round that leaves more than this share of the poor tets gains too little; so many may.
+/// A round that leaves more than this share of the bad tets gains too little; so many may.
 constexpr double idle_above = 0.9;
 constexpr int max_idle = 2;
 /// Cubed edge of the regular tet of volume 1: 6 sqrt(2).
@@ -38,8 +39,8 @@ double local_edge(double volume, std::size_t tets) {
 }
 
 /// The first flip that makes the worst tet better.
-Outcome flip_tet(Workspace& ws, const BlockRules& rules, const ListedTet& item, float poor) {
-  if (!exists(ws.mesh, item) || ws.mesh.quality(item.tet) > poor) return Outcome::stale;
+Outcome flip_tet(Workspace& ws, const BlockRules& rules, const TetSnapshot& item, float bad_quality) {
+  if (!exists(ws.mesh, item) || ws.mesh.quality(item.tet) > bad_quality) return Outcome::stale;
   for (int e = 0; e < 6; ++e)
     if (remove_edge(ws, rules, item.tet, e, full_reach) == Outcome::done) return Outcome::done;
   for (int f = 0; f < 4; ++f)
@@ -48,9 +49,9 @@ Outcome flip_tet(Workspace& ws, const BlockRules& rules, const ListedTet& item, 
 }
 
 /// A point in the longest edge of the tet that is on the surface and long for what stands around it.
-Outcome split_tet(Workspace& ws, const BlockRules& rules, const ListedTet& item, float poor) {
+Outcome split_tet(Workspace& ws, const BlockRules& rules, const TetSnapshot& item, float bad_quality) {
   const EditableMesh& mesh = ws.mesh;
-  if (!exists(mesh, item) || mesh.quality(item.tet) > poor) return Outcome::stale;
+  if (!exists(mesh, item) || mesh.quality(item.tet) > bad_quality) return Outcome::stale;
   int longest = -1;
   double longest2 = 0;
   for (int e = 0; e < 6; ++e) {
@@ -87,69 +88,70 @@ class BulkLoop {
         area_(area),
         plan_(plan),
         moving_(tools.rules),
-        flipping_(surgery_rules(tools.rules, area.usual_edge())) {
+        flipping_(relaxed_rules(tools.rules, area.usual_edge())) {
     moving_.count = flipping_.count = {plan.min_tets, plan.max_tets};
     perturbing_ = resizing_ = flipping_;
-    perturbing_.good_enough = plan.poor;
+    perturbing_.good_enough = plan.bad_quality;
     resizing_.accept_worse = 1;
     resizing_.annealing_floor = resize_floor;
   }
 
   int run() {
-    std::size_t fewest = std::numeric_limits<std::size_t>::max();
+    std::size_t min_bad = std::numeric_limits<std::size_t>::max();
     int idle = 0, i = 0;
     for (; i < plan_.max_rounds; ++i) {
-      const std::size_t poor = area_.poor_tets(plan_.poor).size();
-      if (poor == 0) break;
-      if (static_cast<double>(poor) > idle_above * static_cast<double>(fewest)) ++idle;
+      const std::size_t bad = area_.bad_tets(plan_.bad_quality).size();
+      if (bad == 0) break;
+      if (static_cast<double>(bad) > idle_above * static_cast<double>(min_bad)) ++idle;
       if (idle > (plan_.remodel ? max_idle : 0)) break;
-      fewest = std::min(fewest, poor);
-      run_round(poor, i == 0);
+      min_bad = std::min(min_bad, bad);
+      run_round(bad, i == 0);
     }
     return i;
   }
 
  private:
-  void run_round(std::size_t poor_count, bool first) {
+  void run_round(std::size_t bad_count, bool first) {
     RoundRecorder::Round round(recorder_, plan_.kind, moving_.max_error);
-    const auto count = static_cast<double>(poor_count);
+    const auto count = static_cast<double>(bad_count);
     round.report().percent = 100 * count / static_cast<double>(mesh_.live_tets());
     if (plan_.remodel) {
       if (count > resize_above * static_cast<double>(area_.tet_count())) resize();
       perturb();
     }
-    std::vector<ListedTet> poor = area_.poor_tets(plan_.poor);
+    std::vector<TetSnapshot> bad = area_.bad_tets(plan_.bad_quality);
     // What failed comes again where something changed.
     if (!first)
-      std::erase_if(poor, [&](const ListedTet& t) {
+      std::erase_if(bad, [&](const TetSnapshot& t) {
         return std::none_of(t.points.begin(), t.points.end(), [&](Index p) { return mesh_.touched(p); });
       });
     mesh_.begin_round();
-    each_tet(poor,
-             [&](Workspace& ws, const ListedTet& item) { return flip_tet(ws, flipping_, item, plan_.poor); });
-    runner_.each_star(plan_.remodel ? area_.points_around(poor) : area_.poor_points(plan_.poor),
+    each_tet(bad, [&](Workspace& ws, const TetSnapshot& item) {
+      return flip_tet(ws, flipping_, item, plan_.bad_quality);
+    });
+    runner_.each_star(plan_.remodel ? area_.points_around(bad) : area_.bad_points(plan_.bad_quality),
                       Operation::optimise, [&](Workspace& ws) { return optimise(ws, moving_); });
     round.finish();
   }
 
   void perturb() {
-    each_tet(area_.tets_around(area_.poor_tets(plan_.poor)),
-             [&](Workspace& ws, const ListedTet& item) { return perturb_tet(ws, perturbing_, item); });
+    each_tet(area_.tets_around(area_.bad_tets(plan_.bad_quality)),
+             [&](Workspace& ws, const TetSnapshot& item) { return perturb_tet(ws, perturbing_, item); });
   }
 
   void resize() {
-    runner_.each_star(area_.poor_points(plan_.poor), Operation::collapse, [&](Workspace& ws) {
+    runner_.each_star(area_.bad_points(plan_.bad_quality), Operation::collapse, [&](Workspace& ws) {
       return crowded(ws.mesh, ws.star) ? collapse(ws, resizing_) : Outcome::no_candidate;
     });
-    each_tet(area_.poor_tets(plan_.poor), [&](Workspace& ws, const ListedTet& item) {
-      return split_tet(ws, resizing_, item, plan_.poor);
+    each_tet(area_.bad_tets(plan_.bad_quality), [&](Workspace& ws, const TetSnapshot& item) {
+      return split_tet(ws, resizing_, item, plan_.bad_quality);
     });
   }
 
   template <class Attempt>
-  void each_tet(const std::vector<ListedTet>& tets, const Attempt& attempt) {
+  void each_tet(const std::vector<TetSnapshot>& tets, const Attempt& attempt) {
     runner_.tets(
-        tets, [&](Workspace& ws, const ListedTet& item, int) { return attempt(ws, item); },
+        tets, [&](Workspace& ws, const TetSnapshot& item, int) { return attempt(ws, item); },
         [] { return false; });
   }
 

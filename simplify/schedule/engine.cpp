@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/schedule/engine.h"
 
 #include <algorithm>
@@ -69,8 +70,8 @@ void Engine::keep_input_surface(const TriangleMesh* surface, bool measured) {
   if (measured) input_surface_->find_hidden(mesh_);
 }
 
-void Engine::set_sizes(const SizeField* wish, double min_edge, double max_edge) {
-  sizes_.emplace(wish, min_edge, max_edge, mesh_.diagonal(), mesh_.space());
+void Engine::set_sizes(const SizeField* target_length, double min_edge, double max_edge) {
+  sizes_.emplace(target_length, min_edge, max_edge, mesh_.diagonal(), mesh_.space());
   rules.sizes = rules.objective.sizes = &*sizes_;
 }
 
@@ -86,7 +87,7 @@ double Engine::tets_for_sizes() const {
     const Tet& p = mesh_.points(t);
     const Vec3 centre =
         (mesh_.position(p[0]) + mesh_.position(p[1]) + mesh_.position(p[2]) + mesh_.position(p[3])) / 4;
-    const double edge = sizes_->wish(centre) / Objective::edge_to_ideal;
+    const double edge = sizes_->target_length(centre) / Objective::edge_to_ideal;
     count += std::fabs(mesh_.signed_volume(t)) / (edge * edge * edge);
   }
   return count;
@@ -162,17 +163,18 @@ void Engine::begin_improvement() {
 }
 
 template <class Test>
-std::vector<ListedTet> Engine::tets_where(const Test& test) const {
-  return parallel_collect<ListedTet>(0, mesh_.tet_slots(), slot_grain,
-                                     [&](std::size_t begin, std::size_t end, std::vector<ListedTet>& out) {
-                                       for (std::size_t i = begin; i < end; ++i) {
-                                         const auto t = static_cast<Index>(i);
-                                         if (!mesh_.dead(t) && test(t)) out.push_back({t, mesh_.points(t)});
-                                       }
-                                     });
+std::vector<TetSnapshot> Engine::tets_where(const Test& test) const {
+  return parallel_collect<TetSnapshot>(
+      0, mesh_.tet_slots(), slot_grain,
+      [&](std::size_t begin, std::size_t end, std::vector<TetSnapshot>& out) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const auto t = static_cast<Index>(i);
+          if (!mesh_.dead(t) && test(t)) out.push_back({t, mesh_.points(t)});
+        }
+      });
 }
 
-std::vector<ListedTet> Engine::poor_tets(float limit) const {
+std::vector<TetSnapshot> Engine::bad_tets(float limit) const {
   return tets_where([&](Index t) { return mesh_.quality(t) <= limit; });
 }
 
@@ -208,7 +210,7 @@ std::vector<Index> Engine::marked_points(const Mark& mark) const {
                                  });
 }
 
-std::vector<ListedTet> Engine::find_far_tets(double limit) {
+std::vector<TetSnapshot> Engine::find_far_tets(double limit) {
   const std::vector<InterfaceFace> faces = mesh_.interface_faces();
   std::vector<Triangle> far;
   SurfaceGrid::Edit edit;
@@ -232,18 +234,18 @@ std::vector<ListedTet> Engine::find_far_tets(double limit) {
   });
 }
 
-std::vector<Index> Engine::poor_points(float limit) const {
+std::vector<Index> Engine::bad_points(float limit) const {
   return marked_points([&](Index t, int) { return mesh_.quality(t) <= limit; });
 }
 
-std::vector<std::uint8_t> Engine::points_of(const std::vector<ListedTet>& tets) const {
+std::vector<std::uint8_t> Engine::points_of(const std::vector<TetSnapshot>& tets) const {
   std::vector<std::uint8_t> listed(mesh_.point_slots(), 0);
-  for (const ListedTet& t : tets)
+  for (const TetSnapshot& t : tets)
     for (Index p : t.points) listed[p] = 1;
   return listed;
 }
 
-std::vector<ListedTet> Engine::tets_around(const std::vector<ListedTet>& tets) const {
+std::vector<TetSnapshot> Engine::tets_around(const std::vector<TetSnapshot>& tets) const {
   const std::vector<std::uint8_t> listed = points_of(tets);
   return tets_where([&](Index t) {
     const Tet& points = mesh_.points(t);
@@ -251,7 +253,7 @@ std::vector<ListedTet> Engine::tets_around(const std::vector<ListedTet>& tets) c
   });
 }
 
-std::vector<Index> Engine::points_around(const std::vector<ListedTet>& tets) const {
+std::vector<Index> Engine::points_around(const std::vector<TetSnapshot>& tets) const {
   const std::vector<std::uint8_t> listed = points_of(tets);
   return marked_points([&](Index t, int) {
     const Tet& points = mesh_.points(t);
@@ -315,7 +317,7 @@ void Engine::fit_creases() {
   });
 }
 
-void Engine::fit_far(const std::vector<ListedTet>& tets, float floor) {
+void Engine::fit_far(const std::vector<TetSnapshot>& tets, float floor) {
   BlockRules farthest = rules;
   farthest.fit_farthest = true;
   runner_.each_star(points_around(tets), Operation::fit,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -13,7 +14,7 @@
 
 namespace tetwright {
 
-/// State that the schedules share: the mesh, its grid, the block runner, the selection of poor tets, the
+/// State that the schedules share: the mesh, its grid, the block runner, the selection of bad tets, the
 /// report.
 class Engine {
  public:
@@ -52,8 +53,9 @@ class Engine {
   /// From now on triangles own samples of that, some ten for each triangle with edges of this length.
   void own_samples(double edge);
   void set_spacing(double spacing) { spacing_ = spacing; }
-  /// Wanted edge lengths and their bounds, input units, which rules follow from now on; `wish` may be null.
-  void set_sizes(const SizeField* wish, double min_edge, double max_edge);
+  /// Wanted edge lengths and their bounds, input units, which rules follow from now on; `target_length` may
+  /// be null.
+  void set_sizes(const SizeField* target_length, double min_edge, double max_edge);
   /// How many well-shaped tets with edges of the wanted lengths fill the mesh.
   double tets_for_sizes() const;
   /// The same for one length everywhere, input units.
@@ -68,7 +70,7 @@ class Engine {
   }
   /// The tets of boundary and interface faces that are farther from that than `limit` (working coordinates),
   /// or nearest to a part of that which is, in the order of the curve. Places of that part become samples.
-  std::vector<ListedTet> find_far_tets(double limit);
+  std::vector<TetSnapshot> find_far_tets(double limit);
   bool owns_samples() const { return samples_ != nullptr; }
   /// compact() where so many slots are dead that it pays.
   void compact_if_sparse();
@@ -83,22 +85,22 @@ class Engine {
   /// The quality below which `percent` of the tets lie; 1 if all.
   float cutoff(double percent) const;
   /// The tets of at most that quality, in the order of the curve.
-  std::vector<ListedTet> poor_tets(float limit) const;
+  std::vector<TetSnapshot> bad_tets(float limit) const;
   /// The points of these tets, each once, in the order of the curve.
-  std::vector<Index> poor_points(float limit) const;
+  std::vector<Index> bad_points(float limit) const;
   /// The share of the tets whose shape is worse than this solid angle (steradians) stands for, whatever they
   /// are rated by.
   double share_below(double angle) const;
   /// The tets that share a point with a listed one, in the order of the curve, and their points, each once.
-  std::vector<ListedTet> tets_around(const std::vector<ListedTet>& tets) const;
-  std::vector<Index> points_around(const std::vector<ListedTet>& tets) const;
+  std::vector<TetSnapshot> tets_around(const std::vector<TetSnapshot>& tets) const;
+  std::vector<Index> points_around(const std::vector<TetSnapshot>& tets) const;
   /// The points of boundary and interfaces, in the order of the curve.
   std::vector<Index> interface_points() const;
 
   /// fit_to_samples() for all interface points.
   void fit_interfaces(float floor);
   /// fit_to_samples() for those of the listed tets and around them, farthest samples first.
-  void fit_far(const std::vector<ListedTet>& tets, float floor);
+  void fit_far(const std::vector<TetSnapshot>& tets, float floor);
   /// fit_to_crease() for all boundary points that are off their crease or corner; what cannot go there is
   /// collapsed along its crease.
   void fit_creases();
@@ -111,9 +113,9 @@ class Engine {
   std::vector<Index> points_off_creases() const;
   /// The living tets that pass the test, in the order of the curve.
   template <class Test>
-  std::vector<ListedTet> tets_where(const Test& test) const;
+  std::vector<TetSnapshot> tets_where(const Test& test) const;
   /// 1 for the points of the listed tets.
-  std::vector<std::uint8_t> points_of(const std::vector<ListedTet>& tets) const;
+  std::vector<std::uint8_t> points_of(const std::vector<TetSnapshot>& tets) const;
 
   bool compacted_ = false;  ///< the grid is built
   ConstrainedMesh constrained_;
@@ -135,15 +137,17 @@ class WholeMesh final : public ImprovementArea {
   explicit WholeMesh(Engine& engine) : engine_(engine) {}
   std::size_t tet_count() const override { return engine_.mesh().live_tets(); }
   double usual_edge() const override { return engine_.rules.objective.quality.ideal_edge; }
-  std::vector<ListedTet> poor_tets(float limit) override { return engine_.poor_tets(limit); }
-  std::vector<Index> poor_points(float limit) override { return engine_.poor_points(limit); }
-  std::vector<ListedTet> tets_around(const std::vector<ListedTet>& tets) override {
+  std::vector<TetSnapshot> bad_tets(float limit) override { return engine_.bad_tets(limit); }
+  std::vector<Index> bad_points(float limit) override { return engine_.bad_points(limit); }
+  std::vector<TetSnapshot> tets_around(const std::vector<TetSnapshot>& tets) override {
     return engine_.tets_around(tets);
   }
-  std::vector<Index> points_around(const std::vector<ListedTet>& tets) override {
+  std::vector<Index> points_around(const std::vector<TetSnapshot>& tets) override {
     return engine_.points_around(tets);
   }
-  std::vector<Index> points_to_thin(const std::vector<ListedTet>&) override { return engine_.poor_points(1); }
+  std::vector<Index> points_to_thin(const std::vector<TetSnapshot>&) override {
+    return engine_.bad_points(1);
+  }
 
  private:
   Engine& engine_;

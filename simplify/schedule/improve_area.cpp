@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/schedule/improve_area.h"
 
 #include <algorithm>
@@ -20,18 +21,18 @@ constexpr double bound_step = 1.18;
 
 int improve_area(const ImprovementTools& tools, ImprovementArea& area, ImprovementPlan plan,
                  double bulk_first) {
-  const auto poor = static_cast<float>(shape_quality_bound(tools.rules.objective.shape, plan.angle));
+  const auto bad_quality = static_cast<float>(shape_quality_bound(tools.rules.objective.shape, plan.angle));
   const int rounds = plan.max_rounds;
   for (const double bulk_above : {bulk_first, bulk_after}) {
     const bool second = bulk_above == bulk_after;
     if (plan.max_rounds <= 0 || (second && plan.brief)) break;
-    const bool bulk =
-        static_cast<double>(area.poor_tets(poor).size()) > bulk_above * static_cast<double>(area.tet_count());
+    const bool bulk = static_cast<double>(area.bad_tets(bad_quality).size()) >
+                      bulk_above * static_cast<double>(area.tet_count());
     if (second && !bulk) break;
     if (bulk)
       plan.max_rounds -= run_bulk_improvement(tools, area,
                                               {.kind = plan.kind,
-                                               .poor = poor,
+                                               .bad_quality = bad_quality,
                                                .min_tets = plan.min_tets,
                                                .max_tets = plan.max_tets,
                                                .max_rounds = std::min(plan.max_rounds, max_bulk_rounds),

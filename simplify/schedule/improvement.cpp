@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/schedule/improvement.h"
 
 #include <algorithm>
@@ -6,32 +7,32 @@
 
 #include "simplify/operations/collapse.h"
 #include "simplify/operations/smoothing.h"
-#include "simplify/schedule/improve_turn.h"
+#include "simplify/schedule/improve_step.h"
 
 namespace tetwright {
 
 namespace {
 
-/// A round that leaves more than this share of the poor tets is followed by one that flips tets around them
+/// A round that leaves more than this share of the bad tets is followed by one that flips tets around them
 /// at random and moves all points around, for what stands in their way.
 constexpr double stuck_above = 0.8;
 /// What collapses that make room for insertions must leave, over the quality that is aimed at.
 constexpr float thinning_margin = 1.1f;
-/// Share of the poor tets that a round must get rid of to count as gain.
+/// Share of the bad tets that a round must get rid of to count as gain.
 constexpr double min_round_gain = 0.02;
-/// The same where more than this share of all tets is poor.
-constexpr double many_poor = 0.01;
+/// The same where more than this share of all tets is bad.
+constexpr double many_bad = 0.01;
 constexpr double min_gain_of_many = 0.05;
 constexpr int max_idle_rounds_of_many = 4;
 /// Rounds without gain before the work ends: while some tets are below ImprovementPlan::leave_surface_angle,
 /// else.
 constexpr int max_idle_rounds = 8;
 constexpr int max_idle_rounds_when_good = 2;
-/// The same where less than this share of all tets is poor: such rounds take next to no time.
-constexpr double few_poor = 5e-4;
+/// The same where less than this share of all tets is bad: such rounds take next to no time.
+constexpr double few_bad = 5e-4;
 constexpr int max_idle_rounds_of_few = 30;
 /// Perturbation leaves tets that are at least this much of what is aimed at: it frees twice as many of the
-/// last ones as with all of it, and what is poor then is mended at once.
+/// last ones as with all of it, and what is bad then is mended at once.
 constexpr float perturbed_share = 0.95f;
 /// Share of the tets by which the count may fall that is kept for the last resort: edge removals would use up
 /// all of it, and no collapse could take the last slivers out.
@@ -56,19 +57,18 @@ class ImprovementLoop {
 
   /// The number of rounds.
   int run() {
-    surgery_ = surgery_rules(rules_, area_.usual_edge());
-    surgery_.leave_surface = true;
+    relaxed_ = relaxed_rules(rules_, area_.usual_edge());
+    relaxed_.leave_surface = true;
     max_deviation_ = std::min(rules_.tolerance, max_deviation_factor * rules_.max_deviation);
-    min_poor_ = 4 * area_.tet_count();
+    min_bad_ = 4 * area_.tet_count();
     int i = 0;
     for (; i < plan_.max_rounds; ++i) {
-      std::vector<ListedTet> poor = area_.poor_tets(bounds_.poor);
-      if (poor.empty() || !worth_a_round(poor, i == 0)) break;
+      std::vector<TetSnapshot> bad = area_.bad_tets(bounds_.bad_quality);
+      if (bad.empty() || !worth_a_round(bad, i == 0)) break;
       RoundRecorder::Round round(recorder_, plan_.kind, rules_.max_error);
       round.report().cutoff = plan_.angle;
-      round.report().percent =
-          100 * static_cast<double>(poor.size()) / static_cast<double>(mesh_.live_tets());
-      run_round(std::move(poor));
+      round.report().percent = 100 * static_cast<double>(bad.size()) / static_cast<double>(mesh_.live_tets());
+      run_round(std::move(bad));
       round.finish();
       recorder_.update(static_cast<double>(i + 1) / plan_.max_rounds);
     }
@@ -81,25 +81,25 @@ class ImprovementLoop {
   }
 
   /// Judges the round before by what it left: false where the last ones gained too little. Decides whether
-  /// the next one also moves the points around the poor tets and resorts to perturbation; where the plan is
+  /// the next one also moves the points around the bad tets and resorts to perturbation; where the plan is
   /// not fast, the first one perturbs in any case.
-  bool worth_a_round(const std::vector<ListedTet>& poor, bool first) {
-    const bool bad = std::any_of(poor.begin(), poor.end(), [&](const ListedTet& t) {
+  bool worth_a_round(const std::vector<TetSnapshot>& bad, bool first) {
+    const bool any_may_leave_surface = std::any_of(bad.begin(), bad.end(), [&](const TetSnapshot& t) {
       return mesh_.quality(t.tet) < bounds_.leave_surface;
     });
-    stuck_ = static_cast<double>(poor.size()) > stuck_above * static_cast<double>(min_poor_);
-    if (plan_.brief && stuck_ && !bad) return false;
-    const double gain = 1 - static_cast<double>(poor.size()) / static_cast<double>(min_poor_);
-    // Where a large share is poor, the interfaces are the reason, and more rounds would take long for little.
-    const bool many = static_cast<double>(poor.size()) > many_poor * static_cast<double>(area_.tet_count());
+    stuck_ = static_cast<double>(bad.size()) > stuck_above * static_cast<double>(min_bad_);
+    if (plan_.brief && stuck_ && !any_may_leave_surface) return false;
+    const double gain = 1 - static_cast<double>(bad.size()) / static_cast<double>(min_bad_);
+    // Where a large share is bad, the interfaces are the reason, and more rounds would take long for little.
+    const bool many = static_cast<double>(bad.size()) > many_bad * static_cast<double>(area_.tet_count());
     idle_ = gain >= (many ? min_gain_of_many : min_round_gain) ? 0 : idle_ + 1;
-    const bool few = static_cast<double>(poor.size()) < few_poor * static_cast<double>(area_.tet_count());
-    if (idle_ >= (few            ? max_idle_rounds_of_few
-                  : bad && !many ? max_idle_rounds
-                  : many         ? max_idle_rounds_of_many
-                                 : max_idle_rounds_when_good))
+    const bool few = static_cast<double>(bad.size()) < few_bad * static_cast<double>(area_.tet_count());
+    if (idle_ >= (few                              ? max_idle_rounds_of_few
+                  : any_may_leave_surface && !many ? max_idle_rounds
+                  : many                           ? max_idle_rounds_of_many
+                                                   : max_idle_rounds_when_good))
       return false;
-    min_poor_ = std::min(min_poor_, poor.size());
+    min_bad_ = std::min(min_bad_, bad.size());
     // Not before perturbation on the surfaces has gained nothing: what leaves them stays off.
     const bool perturbed = plan_.fast || perturbs_;
     last_resort_ = stuck_ && ((idle_ > 0 && perturbed) || (plan_.fast && !many));
@@ -107,65 +107,64 @@ class ImprovementLoop {
     return true;
   }
 
-  void run_round(std::vector<ListedTet> poor) {
+  void run_round(std::vector<TetSnapshot> bad) {
     if (last_resort_)
-      rules_.max_deviation = surgery_.max_deviation =
+      rules_.max_deviation = relaxed_.max_deviation =
           std::min(max_deviation_, round_deviation_growth * rules_.max_deviation);
     const double kept = last_resort_ || plan_.target_tets <= plan_.min_tets
                             ? 0
                             : kept_share * static_cast<double>(plan_.target_tets - plan_.min_tets);
-    rules_.count.min = surgery_.count.min = plan_.min_tets + static_cast<std::size_t>(kept);
+    rules_.count.min = relaxed_.count.min = plan_.min_tets + static_cast<std::size_t>(kept);
     // More than halfway from the target to the upper bound, which may be the largest number there is.
     if (2 * static_cast<double>(mesh_.live_tets()) >
         static_cast<double>(plan_.target_tets) + static_cast<double>(plan_.max_tets))
-      make_room(poor);
-    if (perturbs_) perturb(poor);
-    if (stuck_) move_points_around(poor);
-    std::vector<ListedTet> tries = worth_trying(poor);
-    tried_ = std::move(poor);
+      make_room(bad);
+    if (perturbs_) perturb(bad);
+    if (stuck_) move_points_around(bad);
+    std::vector<TetSnapshot> tries = worth_trying(bad);
+    tried_ = std::move(bad);
     mesh_.begin_round();
-    std::sort(tries.begin(), tries.end(), [&](const ListedTet& a, const ListedTet& b) {
+    std::sort(tries.begin(), tries.end(), [&](const TetSnapshot& a, const TetSnapshot& b) {
       const float qa = mesh_.quality(a.tet), qb = mesh_.quality(b.tet);
       return qa != qb ? qa < qb : a.tet < b.tet;
     });
-    runner_.tets_in_order(tries, [&](Workspace& ws, const ListedTet& item, int) {
-      return improve_tet(ws, {rules_, surgery_, bounds_, last_resort_, plan_.fast}, item);
+    runner_.tets_in_order(tries, [&](Workspace& ws, const TetSnapshot& item, int) {
+      return improve_tet(ws, {rules_, relaxed_, bounds_, last_resort_, plan_.fast}, item);
     });
   }
 
   /// Makes room for insertions: collapses that leave only good tets, or better ones.
-  void make_room(const std::vector<ListedTet>& poor) {
+  void make_room(const std::vector<TetSnapshot>& bad) {
     BlockRules thinning = rules_;
-    thinning.good_enough = bounds_.poor * thinning_margin;
+    thinning.good_enough = bounds_.bad_quality * thinning_margin;
     thinning.count.min = plan_.target_tets;
     runner_.each_star(
-        area_.points_to_thin(poor), Operation::collapse,
-        [&](Workspace& ws) { return collapse(ws, thinning); },
+        area_.points_to_thin(bad), Operation::collapse, [&](Workspace& ws) { return collapse(ws, thinning); },
         [&] { return mesh_.live_tets() <= plan_.target_tets; });
   }
 
-  void perturb(const std::vector<ListedTet>& poor) {
-    BlockRules perturbation = last_resort_ ? surgery_ : rules_;
-    perturbation.good_enough = perturbed_share * bounds_.poor;
+  void perturb(const std::vector<TetSnapshot>& bad) {
+    BlockRules perturbation = last_resort_ ? relaxed_ : rules_;
+    perturbation.good_enough = perturbed_share * bounds_.bad_quality;
     runner_.tets(
-        area_.tets_around(poor),
-        [&](Workspace& ws, const ListedTet& item, int) { return perturb_tet(ws, perturbation, item); },
+        area_.tets_around(bad),
+        [&](Workspace& ws, const TetSnapshot& item, int) { return perturb_tet(ws, perturbation, item); },
         [] { return false; });
   }
 
-  void move_points_around(const std::vector<ListedTet>& poor) {
-    std::vector<Index> around = area_.points_around(poor);
+  void move_points_around(const std::vector<TetSnapshot>& bad) {
+    std::vector<Index> around = area_.points_around(bad);
     if (!last_resort_) std::erase_if(around, [&](Index p) { return !mesh_.touched(p); });
     runner_.each_star(around, Operation::optimise, [&](Workspace& ws) { return optimise(ws, rules_); });
   }
 
   /// Tets that the last round tried come again only where something around them changed, or where this round
   /// allows more.
-  std::vector<ListedTet> worth_trying(const std::vector<ListedTet>& poor) const {
-    if (last_resort_) return poor;
-    std::vector<ListedTet> tries;
-    const auto before = [](const ListedTet& a, const ListedTet& b) { return a.tet < b.tet; };
-    for (const ListedTet& t : poor) {
+  std::vector<TetSnapshot> worth_trying(const std::vector<TetSnapshot>& bad) const {
+    if (last_resort_) return bad;
+    std::vector<TetSnapshot> tries;
+    const auto before = [](const TetSnapshot& a, const TetSnapshot& b) { return a.tet < b.tet; };
+    for (const TetSnapshot& t : bad) {
       const auto known = std::lower_bound(tried_.begin(), tried_.end(), t, before);
       if (known == tried_.end() || known->tet != t.tet || known->points != t.points ||
           std::any_of(t.points.begin(), t.points.end(), [&](Index p) { return mesh_.touched(p); }))
@@ -181,11 +180,11 @@ class ImprovementLoop {
   ImprovementArea& area_;
   const ImprovementPlan& plan_;
   ImproveBounds bounds_;
-  BlockRules surgery_;
+  BlockRules relaxed_;
   double max_deviation_ = 0;
-  std::vector<ListedTet> tried_;  ///< in the last round, by number
-  std::size_t min_poor_ = 0;      ///< the minimum of poor tets after a round
-  int idle_ = 0;                  ///< rounds in a row without gain
+  std::vector<TetSnapshot> tried_;  ///< in the last round, by number
+  std::size_t min_bad_ = 0;         ///< the minimum of bad tets after a round
+  int idle_ = 0;                    ///< rounds in a row without gain
   bool stuck_ = false, perturbs_ = false, last_resort_ = false;
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -14,7 +15,7 @@ struct ImprovementPlan {
   /// Likewise: for tets worse than this, points of the surface may leave it a little.
   double leave_surface_angle;
   std::size_t target_tets, min_tets, max_tets;
-  /// Flips before better places, and the last resort as soon as a round gains little but not much is poor:
+  /// Flips before better places, and the last resort as soon as a round gains little but not much is bad:
   /// half the time of improve(), but less gain where thin layers of many materials keep most points from
   /// moving far. Else the first round perturbs: after a simplification that gives better shapes on nearer
   /// surfaces.

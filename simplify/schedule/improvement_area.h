@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -18,14 +19,14 @@ class ImprovementArea {
   // Ascending, which is the order of the curve after compaction.
 
   /// The tets of at most that quality.
-  virtual std::vector<ListedTet> poor_tets(float limit) = 0;
+  virtual std::vector<TetSnapshot> bad_tets(float limit) = 0;
   /// Their points.
-  virtual std::vector<Index> poor_points(float limit) = 0;
+  virtual std::vector<Index> bad_points(float limit) = 0;
   /// The tets that share a point with a listed one, and their points.
-  virtual std::vector<ListedTet> tets_around(const std::vector<ListedTet>& tets) = 0;
-  virtual std::vector<Index> points_around(const std::vector<ListedTet>& tets) = 0;
-  /// The points at which collapses may make room for insertions near poor tets.
-  virtual std::vector<Index> points_to_thin(const std::vector<ListedTet>& poor) = 0;
+  virtual std::vector<TetSnapshot> tets_around(const std::vector<TetSnapshot>& tets) = 0;
+  virtual std::vector<Index> points_around(const std::vector<TetSnapshot>& tets) = 0;
+  /// The points at which collapses may make room for insertions near bad tets.
+  virtual std::vector<Index> points_to_thin(const std::vector<TetSnapshot>& bad) = 0;
 };
 
 }  // namespace tetwright

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -42,7 +43,7 @@ struct SimplifyOptions {
   /// schedule's.
   double tolerance = 0;
   /// The edge lengths that are wanted, or null, and their bounds, input units; the tuned schedule's. With a
-  /// wish it decides the number of tets, and target_tets may be 0. `sizes` must outlive the call.
+  /// target length it decides the number of tets, and target_tets may be 0. `sizes` must outlive the call.
   const SizeField* sizes = nullptr;
   double min_edge = 0, max_edge = std::numeric_limits<double>::infinity();
   std::uint64_t seed = 1;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/schedule/paper_schedule.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ namespace {
 constexpr double count_slack = 0.005;
 
 /// The tet's half-edge of least weight that passes every test.
-Outcome collapse_tet(Workspace& ws, const BlockRules& rules, const ListedTet& item) {
+Outcome collapse_tet(Workspace& ws, const BlockRules& rules, const TetSnapshot& item) {
   struct HalfEdge {
     double weight;
     Index from, to;
@@ -61,7 +62,7 @@ Outcome collapse_tet(Workspace& ws, const BlockRules& rules, const ListedTet& it
 }
 
 /// "move each vertex of the element": the first from `first` on that moves; the turn goes on with the next.
-Outcome smooth_points(Workspace& ws, const BlockRules& rules, const ListedTet& item, int first) {
+Outcome smooth_points(Workspace& ws, const BlockRules& rules, const TetSnapshot& item, int first) {
   for (int k = first; k < 4; ++k) {
     Outcome o = ws.gather(item.points[k]);
     if (o == Outcome::done) o = smooth(ws, rules);
@@ -72,9 +73,9 @@ Outcome smooth_points(Workspace& ws, const BlockRules& rules, const ListedTet& i
   return Outcome::no_candidate;
 }
 
-/// One tet's turn: the actions of section 4 in their order; the first that succeeds ends it. Stages above 0
+/// One step at a tet: tries the actions of section 4 in their order until one succeeds. Stages above 0
 /// are the points still to be moved.
-Outcome paper_turn(Workspace& ws, const BlockRules& rules, const ListedTet& item, int stage, float limit) {
+Outcome paper_step(Workspace& ws, const BlockRules& rules, const TetSnapshot& item, int stage, float limit) {
   const EditableMesh& mesh = ws.mesh;
   if (!exists(mesh, item)) return Outcome::stale;
   if (stage > 0) return smooth_points(ws, rules, item, stage);
@@ -129,15 +130,15 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
   double percent = percent_step;
   int idle = 0;
   bool reached = false;
-  std::size_t poor = mesh.live_tets();
+  std::size_t bad = mesh.live_tets();
   for (int i = 0; i < options.max_iterations && idle < max_idle_iterations; ++i) {
     reached = reached || mesh.live_tets() <= target_tets;
     if (reached) {
-      // The second stop. The counts of poor tets tell whether anything is still gained.
+      // The second stop. The counts of bad tets tell whether anything is still gained.
       const std::size_t now = below_angle(mesh, options.min_solid_angle);
       if (now == 0) break;
-      idle = now < poor ? 0 : idle + 1;
-      poor = now;
+      idle = now < bad ? 0 : idle + 1;
+      bad = now;
     }
     engine.compact_if_sparse();
     RoundRecorder::Round round(engine.recorder(), "simplify", rules.max_error);
@@ -151,9 +152,9 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
     const float limit = engine.cutoff(percent);
     it.cutoff = portable_cbrt(limit);
     engine.runner().tets(
-        engine.poor_tets(limit),
-        [&](Workspace& ws, const ListedTet& item, int stage) {
-          return paper_turn(ws, rules, item, stage, limit);
+        engine.bad_tets(limit),
+        [&](Workspace& ws, const TetSnapshot& item, int stage) {
+          return paper_step(ws, rules, item, stage, limit);
         },
         [&] { return !reached && mesh.live_tets() <= target_tets; });
     round.finish();

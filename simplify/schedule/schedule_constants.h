@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 namespace tetwright {
@@ -8,7 +9,7 @@ inline constexpr double closing_slack = 0.006;
 
 // What both schedules share with the paper, or with what it leaves open.
 
-inline constexpr double percent_step = 10;  ///< by which the share of poor tets grows each iteration
+inline constexpr double percent_step = 10;  ///< by which the share of bad tets grows each iteration
 /// Initial probability of an action that leaves a worse tet, where the paper allows such "early in
 /// computation": p0 of p0 ln(n/N) / ln(n0/N).
 inline constexpr double first_annealing = 0.3;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/schedule/tuned_schedule.h"
 
 #include <algorithm>
@@ -55,26 +56,26 @@ constexpr double stage_share = 0.6, stage_min_removed = 0.1, sized_min_removed =
 /// Without a count annealing accepts no worse tets while so many are below the bound: nothing but the
 /// tolerance ends the loop, and on the way to where that refuses all, bunny at 0.2 % had 41 % of them, for 23
 /// % fewer tets.
-constexpr double max_poor_share = 0.25;
+constexpr double max_bad_share = 0.25;
 /// Every iteration fits surfaces below so many times the target: from 4 times the target on makes the result
-/// no better, none in the loop a tenth poorer.
+/// no better, none in the loop a tenth worse.
 constexpr double fits_below = 2;
-/// VolumeLedger::strain() from which on the loop fits surfaces.
-constexpr double fit_above_strain = 0.6;
+/// VolumeLedger::utilization() from which on the loop fits surfaces.
+constexpr double fit_above_utilization = 0.6;
 
 void collapse_block(Engine& engine, float limit, std::size_t target) {
   EditableMesh& mesh = engine.mesh();
   engine.runner().each_star(
-      engine.poor_points(limit), Operation::collapse,
+      engine.bad_points(limit), Operation::collapse,
       [&](Workspace& ws) { return collapse(ws, engine.rules); }, [&] { return mesh.live_tets() <= target; });
 }
 
-/// Flips and smoothing of what is still poor.
+/// Flips and smoothing of what is still bad.
 void flip_and_smooth_block(Engine& engine, float limit) {
   const EditableMesh& mesh = engine.mesh();
   engine.runner().tets(
-      engine.poor_tets(limit),
-      [&](Workspace& ws, const ListedTet& item, int) {
+      engine.bad_tets(limit),
+      [&](Workspace& ws, const TetSnapshot& item, int) {
         // The tet may have been improved by a neighbour's operation since it was listed.
         if (!exists(mesh, item) || mesh.quality(item.tet) > limit) return Outcome::stale;
         for (int f = 0; f < 4; ++f)
@@ -113,7 +114,7 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
   int idle = 0;
   for (int i = 0; i < options.max_iterations && mesh.live_tets() > loop_target; ++i) {
     if (!engine.owns_samples() && (static_cast<double>(mesh.live_tets()) < samples_below * target ||
-                                   engine.ledger().strain() > fit_above_strain)) {
+                                   engine.ledger().utilization() > fit_above_utilization)) {
       engine.own_samples(rules.objective.quality.ideal_edge);
       rules.max_deviation = first_deviation * rules.objective.quality.ideal_edge;
     } else {
@@ -125,7 +126,7 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
     rules.count.max = it.tets_before;
     const double log_now = portable_log(static_cast<double>(it.tets_before) / target);
     rules.accept_worse = first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
-    if (!counted && engine.share_below(options.min_solid_angle) > max_poor_share) rules.accept_worse = 0;
+    if (!counted && engine.share_below(options.min_solid_angle) > max_bad_share) rules.accept_worse = 0;
     const float limit = engine.cutoff(percent);
     it.cutoff = portable_cbrt(limit);
     engine.fit_creases();
@@ -140,8 +141,8 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
                                         : std::min(limit, engine.cutoff(flip_percent)));
     // Where a body has lost much of its volume, its surface is put back to the middle of what it stands for;
     // near the target every surface is.
-    if (collapsed > loop_target &&
-        (engine.ledger().strain() > fit_above_strain || static_cast<double>(collapsed) < fits_below * target))
+    if (collapsed > loop_target && (engine.ledger().utilization() > fit_above_utilization ||
+                                    static_cast<double>(collapsed) < fits_below * target))
       engine.fit_interfaces(1);
     round.finish();
     // A larger E helps as long as E is what refuses.
@@ -152,7 +153,7 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
       rules.max_error = std::min(max_error, error_growth * rules.max_error);
       rules.max_deviation = std::min(rules.tolerance, deviation_growth * rules.max_deviation);
     }
-    const bool sized = rules.sizes && rules.sizes->has_wish();
+    const bool sized = rules.sizes && rules.sizes->has_target_length();
     if (removed < (sized ? sized_min_removed : counted ? 0 : stage_min_removed) && percent >= 100) break;
     idle = removed < idle_below && percent >= 100 && !error_refuses ? idle + 1 : 0;
     if (idle == max_idle_iterations) break;

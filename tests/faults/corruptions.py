@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Inputs of all formats with bytes flipped, cut off, left out, repeated or put in."""
 import collections
 import gzip

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """What goes wrong around the program must leave whole files, no temporary ones, and a status that tells.
 
     faults.py PROGRAM [--kills N] [--corruptions N] [--seed S] [--keep FOLDER]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Signals at moments that are spread over whole runs."""
 import collections
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """No room on the disk, no permission, no memory, no file handles, and company."""
 import collections
 import os

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // One program for all targets, so that what they share is compiled once: build/asan/bin/fuzz TARGET and then
 // what libFuzzer takes; `fuzz --list` prints the targets.
 #include <cstdint>

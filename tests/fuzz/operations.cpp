@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Fuzzes the operations of the simplifier: the input's bytes choose a mesh of several materials, then tets
 // and operations on them. After each operation that changed the mesh it must be valid, with the topology it
 // began with.

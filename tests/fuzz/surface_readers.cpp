@@ -1,16 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Readers of surfaces: each must return a surface whose indices are in range, or throw an InputError. The
 // surface must survive a round trip through a writer. Where points may have fields, reading them must give
 // the same surface and fields of the right size.
 #include "common/error.h"
-#include "common/formats/3mf.h"
-#include "common/formats/glb.h"
-#include "common/formats/obj.h"
-#include "common/formats/off.h"
-#include "common/formats/ply.h"
-#include "common/formats/stl.h"
-#include "common/formats/vtk.h"
-#include "common/formats/vtp.h"
-#include "tests/common/formats/zip_of.h"
+#include "common/io/surfaces/3mf.h"
+#include "common/io/surfaces/glb.h"
+#include "common/io/surfaces/obj.h"
+#include "common/io/surfaces/off.h"
+#include "common/io/surfaces/ply.h"
+#include "common/io/surfaces/stl.h"
+#include "common/io/surfaces/vtp.h"
+#include "common/io/tets/vtk.h"
+#include "tests/common/io/zip_of.h"
 #include "tests/fuzz/targets.h"
 
 namespace tetwright::fuzz {

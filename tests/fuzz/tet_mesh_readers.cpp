@@ -1,18 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Readers of tet meshes: each must return a mesh whose indices are in range and whose fields have the right
 // sizes, or throw an InputError. The mesh must survive a round trip through a writer, and the functions that
 // work on meshes of other programs must accept it.
 #include "common/error.h"
-#include "common/formats/abaqus.h"
-#include "common/formats/medit.h"
-#include "common/formats/medit_binary.h"
-#include "common/formats/msh.h"
-#include "common/formats/nastran.h"
-#include "common/formats/tetgen.h"
-#include "common/formats/vtk.h"
-#include "common/formats/vtu.h"
-#include "common/formats/xdmf.h"
+#include "common/io/tets/abaqus.h"
+#include "common/io/tets/medit.h"
+#include "common/io/tets/medit_binary.h"
+#include "common/io/tets/msh.h"
+#include "common/io/tets/nastran.h"
+#include "common/io/tets/tetgen.h"
+#include "common/io/tets/vtk.h"
+#include "common/io/tets/vtu.h"
+#include "common/io/tets/xdmf.h"
 #include "common/mesh/field_transfer.h"
-#include "common/mesh/foreign_mesh.h"
+#include "common/mesh/import_cleanup.h"
 #include "common/mesh/mesh_check.h"
 #include "common/mesh/mesh_statistics.h"
 #include "common/mesh/topology.h"

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Fuzzes the reader of .vdb files: OpenVDB, which trusts all sizes, must be given only what take_apart_vdb()
 // has validated. The file is a surface or a volume, or an InputError.
 #include <stdexcept>

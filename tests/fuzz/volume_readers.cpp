@@ -1,11 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Readers of volumes: each must return a volume as label_volume.h describes it, or throw an InputError. The
 // volume must survive a round trip through the NRRD writer. The file that a header names follows a line of
 // equal signs.
 #include "common/error.h"
-#include "common/formats/inr.h"
-#include "common/formats/metaimage.h"
-#include "common/formats/nifti.h"
-#include "common/formats/nrrd.h"
+#include "common/io/volumes/inr.h"
+#include "common/io/volumes/metaimage.h"
+#include "common/io/volumes/nifti.h"
+#include "common/io/volumes/nrrd.h"
 #include "tests/fuzz/targets.h"
 
 namespace tetwright::fuzz {

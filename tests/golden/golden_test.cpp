@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Dense and simplified meshes, byte for byte: the same hashes with g++ and clang++, with and without
 // sanitizers. A hash that changes must be meant to; the failure prints the new one. Inputs are built-in
 // samples and a scan, the Stanford bunny of Debian's glmark2-data: lattices of our own mesher, where other
@@ -10,12 +12,12 @@
 #include <string>
 #include <variant>
 
-#include "common/formats/formats.h"
+#include "common/io/formats.h"
 #include "common/mesh/mesh_check.h"
 #include "common/mesh/mesh_statistics.h"
 #include "common/mesh/topology.h"
 #include "common/parallel/parallel.h"
-#include "common/samples.h"
+#include "common/samples/samples.h"
 #include "mesher/mesher.h"
 #include "simplify/simplify.h"
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads what tetwright writes with meshio and Gmsh, and compares points, tets, materials, surfaces and their names.
 
 usage: read_back.py TETWRIGHT    (Debian's python3 with meshio, h5py and numpy, and gmsh)

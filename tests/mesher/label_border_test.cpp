@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -110,7 +111,7 @@ TEST(LabelBorder, LabelsAreCutOffByPlanes) {
           directions, Vec3(-3, 2, 5));
       const DenseMesh meshed = checked_mesh(labels, cell);
       EXPECT_GT(expect_cut_off(labels, meshed.mesh, 0.04), 300u);
-      for (const auto& [tag, ratio] : fidelity(labels, meshed.mesh).volumes)
+      for (const auto& [tag, ratio] : compare_with_voxels(labels, meshed.mesh).volumes)
         EXPECT_NEAR(ratio, 1, 0.015) << tag;
       for (const MaterialTag tag : {1, 2, 3})
         expect_line(meshed.mesh, "material " + std::to_string(tag) + ": " + disc);

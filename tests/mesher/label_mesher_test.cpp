@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -16,24 +17,24 @@ namespace {
 
 /// Promises of cells no larger than half a voxel.
 void expect_faithful(const LabelInput& labels, const TetMesh& mesh) {
-  const LabelFidelity f = fidelity(labels, mesh);
-  EXPECT_EQ(f.lost, 0u) << fidelity_line(f);
-  EXPECT_LE(f.moved, 0.75) << fidelity_line(f);
-  EXPECT_LE(f.worst_volume, 0.02) << fidelity_line(f);
+  const LabelComparison f = compare_with_voxels(labels, mesh);
+  EXPECT_EQ(f.lost, 0u) << comparison_line(f);
+  EXPECT_LE(f.moved, 0.75) << comparison_line(f);
+  EXPECT_LE(f.worst_volume, 0.02) << comparison_line(f);
 }
 
 struct Angles {
-  double percent_poor = 0, smallest = HUGE_VAL;
+  double percent_bad = 0, smallest = HUGE_VAL;
 };
 Angles angles_of(const TetMesh& mesh) {
   Angles a;
-  std::size_t poor = 0;
+  std::size_t bad = 0;
   for (const auto& [i, j, k, l] : mesh.tets) {
     const double angle = min_solid_angle(mesh.points[i], mesh.points[j], mesh.points[k], mesh.points[l]);
-    poor += angle < 0.1;
+    bad += angle < 0.1;
     a.smallest = std::min(a.smallest, angle);
   }
-  a.percent_poor = 100.0 * static_cast<double>(poor) / static_cast<double>(mesh.tets.size());
+  a.percent_bad = 100.0 * static_cast<double>(bad) / static_cast<double>(mesh.tets.size());
   return a;
 }
 
@@ -54,11 +55,11 @@ LabelInput blobs(const std::array<int, 3>& size, int seeds, int labels, std::uin
   return make_labels(
       size,
       [&](int x, int y, int z) {
-        double least = HUGE_VAL;
+        double min_distance = HUGE_VAL;
         MaterialTag label = 0;
         for (const Seed& s : all) {
           const double d = (s.at - Vec3(x, y, z)).squaredNorm();
-          if (d < least) least = d, label = s.label;
+          if (d < min_distance) min_distance = d, label = s.label;
         }
         return label;
       },
@@ -84,7 +85,7 @@ TEST(LabelMesher, CentresInterfacesAndVolumesOfBallsTouchingOneAnother) {
     if (length(x - 7.3, y - 7.6, z - 7.4) < 6.5) return 3;
     return length(x - 17.7, y - 7.2, z - 7.9) < 6.5 ? 9 : 0;
   });
-  for (const LabelMaterial& m : labels.materials) EXPECT_GT(m.voxels, LabelFidelity::many_voxels);
+  for (const LabelMaterial& m : labels.materials) EXPECT_GT(m.voxels, LabelComparison::many_voxels);
   for (const double cell : {0.5, 0.3}) expect_faithful(labels, checked_mesh(labels, cell).mesh);
 }
 
@@ -97,8 +98,8 @@ LabelInput noise(int side, std::uint32_t labels, std::uint64_t seed) {
 TEST(LabelMesher, InterfacesOfNoiseStayNear) {
   for (const std::uint32_t labels : {2u, 6u}) {
     const LabelInput volume = noise(4, labels, labels);
-    const LabelFidelity f = fidelity(volume, checked_mesh(volume, 0.5).mesh);
-    EXPECT_LE(f.moved, 0.75) << fidelity_line(f);
+    const LabelComparison f = compare_with_voxels(volume, checked_mesh(volume, 0.5).mesh);
+    EXPECT_LE(f.moved, 0.75) << comparison_line(f);
   }
 }
 
@@ -106,7 +107,7 @@ TEST(LabelMesher, CentresOfNoise) {
   std::size_t lost = 0, centres = 0;
   for (std::uint64_t seed = 1; seed < 5; ++seed) {
     const LabelInput volume = noise(4, 2 + seed % 2, seed);
-    const LabelFidelity f = fidelity(volume, checked_mesh(volume, 0.5).mesh);
+    const LabelComparison f = compare_with_voxels(volume, checked_mesh(volume, 0.5).mesh);
     lost += f.lost;
     centres += f.centres;
   }
@@ -185,7 +186,7 @@ TEST(LabelMesher, VolumesOfSheetsOfAVoxel) {
       const double r = length(x - 12.5, y - 12.5, z - 12.5);
       return r > 11 ? 0 : r > 10 ? sides.above : r > 9 ? 2 : sides.below;
     });
-    EXPECT_GT(labels.materials.back().voxels, LabelFidelity::many_voxels);
+    EXPECT_GT(labels.materials.back().voxels, LabelComparison::many_voxels);
     expect_faithful(labels, checked_mesh(labels, 0.5).mesh);
   }
 }
@@ -247,9 +248,9 @@ LabelInput doubled_noise(int side, std::uint32_t labels, std::uint64_t seed) {
                      [&](int x, int y, int z) { return coarse[((z / 2) * side + y / 2) * side + x / 2]; });
 }
 
-void expect_good_shapes(const LabelInput& labels, double cell = 1, double max_poor = 2) {
+void expect_good_shapes(const LabelInput& labels, double cell = 1, double max_bad = 2) {
   const Angles a = angles_of(checked_mesh(labels, cell).mesh);
-  EXPECT_LE(a.percent_poor, max_poor);
+  EXPECT_LE(a.percent_bad, max_bad);
   EXPECT_GE(a.smallest, 0.001);
 }
 
@@ -264,7 +265,7 @@ TEST(LabelMesher, ShapesOfTetsInCellsOfAVoxel) {
   for (const LabelInput* labels : {&ball, &cube, &slabs}) expect_good_shapes(*labels);
 }
 
-// Parts are two voxels thick here too, but four labels meet in every line between them: more tets are poor.
+// Parts are two voxels thick here too, but four labels meet in every line between them: more tets are bad.
 TEST(LabelMesher, ShapesOfTetsWhereManyLabelsMeet) {
   const LabelInput bars =
       make_labels({12, 12, 12}, [](int x, int, int z) { return x / 2 % 2 + 2 * (z / 4 % 2); });
@@ -354,7 +355,7 @@ void expect_volume_of_one_label(const Size& size, double cell) {
   with_outside.keep_outside = true;
   try {
     const TetMesh mesh = checked_mesh(labels, cell).mesh;
-    const LabelFidelity f = fidelity(labels, mesh);
+    const LabelComparison f = compare_with_voxels(labels, mesh);
     EXPECT_EQ(f.lost + f.lone_lost, 0u);
     EXPECT_LE(f.moved, 0.75);
     expect_line(mesh, "domain: " + disc);
@@ -406,9 +407,9 @@ TEST(LabelMesher, CoarseCellsWithoutThinParts) {
   for (const double cell : {2.0, 3.0, 5.0}) {
     SCOPED_TRACE(cell);
     const DenseMesh m = checked_mesh(labels, cell);
-    const LabelFidelity f = fidelity(labels, m.mesh);
-    EXPECT_LE(f.moved, 0.5 * cell) << fidelity_line(f);
-    EXPECT_LE(f.worst_volume, 0.02 * cell) << fidelity_line(f);
+    const LabelComparison f = compare_with_voxels(labels, m.mesh);
+    EXPECT_LE(f.moved, 0.5 * cell) << comparison_line(f);
+    EXPECT_LE(f.worst_volume, 0.02 * cell) << comparison_line(f);
     expect_line(m.mesh, "material 1: " + disc);
     expect_line(m.mesh, "material 2: " + disc);
   }
@@ -422,9 +423,9 @@ TEST(LabelMesher, CoarseCellsKeepThinSheets) {
         return z < 9 ? 1 : z < 9 + thickness ? 2 : 3;
       });
       const DenseMesh m = checked_mesh(labels, cell);
-      const LabelFidelity f = fidelity(labels, m.mesh);
+      const LabelComparison f = compare_with_voxels(labels, m.mesh);
       expect_line(m.mesh, "material 2: " + disc);
-      EXPECT_LE(f.moved, 0.5 * cell) << fidelity_line(f);
+      EXPECT_LE(f.moved, 0.5 * cell) << comparison_line(f);
     }
 }
 
@@ -436,9 +437,9 @@ TEST(LabelMesher, CoarseCellsKeepShells) {
       return d > 0 ? 0 : d > -1.6 ? 2 : 1;
     });
     const DenseMesh m = checked_mesh(labels, cell);
-    const LabelFidelity f = fidelity(labels, m.mesh);
+    const LabelComparison f = compare_with_voxels(labels, m.mesh);
     expect_line(m.mesh, "material 2: " + shell);
-    EXPECT_LE(f.moved, 0.5 * cell + 0.25) << fidelity_line(f);
+    EXPECT_LE(f.moved, 0.5 * cell + 0.25) << comparison_line(f);
   }
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/mesher/label_volumes.h"
 
 #include <Eigen/Dense>
@@ -60,7 +61,7 @@ class Voxels {
 
   /// Distance of a place (index space) to the nearest face of the two regions, and of any two.
   std::pair<double, double> to_faces(const Vec3& p, RegionIndex first, RegionIndex second) const {
-    constexpr double far = LabelFidelity::out_of_sight;
+    constexpr double far = LabelComparison::out_of_sight;
     double of_pair = far, of_any = far;
     const std::array<int, 3> centre{static_cast<int>(std::lround(p.x())),
                                     static_cast<int>(std::lround(p.y())),
@@ -115,9 +116,9 @@ std::vector<std::uint8_t> hits(const LabelInput& labels, const std::vector<Vec3>
     const RegionIndex region = regions.at(mesh.materials[t]);
     std::array<int, 3> low, high;
     for (int a = 0; a < 3; ++a) {
-      const auto [least, most] = std::minmax({p[0][a], p[1][a], p[2][a], p[3][a]});
-      low[a] = std::max(0, static_cast<int>(std::ceil(least - slack)));
-      high[a] = std::min(labels.size[a] - 1, static_cast<int>(std::floor(most + slack)));
+      const auto [min, max] = std::minmax({p[0][a], p[1][a], p[2][a], p[3][a]});
+      low[a] = std::max(0, static_cast<int>(std::ceil(min - slack)));
+      high[a] = std::min(labels.size[a] - 1, static_cast<int>(std::floor(max + slack)));
     }
     const double whole = tet_volume(p[0], p[1], p[2], p[3]);
     std::array<int, 3> v;
@@ -125,15 +126,15 @@ std::vector<std::uint8_t> hits(const LabelInput& labels, const std::vector<Vec3>
       for (v[1] = low[1]; v[1] <= high[1]; ++v[1])
         for (v[0] = low[0]; v[0] <= high[0]; ++v[0]) {
           const Vec3 c(v[0], v[1], v[2]);
-          double least = HUGE_VAL;
+          double min_share = HUGE_VAL;
           for (int k = 0; k < 4; ++k) {
             std::array<Vec3, 4> q = p;
             q[k] = c;
-            least = std::min(least, tet_volume(q[0], q[1], q[2], q[3]) / whole);
+            min_share = std::min(min_share, tet_volume(q[0], q[1], q[2], q[3]) / whole);
           }
           const bool mine = voxels.at(v) == region;
-          if (mine && least >= -slack) found[voxels.number(v)] |= own;
-          if (!mine && least > slack) found[voxels.number(v)] |= other;
+          if (mine && min_share >= -slack) found[voxels.number(v)] |= own;
+          if (!mine && min_share > slack) found[voxels.number(v)] |= other;
         }
   }
   return found;
@@ -141,8 +142,8 @@ std::vector<std::uint8_t> hits(const LabelInput& labels, const std::vector<Vec3>
 
 }  // namespace
 
-LabelFidelity fidelity(const LabelInput& labels, const TetMesh& mesh) {
-  LabelFidelity f;
+LabelComparison compare_with_voxels(const LabelInput& labels, const TetMesh& mesh) {
+  LabelComparison f;
   const Voxels voxels(labels);
   const Eigen::Matrix3d to_index = labels.directions.inverse();
   std::vector<Vec3> at;
@@ -204,13 +205,13 @@ LabelFidelity fidelity(const LabelInput& labels, const TetMesh& mesh) {
     const double sign = labels.directions.determinant() < 0 ? -1 : 1;
     const double share = sign * volumes[m.tag] / static_cast<double>(m.voxels);
     f.volumes[m.tag] = share;
-    if (m.voxels > LabelFidelity::many_voxels && std::abs(share - 1) > f.worst_volume)
+    if (m.voxels > LabelComparison::many_voxels && std::abs(share - 1) > f.worst_volume)
       f.worst_volume = std::abs(share - 1), f.worst = m.tag;
   }
   return f;
 }
 
-std::string fidelity_line(const LabelFidelity& f) {
+std::string comparison_line(const LabelComparison& f) {
   std::ostringstream out;
   out << "lost " << f.lost << " of " << f.centres << " centres";
   if (f.lost) out << ", the first at " << f.first[0] << " " << f.first[1] << " " << f.first[2];

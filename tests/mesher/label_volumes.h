@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -17,7 +18,7 @@ LabelInput make_labels(const std::array<int, 3>& size, const VoxelLabels& label,
                        const Vec3& origin = Vec3::Zero());
 
 /// What a mesh of a segmented volume promises, measured.
-struct LabelFidelity {
+struct LabelComparison {
   std::size_t centres = 0;     ///< voxels that have a neighbour of their label
   std::size_t lost = 0;        ///< those of them whose centre is not in a tet of their label
   std::array<int, 3> first{};  ///< one of them
@@ -40,10 +41,10 @@ struct LabelFidelity {
 
 /// Centres of outside count too. Distances are taken at the corners, middles of edges and centres of the
 /// triangles. Time grows with voxels and triangles; index space is that of the first voxel's centre.
-LabelFidelity fidelity(const LabelInput& labels, const TetMesh& mesh);
+LabelComparison compare_with_voxels(const LabelInput& labels, const TetMesh& mesh);
 
 /// "lost 0 of 100 centres, ...".
-std::string fidelity_line(const LabelFidelity& f);
+std::string comparison_line(const LabelComparison& f);
 
 /// Number of the region of a material.
 RegionIndex region_of(const LabelInput& labels, MaterialTag tag);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <functional>
@@ -14,14 +15,14 @@ inline LabelledLattice make_lattice(const std::function<RegionIndex(const Vec3&)
       build_octree({6, 6, 6}, 0, [](int, const std::vector<MortonKey>&) { return std::vector<MortonKey>(); });
   LatticePoints points = lattice_points(octree);
   std::vector<NearestRegion> nearest;
-  RegionIndex most = 1;
+  RegionIndex max_region = 1;
   for (const Vec3& p : points.positions) {
     nearest.push_back({region(p), 1});
-    most = std::max(most, nearest.back().region);
+    max_region = std::max(max_region, nearest.back().region);
   }
   TetList tets = lattice_tets(octree, points);
-  LabelledLattice lattice = label_lattice(std::move(points), std::move(nearest), std::move(tets), most + 1u,
-                                          false, isolated_vertices);
+  LabelledLattice lattice = label_lattice(std::move(points), std::move(nearest), std::move(tets),
+                                          max_region + 1u, false, isolated_vertices);
   for (Index p : lattice.stars.points())
     for (std::size_t i = 0; i < lattice.star_regions(p).size(); ++i)
       lattice.star_values(p)[i] = lattice.star_regions(p)[i] == lattice.first_region[p] ? -1.0f : 1.0f;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -38,11 +39,11 @@ double volume_of(const TetMesh& mesh, MaterialTag tag) {
   return sum;
 }
 
-double percent_poor(const TetMesh& mesh) {
-  std::size_t poor = 0;
+double percent_bad(const TetMesh& mesh) {
+  std::size_t bad = 0;
   for (const auto& [a, b, c, d] : mesh.tets)
-    poor += min_solid_angle(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]) < 0.1;
-  return 100.0 * static_cast<double>(poor) / static_cast<double>(mesh.tets.size());
+    bad += min_solid_angle(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]) < 0.1;
+  return 100.0 * static_cast<double>(bad) / static_cast<double>(mesh.tets.size());
 }
 
 std::string text(const TetMesh& mesh) {
@@ -68,7 +69,7 @@ TEST(Materials, NestedSpheres) {
   expect_line(mesh, "material 3: components 1, euler 1, boundary components 1, boundary euler 2");
   expect_line(mesh, "interface 1|2: components 1, euler 2");
   expect_line(mesh, "interface 2|3: components 1, euler 2");
-  EXPECT_LT(percent_poor(mesh), 1);
+  EXPECT_LT(percent_bad(mesh), 1);
   EXPECT_EQ(mesh.material_names.at(2), "m2");
   EXPECT_TRUE(meshed.report.thin_parts.empty());
 }
@@ -82,7 +83,7 @@ TEST(Materials, LayersHaveTheirThickness) {
   expect_line(mesh, "interface 2|outside: components 1, euler 2");
   expect_line(mesh, "interface 2|3: components 1, euler 2");
   expect_line(mesh, "interface 1|3: components 1, euler 2");
-  EXPECT_LT(percent_poor(mesh), 1);
+  EXPECT_LT(percent_bad(mesh), 1);
   EXPECT_EQ(mesh.material_names.at(2), "l1");
 }
 
@@ -123,7 +124,7 @@ TEST(Materials, FourMeetInAPoint) {
   expect_line(mesh, "interface 1|outside: components 1, euler 2");
   // Corners: of the four the one where all meet; 1 with three of them at three edges and two more.
   expect_line(mesh, "interfaces touch at points: count 0");
-  EXPECT_LT(percent_poor(mesh), 2);
+  EXPECT_LT(percent_bad(mesh), 2);
 }
 
 TEST(Materials, KeepOutsideFillsABox) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/mesh_estimate.h"
 
 #include <gtest/gtest.h>
@@ -5,7 +6,7 @@
 #include <limits>
 
 #include "common/error.h"
-#include "common/samples.h"
+#include "common/samples/samples.h"
 #include "tests/mesher/fields.h"
 #include "tests/mesher/label_volumes.h"
 

@@ -1,10 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // The cells that are chosen for a wanted number of tets.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "common/error.h"
-#include "common/samples.h"
+#include "common/samples/samples.h"
 #include "mesher/mesher.h"
 #include "tests/mesher/fields.h"
 #include "tests/mesher/label_volumes.h"
@@ -59,7 +61,7 @@ TEST(TargetSize, VolumesTakeLargerCellsForFewTetsAndSmallerOnesForMany) {
   // Ample tets, and the volume is kept.
   const DenseMesh dense = mesh_with(labels, few);
   EXPECT_GT(dense.mesh.tets.size(), 20u * 500);
-  EXPECT_LT(fidelity(labels, dense.mesh).worst_volume, 0.02);
+  EXPECT_LT(compare_with_voxels(labels, dense.mesh).worst_volume, 0.02);
   MesherOptions uniform;
   uniform.uniform = true;
   EXPECT_EQ(cell_size_for_target(labels, 500, uniform), 1);

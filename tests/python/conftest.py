@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A test that is skipped is a failure: tools/setup test installs all that these tests need."""
 
 

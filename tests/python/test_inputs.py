@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the Python package takes as input and what it refuses: cells, names, options, files, on cubes."""
 import json
 import os

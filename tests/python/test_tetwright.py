@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The Python package beside the program: the same bytes, views without copies, errors, cancelling, threads."""
 import os
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The parts of tools/python/wheel that need no build of their own; tools/python/try_wheel tries whole wheels."""
 import base64
 import hashlib

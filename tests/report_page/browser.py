@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Drives a headless Chromium by its debugging protocol over pipes, with nothing but the standard library."""
 import base64
 import json

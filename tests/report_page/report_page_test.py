@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page of --report in a headless Chromium: what it draws and what its controls change.
 
     report_page_test.py TETWRIGHT [--accept] [TEST...]

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Creases and corners of parts stay exactly where they are while tets become fewer.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // The degenerate situations of section 5 of the paper and of the design, each simplified as far as it goes
 // and improved with a strong hand: nothing of it may be lost or torn.
 #include <gtest/gtest.h>

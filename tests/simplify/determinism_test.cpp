@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // The result depends on the mesh, the options and the seed: on neither the number of threads nor when they
 // run. Built a second time with threads that yield at random (test_yields).
 #include <gtest/gtest.h>

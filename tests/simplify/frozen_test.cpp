@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // What is frozen stays through blocks of every operation.
 #include <gtest/gtest.h>
 
@@ -93,12 +95,12 @@ std::map<Operation, std::uint64_t> run_all(Workbench& w, const SurfaceProjection
   const auto tets = [&](Operation operation, int count,
                         const std::function<Outcome(Workspace&, Index, int)>& act) {
     w.rules.count.max = w.mesh.live_tets() + 300;  // more would take their time
-    std::vector<ListedTet> items;
+    std::vector<TetSnapshot> items;
     for (Index t = 0; t < w.mesh.tet_slots(); ++t)
       if (!w.mesh.dead(t)) items.push_back({t, w.mesh.points(t)});
     runner.tets(
         items,
-        [&](Workspace& ws, const ListedTet& item, int) {
+        [&](Workspace& ws, const TetSnapshot& item, int) {
           if (!exists(w.mesh, item)) return Outcome::stale;
           for (int k = 0; k < count; ++k)
             if (act(ws, item.tet, k) == Outcome::done) return Outcome::done;
@@ -113,7 +115,7 @@ std::map<Operation, std::uint64_t> run_all(Workbench& w, const SurfaceProjection
     stars(Operation::smooth, [&](Workspace& ws) { return smooth(ws, w.rules); });
     stars(Operation::optimise, [&](Workspace& ws) { return optimise(ws, w.rules); });
     stars(Operation::fit, [&](Workspace& ws) { return fit_to_samples(ws, w.rules, 0); });
-    make_poor(w);
+    make_bad(w);
     for (const auto place : {InsertionPlace::best, InsertionPlace::centre}) {
       tets(Operation::insert_in_tet, 1,
            [&](Workspace& ws, Index t, int) { return insert_in_tet(ws, w.rules, t, place); });
@@ -121,14 +123,14 @@ std::map<Operation, std::uint64_t> run_all(Workbench& w, const SurfaceProjection
            [&](Workspace& ws, Index t, int f) { return insert_in_face(ws, w.rules, t, f, place); });
       tets(Operation::insert_in_edge, 6,
            [&](Workspace& ws, Index t, int e) { return insert_in_edge(ws, w.rules, t, e, place, true); });
-      make_poor(w);
+      make_bad(w);
     }
     tets(Operation::edge_removal, 6,
          [&](Workspace& ws, Index t, int e) { return remove_edge(ws, w.rules, t, e, full_reach); });
-    make_poor(w);
+    make_bad(w);
     tets(Operation::face_removal, 4,
          [&](Workspace& ws, Index t, int f) { return remove_face(ws, w.rules, t, f, full_reach); });
-    make_poor(w);
+    make_bad(w);
     for (int k = 0; k < 4; ++k)
       stars(Operation::collapse, [&](Workspace& ws) { return collapse(ws, w.rules); });
   }

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Patches of boundary and interfaces: they come in with the mesh, keep their borders, and go out with it.
 #include <gtest/gtest.h>
 
@@ -80,7 +82,7 @@ TEST_P(Patches, SidesOfACubeKeepTheirEdgesAndCorners) {
   options.schedule = GetParam().schedule;
   const TetMesh after = simplify(mesh, options);
   EXPECT_LT(after.tets.size(), mesh.tets.size() / 5);
-  // The closing lets points at poor tets leave a surface by a third of an ideal edge.
+  // The closing lets points at bad tets leave a surface by a third of an ideal edge.
   expect_sides(mesh, after, GetParam().schedule == Schedule::paper ? rounding : 0.6);
 }
 
@@ -121,7 +123,7 @@ TEST_P(Patches, ACreaseInAnInterfaceStays) {
   EXPECT_LT(on_crease, static_cast<std::size_t>(n + 1));
 }
 
-// Points at poor tets may leave a surface a little, but not where patches meet.
+// Points at bad tets may leave a surface a little, but not where patches meet.
 TEST(Patches, ImprovementKeepsACrease) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     TetMesh mesh = two_halves(n, seed, 0.9);

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Ten thousand random operations on small meshes of several materials, looked at after each.
 #include "common/mesh/mesh_check.h"
 #include "common/mesh/topology.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/remesher.h"
 
 #include <gtest/gtest.h>
@@ -128,8 +129,8 @@ TEST(Remesher, ImprovesToAnAimWithinItsCountAndReports) {
         tets.push_back(t);
     return tets;
   };
-  const std::size_t poor = below(0.1).size();
-  ASSERT_GT(poor, 50u);
+  const std::size_t bad = below(0.1).size();
+  ASSERT_GT(bad, 50u);
   const std::size_t count = remesher.tet_count();
   const RemeshAim aim{.angle = 0.1,
                       .leave_surface_angle = 0.05,
@@ -138,7 +139,7 @@ TEST(Remesher, ImprovesToAnAimWithinItsCountAndReports) {
                       .max_tets = count + 10,
                       .max_rounds = 3};
   const RemeshChanges changes = remesher.improve(RemeshRegion::tets(below(0.1)), aim);
-  EXPECT_LT(2 * below(0.1).size(), poor);
+  EXPECT_LT(2 * below(0.1).size(), bad);
   EXPECT_GE(remesher.tet_count(), count - 10);
   EXPECT_LE(remesher.tet_count(), count + 10);
   EXPECT_GE(changes.rounds, 1);
@@ -251,13 +252,13 @@ TEST(Remesher, CoarseningEndsInARimOfGoodTetsAndNoPointBeyondItMoves) {
       EXPECT_EQ(r.tet(t), was);
     }
   }
-  std::size_t poor = 0;
+  std::size_t bad = 0;
   for (Index t : c.added_tets) {
     const Tet& p = r.tet(t);
-    poor += min_solid_angle(r.position(p[0]), r.position(p[1]), r.position(p[2]), r.position(p[3])) < 0.1;
+    bad += min_solid_angle(r.position(p[0]), r.position(p[1]), r.position(p[2]), r.position(p[3])) < 0.1;
   }
   EXPECT_GT(c.removed_tets.size(), c.added_tets.size() * 3 / 2);
-  EXPECT_LT(poor, c.added_tets.size() / 50);  // a tenth where the rim is left as it came out
+  EXPECT_LT(bad, c.added_tets.size() / 50);  // a tenth where the rim is left as it came out
 }
 
 TEST(Remesher, CarriesLinearFieldsAndKeepsIntegrals) {

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Wanted edge lengths, and bounds of them.
 #include <gtest/gtest.h>
 
@@ -35,11 +37,11 @@ std::vector<std::pair<double, Vec3>> edges(const TetMesh& mesh) {
   return out;
 }
 
-double share_within(const TetMesh& mesh, const SizeField& wish) {
+double share_within(const TetMesh& mesh, const SizeField& target_length) {
   const auto all = edges(mesh);
   double within = 0;
   for (const auto& [length, middle] : all) {
-    const double ratio = length / wish.at(middle);
+    const double ratio = length / target_length.at(middle);
     within += ratio <= 1.5 && ratio >= 1 / 1.5;
   }
   return within / static_cast<double>(all.size());
@@ -57,10 +59,10 @@ SizeField growing_from(double smallest) {
   return {Source([=](const Vec3& p) { return smallest + 0.1 * p.x(); }), {0, 0, 0}, {24, 12, 12}, {}};
 }
 
-SimplifyOptions wanting(const SizeField& wish) {
+SimplifyOptions wanting(const SizeField& target_length) {
   SimplifyOptions options;
   options.target_tets = 0;
-  options.sizes = &wish;
+  options.sizes = &target_length;
   return options;
 }
 
@@ -73,23 +75,23 @@ void expect_kept(const TetMesh& before, const TetMesh& after) {
 TEST(Sizes, EdgesHaveTheWantedLengths) {
   const TetMesh mesh = block();
   // From what is there already to three times as much, across an interface.
-  const SizeField wish = growing_from(1.2);
-  const TetMesh after = simplify(mesh, wanting(wish));
+  const SizeField target_length = growing_from(1.2);
+  const TetMesh after = simplify(mesh, wanting(target_length));
   expect_kept(mesh, after);
-  EXPECT_LT(share_within(mesh, wish), 0.7);
-  EXPECT_GE(share_within(after, wish), 0.95);
+  EXPECT_LT(share_within(mesh, target_length), 0.7);
+  EXPECT_GE(share_within(after, target_length), 0.95);
 }
 
 TEST(Sizes, LongEdgesAreSplit) {
   const TetMesh mesh = block();
-  const SizeField wish = growing_from(0.5);
-  const TetMesh after = simplify(mesh, wanting(wish));
+  const SizeField target_length = growing_from(0.5);
+  const TetMesh after = simplify(mesh, wanting(target_length));
   expect_kept(mesh, after);
-  EXPECT_GE(share_within(after, wish), 0.9);
+  EXPECT_GE(share_within(after, target_length), 0.9);
   double near = 0, count = 0;
   for (const auto& [length, middle] : edges(after))
     if (middle.x() < 2) {
-      near += length / wish.at(middle);
+      near += length / target_length.at(middle);
       ++count;
     }
   EXPECT_NEAR(near / count, 1, 0.15);
@@ -111,10 +113,10 @@ TEST(Sizes, NoEdgeBecomesLongerThanTheBound) {
 
 TEST(Sizes, TheSameForAnyNumberOfThreads) {
   const TetMesh mesh = block();
-  const SizeField wish = growing_from(0.8);
+  const SizeField target_length = growing_from(0.8);
   const auto with_threads = [&](unsigned threads) {
     const ThreadLimit limit(threads);
-    return simplify(mesh, wanting(wish));
+    return simplify(mesh, wanting(target_length));
   };
   const TetMesh one = with_threads(1), four = with_threads(4);
   EXPECT_EQ(one.tets, four.tets);

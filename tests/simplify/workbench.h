@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gtest/gtest.h>
@@ -91,10 +92,10 @@ struct Workbench {
     }
     tetwright::begin_batch(mesh, proposals.size(), tets, points);
   }
-  /// Whether a proposal has won; it has then marked what it changes and taken its slots.
+  /// Whether a proposal has won; it has then claimed its write set and taken its slots.
   bool admit(Proposal& p) {
-    if (!mesh.reservations().free(p.needed())) return false;
-    ledger.book(p.volumes);
+    if (!mesh.reservations().free(p.read_set())) return false;
+    ledger.commit(p.volumes);
     grant(mesh, grid, p);
     return true;
   }
@@ -148,8 +149,8 @@ struct Workbench {
   CommitWorkspace commit_workspace;
 };
 
-/// As if every tet were as poor as can be: any positive ones are better.
-inline void make_poor(Workbench& w) {
+/// As if every tet were as bad as can be: any positive ones are better.
+inline void make_bad(Workbench& w) {
   for (Index t = 0; t < w.mesh.tet_slots(); ++t)
     if (!w.mesh.dead(t)) w.mesh.set_quality(t, 0);
 }

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs CalculiX on meshes that tetwright made and compares with closed forms.
 
 usage: calculix.py TETWRIGHT [--quick]    (Debian's calculix-ccx and python3-numpy; --quick: the coarser meshes)

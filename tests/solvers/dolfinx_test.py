@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs dolfinx on meshes that tetwright made, with their materials and surfaces by name, and compares with closed forms.
 
 usage: dolfinx_test.py TETWRIGHT [--quick]    (Debian's python3-dolfinx; status 77, with the reason, where it is missing;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bodies with closed forms, as OBJ files whose groups name the parts of the surface."""
 import math
 

@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/app/command_options.h"
 
 #include <CLI/CLI.hpp>
 #include <limits>
 #include <map>
 
-#include "common/formats/formats.h"
-#include "common/samples.h"
+#include "common/io/formats.h"
+#include "common/samples/samples.h"
 #include "tools/app/command_line.h"
 #include "tools/app/label_ranges.h"
 #include "tools/app/option_values.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/app/interruption.h"
 
 #include <unistd.h>
@@ -7,7 +8,7 @@
 #include <csignal>
 #include <cstring>
 
-#include "common/formats/atomic_file.h"
+#include "common/files/atomic_file.h"
 #include "tools/app/exit_status.h"
 
 namespace tetwright {

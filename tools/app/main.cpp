@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // The tetwright program: runs one command and returns its exit status.
 #include <unistd.h>
 
@@ -11,7 +13,7 @@
 #include <malloc.h>
 #endif
 
-#include "common/formats/atomic_file.h"
+#include "common/files/atomic_file.h"
 #include "tools/app/command_line.h"
 #include "tools/app/commands/commands.h"
 #include "tools/app/exit_status.h"

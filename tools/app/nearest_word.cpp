@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/app/nearest_word.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/app/option_rules.h"
 
 #include <algorithm>
@@ -6,7 +7,7 @@
 #include <vector>
 
 #include "common/error.h"
-#include "common/formats/formats.h"
+#include "common/io/formats.h"
 #include "common/lower_case.h"
 #include "tools/app/commands/output_paths.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/app/printed_report.h"
 
 #include <algorithm>
@@ -132,7 +133,7 @@ void print_report(const CommandLine& line, const RunReport& run) {
       std::printf("not compared, as the mesh does not show it (inner walls): area %.4g of the surface\n",
                   d.hidden_area);
   }
-  if (run.edge_lengths && run.edge_lengths->wished > 0)
+  if (run.edge_lengths && run.edge_lengths->with_target_length > 0)
     std::printf(
         "edge lengths: %.1f %% within %.3g times the wanted ones (%s), median %.2f times; %.4g to %.4g\n",
         100 * run.edge_lengths->within_share(), edge_length_factor,
@@ -211,7 +212,7 @@ double RunReport::lost_area() const {
   return all_shown ? deviation->hidden_area : 0;
 }
 
-std::string patch_name(const FaceGroup& group) {
+std::string patch_name(const SurfaceRegion& group) {
   return group.name.empty() ? std::to_string(group.number) : group.name;
 }
 

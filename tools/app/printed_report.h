@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <optional>
@@ -28,7 +29,7 @@ std::vector<RunNote> further_notes(const RunReport& run);
 void print_notes(const std::vector<std::string>& notes);
 
 /// The name of a group, or its number.
-std::string patch_name(const FaceGroup& group);
+std::string patch_name(const SurfaceRegion& group);
 
 /// Prints "tetwright: TEXT" as one line to stderr, and appends it to the log; control characters, which names
 /// may contain, become question marks.

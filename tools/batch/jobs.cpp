@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/batch/jobs.h"
 
 #include <cmath>
@@ -7,8 +8,8 @@
 #include <sstream>
 
 #include "common/error.h"
-#include "common/formats/atomic_file.h"
-#include "common/formats/mesh_fields.h"
+#include "common/files/atomic_file.h"
+#include "common/io/names/mesh_fields.h"
 
 namespace tetwright {
 

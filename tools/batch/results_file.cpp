@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/batch/results_file.h"
 
 #include <fcntl.h>
@@ -12,7 +13,7 @@
 #include <utility>
 
 #include "common/error.h"
-#include "common/formats/atomic_file.h"
+#include "common/files/atomic_file.h"
 
 namespace tetwright {
 

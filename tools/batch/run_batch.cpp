@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <atomic>
 #include <csignal>
@@ -12,7 +13,7 @@
 #include <thread>
 
 #include "common/error.h"
-#include "common/formats/atomic_file.h"
+#include "common/files/atomic_file.h"
 #include "common/memory.h"
 #include "common/parallel/parallel.h"
 #include "tools/app/commands/commands.h"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Defines the target tetwright::block_compressors, liblz4 and liblzma, for the build and for those who use the installed
 # library: Debian's packages of them have no CMake configuration.
 if(NOT TARGET tetwright::block_compressors)

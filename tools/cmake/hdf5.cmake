@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Defines the target tetwright::hdf5, for the build and for those who use the installed library: the C library of HDF5
 # without MPI, which Debian keeps in a folder of its own.
 if(NOT TARGET tetwright::hdf5)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Defines the target tetwright::libdeflate, for the build and for those who use the installed library: Debian's
 # package of libdeflate has no CMake configuration.
 if(NOT TARGET tetwright::libdeflate)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Defines the target tetwright::libzip, for the build and for those who use the installed library: the CMake
 # configuration in Debian's package wants libzip's programs, which are in other packages.
 if(NOT TARGET tetwright::libzip)

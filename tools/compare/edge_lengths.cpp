@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/compare/edge_lengths.h"
 
 #include <algorithm>
@@ -26,9 +27,9 @@ std::vector<std::pair<Index, Index>> edges_of(const TetMesh& mesh) {
 }
 
 /// What the field wants, and no more than the source itself: the field is kept on a grid.
-double wanted_at(const Vec3& place, const SizeField& wish, const SizeSource& source) {
-  const SizeLimits& limits = wish.limits();
-  const double of_field = wish.at(place);
+double wanted_at(const Vec3& place, const SizeField& target_length, const SizeSource& source) {
+  const SizeLimits& limits = target_length.limits();
+  const double of_field = target_length.at(place);
   const std::optional<WantedLength> given = source.at(place);
   if (!given) return of_field;
   return std::min(of_field, std::clamp(given->length, limits.min_edge, limits.max_edge) +
@@ -37,8 +38,8 @@ double wanted_at(const Vec3& place, const SizeField& wish, const SizeSource& sou
 
 }  // namespace
 
-EdgeLengthReport compare_edge_lengths(const TetMesh& mesh, const SizeField* wish, const SizeSource* source,
-                                      double min_edge, double max_edge) {
+EdgeLengthReport compare_edge_lengths(const TetMesh& mesh, const SizeField* target_length,
+                                      const SizeSource* source, double min_edge, double max_edge) {
   EdgeLengthReport report;
   std::vector<double> ratios;
   const auto offend = [](EdgeLengthReport::Offender& worst, double length, const Vec3& place, bool worse) {
@@ -55,11 +56,11 @@ EdgeLengthReport compare_edge_lengths(const TetMesh& mesh, const SizeField* wish
     ++report.edges;
     if (length > max_edge) offend(report.above_max, length, middle, length > report.above_max.length);
     if (length < min_edge) offend(report.below_min, length, middle, length < report.below_min.length);
-    if (!wish) continue;
-    ratios.push_back(length / wanted_at(middle, *wish, *source));
+    if (!target_length) continue;
+    ratios.push_back(length / wanted_at(middle, *target_length, *source));
     report.within += ratios.back() <= edge_length_factor && ratios.back() >= 1 / edge_length_factor;
   }
-  report.wished = ratios.size();
+  report.with_target_length = ratios.size();
   if (ratios.empty()) return report;
   const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
   std::nth_element(ratios.begin(), middle, ratios.end());

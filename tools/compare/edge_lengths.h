@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -21,17 +22,17 @@ struct EdgeLengthReport {
   std::size_t edges = 0;
   double shortest = 0, longest = 0;
   Offender above_max, below_min;
-  // With a wish; else 0.
-  std::size_t within = 0;  ///< edges within edge_length_factor of it
-  double median = 0;       ///< of lengths over wanted ones
-  std::size_t wished = 0;  ///< edges in all, or 0 without a wish
+  // With a target length; else 0.
+  std::size_t within = 0;              ///< edges within edge_length_factor of it
+  double median = 0;                   ///< of lengths over wanted ones
+  std::size_t with_target_length = 0;  ///< edges in all, or 0 without a target length
   double within_share() const {
-    return wished ? static_cast<double>(within) / static_cast<double>(wished) : 1;
+    return with_target_length ? static_cast<double>(within) / static_cast<double>(with_target_length) : 1;
   }
 };
 
-/// `wish` may be null; `min_edge` 0 and `max_edge` infinite are no bounds.
-EdgeLengthReport compare_edge_lengths(const TetMesh& mesh, const SizeField* wish, const SizeSource* source,
-                                      double min_edge, double max_edge);
+/// `target_length` may be null; `min_edge` 0 and `max_edge` infinite are no bounds.
+EdgeLengthReport compare_edge_lengths(const TetMesh& mesh, const SizeField* target_length,
+                                      const SizeSource* source, double min_edge, double max_edge);
 
 }  // namespace tetwright

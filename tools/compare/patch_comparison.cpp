@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/compare/patch_comparison.h"
 
 #include <map>
@@ -22,7 +23,7 @@ struct GroupFaces {
   }
 };
 
-using FacesByGroup = std::map<FaceGroup, GroupFaces>;
+using FacesByGroup = std::map<SurfaceRegion, GroupFaces>;
 
 FacesByGroup faces_by_group(const TetMesh& mesh) {
   FacesByGroup faces;

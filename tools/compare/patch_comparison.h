@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
-#include "common/face_group.h"
+#include "common/surface_region.h"
 #include "common/tet_mesh.h"
 #include "mesher/input/mesher_input.h"
 
@@ -11,7 +12,7 @@ namespace tetwright {
 
 /// A patch that the user named or numbered, in the input and in the result.
 struct PatchComparison {
-  FaceGroup group;
+  SurfaceRegion group;
   double input_area = 0, area = 0;  ///< input units squared
   std::size_t triangles = 0;        ///< of the result
   Vec3 place = Vec3::Zero();        ///< on it in the input, input units

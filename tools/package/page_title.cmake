@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # help2man names a page after the file of the program; the pages of commands are named like "tetwright-mesh".
 file(READ ${FILE} page)
 string(REPLACE " " "-" name "${CALL}")

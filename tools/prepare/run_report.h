@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -62,10 +63,10 @@ struct VolumeReport {
 /// What --size-field, --min-edge, --max-edge and --grading ask for.
 struct RequestedSizes {
   SizeLimits limits;
-  std::shared_ptr<const SizeSource> source;  ///< null: no size field
-  std::shared_ptr<const SizeField> wish;     ///< likewise
+  std::shared_ptr<const SizeSource> source;        ///< null: no size field
+  std::shared_ptr<const SizeField> target_length;  ///< likewise
 
-  bool any() const { return wish || limits.min_edge > 0 || std::isfinite(limits.max_edge); }
+  bool any() const { return target_length || limits.min_edge > 0 || std::isfinite(limits.max_edge); }
 };
 
 /// Cells that are larger than was meant, since memory would not hold smaller ones.

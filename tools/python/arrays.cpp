@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/python/arrays.h"
 
 #include <algorithm>
@@ -7,8 +8,8 @@
 #include <variant>
 
 #include "common/error.h"
-#include "common/formats/mesh_fields.h"
-#include "common/formats/name_changes.h"
+#include "common/io/names/mesh_fields.h"
+#include "common/io/names/name_changes.h"
 #include "common/message_text.h"
 
 namespace tetwright::python {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/python/mesh_object.h"
 
 #include <pybind11/numpy.h>
@@ -7,11 +8,11 @@
 #include <utility>
 
 #include "common/error.h"
-#include "common/formats/atomic_file.h"
-#include "common/formats/formats.h"
-#include "common/formats/mesh_fields.h"
-#include "common/formats/mesh_parts.h"
-#include "common/formats/mesh_to_write.h"
+#include "common/files/atomic_file.h"
+#include "common/io/contents/mesh_to_write.h"
+#include "common/io/formats.h"
+#include "common/io/names/mesh_fields.h"
+#include "common/io/names/mesh_parts.h"
 #include "common/mesh/boundary_groups.h"
 #include "tools/app/commands/output_paths.h"
 #include "tools/app/commands/unwritten.h"

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // tetwright._core: what the Python package calls. Python turns its objects into arrays, arrays.h these into
 // meshes, and mesh_object.h those of the results into views.
 #include <pybind11/functional.h>
@@ -15,8 +17,8 @@
 #include <utility>
 
 #include "common/error.h"
-#include "common/formats/formats.h"
-#include "common/formats/label_groups.h"
+#include "common/io/formats.h"
+#include "common/io/names/label_groups.h"
 #include "common/parallel/parallel.h"
 #include "tools/app/commands/commands.h"
 #include "tools/app/commands/output_paths.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/python/option_types.h"
 
 #include <CLI/CLI.hpp>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Builds the compiled part of the Python package with CMake, in the folder that TETWRIGHT_BUILD names or build/python.
 pip runs this from the root of the repository, by way of backend.py."""
 import os

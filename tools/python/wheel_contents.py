@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes a wheel of a build: `wheel` calls it. Everything that program and module need but glibc and g++'s runtime
 library goes into it, with its licence; the names and versions of symbols inside say which glibc it is for."""
 import base64

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/report/stats_json.h"
 
 #include <sys/resource.h>
@@ -198,7 +199,7 @@ nlohmann::json solid_json(const SolidNumbers& s) {
       {"volume", s.volume}, {"components", s.components}, {"handles", s.handles}, {"cavities", s.cavities}};
 }
 
-nlohmann::json fidelity_json(const std::vector<SolidComparison>& all) {
+nlohmann::json solids_json(const std::vector<SolidComparison>& all) {
   nlohmann::json j = nlohmann::json::array();
   static constexpr const char* against[] = {"surface", "distances", "voxels"};
   for (const SolidComparison& f : all) {
@@ -249,7 +250,7 @@ nlohmann::json edge_lengths_json(const EdgeLengthReport& e, const RequestedSizes
                    {"longest", e.longest},
                    {"above_max", e.above_max.count},
                    {"below_min", e.below_min.count}};
-  if (e.wished > 0) {
+  if (e.with_target_length > 0) {
     j["field"] = sizes.source->field();
     j["within_percent"] = 100 * e.within_share();
     j["median_ratio"] = e.median;
@@ -374,7 +375,7 @@ std::string stats_json(const CommandLine& line, const RunReport& run) {
   j["result"] =
       run.result ? mesh_json(*run.result, run.material_names, line.min_solid_angle) : nlohmann::json();
   if (run.simplify) j["result"]["held_by_input"] = run.input_limited;
-  if (run.mesher) j["fidelity"] = fidelity_json(run.solids);
+  if (run.mesher) j["fidelity"] = solids_json(run.solids);
   if (!run.features.empty()) j["features"] = features_json(run.features);
   if (!run.patches.empty()) j["patches"] = patches_json(run.patches);
   if (run.deviation)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "benchmarks/solver/problems.h"
 
 #include <gtest/gtest.h>
@@ -38,15 +39,15 @@ TEST(Problems, IterationsDoNotDependOnUnits) {
   EXPECT_EQ(metres.elastic, millimetres.elastic);
 }
 
-TEST(Problems, IterationsGrowWithTheNumberOfPointsAndWithPoorShapes) {
+TEST(Problems, IterationsGrowWithTheNumberOfPointsAndWithBadShapes) {
   const auto iterations = [](int n, double jitter) {
     const TetMesh mesh = jittered_lattice(n, jitter, 5);
     return count_iterations(mesh, heat_matrix(mesh), elastic_matrix(mesh, {}));
   };
-  const Iterations coarse = iterations(6, 0.1), fine = iterations(12, 0.1), poor = iterations(12, 0.33);
+  const Iterations coarse = iterations(6, 0.1), fine = iterations(12, 0.1), bad = iterations(12, 0.33);
   EXPECT_NEAR(static_cast<double>(fine.heat) / coarse.heat, 2, 0.4);  // as 1 / h
-  EXPECT_GT(poor.heat, fine.heat);
-  EXPECT_GT(poor.elastic, fine.elastic);
+  EXPECT_GT(bad.heat, fine.heat);
+  EXPECT_GT(bad.elastic, fine.elastic);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/geometry/self_intersection.h"
 
 #include <gtest/gtest.h>
@@ -5,7 +6,7 @@
 #include "common/geometry/triangle_intersection.h"
 #include "common/parallel/parallel.h"
 #include "common/random.h"
-#include "common/samples.h"
+#include "common/samples/samples.h"
 
 namespace tetwright::self_intersection_test {
 namespace {

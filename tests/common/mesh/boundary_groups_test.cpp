@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/boundary_groups.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +26,7 @@ TEST(BoundaryGroups, PairsGetTheNumbersThatTheUsersLeave) {
   // outer, inner, then -5, "wall" and "inlet" as they are ordered.
   EXPECT_EQ(numbers, (std::vector<std::int64_t>{1, 3, 4, 5, 2}));
   EXPECT_EQ(groups.all()[0].pair, outer);
-  EXPECT_EQ(groups.all()[4].face_group.name, "inlet");
+  EXPECT_EQ(groups.all()[4].surface_region.name, "inlet");
   std::vector<std::int64_t> of_faces;
   for (const InterfaceTriangle& t : mesh.interfaces) of_faces.push_back(groups.number_of(t));
   EXPECT_EQ(of_faces, (std::vector<std::int64_t>{3, 1, 2, 5, 5, 4}));

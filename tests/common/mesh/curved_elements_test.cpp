@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/curved_elements.h"
 
 #include <gtest/gtest.h>
@@ -5,7 +6,7 @@
 #include <random>
 
 #include "common/mesh/interfaces.h"
-#include "common/samples.h"
+#include "common/samples/samples.h"
 #include "tests/common/small_meshes.h"
 
 namespace tetwright::curved_elements_test {

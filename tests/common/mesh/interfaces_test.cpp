@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/interfaces.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +8,7 @@
 #include "common/mesh/mesh_faces.h"
 #include "common/mesh/topology.h"
 #include "common/parallel/parallel.h"
-#include "common/samples.h"
+#include "common/samples/samples.h"
 #include "tests/common/small_meshes.h"
 
 namespace tetwright::interfaces_test {

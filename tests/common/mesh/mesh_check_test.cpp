@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/mesh_check.h"
 
 #include <gtest/gtest.h>
@@ -5,7 +6,7 @@
 #include <limits>
 
 #include "common/parallel/parallel.h"
-#include "common/samples.h"
+#include "common/samples/samples.h"
 #include "tests/common/small_meshes.h"
 
 namespace tetwright::mesh_check_test {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/mesh_statistics.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +8,7 @@
 #include "common/geometry/quality.h"
 #include "common/mesh/interfaces.h"
 #include "common/parallel/parallel.h"
-#include "common/samples.h"
+#include "common/samples/samples.h"
 #include "tests/common/small_meshes.h"
 
 namespace tetwright::mesh_statistics_test {

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/solid_shape.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "common/samples.h"
+#include "common/samples/samples.h"
 #include "common/triangle_mesh.h"
 
 namespace tetwright {

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/surface_chains.h"
 
 #include <gtest/gtest.h>
 
-#include "common/samples.h"
+#include "common/samples/samples.h"
 
 namespace tetwright::surface_chains_test {
 namespace {

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/topology.h"
 
 #include <gtest/gtest.h>
 
-#include "common/samples.h"
+#include "common/samples/samples.h"
 #include "tests/common/small_meshes.h"
 
 namespace tetwright::topology_test {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/cut/independent_rounds.h"
 
 #include <gtest/gtest.h>
@@ -16,15 +17,15 @@ TEST(IndependentRounds, AreLikeOneAfterTheOther) {
   for (std::size_t i = points.size(); i > 1; --i)
     std::swap(points[i - 1], points[random.below(static_cast<std::uint32_t>(i))]);
   const auto visit = [&](std::vector<int>& numbers, Index p) {
-    int most = 0;
+    int max_number = 0;
     for (Index t : lattice.stars.tets(p))
       for (Index q : lattice.tets[t]) {
-        most = std::max(most, numbers[q]);
+        max_number = std::max(max_number, numbers[q]);
         if (!lattice.stars.lists(q)) continue;
         for (Index u : lattice.stars.tets(q))
-          for (Index r : lattice.tets[u]) most = std::max(most, numbers[r]);
+          for (Index r : lattice.tets[u]) max_number = std::max(max_number, numbers[r]);
       }
-    numbers[p] = most + 1;
+    numbers[p] = max_number + 1;
   };
   // Groups of one, two, three, ... points.
   std::vector<std::size_t> starts{0};

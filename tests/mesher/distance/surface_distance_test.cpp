@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Exact distances, insides and thicknesses of surfaces.
 #include "mesher/distance/surface_distance.h"
 

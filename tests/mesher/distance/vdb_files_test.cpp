@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/distance/vdb_files.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +9,7 @@
 #include <map>
 
 #include "common/error.h"
-#include "common/formats/atomic_file.h"
+#include "common/files/atomic_file.h"
 #include "common/parallel/parallel.h"
 #include "common/random.h"
 #include "mesher/distance/level_set.h"

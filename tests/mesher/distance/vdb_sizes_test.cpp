@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/distance/vdb_sizes.h"
 
 #include <gtest/gtest.h>
@@ -8,8 +9,7 @@
 #include <limits>
 
 #include "common/error.h"
-#include "common/formats/atomic_file.h"
-#include "common/formats/formats.h"
+#include "common/files/atomic_file.h"
 #include "common/random.h"
 #include "tests/common/small_meshes.h"
 #include "tests/common/temporary_folder.h"
@@ -188,26 +188,6 @@ TEST_F(VdbSizes, DamagedFiles) {
       } catch (const InputError&) {
       }
     }
-  }
-}
-
-TEST_F(VdbSizes, EitherKindOfFileByItsExtension) {
-  const auto grid = read_size_field(written({linear_grid("h")}));
-  EXPECT_TRUE(grid->at(world(1, 1, 1)));
-  EXPECT_EQ(grid->field(), "h");
-  TetMesh mesh = one_tet();
-  mesh.point_fields = {{"size", 1, false, {2, 2, 2, 2}}};
-  write_tet_mesh(mesh, folder_ / "a.vtu");
-  EXPECT_EQ(read_size_field(folder_ / "a.vtu")->at({0.2, 0.2, 0.2})->length, 2);
-  EXPECT_NO_THROW(check_size_field_path("a.VDB"));
-  try {
-    check_size_field_path("a.nrrd");
-    ADD_FAILURE();
-  } catch (const UsageError& e) {
-    EXPECT_STREQ(e.what(),
-                 "a.nrrd: unknown extension \".nrrd\"; edge lengths are read from .vtu .msh .vtk .xdmf .node "
-                 ".ele .ply "
-                 ".vtp .vdb");
   }
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/domain/regions.h"
 
 #include <gtest/gtest.h>

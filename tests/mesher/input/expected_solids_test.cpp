@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/input/expected_solids.h"
 
 #include <gtest/gtest.h>

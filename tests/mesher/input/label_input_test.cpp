@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesher/input/label_input.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +7,7 @@
 
 #include "common/parallel/parallel.h"
 #include "common/random.h"
-#include "tests/common/formats/expect_error.h"
+#include "tests/common/io/expect_error.h"
 
 namespace tetwright::label_input_test {
 namespace {

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // In place of mesher/distance/openvdb_grids.cpp: a map of leaves, filled by exact distances from the
 // triangles.
 #include <algorithm>

@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // The parallel stages from field to cut mesh on many threads, for the thread sanitizer.
 #include <gtest/gtest.h>
 
 #include "common/parallel/parallel.h"
 #include "mesher/cut/cutting.h"
-#include "mesher/cut/point_mover.h"
+#include "mesher/cut/vertex_snapping.h"
 #include "mesher/distance/field_thickness.h"
 #include "mesher/distance/level_set_field.h"
 #include "mesher/labels/label_field.h"
@@ -41,7 +43,7 @@ CutMesh mesh_with(unsigned threads) {
   LabelledLattice lattice =
       label_lattice(std::move(points), std::move(regions), std::move(tets), 3, false, nullptr);
   read_star_values(lattice, field);
-  EXPECT_GT(move_points(lattice, field, nullptr).moved, 1000u);
+  EXPECT_GT(snap_vertices(lattice, field, nullptr).moved, 1000u);
   return cut_lattice(lattice);
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/constraints/link_condition.h"
 
 #include <set>

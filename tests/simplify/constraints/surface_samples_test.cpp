@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/constraints/surface_samples.h"
 
 #include <cmath>
@@ -135,7 +136,7 @@ TEST(SurfaceSamples, OfATriangleThatGoesAreHandedOn) {
   Workbench w(with_bump());
   w.own_samples(0.5 * w.mesh.space().scale());
   EXPECT_LT(w.samples->largest_distance(), 1e-9);
-  make_poor(w);
+  make_bad(w);
   w.star(w.at(2, 2, 4.25));
   ASSERT_EQ(w.carry_out(collapse(*w.ws, w.rules)), Outcome::done);
   w.expect_sound();
@@ -148,7 +149,7 @@ TEST(SurfaceSamples, ThatWouldBeTooFarFromTheirTriangleRefuse) {
   Workbench w(with_bump());
   const double scale = w.mesh.space().scale();
   w.own_samples(0.5 * scale);
-  make_poor(w);
+  make_bad(w);
   w.rules.max_deviation = 0.2 * scale;
   w.star(w.at(2, 2, 4.25));
   EXPECT_EQ(collapse(*w.ws, w.rules), Outcome::surface_error);
@@ -173,16 +174,16 @@ TEST(SurfaceSamples, ATriangleFarFromTheSurfaceIsRefused) {
     edit.added.push_back({{ids, {to, first, second}}, 0, 0, outside_id});
   }
   ASSERT_TRUE(w.grid.test(edit));
-  EXPECT_FALSE(w.samples->hand_over(edit, 0.2 * scale));
-  EXPECT_TRUE(w.samples->hand_over(edit, 0.31 * scale));
-  EXPECT_TRUE(w.samples->hand_over(edit, std::numeric_limits<double>::infinity()));
+  EXPECT_FALSE(w.samples->reassign_samples(edit, 0.2 * scale));
+  EXPECT_TRUE(w.samples->reassign_samples(edit, 0.31 * scale));
+  EXPECT_TRUE(w.samples->reassign_samples(edit, std::numeric_limits<double>::infinity()));
 }
 
 TEST(SurfaceSamples, StayWithTheirTrianglesThroughCompaction) {
   Workbench w(with_bump());
   w.own_samples(0.5 * w.mesh.space().scale());
   for (const Vec3& at : {Vec3(2, 2, 4.25), Vec3(1, 1, 4), Vec3(0, 2, 2), Vec3(2, 2, 2)}) {
-    make_poor(w);
+    make_bad(w);
     w.star(w.at(at.x(), at.y(), at.z()));
     ASSERT_EQ(w.carry_out(collapse(*w.ws, w.rules)), Outcome::done);
   }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/constraints/volume_ledger.h"
 
 #include "simplify/operations/collapse.h"
@@ -9,29 +10,29 @@ namespace {
 
 using Changes = std::vector<VolumeChange>;
 
-TEST(VolumeLedger, BooksWithinItsBoundsAndBackTowardsThem) {
+TEST(VolumeLedger, CommitsWithinItsBoundsAndBackTowardsThem) {
   const EditableMesh mesh(
       grid_mesh({4, 4, 4}, [](int x, int, int) { return std::optional<MaterialTag>(x < 2 ? 1 : 2); }),
       "mesh");
   const double half = mesh.total_volume() / 2;
   VolumeLedger ledger;
   ledger.open(mesh, 0.1);
-  EXPECT_EQ(ledger.strain(), 0);
-  const Changes most{{0, 0.06 * half}, {1, -0.06 * half}};
-  EXPECT_TRUE(ledger.allows(most));
-  EXPECT_EQ(ledger.strain(), 0);  // a question only
-  ledger.book(most);
-  EXPECT_NEAR(ledger.strain(), 0.6, 1e-12);
+  EXPECT_EQ(ledger.utilization(), 0);
+  const Changes large{{0, 0.06 * half}, {1, -0.06 * half}};
+  EXPECT_TRUE(ledger.allows(large));
+  EXPECT_EQ(ledger.utilization(), 0);  // a question only
+  ledger.commit(large);
+  EXPECT_NEAR(ledger.utilization(), 0.6, 1e-12);
   EXPECT_FALSE(ledger.allows(Changes{{0, 0.05 * half}, {outside_id, -1}}));
   EXPECT_FALSE(ledger.allows(Changes{{0, -0.01 * half}, {1, -0.05 * half}}));  // one of two is enough
-  EXPECT_FALSE(ledger.allows(most));
-  EXPECT_NEAR(ledger.strain(), 0.6, 1e-12);
+  EXPECT_FALSE(ledger.allows(large));
+  EXPECT_NEAR(ledger.utilization(), 0.6, 1e-12);
   const Changes back{{0, -0.06 * half}, {1, 0.06 * half}};
   EXPECT_TRUE(ledger.allows(back));
-  ledger.book(back);
-  EXPECT_NEAR(ledger.strain(), 0, 1e-12);
+  ledger.commit(back);
+  EXPECT_NEAR(ledger.utilization(), 0, 1e-12);
   // What is out of its bounds already may come back, and no farther.
-  ledger.book(Changes{{0, 0.2 * half}});
+  ledger.commit(Changes{{0, 0.2 * half}});
   EXPECT_TRUE(ledger.allows(Changes{{0, -0.05 * half}}));
   EXPECT_FALSE(ledger.allows(Changes{{0, 0.001 * half}}));
   const VolumeLedger open;
@@ -39,7 +40,7 @@ TEST(VolumeLedger, BooksWithinItsBoundsAndBackTowardsThem) {
 }
 
 // A corner that sticks out may go while there is volume to lose, and stays after; what fails at the count
-// books nothing.
+// commits nothing.
 TEST(VolumeLedger, HoldsCollapsesBack) {
   TetMesh mesh = grid_mesh(4);
   jitter(mesh, 1);
@@ -66,7 +67,7 @@ TEST(VolumeLedger, HoldsCollapsesBack) {
     if (!w.star(p).interface_triangles.empty()) {
       EXPECT_NE(w.carry_out(collapse(*w.ws, w.rules)), Outcome::done);
     }
-  EXPECT_NEAR(w.ledger.strain(), 0, 1e-12);
+  EXPECT_NEAR(w.ledger.utilization(), 0, 1e-12);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/mesh/reservations.h"
 
 #include <gtest/gtest.h>
@@ -14,35 +15,35 @@ namespace {
 
 using Points = std::vector<Index>;
 
-TEST(Reservations, WhatAnEarlierWinnerMarkedIsNotFree) {
+TEST(Reservations, WhatAnEarlierWinnerClaimedIsNotFree) {
   Reservations r;
   r.reset(10);
   r.begin_batch(3);
   EXPECT_TRUE(r.free(Points{0, 1, 2}));
-  r.mark(Points{1, 2, 3});
+  r.claim(Points{1, 2, 3});
   EXPECT_FALSE(r.free(Points{0, 1}));
   EXPECT_FALSE(r.free(Points{3}));
   EXPECT_TRUE(r.free(Points{0, 4}));
-  r.mark(Points{3, 4});  // one of them a second time
+  r.claim(Points{3, 4});  // one of them a second time
   EXPECT_FALSE(r.free(Points{3}));
   EXPECT_FALSE(r.free(Points{1}));
   r.begin_batch(3);
   EXPECT_TRUE(r.free(Points{0, 1, 2, 3, 4}));
   r.grow(20);
   EXPECT_TRUE(r.free(Points{19}));
-  r.mark(Points{19});
+  r.claim(Points{19});
   EXPECT_FALSE(r.free(Points{19}));
 }
 
 TEST(Reservations, NumbersOfWinnersBeginAnewBeforeTheyRunOut) {
   Reservations r;
   r.reset(10, std::numeric_limits<std::uint32_t>::max() - 4);
-  r.mark(Points{5});  // a number that would outlast all others
+  r.claim(Points{5});  // a number that would outlast all others
   r.begin_batch(10);
   EXPECT_TRUE(r.free(Points{5}));
   for (Index p = 0; p < 10; ++p) {
     EXPECT_TRUE(r.free(Points{p}));
-    r.mark(Points{p});
+    r.claim(Points{p});
     EXPECT_FALSE(r.free(Points{p}));
   }
   r.begin_batch(3);
@@ -89,14 +90,14 @@ TEST(WriteRule, WhoDecidesWritesNothing) {
   w.expect_sound();
 }
 
-TEST(WriteRule, WhoCommitsWritesWhatIsMarkedAlone) {
+TEST(WriteRule, ACommitWritesItsWriteSetAlone) {
   Workbench w(grid_mesh(2));
   const Index p = w.at(1, 1, 1), t = w.mesh.incident_tet(p);
   const Tet points = w.mesh.points(t);
   const Vec3 position = w.mesh.position(p);
   {
     const WriteRule::Committing one(std::span<const Index>(points).first(3));
-    EXPECT_THROW(w.mesh.set_quality(t, 0), InternalError);  // the tet's fourth point is not marked
+    EXPECT_THROW(w.mesh.set_quality(t, 0), InternalError);  // the tet's fourth point is not claimed
     EXPECT_THROW(w.mesh.touch(points[3]), InternalError);
     EXPECT_THROW(w.mesh.set_link(t, 0, w.mesh.link(t, 0)), InternalError);
     w.mesh.set_link(t, 3, w.mesh.link(t, 3));  // the face of the other three
@@ -114,14 +115,14 @@ TEST(WriteRule, WhoCommitsWritesWhatIsMarkedAlone) {
   w.expect_sound();
 }
 
-// A proposal whose marks say less than what it writes is caught.
-TEST(WriteRule, ACommitWithAMarkLessThrows) {
+// A proposal that writes outside its write set is caught.
+TEST(WriteRule, ACommitOutsideItsWriteSetThrows) {
   Workbench w(grid_mesh(2));
-  make_poor(w);
+  make_bad(w);
   Proposal& p = w.ws->proposal;
   ASSERT_EQ(insert_in_tet(*w.ws, w.rules, 5, InsertionPlace::centre), Outcome::done);
-  std::erase(p.marks, w.mesh.points(5)[2]);
-  p.needs = p.marks.size();
+  std::erase(p.write_set, w.mesh.points(5)[2]);
+  p.read_set_size = p.write_set.size();
   w.begin_batch({&p});
   ASSERT_TRUE(w.admit(p));
   EXPECT_THROW(commit(w.mesh, w.grid, p, w.commit_workspace), InternalError);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/collapse.h"
 
 #include "common/mesh/mesh_check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/edge_removal.h"
 
 #include "simplify/operations/face_removal.h"
@@ -28,7 +29,7 @@ Outcome remove_axis(Workbench& w, Index low, Index high, const FlipReach& reach)
 TEST(EdgeRemoval, EveryRingUpToSeven) {
   for (int n = 3; n <= 7; ++n) {
     Workbench w(ring_mesh(n, 1));
-    make_poor(w);
+    make_bad(w);
     const double volume = w.mesh.total_volume();
     const Index low = w.at(0, 0, -1), high = w.at(0, 0, 1);
     EXPECT_EQ(remove_axis(w, low, high, basic), n == 3 ? Outcome::done : Outcome::no_candidate);
@@ -41,7 +42,7 @@ TEST(EdgeRemoval, EveryRingUpToSeven) {
     w.expect_sound();
   }
   Workbench eight(ring_mesh(8, 1));
-  make_poor(eight);
+  make_bad(eight);
   EXPECT_EQ(remove_axis(eight, eight.at(0, 0, -1), eight.at(0, 0, 1), all), Outcome::too_large);
 }
 
@@ -53,7 +54,7 @@ TEST(EdgeRemoval, FindsTheBestTriangulation) {
     for (std::size_t p = 2; p < mesh.points.size(); ++p) mesh.points[p] *= 0.6 + 0.8 * random.uniform();
     Workbench w(mesh);
     w.rules.objective.kind = Objective::Kind::shape;
-    make_poor(w);
+    make_bad(w);
     float best = 0;
     for (int apex = 0; apex < 5; ++apex) {  // the five fans are all triangulations of a pentagon
       float worst = 1;
@@ -85,7 +86,7 @@ TEST(EdgeRemoval, TheBoundarysTwoToTwo) {
   mesh.tets = {{0, 1, 3, 4}, {0, 2, 1, 4}};
   mesh.materials = {1, 1};
   Workbench w(mesh);
-  make_poor(w);
+  make_bad(w);
   const double volume = w.mesh.total_volume();
   ASSERT_EQ(remove_axis(w, w.at(0, 0, 0), w.at(1, 1, 0), basic), Outcome::done);
   EXPECT_EQ(w.ws->counts.of(Operation::flip22, Outcome::done), 1u);
@@ -93,7 +94,7 @@ TEST(EdgeRemoval, TheBoundarysTwoToTwo) {
   EXPECT_NEAR(w.mesh.total_volume(), volume, 1e-14);
   w.expect_sound();
   // And back.
-  make_poor(w);
+  make_bad(w);
   ASSERT_EQ(remove_axis(w, w.at(1, 0, 0), w.at(0, 1, 0), basic), Outcome::done);
   w.expect_sound();
 }
@@ -101,7 +102,7 @@ TEST(EdgeRemoval, TheBoundarysTwoToTwo) {
 TEST(EdgeRemoval, ErrorBoundsWhatTheSurfaceLoses) {
   TetMesh mesh = ring_mesh(2, 1, true, std::numbers::pi * 0.8);  // a ridge that would be cut off
   Workbench w(mesh);
-  make_poor(w);
+  make_bad(w);
   w.rules.max_error = 1e-3;
   EXPECT_EQ(remove_axis(w, w.at(0, 0, -1), w.at(0, 0, 1), basic), Outcome::surface_error);
   w.expect_sound();
@@ -109,7 +110,7 @@ TEST(EdgeRemoval, ErrorBoundsWhatTheSurfaceLoses) {
 
 TEST(EdgeRemoval, AnInterfacesFourToFour) {
   Workbench w(ring_mesh(4, 1, false, 0, [](int i) { return MaterialTag(i < 2 ? 1 : 2); }));
-  make_poor(w);
+  make_bad(w);
   ASSERT_EQ(remove_axis(w, w.at(0, 0, -1), w.at(0, 0, 1), basic), Outcome::done);
   EXPECT_EQ(w.ws->counts.of(Operation::flip44, Outcome::done), 1u);
   EXPECT_EQ(w.mesh.live_tets(), 4u);
@@ -118,7 +119,7 @@ TEST(EdgeRemoval, AnInterfacesFourToFour) {
 
 TEST(EdgeRemoval, LongerChainsOfAnInterface) {
   Workbench w(ring_mesh(8, 1, false, 0, [](int i) { return MaterialTag(i < 4 ? 1 : 2); }));
-  make_poor(w);
+  make_bad(w);
   ASSERT_EQ(remove_axis(w, w.at(0, 0, -1), w.at(0, 0, 1), all), Outcome::done);
   EXPECT_EQ(w.mesh.live_tets(), 12u);
   w.expect_sound();
@@ -126,7 +127,7 @@ TEST(EdgeRemoval, LongerChainsOfAnInterface) {
 
 TEST(EdgeRemoval, JunctionEdgesStay) {
   Workbench w(ring_mesh(6, 1, false, 0, [](int i) { return MaterialTag(i / 2); }));
-  make_poor(w);
+  make_bad(w);
   EXPECT_EQ(remove_axis(w, w.at(0, 0, -1), w.at(0, 0, 1), all), Outcome::material_rule);
   w.expect_sound();
 }
@@ -146,7 +147,7 @@ TEST(EdgeRemoval, AnEdgeThatIsThereElsewhereIsNotMadeAgain) {
     mesh.materials.pop_back();
     for (const auto& e : tet_edges) {
       Workbench w(mesh);
-      make_poor(w);
+      make_bad(w);
       const auto at = [&](const Vec3& p) { return w.at(p.x(), p.y(), p.z()); };
       const Outcome o = remove_axis(w, at(corners[e[0]]), at(corners[e[1]]), all);
       EXPECT_NE(o, Outcome::done);
@@ -159,12 +160,12 @@ TEST(EdgeRemoval, AnEdgeThatIsThereElsewhereIsNotMadeAgain) {
 
 TEST(EdgeRemoval, CountLimitsHold) {
   Workbench w(ring_mesh(3, 1));
-  make_poor(w);
+  make_bad(w);
   w.rules.count.min = 3;
   EXPECT_EQ(remove_axis(w, w.at(0, 0, -1), w.at(0, 0, 1), all), Outcome::count);
   w.expect_sound();
   Workbench six(ring_mesh(6, 1));
-  make_poor(six);
+  make_bad(six);
   six.rules.count.max = 7;
   EXPECT_EQ(remove_axis(six, six.at(0, 0, -1), six.at(0, 0, 1), all), Outcome::count);
   six.expect_sound();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/edge_turn.h"
 
 #include <array>
@@ -58,7 +59,7 @@ Outcome move_top(double z) {
   p.change = Proposal::Change::move;
   p.centre = top;
   p.position = to;
-  p.mark_star(star);
+  p.claim_star(star);
   for (const Star::StarTet& t : star.tets) {
     const auto at = [&](std::size_t k) { return star.positions[t.link[k]]; };
     EXPECT_GT(orient3d(to, at(0), at(1), at(2)), 0);  // and all tets are positive

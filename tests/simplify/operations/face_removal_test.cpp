@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/face_removal.h"
 #include "simplify/operations/edge_removal.h"
 
@@ -26,7 +27,7 @@ int inner_face(const Workbench& w, Index t) {
 
 TEST(FaceRemoval, TwoToThree) {
   Workbench w(bipyramid(0.3));
-  make_poor(w);
+  make_bad(w);
   ASSERT_EQ(w.carry_out(remove_face(*w.ws, w.rules, 0, inner_face(w, 0), basic_flips)), Outcome::done);
   EXPECT_EQ(w.mesh.live_tets(), 3u);
   EXPECT_EQ(w.ws->counts.of(Operation::flip23, Outcome::done), 1u);
@@ -41,7 +42,7 @@ TEST(FaceRemoval, IsRefusedWhereItDoesNotImprove) {
 
 TEST(FaceRemoval, NeverCrossesAnInterfaceNorTheBoundary) {
   Workbench w(bipyramid(0.12, 2));
-  make_poor(w);
+  make_bad(w);
   const int inner = inner_face(w, 0);
   EXPECT_EQ(w.carry_out(remove_face(*w.ws, w.rules, 0, inner, all_flips)), Outcome::material_rule);
   EXPECT_EQ(w.carry_out(remove_face(*w.ws, w.rules, 0, (inner + 1) % 4, all_flips)), Outcome::no_candidate);
@@ -54,7 +55,7 @@ TEST(FaceRemoval, UndoesEdgeRemoval) {
     TetMesh flat =
         ring_mesh(n, 0.25);  // a lens: tets around its short axis are good, those over its faces flat
     Workbench w(flat);
-    make_poor(w);
+    make_bad(w);
     const Index low = w.at(0, 0, -0.25), high = w.at(0, 0, 0.25);
     const Tet p = w.mesh.points(0);
     for (int e = 0; e < 6; ++e) {

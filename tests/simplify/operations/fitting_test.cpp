@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/fitting.h"
 
 #include "common/mesh/interfaces.h"

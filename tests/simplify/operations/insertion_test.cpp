@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/insertion.h"
 
 #include "tests/simplify/rings.h"
@@ -13,7 +14,7 @@ INSTANTIATE_TEST_SUITE_P(Places, Insertion, testing::Values(InsertionPlace::cent
 
 TEST_P(Insertion, InATetMakesFour) {
   Workbench w(grid_mesh(2));
-  make_poor(w);
+  make_bad(w);
   ASSERT_EQ(w.carry_out(insert_in_tet(*w.ws, w.rules, 5, GetParam())), Outcome::done);
   if (GetParam() == InsertionPlace::centre) {
     EXPECT_EQ(w.mesh.live_tets(), 48u + 3u);
@@ -28,7 +29,7 @@ TEST_P(Insertion, InEveryFaceOfTheBoundaryAndTheInterface) {
   for (Index t = 0; t < mesh.tets.size(); ++t)
     for (int f = 0; f < 4; ++f) {
       Workbench w(mesh);
-      make_poor(w);
+      make_bad(w);
       const bool inner = w.mesh.region_across(t, f) == w.mesh.region(t);
       const bool outside = w.mesh.neighbour(t, f) == no_index;
       const double volume = w.mesh.total_volume();
@@ -55,7 +56,7 @@ TEST_P(Insertion, InEdgesOfEveryDimension) {
   for (Index t = 0; t < mesh.tets.size(); ++t)
     for (int e = 0; e < 6; ++e) {
       Workbench w(mesh);
-      make_poor(w);
+      make_bad(w);
       ASSERT_EQ(w.ws->ring.gather(w.mesh, t, e), Outcome::done);
       const int dimension = w.ws->ring.dimension();
       const std::size_t around = w.ws->ring.tets.size();
@@ -88,9 +89,9 @@ TEST(InsertionJudges, ByTheOutcome) {
   w.expect_sound();
 }
 
-// Four tets at the centre of a poor one are worse still; with the tets around it something better may come
+// Four tets at the centre of a bad one are worse still; with the tets around it something better may come
 // of it.
-TEST(InsertionJudges, TakesTheTetsAroundAPoorOneToo) {
+TEST(InsertionJudges, TakesTheTetsAroundABadOneToo) {
   std::size_t done = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     TetMesh mesh = grid_mesh(6);
@@ -122,7 +123,7 @@ TEST(InsertionJudges, TakesTheTetsAroundAPoorOneToo) {
 
 TEST(InsertionLimits, CountAndRoom) {
   Workbench w(grid_mesh(2));
-  make_poor(w);
+  make_bad(w);
   w.rules.count.max = 48;
   EXPECT_EQ(w.carry_out(insert_in_tet(*w.ws, w.rules, 5, InsertionPlace::centre)), Outcome::count);
   w.expect_sound();
@@ -130,7 +131,7 @@ TEST(InsertionLimits, CountAndRoom) {
   Workbench tight(grid_mesh(2));
   tight.mesh.compact(0, 0);
   tight.grid.build(tight.mesh, 0);
-  make_poor(tight);
+  make_bad(tight);
   EXPECT_EQ(tight.mesh.free_tets().available(), 0u);
   for (Index t = 0; t < 10; ++t) {
     tight.mesh.set_quality(t, 0);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simplify/remesh/local_area.h"
 
 #include <gtest/gtest.h>
@@ -26,14 +27,14 @@ struct Bench {
     jitter(mesh, seed, 0.5);
     return mesh;
   }
-  std::vector<Index> poor(float limit) const {
+  std::vector<Index> bad(float limit) const {
     std::vector<Index> tets;
     for (Index t = 0; t < work.mesh.tet_slots(); ++t)
       if (!work.mesh.dead(t) && work.mesh.quality(t) <= limit) tets.push_back(t);
     return tets;
   }
-  std::vector<ListedTet> listed(const std::vector<Index>& tets) const {
-    std::vector<ListedTet> list;
+  std::vector<TetSnapshot> listed(const std::vector<Index>& tets) const {
+    std::vector<TetSnapshot> list;
     for (const Index t : tets) list.push_back({t, work.mesh.points(t)});
     return list;
   }
@@ -41,9 +42,9 @@ struct Bench {
   BlockRunner runner;
 };
 
-std::vector<Index> numbers(const std::vector<ListedTet>& list) {
+std::vector<Index> numbers(const std::vector<TetSnapshot>& list) {
   std::vector<Index> tets;
-  for (const ListedTet& t : list) tets.push_back(t.tet);
+  for (const TetSnapshot& t : list) tets.push_back(t.tet);
   return tets;
 }
 
@@ -51,12 +52,12 @@ TEST(LocalArea, ListsWhatAScanFinds) {
   constexpr float limit = 0.5;
   Bench b(1);
   ChangeJournal journal;
-  const std::vector<Index> all = b.poor(1);
+  const std::vector<Index> all = b.bad(1);
   LocalArea area(b.work.mesh, b.runner, journal, all, all);
-  ASSERT_GT(b.poor(limit).size(), 10u);
+  ASSERT_GT(b.bad(limit).size(), 10u);
   for (int round = 0; round < 4; ++round) {
     const std::uint64_t before = area.operations();
-    b.runner.tets_in_order(area.poor_tets(limit), [&](Workspace& ws, const ListedTet& item, int) {
+    b.runner.tets_in_order(area.bad_tets(limit), [&](Workspace& ws, const TetSnapshot& item, int) {
       if (!exists(ws.mesh, item)) return Outcome::stale;
       for (const Index p : item.points) {
         Outcome o = ws.gather(p);
@@ -68,8 +69,8 @@ TEST(LocalArea, ListsWhatAScanFinds) {
     if (round == 0) {
       EXPECT_GT(area.operations(), before);
     }
-    EXPECT_EQ(numbers(area.poor_tets(limit)), b.poor(limit));
-    EXPECT_EQ(area.poor_points(limit), Neighbourhood().points_of(b.work.mesh, b.poor(limit)));
+    EXPECT_EQ(numbers(area.bad_tets(limit)), b.bad(limit));
+    EXPECT_EQ(area.bad_points(limit), Neighbourhood().points_of(b.work.mesh, b.bad(limit)));
   }
 }
 
@@ -104,7 +105,7 @@ TEST(LocalArea, ListsItsTetsAndTheirRim) {
     for (const Index p : mesh.points(t)) EXPECT_TRUE(has(part.points, p));
   EXPECT_EQ(numbers(area.tets_around(b.listed(part.tets))), part.with_rim);
   EXPECT_EQ(area.points_around(b.listed(part.tets)), part.reach);
-  EXPECT_EQ(numbers(area.poor_tets(1)), part.tets);  // and the rim's only where something changed
+  EXPECT_EQ(numbers(area.bad_tets(1)), part.tets);  // and the rim's only where something changed
 }
 
 TEST(LocalArea, NoWorkBeyondTheRimWhateverHappensInIt) {
@@ -121,8 +122,8 @@ TEST(LocalArea, NoWorkBeyondTheRimWhateverHappensInIt) {
   LocalArea area(mesh, b.runner, journal, part.tets, part.with_rim);
   std::size_t rim_tets = 0, gone = 0, came = 0;
   for (int round = 0; round < 12; ++round) {
-    const std::vector<ListedTet> listed = area.poor_tets(1);
-    for (const ListedTet& t : listed) {
+    const std::vector<TetSnapshot> listed = area.bad_tets(1);
+    for (const TetSnapshot& t : listed) {
       bool inner = true;
       for (const Index p : t.points) {
         EXPECT_TRUE(std::none_of(beyond.begin(), beyond.end(), [&](const auto& x) { return x.first == p; }));
@@ -132,7 +133,7 @@ TEST(LocalArea, NoWorkBeyondTheRimWhateverHappensInIt) {
     }
     const std::size_t live = b.work.live_points().size();
     if (round % 2 == 0) {  // points come in edges of all that is listed, and go again
-      b.runner.tets_in_order(listed, [&](Workspace& ws, const ListedTet& item, int) {
+      b.runner.tets_in_order(listed, [&](Workspace& ws, const TetSnapshot& item, int) {
         if (!exists(ws.mesh, item)) return Outcome::stale;
         return insert_in_edge(ws, rules, item.tet, round / 2 % 6, InsertionPlace::centre, true);
       });

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Batches whose proposals meet: who wins, who comes again, and what a batch may not do. tets_in_order() takes
 // items in the order given, so that the test says which are in one batch; here an item's number is that of a
 // point.
@@ -38,7 +40,7 @@ struct Block : Workbench {
     rules.accept_worse = 1;
   }
   void in_order(const std::vector<Index>& points, const BlockRunner::TetAttempt& attempt) {
-    std::vector<ListedTet> items;
+    std::vector<TetSnapshot> items;
     for (Index p : points) items.push_back({p, dead_tet});
     runner.tets_in_order(items, attempt);
   }
@@ -80,7 +82,7 @@ TEST(BlockRunner, WhatNeedsWhatAnEarlierOneChangesLosesAndIsDecidedAnew) {
   const Index first = b.at(2, 2, 2), second = b.at(3, 3, 3);  // neighbours
   std::mutex mutex;
   std::map<Index, std::vector<bool>> met;  // whether each found the other when it was decided
-  b.in_order({first, second}, [&](Workspace& ws, const ListedTet& item, int stage) {
+  b.in_order({first, second}, [&](Workspace& ws, const TetSnapshot& item, int stage) {
     EXPECT_EQ(stage, 0);
     const Outcome o = b.collapse_point(ws, item.tet);
     const std::lock_guard guard(mutex);
@@ -104,11 +106,11 @@ TEST(BlockRunner, WhatNeedsWhatAnEarlierOneChangesLosesAndIsDecidedAnew) {
   b.expect_sound();
 }
 
-TEST(BlockRunner, WhatOnlySharesMarksWinsInOneBatch) {
+TEST(BlockRunner, OverlappingWriteSetsWinInOneBatch) {
   Block b(grid_mesh(6), 4);
   const Index first = b.at(2, 3, 3), second = b.at(3, 2, 3);
   std::map<Index, Index> onto{{first, b.at(1, 3, 3)}, {second, b.at(4, 2, 3)}};
-  b.in_order({first, second}, [&](Workspace& ws, const ListedTet& item, int) {
+  b.in_order({first, second}, [&](Workspace& ws, const TetSnapshot& item, int) {
     Outcome o = ws.gather(item.tet);
     const auto at = std::find(ws.star.points.begin(), ws.star.points.end(), onto.at(item.tet));
     if (o == Outcome::done)
@@ -170,14 +172,15 @@ TEST(BlockRunner, WinnersOfABatchCommitInAnyOrder) {
       w.begin_batch(all);
       std::vector<int> marked(w.mesh.point_slots(), 0);
       for (Proposal* p : all) {
-        if (!w.mesh.reservations().free(p->needed())) continue;
+        if (!w.mesh.reservations().free(p->read_set())) continue;
         if (std::any_of(winners.begin(), winners.end(),
                         [&](const Proposal* q) { return !SurfaceGrid::apart(q->edit, p->edit); }))
           continue;
         ASSERT_TRUE(w.admit(*p));
         winners.push_back(p);
-        shared += std::any_of(p->marks.begin(), p->marks.end(), [&](Index q) { return marked[q] != 0; });
-        for (Index q : p->marks) marked[q] = 1;
+        shared +=
+            std::any_of(p->write_set.begin(), p->write_set.end(), [&](Index q) { return marked[q] != 0; });
+        for (Index q : p->write_set) marked[q] = 1;
       }
       won += winners.size();
       Random random(order);
@@ -207,7 +210,7 @@ TEST(BlockRunner, AnAttemptThatThrowsLeavesTheMeshAsItWas) {
     const std::vector<Index> points = b.live_points();
     const Contents before = contents(b.mesh);
     const auto run = [&](Index bad) {
-      b.in_order(points, [&](Workspace& ws, const ListedTet& item, int) {
+      b.in_order(points, [&](Workspace& ws, const TetSnapshot& item, int) {
         if (item.tet == bad) throw InternalError("thrown by the test");
         return b.collapse_point(ws, item.tet);
       });
@@ -223,14 +226,14 @@ TEST(BlockRunner, AnAttemptThatThrowsLeavesTheMeshAsItWas) {
 
 TEST(BlockRunner, StopEndsABlockAtAnExactCount) {
   Block b(grid_mesh(4), 1000);
-  make_poor(b);
+  make_bad(b);
   const std::size_t wanted = b.mesh.live_tets() + 3 * 7;
-  std::vector<ListedTet> tets;
+  std::vector<TetSnapshot> tets;
   for (Index t = 0; t < b.mesh.tet_slots(); ++t)
     if (!b.mesh.dead(t)) tets.push_back({t, b.mesh.points(t)});
   b.runner.tets(
       tets,
-      [&](Workspace& ws, const ListedTet& item, int) {
+      [&](Workspace& ws, const TetSnapshot& item, int) {
         return exists(b.mesh, item) ? insert_in_tet(ws, b.rules, item.tet, InsertionPlace::centre)
                                     : Outcome::stale;
       },
@@ -244,7 +247,7 @@ TEST(BlockRunner, BoundsHoldForABatchAsAWhole) {
   Block b(jittered(4, 3), 1000);
   b.rules.count.min = b.mesh.live_tets() - 20;  // each of them alone would do
   b.in_order(b.live_points(),
-             [&](Workspace& ws, const ListedTet& item, int) { return b.collapse_point(ws, item.tet); });
+             [&](Workspace& ws, const TetSnapshot& item, int) { return b.collapse_point(ws, item.tet); });
   EXPECT_GE(b.mesh.live_tets(), b.rules.count.min);
   EXPECT_GT(b.runner.take_totals().counts.of(Operation::collapse, Outcome::count), 0u);
   b.expect_sound();
@@ -256,19 +259,19 @@ TEST(BlockRunner, BoundsHoldForABatchAsAWhole) {
   std::vector<Index> points;
   for (double x : {0, 3, 6})
     for (double y : {0, 3, 6}) points.push_back(v.at(x, y, 3));
-  v.in_order(points, [&](Workspace& ws, const ListedTet& item, int) {
+  v.in_order(points, [&](Workspace& ws, const TetSnapshot& item, int) {
     EXPECT_EQ(ws.gather(item.tet), Outcome::done);
     ws.proposal.change = Proposal::Change::move;
     ws.proposal.centre = item.tet;
     ws.proposal.position = ws.star.centre_position;
-    ws.proposal.mark_star(ws.star);
+    ws.proposal.claim_star(ws.star);
     ws.proposal.volumes = {{0, third}};
     return ws.count(Operation::smooth, ws.within_bounds(v.rules, 0));
   });
   const OperationCounts counts = v.runner.take_totals().counts;
   EXPECT_EQ(counts.of(Operation::smooth, Outcome::done), 3u);
   EXPECT_EQ(counts.of(Operation::smooth, Outcome::volume), 6u);
-  EXPECT_NEAR(v.ledger.strain(), 3 / 3.1, 1e-9);
+  EXPECT_NEAR(v.ledger.utilization(), 3 / 3.1, 1e-9);
   v.expect_sound();
 }
 
@@ -278,7 +281,7 @@ TEST(BlockRunner, ATurnGoesOnWithTheNextStage) {
   const std::vector<Index> points = b.live_points();
   std::mutex mutex;
   std::map<Index, std::vector<int>> stages;
-  b.in_order(points, [&](Workspace& ws, const ListedTet& item, int stage) {
+  b.in_order(points, [&](Workspace& ws, const TetSnapshot& item, int stage) {
     {
       const std::lock_guard guard(mutex);
       stages[item.tet].push_back(stage);
@@ -318,7 +321,7 @@ TEST(BlockRunner, WorkersDecideSideBySide) {
     std::condition_variable another;
     std::set<const Workspace*> seen;
     bool waited = false;
-    b.in_order(b.live_points(), [&](Workspace& ws, const ListedTet&, int) {
+    b.in_order(b.live_points(), [&](Workspace& ws, const TetSnapshot&, int) {
       std::unique_lock lock(mutex);
       seen.insert(&ws);
       another.notify_all();

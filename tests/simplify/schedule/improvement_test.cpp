@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include "common/mesh/interfaces.h"
@@ -5,7 +6,7 @@
 #include "common/mesh/mesh_statistics.h"
 #include "common/mesh/topology.h"
 #include "common/parallel/parallel.h"
-#include "common/random_interior.h"
+#include "common/samples/random_interior.h"
 #include "simplify/simplify.h"
 #include "tests/simplify/meshes.h"
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // `check`: what it prints, and its exit status.
 #include <gtest/gtest.h>
 

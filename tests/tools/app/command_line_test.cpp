@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/app/command_line.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/common/formats/expect_error.h"
+#include "tests/common/io/expect_error.h"
 
 namespace tetwright::command_line_test {
 namespace {

@@ -1,10 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // `improve`, and the options that it shares with `simplify`, through the program.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "common/formats/formats.h"
+#include "common/io/formats.h"
 #include "common/mesh/interfaces.h"
 #include "tests/tools/program.h"
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // --time-limit and --memory-limit.
 #include <gtest/gtest.h>
 

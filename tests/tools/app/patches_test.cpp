@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Named patches and solids, from file to file.
 #include <gtest/gtest.h>
 
@@ -6,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "common/formats/formats.h"
+#include "common/io/formats.h"
 #include "common/mesh/mesh_statistics.h"
 #include "tests/tools/program.h"
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // The program as a whole: commands, exit statuses, messages, files.
 #include <gtest/gtest.h>
 
@@ -5,8 +7,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "common/formats/formats.h"
-#include "common/samples.h"
+#include "common/io/formats.h"
+#include "common/samples/samples.h"
 #include "tests/tools/program.h"
 
 namespace tetwright::program_test {

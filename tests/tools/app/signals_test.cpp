@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Signals at any time of a run: the status is 130, and the files that the program writes are either complete
 // or untouched. Whether a signal arrives in time is read from the state of the process, never assumed from a
 // delay.
@@ -10,7 +12,7 @@
 #include <fstream>
 #include <thread>
 
-#include "common/formats/formats.h"
+#include "common/io/formats.h"
 #include "tests/tools/process.h"
 #include "tests/tools/program.h"
 

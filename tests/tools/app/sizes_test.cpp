@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // --size-field, --max-edge, --min-edge and --grading.
 #include <gtest/gtest.h>
 

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "common/formats/formats.h"
+#include "common/io/formats.h"
 #include "common/mesh/interfaces.h"
 #include "common/message_text.h"
 #include "tests/tools/program.h"
@@ -70,7 +71,7 @@ TEST_F(SolverFormats, TheBoundaryAsASurfaceAndAMeshWithoutIt) {
   EXPECT_NE(contents(f / "with.msh").find("\"left|right\""), std::string::npos);
   EXPECT_EQ(contents(f / "without.msh").find("\"left|right\""), std::string::npos);
   std::vector<std::string> names;
-  for (const FaceGroup& g : boundary.groups) names.push_back(g.name);
+  for (const SurfaceRegion& g : boundary.groups) names.push_back(g.name);
   EXPECT_EQ(names, (std::vector<std::string>{"left|outside", "left|right", "right|outside"}));
 }
 
@@ -106,7 +107,7 @@ TEST_F(SolverFormats, WhatAFormatChangesIsSaid) {
   expect_said(said("out.msh", "--boundary " + (f / "b.obj")),
               "1 names of patches (changed, as .obj cannot hold it: \"in let\" -> \"in_let\")");
   EXPECT_EQ(said("out.msh").find("changed, as"), std::string::npos);
-  EXPECT_EQ(read_tet_mesh(f / "out.mesh").mesh.patch_groups.begin()->second, (FaceGroup{7, "in_let"}));
+  EXPECT_EQ(read_tet_mesh(f / "out.mesh").mesh.patch_groups.begin()->second, (SurfaceRegion{7, "in_let"}));
 }
 
 TEST_F(SolverFormats, NamesThatBecomeEqualStayApart) {
@@ -122,7 +123,7 @@ TEST_F(SolverFormats, NamesThatBecomeEqualStayApart) {
     write_interfaces(mesh, file);
     const bool words = std::string(extension) == ".stl" || std::string(extension) == ".obj";
     std::vector<std::string> names;
-    for (const FaceGroup& group : read_surface(file).groups) names.push_back(group.name);
+    for (const SurfaceRegion& group : read_surface(file).groups) names.push_back(group.name);
     EXPECT_EQ(names, words ? (std::vector<std::string>{"left|right", "in_let", "in_let_2"})
                            : (std::vector<std::string>{"left|right", "in let", "in_let"}))
         << extension;

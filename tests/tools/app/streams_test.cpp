@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Standard input and output as files.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // --tolerance of prepare, simplify and mesh.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Segmented volumes through the program.
 #include <gtest/gtest.h>
 
@@ -8,8 +10,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "common/formats/formats.h"
-#include "common/samples.h"
+#include "common/io/formats.h"
+#include "common/samples/samples.h"
 #include "tests/tools/program.h"
 
 namespace tetwright::volumes_test {

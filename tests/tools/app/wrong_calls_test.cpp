@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Calls that are wrong: the status and what the message says.
 #include <gtest/gtest.h>
 

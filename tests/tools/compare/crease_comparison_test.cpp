@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Whether a mesh has the creases of its input, and what the program says of them.
 #include "tools/compare/crease_comparison.h"
 

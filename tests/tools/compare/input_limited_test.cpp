@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/compare/input_limited.h"
 
 #include <gtest/gtest.h>
@@ -38,14 +39,14 @@ CreaseCurves edge_of_wedge(int length) {
   return creases;
 }
 
-TEST(HeldTets, NarrowestWedges) {
+TEST(InputLimited, NarrowestWedges) {
   // About as wide as the solid angle while both are small, since cones of tets are then half as high as wide.
   EXPECT_NEAR(narrowest_wedge(0.1) / degree, 6.3, 0.5);
   EXPECT_GT(narrowest_wedge(0.3), 2.5 * narrowest_wedge(0.1));
   EXPECT_LE(narrowest_wedge(0.55), std::acos(1.0 / 3));
 }
 
-TEST(HeldTets, AreThoseInWedgesThatAreTooNarrow) {
+TEST(InputLimited, AreThoseInWedgesThatAreTooNarrow) {
   constexpr int length = 5;
   for (const double degrees : {3.0, 12.0}) {
     const TetMesh mesh = wedge(degrees * degree, length);
@@ -62,7 +63,7 @@ TEST(HeldTets, AreThoseInWedgesThatAreTooNarrow) {
   }
 }
 
-TEST(HeldTets, AreThoseAtCornersThatAreTooSharp) {
+TEST(InputLimited, AreThoseAtCornersThatAreTooSharp) {
   TetMesh mesh;
   mesh.points = {Vec3(0, 0, 0), Vec3(1, 0, 10), Vec3(0, 1, 10), Vec3(-1, -1, 10)};
   mesh.tets = {{0, 2, 1, 3}};

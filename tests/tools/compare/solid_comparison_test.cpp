@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Whether a mesh is the solid of its input, and what the program says where it is not.
 #include "tools/compare/solid_comparison.h"
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // A program of another project: it includes every installed header (all_headers.h lists them) and makes a
 // mesh as the README shows.
 #include <cstdio>

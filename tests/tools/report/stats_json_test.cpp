@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Every key that --stats writes is in the schema, and every key that the schema requires is written.
 #include <gtest/gtest.h>
 

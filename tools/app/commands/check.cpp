@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/error.h"
-#include "common/formats/atomic_file.h"
-#include "common/formats/formats.h"
+#include "common/files/atomic_file.h"
+#include "common/io/formats.h"
 #include "common/memory.h"
 #include "common/mesh/interfaces.h"
 #include "common/mesh/topology.h"

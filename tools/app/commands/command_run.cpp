@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/app/commands/command_run.h"
 
 #include <algorithm>
 #include <limits>
 #include <utility>
 
-#include "common/formats/file_triangles.h"
-#include "common/formats/mesh_fields.h"
-#include "common/measurable.h"
+#include "common/geometry/measurable.h"
+#include "common/io/names/mesh_fields.h"
+#include "common/io/tets/file_triangles.h"
 #include "tools/report/stats_json.h"
 
 namespace tetwright {

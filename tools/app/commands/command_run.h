@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <chrono>
@@ -5,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "common/formats/atomic_file.h"
-#include "common/formats/dropped.h"
-#include "common/formats/formats.h"
+#include "common/files/atomic_file.h"
+#include "common/io/contents/dropped.h"
+#include "common/io/formats.h"
 #include "common/memory.h"
 #include "common/mesh/midside_nodes.h"
 #include "common/progress.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/app/commands/edge_sizes_input.h"
 
 #include <cmath>
@@ -8,7 +9,7 @@
 #include "common/error.h"
 #include "common/message_text.h"
 #include "common/sizes/mesh_sizes.h"
-#include "mesher/distance/vdb_sizes.h"
+#include "tools/app/commands/size_field_file.h"
 
 namespace tetwright {
 
@@ -45,14 +46,14 @@ void read_sizes(CommandRun& run, const Box3& box) {
   if (line.size_field.empty()) return;
   sizes.source = take_size_field(run);
   if (!(diagonal > 0)) return;  // nothing to mesh, which is said elsewhere
-  sizes.wish =
+  sizes.target_length =
       std::make_shared<const SizeField>(*sizes.source, box.low, box.high, wanted_within(sizes.limits));
 }
 
 void require_sizes_at(const CommandRun& run, const std::vector<Vec3>& places) {
   const RequestedSizes& sizes = run.report.sizes;
-  if (!sizes.wish) return;
-  if (const auto place = sizes.wish->first_beyond(*sizes.source, places))
+  if (!sizes.target_length) return;
+  if (const auto place = sizes.target_length->first_beyond(*sizes.source, places))
     throw InputError(run.line.size_field, 0,
                      "the sizes end within the body: there are none at " + place_text(*place) +
                          "; give a field that reaches all of " + run.report.inputs.front());

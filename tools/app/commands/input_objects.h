@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <map>
@@ -5,9 +6,9 @@
 #include <variant>
 #include <vector>
 
-#include "common/formats/dropped.h"
-#include "common/formats/file_triangles.h"
-#include "common/formats/read_tet_mesh_result.h"
+#include "common/io/contents/dropped.h"
+#include "common/io/contents/read_tet_mesh_result.h"
+#include "common/io/tets/file_triangles.h"
 #include "common/label_volume.h"
 #include "common/tet_mesh.h"
 #include "common/triangle_mesh.h"

@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/app/commands/output_paths.h"
 
 #include <cctype>
 #include <filesystem>
 
 #include "common/error.h"
-#include "common/formats/atomic_file.h"
-#include "common/formats/formats.h"
+#include "common/files/atomic_file.h"
+#include "common/io/formats.h"
 #include "common/lower_case.h"
 #include "tools/app/commands/command_run.h"
 #include "tools/app/commands/scan_input.h"

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <span>
 #include <string>
 
-#include "common/formats/atomic_file.h"
+#include "common/files/atomic_file.h"
 #include "common/tet_mesh.h"
 #include "common/triangle_mesh.h"
 #include "tools/app/commands/command_run.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/app/commands/result.h"
 
 #include <algorithm>
@@ -5,8 +6,8 @@
 #include <cstdio>
 #include <utility>
 
-#include "common/formats/atomic_file.h"
-#include "common/formats/formats.h"
+#include "common/files/atomic_file.h"
+#include "common/io/formats.h"
 #include "common/message_text.h"
 #include "tools/app/commands/report_file.h"
 #include "tools/app/commands/unwritten.h"
@@ -76,7 +77,7 @@ std::string rules_behind_count(const CommandLine& line, const RunReport& report,
   if (reached > asked && report.mesher && static_cast<double>(report.mesher->filling_tets) > asked)
     return "walls so thin that fewer tets would be flat; ask for " +
            std::to_string(report.mesher->filling_tets) + " or more, or leave them out with --min-thickness";
-  if (report.sizes.wish) return "the sizes of --size-field, which decide the number of tets";
+  if (report.sizes.target_length) return "the sizes of --size-field, which decide the number of tets";
   if (reached > asked && std::isfinite(report.sizes.limits.max_edge))
     return "the lengths that --max-edge allows";
   if (reached < asked && report.sizes.limits.min_edge > 0) return "the lengths that --min-edge allows";
@@ -164,7 +165,7 @@ void find_deviation(RunReport& report) {
 void find_edge_lengths(const TetMesh& mesh, RunReport& report) {
   const RequestedSizes& sizes = report.sizes;
   if (!report.simplify || !sizes.any()) return;
-  report.edge_lengths = compare_edge_lengths(mesh, sizes.wish.get(), sizes.source.get(),
+  report.edge_lengths = compare_edge_lengths(mesh, sizes.target_length.get(), sizes.source.get(),
                                              sizes.limits.min_edge, sizes.limits.max_edge);
   const EdgeLengthReport& e = *report.edge_lengths;
   const auto offend = [&](const char* what, const char* option, double asked,

@@ -1,9 +1,10 @@
-#include "common/samples.h"
+// SPDX-License-Identifier: Apache-2.0
+#include "common/samples/samples.h"
 
 #include <cstdio>
 
-#include "common/formats/atomic_file.h"
-#include "common/formats/formats.h"
+#include "common/files/atomic_file.h"
+#include "common/io/formats.h"
 #include "tools/app/commands/command_run.h"
 #include "tools/app/commands/commands.h"
 #include "tools/app/commands/output_paths.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/app/commands/scan_input.h"
 
 #include <algorithm>
@@ -8,9 +9,9 @@
 #include <utility>
 
 #include "common/error.h"
-#include "common/formats/formats.h"
-#include "common/formats/label_names.h"
-#include "common/formats/unique_names.h"
+#include "common/io/formats.h"
+#include "common/io/names/unique_names.h"
+#include "common/io/volumes/label_names.h"
 #include "common/memory.h"
 #include "common/utf8.h"
 #include "mesher/input/split_solids.h"
@@ -243,13 +244,15 @@ DenseMesh mesh_input(const MesherInput& surfaces, CommandRun& run) {
   if (choose && line.target_tets > 0)
     options.resolution = resolution_for_target(surfaces, line.target_tets, line.feature_angle);
   if (choose && prepares)
-    choose_cells_for_sizes(surfaces, run.report.sizes.wish.get(), run.report.sizes.limits.max_edge, options);
+    choose_cells_for_sizes(surfaces, run.report.sizes.target_length.get(), run.report.sizes.limits.max_edge,
+                           options);
   if (choose) fit_memory(surfaces, options, run);
   if (line.tolerance.value == 0) return mesh_surfaces(surfaces, options, &run.progress);
   run.report.tolerance = tolerance_of(line, diagonal);
   if (!choose) return mesh_surfaces(surfaces, options, &run.progress);
   const RequestedSizes& sizes = run.report.sizes;
-  if (line.target_tets == 0 && !sizes.wish && !std::isfinite(sizes.limits.max_edge)) options.resolution = 0;
+  if (line.target_tets == 0 && !sizes.target_length && !std::isfinite(sizes.limits.max_edge))
+    options.resolution = 0;
   return mesh_within(surfaces, options, run.report.tolerance, &run.progress);
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/app/commands/second_order.h"
 
 #include "common/mesh/interfaces.h"

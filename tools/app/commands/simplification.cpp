@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/app/commands/simplification.h"
 
 #include <algorithm>
@@ -55,7 +56,7 @@ TetMesh simplify_to_target(TetMesh mesh, const ReferenceSurface* reference, cons
   options.surface = surface;
   options.tolerance = run.report.tolerance;
   const RequestedSizes& sizes = run.report.sizes;
-  options.sizes = sizes.wish.get();
+  options.sizes = sizes.target_length.get();
   options.min_edge = sizes.limits.min_edge;
   options.max_edge = sizes.limits.max_edge;
   options.fix_boundary = run.line.fix_boundary;

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/app/commands/tet_input.h"
 
 #include <utility>
 
 #include "common/error.h"
-#include "common/formats/formats.h"
-#include "common/mesh/foreign_mesh.h"
+#include "common/io/formats.h"
+#include "common/mesh/import_cleanup.h"
 #include "tools/app/commands/edge_sizes_input.h"
 #include "tools/app/commands/scan_input.h"
 #include "tools/app/commands/simplification.h"
@@ -24,7 +25,7 @@ void check_input_kind(const CommandRun& run) {
 
 /// Other programs list tets in the opposite orientation or repeat points for each tet.
 void repair(TetMesh& mesh, const std::string& file, RunReport& report) {
-  const ForeignReport found = make_coherent(mesh);
+  const ImportCleanupReport found = make_coherent(mesh);
   const auto add = [&](std::size_t count, const char* what, const char* done,
                        std::optional<Vec3> place = {}) {
     if (count) report.findings.push_back({file, {what, count, place, done}});

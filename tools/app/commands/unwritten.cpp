@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/app/commands/unwritten.h"
 
 #include <algorithm>
 #include <string>
 #include <vector>
 
-#include "common/formats/formats.h"
+#include "common/io/formats.h"
 
 namespace tetwright {
 

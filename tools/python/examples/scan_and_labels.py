@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A scan and an array of labels to tet meshes: scan_and_labels.py SCAN OUTPUT"""
 import sys
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tetrahedral meshes for simulation from scans and segmented volumes.
 
     import tetwright

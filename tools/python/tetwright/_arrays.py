@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Turns a caller's numbers into arrays of the types that the compiled part reads; refuses what these would lose."""
 from __future__ import annotations
 

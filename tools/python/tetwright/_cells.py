@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Takes meshes of other libraries apart, by their attributes: as the program reads files with the same cells."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Groups of the faces of other libraries' meshes: by the numbers of a field, as in files, or by sets with names."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Turns what a caller has into what the compiled part reads: arrays by name, or names of files."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Turns keyword arguments into what the program's parser reads."""
 from __future__ import annotations
 

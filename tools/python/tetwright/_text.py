@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Text that the compiled part takes: bytes without NUL, since that would end them there."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The program `tetwright` of a wheel, beside this file; pip puts a script that calls `main` on the PATH."""
 import os
 import signal

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/report/page/html_text.h"
 
 #include <charconv>
 
-#include "common/formats/xml_text.h"
+#include "common/io/text/xml_text.h"
 #include "common/utf8.h"
 
 namespace tetwright {

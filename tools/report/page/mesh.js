@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 "use strict";
 // The mesh of the page: decodes its arrays, finds the faces between tets, and says which of them can be seen.
 

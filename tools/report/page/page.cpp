@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/report/page/page.h"
 
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "common/formats/base64.h"
 #include "common/geometry/quality.h"
+#include "common/io/encodings/base64.h"
 #include "tools/report/page/charts.h"
 #include "tools/report/page/embedded.h"
 #include "tools/report/page/entries.h"

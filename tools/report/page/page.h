@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>
 
-#include "common/formats/atomic_file.h"
+#include "common/files/atomic_file.h"
 #include "tools/app/command_line.h"
 #include "tools/prepare/run_report.h"
 #include "tools/report/page/page_mesh.h"

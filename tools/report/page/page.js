@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // The controls, and what colours stand for.
 
 // Colours that people with any kind of colour vision tell apart (Paul Tol, "bright" and "muted").

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // The drawing: triangles with flat shading and lines along their edges, and a camera that turns about the mesh.
 
 const VERTEX_SHADER = `

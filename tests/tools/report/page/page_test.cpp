@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // The page of --report: what is in it, how large it is and when it is written. tests/report_page/ looks at it
 // in a browser.
 #include <gtest/gtest.h>
@@ -6,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "common/formats/base64.h"
+#include "common/io/encodings/base64.h"
 #include "common/mesh/interfaces.h"
-#include "common/samples.h"
+#include "common/samples/samples.h"
 #include "tests/tools/program.h"
 #include "tools/report/page/html_text.h"
 #include "tools/report/page/page.h"

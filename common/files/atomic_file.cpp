@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/files/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <mutex>
+#include <utility>
+
+#include "common/error.h"
+#include "common/progress.h"
+
+namespace tetwright {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view standard_stream = "-";
+
+[[noreturn]] void fail(const std::string& path, const std::string& what, int error) {
+  throw OutputError("cannot write " + path + ": " + what + (error ? ": " : "") +
+                    (error ? std::strerror(error) : ""));
+}
+
+/// The file that a chain of links leads to; it need not exist.
+std::string link_target(const std::string& path) {
+  fs::path target = path;
+  std::error_code error;
+  // As many links as the system itself follows.
+  for (int i = 0; i < 40 && fs::is_symlink(fs::symlink_status(target, error)); ++i) {
+    const fs::path next = fs::read_symlink(target, error);
+    if (error) fail(path, "the link can't be followed", error.value());
+    target = target.parent_path() / next;  // an absolute `next` replaces it all
+  }
+  if (fs::is_symlink(fs::symlink_status(target, error))) fail(path, "too many links", ELOOP);
+  return target.string();
+}
+
+std::string folder_of(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  return folder.empty() ? "." : folder.string();
+}
+
+/// While one exists, exceeding the file size limit makes write() fail instead of ending the process.
+class FileSizeSignalIgnored {
+ public:
+  FileSizeSignalIgnored() {
+    const std::lock_guard lock(mutex_);
+    if (users_++ == 0) {
+      struct sigaction ignore = {};
+      ignore.sa_handler = SIG_IGN;
+      sigaction(SIGXFSZ, &ignore, &before_);
+    }
+  }
+  ~FileSizeSignalIgnored() {
+    const std::lock_guard lock(mutex_);
+    if (--users_ == 0) sigaction(SIGXFSZ, &before_, nullptr);
+  }
+  FileSizeSignalIgnored(const FileSizeSignalIgnored&) = delete;
+  FileSizeSignalIgnored& operator=(const FileSizeSignalIgnored&) = delete;
+
+ private:
+  static inline std::mutex mutex_;
+  static inline int users_ = 0;
+  static inline struct sigaction before_ = {};
+};
+
+/// The names of the temporary files, where a signal handler can read them.
+struct TemporaryName {
+  std::atomic<bool> taken{false};
+  /// Set after `path` is filled in.
+  std::atomic<bool> valid{false};
+  std::array<char, 4001> path;
+};
+std::array<TemporaryName, 256> temporary_names;
+
+// The protocol between threads that create or rename files and abandon_output_files(). All of it is
+// sequentially consistent: either a thread sees `abandoned` and goes no further, or abandon_output_files()
+// sees it in `changing` and waits for it.
+std::atomic<bool> abandoned{false};
+std::atomic<int> changing{0};
+std::atomic<bool> any_committed{false};
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+
+void sleep_a_moment() noexcept {
+  const timespec moment{0, 1'000'000};
+  nanosleep(&moment, nullptr);
+}
+
+/// While one exists its thread changes folders, and abandon_output_files() waits. The signals whose handlers
+/// might call that are blocked in this thread, which would wait for itself.
+class FolderChange {
+ public:
+  FolderChange() {
+    sigset_t ending;
+    sigemptyset(&ending);
+    for (const int signal : {SIGHUP, SIGINT, SIGTERM}) sigaddset(&ending, signal);
+    pthread_sigmask(SIG_BLOCK, &ending, &before_);
+    ++changing;
+    if (!abandoned) return;
+    // The process is about to end.
+    --changing;
+    for (;;) sleep_a_moment();
+  }
+  ~FolderChange() {
+    --changing;
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  FolderChange(const FolderChange&) = delete;
+  FolderChange& operator=(const FolderChange&) = delete;
+
+ private:
+  sigset_t before_;
+};
+
+constexpr const char* temporary_ending = ".tmp";
+
+std::string temporary_beginning(int process) { return ".tetwright-" + std::to_string(process) + "-"; }
+
+/// A file that is removed again unless it is renamed.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::string& folder) {
+    static std::atomic<unsigned> number{0};
+    // Other processes may write into the same folder; one that crashed may have had our number.
+    for (int attempt = 0; attempt < 100 && file_ < 0; ++attempt) {
+      path_ = folder + "/" + temporary_beginning(getpid()) + std::to_string(number++) + temporary_ending;
+      const FolderChange change;
+      file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (file_ >= 0) {
+        exists_ = true;
+        register_name();
+      } else if (errno != EEXIST) {
+        break;
+      }
+    }
+  }
+  ~TemporaryFile() {
+    if (file_ >= 0) ::close(file_);
+    if (!exists_) return;
+    unlink(path_.c_str());
+    forget_name();
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  int file() const { return file_; }
+  int close() {
+    const int result = ::close(file_);
+    file_ = -1;
+    return result;
+  }
+  /// False, with errno, if it failed.
+  bool rename_to(const std::string& target) {
+    if (std::rename(path_.c_str(), target.c_str()) != 0) return false;
+    exists_ = false;
+    forget_name();
+    return true;
+  }
+
+ private:
+  void register_name() {
+    for (TemporaryName& name : temporary_names) {
+      if (path_.size() >= name.path.size() || name.taken.exchange(true)) continue;
+      std::copy_n(path_.c_str(), path_.size() + 1, name.path.begin());
+      name.valid = true;
+      name_ = &name;
+      return;
+    }
+  }
+  void forget_name() {
+    if (!name_) return;
+    name_->valid = false;
+    name_->taken = false;
+    name_ = nullptr;
+  }
+
+  std::string path_;
+  int file_ = -1;
+  bool exists_ = false;
+  TemporaryName* name_ = nullptr;
+};
+
+/// Bytes that are written between two looks at whether the work was cancelled. Some systems refuse more than
+/// 2 GiB at once anyway.
+constexpr std::size_t piece_size = std::size_t{1} << 26;
+
+/// Whoever reads a pipe gets the bytes as they come: they cannot be taken back.
+void write_to_stdout(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(STDOUT_FILENO, bytes.data(), std::min(bytes.size(), piece_size));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail("to standard output", "writing failed", errno);
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+/// The new names reach the disk with the folder; where that can't be synced the file is there all the same.
+void sync_folder(const std::string& path) {
+  const int folder = open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return;
+  (void)fsync(folder);
+  close(folder);
+}
+
+/// All bytes up to the end, about `size` of them.
+std::string read_all(int file, const std::string& path, std::size_t size) {
+  std::string bytes;
+  std::size_t used = 0;
+  // One more than the size, so that the end is met without growing; a pipe's size is 0.
+  bytes.resize(size + 1);
+  for (;;) {
+    if (used == bytes.size()) bytes.resize(bytes.size() * 2 + 4096);
+    const ssize_t n = read(file, bytes.data() + used, std::min(bytes.size() - used, piece_size));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw InputError("cannot read " + path + ": " + std::strerror(errno));
+    if (n == 0) break;
+    used += static_cast<std::size_t>(n);
+  }
+  bytes.resize(used);
+  return bytes;
+}
+
+}  // namespace
+
+std::string real_path(const std::string& path) {
+  std::error_code error;
+  fs::path target = fs::absolute(path, error);
+  try {
+    target = link_target(target.string());  // also to a file that is not there, unlike weakly_canonical()
+  } catch (const OutputError&) {
+    return target.string();  // a circle of links
+  }
+  const fs::path whole = fs::weakly_canonical(target, error);
+  return (error ? target.lexically_normal() : whole).string();
+}
+
+void check_output_file(const std::string& path) {
+  if (path == standard_stream) return;
+  const std::string target = link_target(path);
+  struct stat status;
+  if (stat(target.c_str(), &status) == 0) {
+    if (S_ISDIR(status.st_mode)) fail(path, "it is a folder", 0);
+    if (!S_ISREG(status.st_mode)) fail(path, "it is not a regular file", 0);
+    if (access(target.c_str(), W_OK) != 0) fail(path, "the file there is protected", errno);
+  } else if (errno != ENOENT) {
+    fail(path, "can't be looked at", errno);
+  }
+  const std::string folder = folder_of(target);
+  if (stat(folder.c_str(), &status) != 0) fail(path, "folder " + folder, errno);
+  if (!S_ISDIR(status.st_mode)) fail(path, folder + " is not a folder", 0);
+  if (access(folder.c_str(), W_OK | X_OK) != 0) fail(path, "folder " + folder + " is not writable", errno);
+}
+
+struct OutputFiles::Pending {
+  explicit Pending(const std::string& named)
+      : path(named), target(link_target(named)), temporary(folder_of(target)) {}
+
+  std::string path;    ///< as the caller names it
+  std::string target;  ///< with links followed
+  TemporaryFile temporary;
+};
+
+OutputFiles::OutputFiles(const Progress* progress) : progress_(progress) {}
+OutputFiles::~OutputFiles() = default;
+
+void OutputFiles::write(const std::string& path, std::string_view bytes) {
+  write(path, [&](const ByteSink& sink) { sink(bytes); });
+}
+
+void OutputFiles::write(const std::string& path, const std::function<void(const ByteSink&)>& content) {
+  if (path == standard_stream) {
+    content([&](std::string_view bytes) {
+      if (progress_) progress_->throw_if_stopped();
+      to_stdout_ += bytes;
+    });
+    return;
+  }
+  check_output_file(path);
+  if (progress_) progress_->throw_if_stopped();
+  const FileSizeSignalIgnored ignored;
+  auto pending = std::make_unique<Pending>(path);
+  TemporaryFile& temporary = pending->temporary;
+  if (temporary.file() < 0) fail(path, "no file can be made in its folder", errno);
+  struct stat status;
+  if (stat(pending->target.c_str(), &status) == 0 && fchmod(temporary.file(), status.st_mode & 07777) != 0)
+    fail(path, "permissions", errno);
+  content([&](std::string_view bytes) {
+    while (!bytes.empty()) {
+      if (progress_) progress_->throw_if_stopped();
+      const ssize_t written = ::write(temporary.file(), bytes.data(), std::min(bytes.size(), piece_size));
+      if (written < 0) {
+        if (errno == EINTR) continue;
+        fail(path, "writing failed", errno);
+      }
+      bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+  });
+  if (fsync(temporary.file()) != 0) fail(path, "syncing to the disk failed", errno);
+  if (temporary.close() != 0) fail(path, "closing failed", errno);
+  pending_.push_back(std::move(pending));
+}
+
+void OutputFiles::commit() {
+  if (progress_) progress_->throw_if_stopped();
+  write_to_stdout(std::exchange(to_stdout_, {}));
+  {
+    const FolderChange change;
+    for (const std::unique_ptr<Pending>& pending : pending_) {
+      if (!pending->temporary.rename_to(pending->target)) fail(pending->path, "renaming failed", errno);
+      any_committed = true;
+    }
+  }
+  for (const std::unique_ptr<Pending>& pending : pending_) sync_folder(folder_of(pending->target));
+  pending_.clear();
+}
+
+void sync_folder_of(const std::string& path) { sync_folder(folder_of(path)); }
+
+void write_file_atomically(const std::string& path, std::string_view bytes) {
+  OutputFiles files;
+  files.write(path, bytes);
+  files.commit();
+}
+
+void write_file_atomically(const std::string& path, const std::function<void(const ByteSink&)>& content) {
+  OutputFiles files;
+  files.write(path, content);
+  files.commit();
+}
+
+std::string read_standard_input() { return read_all(STDIN_FILENO, "standard input", 0); }
+
+void remove_temporary_files(const std::string& path, int process) noexcept try {
+  const std::string beginning = temporary_beginning(process);
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_of(real_path(path)), error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(beginning) && name.ends_with(temporary_ending)) fs::remove(entry.path(), error);
+  }
+} catch (...) {
+  // They take room and harm nobody.
+}
+
+bool abandon_output_files() noexcept {
+  abandoned = true;
+  while (changing > 0) sleep_a_moment();
+  for (const TemporaryName& name : temporary_names)
+    if (name.valid) unlink(name.path.data());
+  return any_committed;
+}
+
+std::string read_whole_file(const std::string& path) {
+  int file = -1;
+  // Opening a pipe waits for who writes into it; signals that the host handles do not end this.
+  do file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  while (file < 0 && errno == EINTR);
+  if (file < 0) throw InputError("cannot read " + path + ": " + std::strerror(errno));
+  struct Closer {
+    int file;
+    ~Closer() { close(file); }
+  } const closer{file};
+  struct stat status;
+  if (fstat(file, &status) != 0) throw InputError("cannot read " + path + ": " + std::strerror(errno));
+  if (S_ISDIR(status.st_mode)) throw InputError("cannot read " + path + ": it is a folder");
+  // A device need not have an end.
+  if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode))
+    throw InputError("cannot read " + path + ": it is neither a regular file nor a pipe");
+  return read_all(file, path, static_cast<std::size_t>(status.st_size));
+}
+
+}  // namespace tetwright

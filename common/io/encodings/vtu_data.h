@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <pugixml.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/files/atomic_file.h"
+#include "common/io/contents/dropped.h"
+#include "common/tet_mesh.h"
+#include "common/types.h"
+
+namespace tetwright {
+
+/// Whether a child of PointData or CellData is an array of numbers; others hold text.
+bool holds_numbers(pugi::xml_node array);
+
+/// The data arrays of a VTK XML file, in whatever encoding the file has. For vtu.cpp and vtp.cpp.
+class VtuData {
+ public:
+  /// Parses the file; the bytes must outlive this object. Throws InputError if it is not VTK XML, or is
+  /// compressed by something other than zlib, LZ4 and LZMA.
+  VtuData(std::string_view bytes, std::string name);
+
+  const std::string& name() const { return name_; }
+  /// The XML element VTKFile.
+  pugi::xml_node root() const { return root_; }
+
+  /// The pieces of a grid, "UnstructuredGrid" or "PolyData", at least one. Throws InputError if the file
+  /// holds another one.
+  std::vector<pugi::xml_node> pieces(const char* grid) const;
+  /// The same, where there is to be one alone.
+  pugi::xml_node only_piece(const char* grid) const;
+  /// The number that an attribute of a piece gives.
+  std::size_t count(pugi::xml_node piece, const char* attribute) const;
+  /// The array of this name. Throws InputError if there is none.
+  pugi::xml_node array(pugi::xml_node parent, const char* name) const;
+  /// The `n` points of a piece. Throws InputError if there are more or fewer, or one is not finite.
+  std::vector<Vec3> points(pugi::xml_node piece, std::size_t n) const;
+  /// Throws InputError unless both are equal.
+  void expect_size(pugi::xml_node array, std::size_t size, std::size_t expected) const;
+
+  /// Reads the numbers of a DataArray. Throws InputError if there are more than `max_count` (which the caller
+  /// knows from the size of the file or from other arrays; no more memory is allocated), or if a number is
+  /// not of the kind asked for.
+  std::vector<double> numbers(pugi::xml_node array, std::size_t max_count) const;
+  std::vector<std::int64_t> integers(pugi::xml_node array, std::size_t max_count) const;
+  /// Whole numbers from 0 to 2^32 - 1, in half the memory.
+  std::vector<std::uint32_t> counts(pugi::xml_node array, std::size_t max_count) const;
+  /// The arrays of numbers of PointData or CellData, which have a tuple for each of `n` items; of `chosen`
+  /// items alone, unless it is null. Integers that are rounded are counted in `rounded`, unless that is null.
+  /// Throws InputError for an array of another size.
+  std::vector<MeshField> fields(pugi::xml_node data, std::size_t n,
+                                const std::vector<std::size_t>* chosen = nullptr,
+                                KindCounts* rounded = nullptr) const;
+
+  /// Throws InputError with the byte offset of `node`.
+  [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const;
+  [[noreturn]] void fail(const std::string& message) const;
+
+ private:
+  /// What takes the bytes of an array, piece by piece (a block of a compressed one): large ones need not
+  /// stand in memory as a whole.
+  struct DecodedBytes {
+    std::function<void(std::size_t size)> begin;
+    std::function<void(std::string_view bytes)> piece;
+  };
+  template <class Value, class Stored>
+  Value checked(Stored stored, pugi::xml_node array, std::size_t place) const;
+  template <class Value>
+  std::vector<Value> values(pugi::xml_node array, std::size_t max_count) const;
+  void decode(pugi::xml_node array, std::size_t max_bytes, const DecodedBytes& out) const;
+  template <class Source>
+  void decode_from(Source source, pugi::xml_node array, std::size_t max_bytes, const DecodedBytes& out) const;
+
+  std::string name_;
+  std::size_t file_size_;
+  pugi::xml_document document_;
+  pugi::xml_node root_;
+  std::string_view appended_;  ///< the data after the underscore
+  bool appended_raw_ = false;
+  bool swap_ = false;
+  bool wide_header_ = false;  ///< sizes are UInt64
+  std::string compressor_;    ///< empty: uncompressed
+};
+
+/// Writes an array of `size` bytes as VTK encodes it inline for format="binary", header_type="UInt32" and
+/// compressor="vtkZLibDataCompressor". Blocks are compressed by zlib in parallel; the bytes written do not
+/// depend on the number of threads. `fill(begin, bytes)` is called concurrently and fills `bytes` with the
+/// bytes of the array that begin at `begin`, a multiple of 2^18. Needs memory for the compressed array and
+/// one block for each thread.
+void write_vtu_array(std::size_t size, const std::function<void(std::size_t begin, std::span<char>)>& fill,
+                     const ByteSink& sink);
+
+}  // namespace tetwright

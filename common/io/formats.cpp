@@ -1,0 +1,436 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/formats.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "common/error.h"
+#include "common/files/atomic_file.h"
+#include "common/files/file_names.h"
+#include "common/geometry/measurable.h"
+#include "common/io/names/group_text.h"
+#include "common/io/names/mesh_fields.h"
+#include "common/io/names/mesh_parts.h"
+#include "common/io/surfaces/3mf.h"
+#include "common/io/surfaces/glb.h"
+#include "common/io/surfaces/obj.h"
+#include "common/io/surfaces/off.h"
+#include "common/io/surfaces/ply.h"
+#include "common/io/surfaces/stl.h"
+#include "common/io/surfaces/vtp.h"
+#include "common/io/tets/medit.h"
+#include "common/io/tets/msh.h"
+#include "common/io/tets/tet_formats.h"
+#include "common/io/tets/vtk.h"
+#include "common/io/tets/vtu.h"
+#include "common/io/text/text_scanner.h"
+#include "common/io/volumes/inr.h"
+#include "common/io/volumes/metaimage.h"
+#include "common/io/volumes/nifti.h"
+#include "common/io/volumes/nrrd.h"
+
+namespace tetwright {
+
+namespace {
+
+struct SurfaceFormat {
+  const char* extension;
+  TriangleMesh (*read)(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped);
+  void (*write)(const TriangleMesh& mesh, const ByteSink& sink);  ///< null: the format is only read
+  /// Null: the format has no fields of points. Nothing: the file is a tet mesh.
+  std::optional<SurfaceWithFields> (*read_with_fields)(std::string_view bytes, const std::string& name);
+  /// Makes a name one that it can hold for a group of triangles; null: none is written.
+  std::string (*group_name)(const std::string& name) = nullptr;
+};
+
+template <std::string (*write)(const TriangleMesh&)>
+void write_whole_surface(const TriangleMesh& mesh, const ByteSink& sink) {
+  sink(write(mesh));
+}
+
+template <SurfaceWithFields (*read)(std::string_view, const std::string&)>
+std::optional<SurfaceWithFields> always_surface(std::string_view bytes, const std::string& name) {
+  return read(bytes, name);
+}
+
+constexpr std::array<SurfaceFormat, 7> surface_formats{
+    {{".ply", read_ply, write_whole_surface<write_ply>, always_surface<read_ply_with_fields>, printable_name},
+     {".obj", read_obj, write_whole_surface<write_obj>, nullptr, word_without_hash},
+     {".stl", read_stl, write_whole_surface<write_stl>, nullptr, printable_word},
+     {".off", read_off, write_whole_surface<write_off>, nullptr},
+     {".vtp", read_vtp, write_vtp, always_surface<read_vtp_with_fields>, printable_name},
+     {".3mf", read_3mf, nullptr, nullptr},
+     {".glb", read_glb, nullptr, nullptr}}};
+/// Those of tet meshes that may hold a surface instead.
+constexpr std::array<SurfaceFormat, 3> shared_formats{
+    {{".msh", read_msh_surface, nullptr, read_msh_surface_with_fields},
+     {".mesh", read_medit_surface, nullptr, nullptr},
+     {".vtk", read_vtk_surface, nullptr, read_vtk_surface_with_fields}}};
+
+template <LabelVolume (*read)(std::string_view, const std::string&)>
+LabelVolume read_alone(std::string_view bytes, const std::string& name, const FileReader& /*others*/) {
+  return read(bytes, name);
+}
+
+struct VolumeFormat {
+  const char* extension;
+  LabelVolume (*read)(std::string_view bytes, const std::string& name, const FileReader& others);
+  std::string (*write)(const LabelVolume& volume) = nullptr;  ///< null: the format is only read
+  const char* header = nullptr;  ///< extension of the file that is read before this one
+  bool one_file = true;          ///< false: the voxels are in another file
+};
+constexpr std::array<VolumeFormat, 10> volume_formats{{{".nrrd", read_nrrd, write_nrrd},
+                                                       {".nhdr", read_nrrd, nullptr, nullptr, false},
+                                                       {".mhd", read_metaimage, nullptr, nullptr, false},
+                                                       {".mha", read_metaimage},
+                                                       {".nii", read_nifti},
+                                                       {".nii.gz", read_nifti},
+                                                       {".hdr", read_nifti, nullptr, nullptr, false},
+                                                       {".img", read_nifti, nullptr, ".hdr", false},
+                                                       {".inr", read_alone<read_inr>},
+                                                       {".inr.gz", read_alone<read_inr>}}};
+
+template <class Format>
+bool is_for(const Format& format, FileUse use) {
+  return use == FileUse::read || format.write != nullptr;
+}
+bool is_for(const TetFormat& format, FileUse use) {
+  return use == FileUse::read ? format.read || format.read_files : !format.write.empty();
+}
+
+bool is_one_file(const SurfaceFormat&) { return true; }
+bool is_one_file(const TetFormat& format) { return format.read != nullptr; }
+bool is_one_file(const VolumeFormat& format) { return format.one_file; }
+
+/// The format of a file's extension; null if there is none.
+template <class Formats>
+const typename Formats::value_type* find_format(const Formats& formats, const std::string& path,
+                                                FileUse use) {
+  const std::string extension = extension_of(path);
+  for (const auto& format : formats)
+    if (extension == format.extension && is_for(format, use)) return &format;
+  return nullptr;
+}
+
+const char* kind_name(FileKind kind) {
+  return kind == FileKind::surface ? "surface" : kind == FileKind::volume ? "volume of labels" : "tet mesh";
+}
+
+template <class Formats>
+const typename Formats::value_type& need_format(const Formats& formats, const std::string& path,
+                                                FileKind kind, FileUse use) {
+  if (const auto* format = find_format(formats, path, use)) return *format;
+  const std::string extension = extension_of(path);
+  const bool only_read = find_format(formats, path, FileUse::read) != nullptr;
+  throw UsageError(path + ": " +
+                   (extension.empty() ? "no extension"
+                    : only_read       ? "extension " + in_quotes(extension) + " can be read, not written,"
+                                      : "unknown extension " + in_quotes(extension)) +
+                   " for a " + kind_name(kind) + "; known are " + known_extensions(kind, use));
+}
+
+TetFormatInfo info_of(const TetFormat& format) {
+  return {format.name,        format.extension, format.names,       format.surfaces,
+          format.patch_names, format.fields,    format.second_order};
+}
+
+/// The files of a format of several have its extensions, in place of the path's: that of another format would
+/// promise a file that is not written.
+void check_names_format(const std::string& path, const std::string& name) {
+  const std::string extension = extension_of(path);
+  bool several = false;
+  std::string own;
+  for (const TetFormat& format : tet_formats()) {
+    if (name != format.name) continue;
+    several = format.write.size() > 1;
+    if (extension == format.extension) return;
+    own.append(own.empty() ? "" : " or ").append(format.extension);
+  }
+  if (several && !extension.empty())
+    throw UsageError(path + ": " + name +
+                     " is several files, which have extensions of their own; give a name that ends in " +
+                     own + ", or in no extension");
+}
+
+/// The format of this name, or of the path's extension if there is none.
+const TetFormat& need_written_format(const std::string& path, const std::string& name) {
+  if (name.empty()) return need_format(tet_formats(), path, FileKind::tet_mesh, FileUse::write);
+  std::string known;
+  for (const TetFormat& format : tet_formats()) {
+    if (!is_for(format, FileUse::write)) continue;
+    if (name == format.name) {
+      check_names_format(path, format.name);
+      return format;
+    }
+    if (!known.ends_with(format.name)) known.append(known.empty() ? "" : " ").append(format.name);
+  }
+  throw UsageError("there is no format " + in_quotes(name) + " for a tet mesh; known are " + known);
+}
+
+/// The format of this name, an extension that may lack its dot, or of the path's extension if there is none.
+template <class Formats>
+const typename Formats::value_type& need_written_format(const Formats& formats, const std::string& path,
+                                                        FileKind kind, const std::string& name) {
+  if (name.empty()) return need_format(formats, path, kind, FileUse::write);
+  const std::string path_of_name = (name.starts_with('.') ? "x" : "x.") + name;
+  if (const auto* format = find_format(formats, path_of_name, FileUse::write)) return *format;
+  const bool only_read = find_format(formats, path_of_name, FileUse::read) != nullptr;
+  throw UsageError((only_read ? "the format " + in_quotes(name) + " can be read, not written,"
+                              : "there is no format " + in_quotes(name)) +
+                   " for a " + kind_name(kind) + "; known are " + known_extensions(kind, FileUse::write));
+}
+
+const SurfaceFormat& need_surface_format(const std::string& path) {
+  const SurfaceFormat* shared = find_format(shared_formats, path, FileUse::read);
+  return shared ? *shared : need_format(surface_formats, path, FileKind::surface, FileUse::read);
+}
+
+/// The format, which must be one file.
+template <class Format>
+const Format& streamed(const Format& format, const std::string& name) {
+  if (is_one_file(format)) return format;
+  throw UsageError(name + ": " + format.extension +
+                   " is several files, which no stream is; give their name, or " + "one of " +
+                   streamed_extensions());
+}
+
+/// The mesh, whose sizes must be such that something can be computed.
+ReadTetMesh measurable(ReadTetMesh read, const std::string& name) {
+  require_measurable(read.mesh, name);
+  return read;
+}
+
+NameRules names_of_groups(const SurfaceFormat& format) {
+  return {
+      .form = format.group_name ? format.group_name : printable_name,
+  };
+}
+
+/// Among `files`, or alone if that is null.
+void write_into(OutputFiles* files, const std::string& path,
+                const std::function<void(const ByteSink&)>& content) {
+  if (files)
+    files->write(path, content);
+  else
+    write_file_atomically(path, content);
+}
+
+}  // namespace
+
+FileKind file_kind(const std::string& path, FileUse use) {
+  if (find_format(surface_formats, path, use)) return FileKind::surface;
+  if (find_format(tet_formats(), path, use)) return FileKind::tet_mesh;
+  if (find_format(volume_formats, path, use)) return FileKind::volume;
+  return FileKind::unknown;
+}
+
+std::string known_extensions(FileKind kind, FileUse use) {
+  std::string out;
+  std::string_view last;
+  const auto add = [&](const auto& formats) {
+    for (const auto& format : formats) {
+      if (!is_for(format, use) || format.extension == last) continue;
+      last = format.extension;
+      if (!out.empty()) out += ' ';
+      out += last;
+    }
+  };
+  if (kind == FileKind::surface || kind == FileKind::unknown) add(surface_formats);
+  if (kind == FileKind::surface && use == FileUse::read) add(shared_formats);
+  if (kind == FileKind::tet_mesh || kind == FileKind::unknown) add(tet_formats());
+  if (kind == FileKind::volume || kind == FileKind::unknown) add(volume_formats);
+  return out;
+}
+
+bool may_hold_surface(const std::string& path) {
+  return file_kind(path) == FileKind::surface || find_format(shared_formats, path, FileUse::read);
+}
+
+std::vector<TetFormatInfo> written_tet_formats() {
+  std::vector<TetFormatInfo> out;
+  for (const TetFormat& format : tet_formats())
+    if (is_for(format, FileUse::write) && (out.empty() || out.back().name != format.name))
+      out.push_back(info_of(format));
+  return out;
+}
+
+TetFormatInfo written_tet_format(const std::string& path, const std::string& name) {
+  return info_of(need_written_format(path, name));
+}
+
+NameChanges written_name_changes(const TetMesh& mesh, const std::string& path, const std::string& name) {
+  const TetFormat& format = need_written_format(path, name);
+  NameChanges changes = name_changes(mesh, format.parts(mesh));
+  const auto add_fields = [&](const std::vector<MeshField>& fields, const std::vector<std::string>& taken) {
+    if (!format.fields) return;
+    add_field_changes(fields, field_names_to_write(fields, taken, format.field_name), changes.fields);
+  };
+  add_fields(mesh.point_fields, {});
+  add_fields(mesh.cell_fields, format.own_cell_fields);
+  if (!format.names) changes.material_names.clear();
+  if (!format.patch_names) changes.patch_names.clear();
+  return changes;
+}
+
+SurfaceFormatInfo written_surface_format(const std::string& path, const std::string& name) {
+  const SurfaceFormat& format = need_written_format(surface_formats, path, FileKind::surface, name);
+  return {format.extension, format.group_name != nullptr};
+}
+
+std::vector<NameChange> written_interface_name_changes(const TetMesh& mesh, const std::string& path,
+                                                       const std::string& name) {
+  const SurfaceFormat& format = need_written_format(surface_formats, path, FileKind::surface, name);
+  if (!format.group_name) return {};
+  return name_changes(mesh, names_of_parts(mesh, names_of_groups(format))).patch_names;
+}
+
+std::vector<std::string> files_of_tet_mesh(const std::string& path, const std::string& name) {
+  std::vector<std::string> files;
+  const TetFormat& format = need_written_format(path, name);
+  for (const WrittenFile& file : format.write)
+    files.push_back(format.write.size() == 1 ? path : with_extension(path, file.extension));
+  return files;
+}
+
+bool may_hold_point_fields(const std::string& path) {
+  if (const TetFormat* tets = find_format(tet_formats(), path, FileUse::read)) return tets->point_fields;
+  const SurfaceFormat* surface = find_format(surface_formats, path, FileUse::read);
+  return surface && surface->read_with_fields;
+}
+
+std::string point_field_extensions() {
+  std::string out;
+  const auto add = [&](const char* extension) {
+    if (!out.ends_with(extension)) out.append(out.empty() ? "" : " ").append(extension);
+  };
+  for (const TetFormat& format : tet_formats())
+    if (format.point_fields && is_for(format, FileUse::read)) add(format.extension);
+  for (const SurfaceFormat& format : surface_formats)
+    if (format.read_with_fields) add(format.extension);
+  return out;
+}
+
+std::string file_stem(const std::string& path) {
+  const std::string name = std::filesystem::path(path).filename().string();
+  return name.substr(0, name.size() - extension_of(path).size());
+}
+
+TriangleMesh read_surface(const std::string& path, std::vector<Dropped>* dropped) {
+  return need_surface_format(path).read(read_whole_file(path), path, dropped);
+}
+
+ReadTetMesh read_tet_mesh(const std::string& path, const ReadTetMeshOptions& options) {
+  const TetFormat& format = need_format(tet_formats(), path, FileKind::tet_mesh, FileUse::read);
+  return measurable(
+      format.read ? format.read(read_whole_file(path), path, options) : format.read_files(path, options),
+      path);
+}
+
+TriangleMesh read_surface_bytes(std::string_view bytes, const std::string& name, const std::string& extension,
+                                std::vector<Dropped>* dropped) {
+  return streamed(need_surface_format(name + extension), name).read(bytes, name, dropped);
+}
+
+ReadTetMesh read_tet_mesh_bytes(std::string_view bytes, const std::string& name, const std::string& extension,
+                                const ReadTetMeshOptions& options) {
+  const TetFormat& format = need_format(tet_formats(), name + extension, FileKind::tet_mesh, FileUse::read);
+  return measurable(streamed(format, name).read(bytes, name, options), name);
+}
+
+LabelVolume read_label_volume_bytes(std::string_view bytes, const std::string& name,
+                                    const std::string& extension) {
+  return streamed(need_format(volume_formats, name + extension, FileKind::volume, FileUse::read), name)
+      .read(bytes, name, [&](const std::string& other) -> std::string {
+        throw InputError(name, 0, "its voxels are in another file, " + other + "; give the header's name");
+      });
+}
+
+std::string streamed_extensions() {
+  std::string out;
+  const auto add = [&](const auto& formats) {
+    for (const auto& format : formats)
+      if (is_for(format, FileUse::read) && is_one_file(format) && !out.ends_with(format.extension))
+        out.append(out.empty() ? "" : " ").append(format.extension);
+  };
+  add(surface_formats);
+  add(tet_formats());
+  add(volume_formats);
+  return out;
+}
+
+bool streams(const std::string& extension) {
+  return (" " + streamed_extensions() + " ").find(" " + extension + " ") != std::string::npos;
+}
+
+std::optional<SurfaceWithFields> read_surface_with_fields(const std::string& path) {
+  const SurfaceFormat* format = find_format(shared_formats, path, FileUse::read);
+  if (!format) format = find_format(surface_formats, path, FileUse::read);
+  if (!format && file_kind(path) == FileKind::tet_mesh) return {};
+  if (!format || !format->read_with_fields)
+    throw UsageError(path + ": " + in_quotes(extension_of(path)) +
+                     " is no extension of files with numbers of points; known are " +
+                     point_field_extensions());
+  return format->read_with_fields(read_whole_file(path), path);
+}
+
+LabelVolume read_label_volume(const std::string& path) {
+  const VolumeFormat& format = need_format(volume_formats, path, FileKind::volume, FileUse::read);
+  const std::string first = format.header ? with_extension(path, format.header) : path;
+  return format.read(read_whole_file(first), first, read_whole_file);
+}
+
+void write_surface(const TriangleMesh& mesh, const std::string& path, OutputFiles* files,
+                   const std::string& name) {
+  const SurfaceFormat& format = need_written_format(surface_formats, path, FileKind::surface, name);
+  write_into(files, path, [&](const ByteSink& sink) { format.write(mesh, sink); });
+}
+
+void write_interfaces(const TetMesh& mesh, const std::string& path, OutputFiles* files,
+                      const std::string& name) {
+  const SurfaceFormat& format = need_written_format(surface_formats, path, FileKind::surface, name);
+  write_surface(interface_surface(mesh, names_of_groups(format)), path, files, name);
+}
+
+void write_tet_mesh(const MeshToWrite& mesh, const std::string& path, OutputFiles* files,
+                    const std::string& name) {
+  const TetFormat& format = need_written_format(path, name);
+  const std::vector<std::string> paths = files_of_tet_mesh(path, name);
+  const std::string first = std::filesystem::path(paths.front()).filename().string();
+  std::optional<OutputFiles> own;  // several files appear together
+  if (!files) files = &own.emplace();
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    files->write(paths[i], [&](const ByteSink& sink) { format.write[i].write(mesh, first, sink); });
+  if (own) own->commit();
+}
+
+void write_label_volume(const LabelVolume& volume, const std::string& path, OutputFiles* files,
+                        const std::string& name) {
+  const VolumeFormat& format = need_written_format(volume_formats, path, FileKind::volume, name);
+  write_into(files, path, [&](const ByteSink& sink) { sink(format.write(volume)); });
+}
+
+std::vector<std::string> files_of_input(const std::string& path) {
+  static const std::vector<std::vector<const char*>> families{
+      {".node", ".ele", ".face"}, {".xdmf", ".h5", "_facets.xdmf", "_facets.h5"}, {".hdr", ".img"}};
+  std::vector<std::string> files{path};
+  const std::string extension = extension_of(path);
+  for (const auto& family : families) {
+    if (std::none_of(family.begin(), family.end(), [&](const char* of) { return extension == of; })) continue;
+    for (const char* other : family)
+      if (extension != other) files.push_back(with_extension(path, other));
+  }
+  return files;
+}
+
+void check_output_path(const std::string& path, FileKind kind, const std::string& format) {
+  if (kind == FileKind::surface)
+    (void)need_written_format(surface_formats, path, kind, format);
+  else if (kind == FileKind::volume)
+    (void)need_written_format(volume_formats, path, kind, format);
+  else
+    for (const std::string& file : files_of_tet_mesh(path, format)) check_output_file(file);
+  if (kind != FileKind::tet_mesh) check_output_file(path);
+}
+
+}  // namespace tetwright

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/names/mesh_parts.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "common/error.h"
+#include "common/io/names/unique_names.h"
+#include "common/mesh/boundary_groups.h"
+#include "common/mesh/face_buckets.h"
+#include "common/mesh/interfaces.h"
+
+namespace tetwright {
+
+namespace {
+
+std::string name_of_tag(MaterialTag tag, const std::map<MaterialTag, std::string>& names) {
+  const auto known = names.find(tag);
+  return known != names.end() && !known->second.empty() ? known->second : "material_" + std::to_string(tag);
+}
+
+}  // namespace
+
+NameRules printable_names() { return {.form = printable_name}; }
+
+MeshParts names_of_parts(const TetMesh& mesh, const NameRules& rules) {
+  const auto numbers_of = [&](const std::set<std::int64_t>& own) {
+    if (rules.max_number > 0) return positive_numbers(own, rules.max_number);
+    std::map<std::int64_t, std::int64_t> same;
+    for (const std::int64_t number : own) same[number] = number;
+    return same;
+  };
+  MeshParts parts;
+  UniqueNames of_materials(rules.form, rules.ignore_case);
+  std::map<MaterialTag, std::string> written;
+  for (const auto& [own, number] : numbers_of(tags_of(mesh.materials))) {
+    const auto tag = static_cast<MaterialTag>(own);
+    written[tag] = of_materials.add(name_of_tag(tag, mesh.material_names));
+    parts.materials.push_back({tag, number, written[tag], {}});
+  }
+
+  const BoundaryGroups groups(mesh);
+  UniqueNames of_surfaces(rules.form, rules.ignore_case);
+  std::set<std::int64_t> own;
+  for (const BoundaryGroups::Group& g : groups.all()) own.insert(g.number);
+  const std::map<std::int64_t, std::int64_t> numbers = numbers_of(own);
+  for (const BoundaryGroups::Group& g : groups.all())
+    parts.surfaces.push_back({g.surface_region, rules.surface_numbers ? numbers.at(g.number) : 0, {}, {}});
+  // The user's names come first.
+  for (const bool of_user : {true, false})
+    for (std::size_t i = 0; i < groups.all().size(); ++i) {
+      const BoundaryGroups::Group& g = groups.all()[i];
+      if (g.pair.has_value() == of_user) continue;
+      std::string& name = parts.surfaces[i].name;
+      if (g.pair)
+        name = of_surfaces.add_pair(pair_name(*g.pair, written));
+      else
+        name = of_surfaces.add(g.surface_region.name.empty()
+                                   ? "surface_" + std::to_string(g.surface_region.number)
+                                   : g.surface_region.name);
+    }
+  return parts;
+}
+
+MeshParts mesh_parts(const TetMesh& mesh, const NameRules& rules) {
+  MeshParts parts = names_of_parts(mesh, rules);
+  std::map<MaterialTag, std::size_t> material_of;
+  for (const MeshParts::Material& m : parts.materials) material_of.emplace(m.tag, material_of.size());
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    parts.materials[material_of.at(mesh.materials[t])].tets.push_back(static_cast<Index>(t));
+  const BoundaryGroups groups(mesh);
+  std::map<std::int64_t, std::size_t> surface_of;
+  for (const BoundaryGroups::Group& g : groups.all()) surface_of.emplace(g.number, surface_of.size());
+  for (std::size_t i = 0; i < mesh.interfaces.size(); ++i)
+    parts.surfaces[surface_of.at(groups.number_of(mesh.interfaces[i]))].faces.push_back(i);
+  return parts;
+}
+
+std::string plain_name(const std::string& name, std::size_t longest) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  std::string out;
+  for (const char c : name) out += is_letter(c) || (c >= '0' && c <= '9') ? c : '_';
+  if (out.empty() || !is_letter(out[0])) out = "n" + out;
+  return out.substr(0, longest);
+}
+
+std::map<std::int64_t, std::int64_t> positive_numbers(const std::set<std::int64_t>& numbers,
+                                                      std::int64_t max) {
+  std::map<std::int64_t, std::int64_t> written;
+  std::int64_t next = 1;
+  for (const std::int64_t number : numbers) {
+    if (number >= 1 && number <= max) {
+      written[number] = number;
+      continue;
+    }
+    while (numbers.contains(next)) ++next;
+    written[number] = next++;
+  }
+  return written;
+}
+
+std::set<std::int64_t> tags_of(const std::vector<MaterialTag>& materials) {
+  std::set<std::int64_t> tags;
+  for (std::size_t t = 0; t < materials.size(); ++t)
+    if (t == 0 || materials[t] != materials[t - 1]) tags.insert(materials[t]);
+  return tags;
+}
+
+std::vector<TetFace> faces_of_tets(const TetMesh& mesh) {
+  std::vector<std::pair<Triangle, std::size_t>> wanted;
+  wanted.reserve(mesh.interfaces.size());
+  std::vector<std::uint8_t> flagged(mesh.points.size(), 0);
+  for (std::size_t i = 0; i < mesh.interfaces.size(); ++i) {
+    Triangle ids = mesh.interfaces[i].ids;
+    for (const Index v : ids) flagged[v] = 1;
+    std::sort(ids.begin(), ids.end());
+    wanted.emplace_back(ids, i);
+  }
+  std::sort(wanted.begin(), wanted.end());
+  std::vector<TetFace> out(mesh.interfaces.size(), {no_index, 0});
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const Tet& tet = mesh.tets[t];
+    for (int f = 0; f < 4; ++f) {
+      const auto& corners = tet_faces[static_cast<std::size_t>(f)];
+      if (!flagged[tet[corners[0]]] || !flagged[tet[corners[1]]] || !flagged[tet[corners[2]]]) continue;
+      const Triangle ids = sorted_face(tet, f).vertices;
+      const auto at = std::lower_bound(wanted.begin(), wanted.end(), std::pair(ids, std::size_t{0}));
+      if (at != wanted.end() && at->first == ids && mesh.interfaces[at->second].material == mesh.materials[t])
+        out[at->second] = {static_cast<Index>(t), static_cast<std::uint8_t>(f)};
+    }
+  }
+  for (const TetFace& face : out) TETWRIGHT_CHECK(face.tet != no_index);
+  return out;
+}
+
+TriangleMesh interface_surface(const TetMesh& mesh, const NameRules& rules) {
+  TriangleMesh surface;
+  std::vector<Index> new_index(mesh.points.size(), no_index);
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    for (const Index v : t.ids) new_index[v] = 0;
+  for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+    if (new_index[p] == no_index) continue;
+    new_index[p] = static_cast<Index>(surface.points.size());
+    surface.points.push_back(mesh.points[p]);
+  }
+  for (const MeshParts::Surface& s : mesh_parts(mesh, rules).surfaces) {
+    for (const std::size_t f : s.faces) {
+      const Triangle& ids = mesh.interfaces[f].ids;
+      surface.triangles.push_back({new_index[ids[0]], new_index[ids[1]], new_index[ids[2]]});
+      surface.triangle_groups.push_back(static_cast<std::uint32_t>(surface.groups.size()));
+    }
+    surface.groups.push_back({s.number, s.name});
+  }
+  return surface;
+}
+
+std::vector<Index> nodes_of_faces(const TetMesh& mesh, const std::vector<std::size_t>& faces,
+                                  const std::vector<std::array<Index, 3>>* midside) {
+  std::vector<Index> nodes;
+  for (const std::size_t f : faces) {
+    for (const Index v : mesh.interfaces[f].ids) nodes.push_back(v);
+    if (midside)
+      for (const Index m : (*midside)[f]) nodes.push_back(static_cast<Index>(mesh.points.size()) + m);
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+}  // namespace tetwright

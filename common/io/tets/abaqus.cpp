@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/tets/abaqus.h"
+
+#include <array>
+#include <span>
+
+#include "common/io/names/mesh_parts.h"
+#include "common/io/text/fixed_width_number.h"
+#include "common/io/text/text_writer.h"
+
+namespace tetwright {
+
+namespace {
+
+/// The number of a tet's face opposite each of its vertices: S1 is 1-2-3, S2 1-4-2, S3 2-4-3, S4 3-4-1.
+constexpr std::array<int, 4> face_numbers{3, 4, 2, 1};
+
+/// What fits into the fields of both programs, and into a line of them.
+constexpr std::size_t number_width = 20;
+constexpr std::size_t numbers_on_line = 16;
+
+void write_numbers(TextWriter& out, std::span<const Index> zero_based) {
+  for (std::size_t i = 0; i < zero_based.size(); ++i) {
+    const bool ends_line = (i + 1) % numbers_on_line == 0 || i + 1 == zero_based.size();
+    out << std::uint64_t{zero_based[i]} + 1 << (ends_line ? "\n" : ", ");
+  }
+}
+
+void write_elements(TextWriter& out, const MeshToWrite& written, const MeshParts::Material& material) {
+  const TetMesh& mesh = written.mesh;
+  out << "*ELEMENT, TYPE=" << (written.midside ? "C3D10" : "C3D4") << ", ELSET=" << material.name << '\n';
+  for (const Index t : material.tets) {
+    out << std::uint64_t{t} + 1;
+    for (const Index v : mesh.tets[t]) out << ", " << std::uint64_t{v} + 1;
+    if (written.midside)
+      for (const Index m : written.midside->of_tets[t]) out << ", " << mesh.points.size() + m + 1;
+    out << '\n';
+  }
+}
+
+}  // namespace
+
+NameRules abaqus_names() {
+  return {.form = [](const std::string& name) { return plain_name(name); },
+          .ignore_case = true,
+          .surface_numbers = false};
+}
+
+void write_abaqus(const MeshToWrite& written, const ByteSink& sink) {
+  const TetMesh& mesh = written.mesh;
+  const MeshParts parts = mesh_parts(mesh, abaqus_names());
+  TextWriter out(sink);
+  out << "** Written by tetwright, to be taken in by *INCLUDE\n";
+  for (const MeshParts::Material& m : parts.materials)
+    out << abaqus_material_comment << m.tag << ": " << m.name << '\n';
+  out << "*NODE\n";
+  for (std::size_t i = 0; i < written.nodes(); ++i) {
+    out << i + 1;
+    for (const double x : written.node(i)) out << ", " << fixed_width_number(x, number_width);
+    out << '\n';
+  }
+  for (const MeshParts::Material& m : parts.materials) write_elements(out, written, m);
+  const std::vector<TetFace> faces = faces_of_tets(mesh);
+  for (const MeshParts::Surface& s : parts.surfaces) {
+    out << "*SURFACE, NAME=" << s.name << ", TYPE=ELEMENT\n";
+    for (const std::size_t f : s.faces)
+      out << std::uint64_t{faces[f].tet} + 1 << ", S" << face_numbers[faces[f].face] << '\n';
+    out << "*NSET, NSET=" << s.name << '\n';
+    write_numbers(out, nodes_of_faces(mesh, s.faces, written.midside ? &written.midside->of_faces : nullptr));
+  }
+  out.flush();
+}
+
+}  // namespace tetwright

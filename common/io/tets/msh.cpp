@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/tets/msh.h"
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/io/tets/msh_data.h"
+#include "common/io/tets/msh_elements.h"
+#include "common/io/tets/msh_groups.h"
+#include "common/number_text.h"
+
+namespace tetwright {
+
+namespace {
+
+void append_name(std::string& out, int dimension, std::int64_t group, const std::string& name) {
+  append_number(out, dimension);
+  out += ' ';
+  append_number(out, group);
+  out += " \"" + msh_name(name) + "\"\n";
+}
+
+void begin_element(std::string& out, std::size_t number, std::int64_t type, std::int64_t physical,
+                   std::int64_t geometrical) {
+  append_number(out, number);
+  out += ' ';
+  append_number(out, type);
+  out += " 2 ";
+  append_number(out, physical);
+  out += ' ';
+  append_number(out, geometrical);
+}
+
+void append_nodes(std::string& out, std::span<const Index> nodes, std::size_t first = 0) {
+  for (const Index node : nodes) {
+    out += ' ';
+    append_number(out, first + node + 1);
+  }
+}
+
+}  // namespace
+
+std::string write_msh(const MeshToWrite& written) {
+  const TetMesh& mesh = written.mesh;
+  const MidsideNodes* midside = written.midside;
+  std::string out = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
+  const MshGroups groups(mesh);
+  if (!groups.material_names.empty() || !groups.face_names.empty()) {
+    out += "$PhysicalNames\n";
+    append_number(out, groups.face_names.size() + groups.material_names.size());
+    out += '\n';
+    for (const auto& [number, name] : groups.face_names) append_name(out, 2, number, name);
+    for (const auto& [tag, name] : groups.material_names) append_name(out, 3, tag, name);
+    out += "$EndPhysicalNames\n";
+  }
+  out += "$Nodes\n";
+  append_number(out, written.nodes());
+  out += '\n';
+  for (std::size_t i = 0; i < written.nodes(); ++i) {
+    append_number(out, i + 1);
+    out += ' ';
+    append_point(out, written.node(i));
+    out += '\n';
+  }
+  // Tets first: their numbers are the same with and without triangles, and simple readers take the first
+  // block of elements only.
+  out += "$EndNodes\n$Elements\n";
+  append_number(out, mesh.tets.size() + mesh.interfaces.size());
+  out += '\n';
+  // The second tag is the number of the geometrical entity, which must be positive: one for each material.
+  std::vector<MaterialTag> tags = mesh.materials;
+  std::sort(tags.begin(), tags.end());
+  tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    begin_element(out, t + 1, midside ? msh_quadratic_tet_type : msh_tet_type, mesh.materials[t],
+                  std::lower_bound(tags.begin(), tags.end(), mesh.materials[t]) - tags.begin() + 1);
+    append_nodes(out, mesh.tets[t]);
+    if (midside)
+      for (const std::size_t m : msh_midside_order)
+        append_nodes(out, std::span(&midside->of_tets[t][m], 1), mesh.points.size());
+    out += '\n';
+  }
+  for (std::size_t i = 0; i < mesh.interfaces.size(); ++i) {
+    const auto group = groups.faces.number_of(mesh.interfaces[i]);
+    begin_element(out, mesh.tets.size() + i + 1, midside ? msh_quadratic_triangle_type : msh_triangle_type,
+                  group, group);
+    append_nodes(out, mesh.interfaces[i].ids);
+    if (midside) append_nodes(out, midside->of_faces[i], mesh.points.size());
+    out += '\n';
+  }
+  out += "$EndElements\n";
+  append_msh_data(out, "NodeData", written.node_fields(), written.nodes());
+  append_msh_data(out, "ElementData", fields_of_elements(mesh), mesh.tets.size() + mesh.interfaces.size());
+  return out;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "common/io/encodings/byte_order.h"
+#include "common/io/names/mesh_parts.h"
+#include "common/io/tets/msh.h"
+#include "common/io/tets/msh_data.h"
+#include "common/io/tets/msh_elements.h"
+#include "common/io/tets/msh_groups.h"
+#include "common/io/text/text_writer.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr int surface_dimension = 2, volume_dimension = 3;
+
+/// Numbers of a section, as text or little-endian.
+class Numbers {
+ public:
+  Numbers(TextWriter& out, bool binary) : out_(out), binary_(binary) {}
+
+  Numbers& integer(std::int64_t value) { return put(static_cast<std::int32_t>(value)); }
+  Numbers& size(std::size_t value) { return put(std::uint64_t{value}); }
+  Numbers& real(double value) { return put(value); }
+  /// Ends a line of text.
+  void end_line() {
+    if (!binary_) out_ << '\n';
+    begins_line_ = true;
+  }
+  /// Ends the section: "$End" and this.
+  void end(const char* section) { out_ << (binary_ ? "\n$End" : "$End") << section << '\n'; }
+
+ private:
+  template <class Number>
+  Numbers& put(Number value) {
+    if (binary_) {
+      bytes_.clear();
+      append_bytes(bytes_, value);
+      out_ << bytes_;
+    } else {
+      if (!begins_line_) out_ << ' ';
+      out_ << value;
+    }
+    begins_line_ = false;
+    return *this;
+  }
+
+  TextWriter& out_;
+  bool binary_;
+  bool begins_line_ = true;
+  std::string bytes_;
+};
+
+/// A volume or a surface of Gmsh's model, with the physical group of the same number.
+struct Entity {
+  int dimension;
+  std::int64_t number;
+  std::vector<std::size_t> elements;  ///< tets or interface triangles
+  std::set<std::int64_t> bounds;  ///< of a volume: its surfaces, negative where their normals point into it
+  std::vector<Index> nodes;       ///< classified on it, ascending
+  Vec3 min = Vec3::Constant(std::numeric_limits<double>::infinity());
+  Vec3 max = -min;
+};
+
+class Msh4Writer {
+ public:
+  Msh4Writer(const MeshToWrite& written, bool binary, const ByteSink& sink)
+      : written_(written),
+        mesh_(written.mesh),
+        groups_(mesh_),
+        out_(sink),
+        numbers_(out_, binary),
+        binary_(binary),
+        physical_(positive_numbers(tags_of(mesh_.materials), max_number)) {
+    collect_entities();
+    classify_nodes();
+  }
+
+  void write() {
+    out_ << "$MeshFormat\n4.1 " << (binary_ ? 1 : 0) << " 8\n";
+    if (binary_) {
+      numbers_.integer(1);
+      out_ << '\n';
+    }
+    out_ << "$EndMeshFormat\n";
+    write_comments();
+    write_names();
+    write_entities();
+    write_nodes();
+    write_elements();
+    std::string data;
+    append_msh_data(data, "NodeData", written_.node_fields(), written_.nodes(), binary_, order_of_nodes());
+    append_msh_data(data, "ElementData", fields_of_elements(mesh_),
+                    mesh_.tets.size() + mesh_.interfaces.size(), binary_, order_of_elements());
+    out_ << data;
+    out_.flush();
+  }
+
+ private:
+  static constexpr std::int64_t max_number = std::numeric_limits<std::int32_t>::max();
+
+  void collect_entities() {
+    std::map<std::int64_t, Entity> surfaces, volumes;
+    for (std::size_t i = 0; i < mesh_.interfaces.size(); ++i) {
+      const InterfaceTriangle& t = mesh_.interfaces[i];
+      const std::int64_t number = groups_.faces.number_of(t);
+      Entity& surface =
+          surfaces.try_emplace(number, Entity{surface_dimension, number, {}, {}, {}}).first->second;
+      surface.elements.push_back(i);
+      volume(volumes, t.material).bounds.insert(number);
+      if (t.other) volume(volumes, *t.other).bounds.insert(-number);
+    }
+    for (std::size_t t = 0; t < mesh_.tets.size(); ++t)
+      volume(volumes, mesh_.materials[t]).elements.push_back(t);
+    for (auto* entities : {&surfaces, &volumes})
+      for (auto& [number, entity] : *entities) entities_.push_back(std::move(entity));
+    surfaces_ = surfaces.size();
+  }
+
+  Entity& volume(std::map<std::int64_t, Entity>& volumes, MaterialTag tag) const {
+    const std::int64_t number = physical_.at(tag);
+    return volumes.try_emplace(number, Entity{volume_dimension, number, {}, {}, {}}).first->second;
+  }
+
+  /// Each node belongs to the first entity that has an element with it, surfaces before volumes.
+  void classify_nodes() {
+    std::vector<std::uint8_t> done(written_.nodes(), 0);
+    for (Entity& entity : entities_) {
+      for (const std::size_t e : entity.elements)
+        for (const Index node : nodes_of(entity, e)) {
+          const Vec3& p = written_.node(node);
+          entity.min = entity.min.cwiseMin(p);
+          entity.max = entity.max.cwiseMax(p);
+          if (done[node]) continue;
+          done[node] = 1;
+          entity.nodes.push_back(node);
+        }
+      std::sort(entity.nodes.begin(), entity.nodes.end());
+    }
+    // Points of no tet: a mesh may have some.
+    for (std::size_t node = 0; node < done.size(); ++node)
+      if (!done[node]) entities_.back().nodes.push_back(static_cast<Index>(node));
+  }
+
+  /// The nodes of an element in Gmsh's order.
+  std::vector<Index> nodes_of(const Entity& entity, std::size_t element) const {
+    std::vector<Index> nodes;
+    const auto add = [&](const auto& corners) { nodes.insert(nodes.end(), corners.begin(), corners.end()); };
+    const auto add_midside = [&](Index m) { nodes.push_back(static_cast<Index>(mesh_.points.size()) + m); };
+    if (entity.dimension == surface_dimension) {
+      add(mesh_.interfaces[element].ids);
+      if (written_.midside)
+        for (const Index m : written_.midside->of_faces[element]) add_midside(m);
+    } else {
+      add(mesh_.tets[element]);
+      if (written_.midside)
+        for (const std::size_t m : msh_midside_order) add_midside(written_.midside->of_tets[element][m]);
+    }
+    return nodes;
+  }
+
+  /// Tags that cannot be the number of a physical group.
+  void write_comments() {
+    bool any = false;
+    for (const auto& [tag, number] : physical_) {
+      if (tag == number) continue;
+      if (!any) out_ << "$Comments\n";
+      any = true;
+      out_ << msh_material_comment << number << ' ' << tag << '\n';
+    }
+    if (any) out_ << "$EndComments\n";
+  }
+
+  void write_names() {
+    std::map<std::int64_t, std::string> volumes;
+    for (const auto& [tag, name] : groups_.material_names)
+      if (const auto number = physical_.find(tag); number != physical_.end()) volumes[number->second] = name;
+    if (volumes.empty() && groups_.face_names.empty()) return;
+    out_ << "$PhysicalNames\n" << groups_.face_names.size() + volumes.size() << '\n';
+    for (const auto& [number, name] : groups_.face_names)
+      out_ << surface_dimension << ' ' << number << " \"" << name << "\"\n";
+    for (const auto& [number, name] : volumes)
+      out_ << volume_dimension << ' ' << number << " \"" << name << "\"\n";
+    out_ << "$EndPhysicalNames\n";
+  }
+
+  void write_entities() {
+    out_ << "$Entities\n";
+    numbers_.size(0).size(0).size(surfaces_).size(entities_.size() - surfaces_).end_line();
+    for (const Entity& entity : entities_) {
+      numbers_.integer(entity.number);
+      for (const Vec3& corner : {entity.min, entity.max})
+        for (const double x : corner) numbers_.real(x);
+      numbers_.size(1).integer(entity.number).size(entity.bounds.size());
+      for (const std::int64_t bound : entity.bounds) numbers_.integer(bound);
+      numbers_.end_line();
+    }
+    numbers_.end("Entities");
+  }
+
+  void write_nodes() {
+    out_ << "$Nodes\n";
+    const auto used = static_cast<std::size_t>(
+        std::count_if(entities_.begin(), entities_.end(), [](const Entity& e) { return !e.nodes.empty(); }));
+    numbers_.size(used).size(written_.nodes()).size(1).size(written_.nodes()).end_line();
+    for (const Entity& entity : entities_) {
+      if (entity.nodes.empty()) continue;
+      begin_block(entity, 0, entity.nodes.size());
+      for (const Index node : entity.nodes) numbers_.size(node + std::size_t{1}).end_line();
+      for (const Index node : entity.nodes) {
+        for (const double x : written_.node(node)) numbers_.real(x);
+        numbers_.end_line();
+      }
+    }
+    numbers_.end("Nodes");
+  }
+
+  void begin_block(const Entity& entity, std::int64_t kind, std::size_t items) {
+    numbers_.integer(entity.dimension).integer(entity.number).integer(kind).size(items).end_line();
+  }
+
+  /// Tets have the numbers from 1 on, in the order of the mesh, and triangles those after them: fields refer
+  /// to tets by these.
+  void write_elements() {
+    out_ << "$Elements\n";
+    const std::size_t all = mesh_.tets.size() + mesh_.interfaces.size();
+    numbers_.size(entities_.size()).size(all).size(1).size(all).end_line();
+    for (const Entity& entity : entities_) {
+      const bool surface = entity.dimension == surface_dimension;
+      begin_block(entity,
+                  surface            ? written_.midside ? msh_quadratic_triangle_type : msh_triangle_type
+                  : written_.midside ? msh_quadratic_tet_type
+                                     : msh_tet_type,
+                  entity.elements.size());
+      for (const std::size_t e : entity.elements) {
+        numbers_.size((surface ? mesh_.tets.size() : 0) + e + 1);
+        for (const Index node : nodes_of(entity, e)) numbers_.size(node + std::size_t{1});
+        numbers_.end_line();
+      }
+    }
+    numbers_.end("Elements");
+  }
+
+  // As write_nodes() and write_elements() list them.
+  std::vector<std::size_t> order_of_nodes() const {
+    std::vector<std::size_t> order;
+    for (const Entity& entity : entities_)
+      order.insert(order.end(), entity.nodes.begin(), entity.nodes.end());
+    return order;
+  }
+  std::vector<std::size_t> order_of_elements() const {
+    std::vector<std::size_t> order;
+    for (const Entity& entity : entities_)
+      for (const std::size_t e : entity.elements)
+        order.push_back((entity.dimension == surface_dimension ? mesh_.tets.size() : 0) + e);
+    return order;
+  }
+
+  const MeshToWrite& written_;
+  const TetMesh& mesh_;
+  MshGroups groups_;
+  TextWriter out_;
+  Numbers numbers_;
+  bool binary_;
+  std::map<std::int64_t, std::int64_t> physical_;  ///< groups of the materials
+  std::vector<Entity> entities_;                   ///< surfaces, then volumes
+  std::size_t surfaces_ = 0;
+};
+
+}  // namespace
+
+void write_msh41(const MeshToWrite& written, const ByteSink& sink) {
+  Msh4Writer(written, false, sink).write();
+}
+
+void write_msh41_binary(const MeshToWrite& written, const ByteSink& sink) {
+  Msh4Writer(written, true, sink).write();
+}
+
+}  // namespace tetwright

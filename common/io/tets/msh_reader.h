@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "common/io/contents/read_tet_mesh_result.h"
+#include "common/io/contents/surface_with_fields.h"
+#include "common/io/elements/file_numbers.h"
+#include "common/io/elements/midside_nodes_read.h"
+#include "common/io/encodings/msh_numbers.h"
+#include "common/io/tets/msh_elements.h"
+#include "common/io/text/text_scanner.h"
+
+namespace tetwright {
+
+/// The number of a group of faces, or of what is less: where a sign is, Gmsh means the other orientation.
+inline std::int64_t without_sign(std::int64_t number) {
+  return number < 0 && number != std::numeric_limits<std::int64_t>::min() ? -number : number;
+}
+
+/// What msh.h says of the reading functions, for one file and one call. msh_reader.cpp has the file's
+/// sections and what is made of them, msh_reader_mesh.cpp those of nodes, entities and elements in each
+/// version.
+class MshReader {
+ public:
+  MshReader(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options)
+      : in_(bytes, name), options_(options), bytes_(bytes) {}
+
+  ReadTetMesh read();
+  TriangleMesh read_surface(std::vector<Dropped>* dropped);
+  /// Nothing for a file with tets.
+  std::optional<SurfaceWithFields> read_surface_with_fields();
+
+ private:
+  struct EntityName {
+    std::int64_t dimension, number;
+  };
+
+  void read_sections();
+  void read_format();
+  void expect(std::string_view end);
+  /// Sections of data are read when all nodes and elements are known: a copy of the scanner keeps their
+  /// place.
+  void keep_or_skip(std::string_view section);
+  /// Those of write_msh41() tell which materials have tags that are no numbers of groups.
+  void read_comments(const std::string& end);
+  /// The material of a physical group of tets.
+  std::int64_t tag_of(std::int64_t group) const;
+  void read_names();
+  /// `room` is that of read_msh_data().
+  void read_node_data(std::size_t& room);
+  void read_data();
+  void set_materials();
+  void note_dropped();
+
+  // In msh_reader_mesh.cpp.
+  Vec3 read_point();
+  std::size_t begin_nodes(std::size_t n);
+  void end_nodes();
+  void read_nodes_2();
+  void read_nodes_4();
+  /// The smallest and the largest number of a node or element.
+  void read_range_of_numbers();
+  EntityName read_entity();
+  void read_entities();
+  void begin_elements();
+  /// In binary files of version 4.1 numbers of nodes and elements are sizes.
+  std::int64_t read_node(const char* what) {
+    return version_4_ && !version_40_ ? numbers_.size(what) : numbers_.integer(what);
+  }
+
+  /// Nodes that are not there are an error if they are `needed`.
+  template <class Ids>
+  Ids read_ids(std::int64_t element, bool needed, const char* what) {
+    Ids ids;
+    for (Index& vertex : ids) {
+      const std::int64_t node = read_node(what);
+      vertex = nodes_.find(node);
+      if (needed && vertex == no_index)
+        in_.fail("element " + std::to_string(element) + " names node " + std::to_string(node) +
+                 ", which is not in $Nodes; export the file again");
+    }
+    return ids;
+  }
+
+  /// False: faces of this type are not taken. Beside tets quads are no faces.
+  bool read_face(std::int64_t type, std::int64_t element, std::int64_t group);
+  /// Of four nodes, or of ten, of which the corners come first.
+  void read_tet(std::int64_t type, std::int64_t element);
+  static bool is_tet(std::int64_t type) { return type == msh_tet_type || type == msh_quadratic_tet_type; }
+
+  /// Skips the nodes of an element, of which text has those of its line.
+  void skip_nodes(std::int64_t type);
+  /// In version 2 each element has a line of its own: number, type, tags, nodes. Binary ones have the type
+  /// and the number of tags once for several.
+  void read_elements_2();
+  void read_elements_4();
+  void end_elements();
+  void add_groups(std::int64_t physical, std::int64_t geometrical);
+
+  static constexpr const char* geometrical_name = "gmsh:geometrical";
+
+  TextScanner in_;
+  MshNumbers numbers_{in_};
+  const ReadTetMeshOptions& options_;
+  std::string_view bytes_;
+  ReadTetMesh result_;
+  FileNumbers nodes_, elements_;
+  /// The first physical group of the entities of each dimension.
+  std::array<std::unordered_map<std::int64_t, std::int64_t>, 4> entity_to_group_;
+  std::vector<MaterialTag> geometrical_;
+  std::vector<std::int64_t> tet_numbers_;
+  MidsideNodesRead midside_;
+  std::map<std::int64_t, MaterialTag> group_to_tag_;  ///< where comments of write_msh41() say so
+  std::vector<TextScanner> node_data_, element_data_;
+  OtherMshElements others_;
+  std::map<std::string, std::int64_t> surface_names_;        ///< physical groups of faces
+  std::set<std::pair<std::int64_t, std::int64_t>> volumes_;  ///< physical and geometrical number of the tets
+  std::pair<std::int64_t, std::int64_t> last_volume_;
+  std::size_t partitioned_ = 0;
+  std::vector<std::string> empty_fields_, fields_of_others_, other_sections_;  ///< names of what is not taken
+  bool surface_ = false;  ///< a surface is wanted, and no tets
+  bool version_4_ = false, version_40_ = false;
+  bool has_elements_ = false;
+  bool any_physical_ = false, any_geometrical_ = false;
+  bool keep_numbers_ = false;  ///< of the tets: there are fields that refer to them, or they are out of order
+};
+
+}  // namespace tetwright

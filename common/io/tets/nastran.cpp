@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/tets/nastran.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "common/error.h"
+#include "common/io/names/mesh_parts.h"
+#include "common/io/text/fixed_width_number.h"
+#include "common/io/text/text_writer.h"
+
+namespace tetwright {
+
+namespace {
+
+constexpr std::size_t small_field = 8, large_field = 16;
+constexpr std::size_t fields_on_line = 8;
+constexpr std::int64_t max_number = 99'999'999;  // eight digits
+
+std::string padded(std::string text, std::size_t width) {
+  text.resize(std::max(width, text.size()), ' ');
+  return text;
+}
+
+/// Writes an entry of integers in the small field format, on as many lines as it needs. `fields` may have
+/// blanks, 0.
+void write_entry(TextWriter& out, const char* name, const std::vector<std::size_t>& fields) {
+  std::string line = padded(name, small_field);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (i > 0 && i % fields_on_line == 0) {
+      out << line << "\n";
+      line = padded("+", small_field);
+    }
+    line += padded(fields[i] == 0 ? "" : std::to_string(fields[i]), small_field);
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  out << line << '\n';
+}
+
+void write_points(TextWriter& out, const MeshToWrite& written) {
+  for (std::size_t i = 0; i < written.nodes(); ++i) {
+    const Vec3& p = written.node(i);
+    const auto field = [&](double x) {
+      return padded(fixed_width_number(x, large_field, true), large_field);
+    };
+    out << padded("GRID*", small_field) << padded(std::to_string(i + 1), large_field)
+        << padded("", large_field) << field(p.x()) << field(p.y()) << "*\n"
+        << padded("*", small_field) << field(p.z()) << '\n';
+  }
+}
+
+void write_tets(TextWriter& out, const MeshToWrite& written, const MeshParts& parts) {
+  const TetMesh& mesh = written.mesh;
+  for (const MeshParts::Material& m : parts.materials) {
+    const auto property = static_cast<std::size_t>(m.number);
+    out << nastran_material_comment << property << ": " << m.name << '\n';
+    write_entry(out, "PSOLID", {property, property});
+    for (const Index t : m.tets) {
+      std::vector<std::size_t> fields = {std::size_t{t} + 1, property};
+      for (const Index v : mesh.tets[t]) fields.push_back(std::size_t{v} + 1);
+      if (written.midside)
+        for (const Index node : written.midside->of_tets[t]) fields.push_back(mesh.points.size() + node + 1);
+      write_entry(out, "CTETRA", fields);
+    }
+  }
+}
+
+void write_surfaces(TextWriter& out, const MeshToWrite& written, const MeshParts& parts) {
+  const TetMesh& mesh = written.mesh;
+  const std::vector<TetFace> faces = faces_of_tets(mesh);
+  for (const MeshParts::Surface& s : parts.surfaces) {
+    const auto number = static_cast<std::size_t>(s.number);
+    out << nastran_surface_comment << number << ": " << s.name << '\n';
+    std::vector<std::size_t> fields = {number, 0, 0, 0};
+    for (const std::size_t f : s.faces) {
+      fields.push_back(std::size_t{faces[f].tet} + 1);
+      for (const Index v : mesh.interfaces[f].ids) fields.push_back(std::size_t{v} + 1);
+    }
+    write_entry(out, "BSURFS", fields);
+    fields = {number};
+    for (const Index node :
+         nodes_of_faces(mesh, s.faces, written.midside ? &written.midside->of_faces : nullptr))
+      fields.push_back(std::size_t{node} + 1);
+    write_entry(out, "SET1", fields);
+  }
+}
+
+}  // namespace
+
+NameRules nastran_names() {
+  // Names stand in comments, which end with the line.
+  return {.form = printable_name, .max_number = max_number};
+}
+
+void write_nastran(const MeshToWrite& written, const ByteSink& sink) {
+  if (static_cast<std::int64_t>(std::max(written.nodes(), written.mesh.tets.size())) > max_number)
+    throw OutputError("a Nastran file has no room for numbers of more than eight digits, and there are " +
+                      std::to_string(std::max(written.nodes(), written.mesh.tets.size())) +
+                      " nodes or tets; write another format");
+  const MeshParts parts = mesh_parts(written.mesh, nastran_names());
+  TextWriter out(sink);
+  out << "$ Written by tetwright: a MAT1 with the number of each PSOLID is to be added\nBEGIN BULK\n";
+  write_points(out, written);
+  write_tets(out, written, parts);
+  write_surfaces(out, written, parts);
+  out << "ENDDATA\n";
+  out.flush();
+}
+
+}  // namespace tetwright

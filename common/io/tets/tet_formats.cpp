@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/tets/tet_formats.h"
+
+#include <filesystem>
+#include <optional>
+
+#include "common/files/file_names.h"
+#include "common/io/elements/vtk_cells.h"
+#include "common/io/tets/abaqus.h"
+#include "common/io/tets/febio.h"
+#include "common/io/tets/medit.h"
+#include "common/io/tets/medit_binary.h"
+#include "common/io/tets/msh.h"
+#include "common/io/tets/msh_data.h"
+#include "common/io/tets/msh_groups.h"
+#include "common/io/tets/nastran.h"
+#include "common/io/tets/tetgen.h"
+#include "common/io/tets/vtk.h"
+#include "common/io/tets/vtu.h"
+#include "common/io/tets/xdmf.h"
+#include "common/io/volumes/data_file.h"
+
+namespace tetwright {
+
+namespace {
+
+ReadTetMesh read_xdmf_files(const std::string& path, const ReadTetMeshOptions& options) {
+  const std::string file = with_extension(path, "_facets.xdmf");
+  std::string bytes;
+  std::optional<NamedBytes> facets;
+  if (std::error_code error; std::filesystem::exists(file, error))
+    facets = NamedBytes{bytes = read_whole_file(file), file};
+  return read_xdmf(read_whole_file(path), path, read_whole_file, options, facets);
+}
+
+/// The .node, .ele and, where there is one, .face file of one name, that of .node or .ele.
+ReadTetMesh read_tetgen_files(const std::string& path, const ReadTetMeshOptions& options) {
+  const auto name = [&](const char* extension) {
+    return extension_of(path) == extension ? path : with_extension(path, extension);
+  };
+  const std::string node = name(".node"), ele = name(".ele"), face = name(".face");
+  const std::string node_bytes = read_whole_file(node), ele_bytes = read_whole_file(ele);
+  std::string face_bytes;
+  std::optional<NamedBytes> faces;
+  if (std::error_code error; std::filesystem::exists(face, error))
+    faces = NamedBytes{face_bytes = read_whole_file(face), face};
+  return read_tetgen({node_bytes, node}, {ele_bytes, ele}, faces, options);
+}
+
+template <void (*write)(const MeshToWrite&, const ByteSink&)>
+void write_alone(const MeshToWrite& mesh, const std::string& /*first*/, const ByteSink& sink) {
+  write(mesh, sink);
+}
+
+template <std::string (*write)(const MeshToWrite&)>
+void write_as_one(const MeshToWrite& mesh, const std::string& /*first*/, const ByteSink& sink) {
+  sink(write(mesh));
+}
+
+template <NameRules (*rules)()>
+MeshParts parts_by(const TetMesh& mesh) {
+  return names_of_parts(mesh, rules());
+}
+constexpr auto printable_parts = parts_by<printable_names>;
+
+}  // namespace
+
+const std::vector<TetFormat>& tet_formats() {
+  static const std::vector<WrittenFile> tetgen{{".node", write_alone<write_tetgen_node>},
+                                               {".ele", write_alone<write_tetgen_ele>},
+                                               {".face", write_alone<write_tetgen_face>}};
+  static const std::vector<WrittenFile> xdmf{{".h5", write_alone<write_xdmf_numbers>},
+                                             {".xdmf", write_xdmf_mesh},
+                                             {"_facets.h5", write_alone<write_xdmf_facet_numbers>},
+                                             {"_facets.xdmf", write_xdmf_facets}};
+  static const std::vector<TetFormat> formats{{.extension = ".vtu",
+                                               .name = "vtu",
+                                               .read = read_vtu,
+                                               .write = {{".vtu", write_alone<write_vtu>}},
+                                               .parts = vtu_parts,
+                                               .own_cell_fields = {"material"},
+                                               .surfaces = false,
+                                               .second_order = true},
+                                              {.extension = ".msh",
+                                               .name = "msh22",
+                                               .read = read_msh,
+                                               .write = {{".msh", write_as_one<write_msh>}},
+                                               .parts = msh_parts,
+                                               .field_name = msh_name,
+                                               .second_order = true},
+                                              {.extension = ".msh",
+                                               .name = "msh41",
+                                               .read = read_msh,
+                                               .write = {{".msh", write_alone<write_msh41>}},
+                                               .parts = msh_parts,
+                                               .field_name = msh_name,
+                                               .second_order = true},
+                                              {.extension = ".msh",
+                                               .name = "msh41-binary",
+                                               .read = read_msh,
+                                               .write = {{".msh", write_alone<write_msh41_binary>}},
+                                               .parts = msh_parts,
+                                               .field_name = msh_name,
+                                               .second_order = true},
+                                              {.extension = ".mesh",
+                                               .name = "medit",
+                                               .read = read_medit,
+                                               .write = {{".mesh", write_as_one<write_medit>}},
+                                               .parts = medit_parts,
+                                               .point_fields = false,
+                                               .names = false,
+                                               .fields = false},
+                                              {.extension = ".meshb",
+                                               .name = "medit-binary",
+                                               .read = read_medit_binary,
+                                               .write = {{".meshb", write_alone<write_medit_binary>}},
+                                               .parts = medit_parts,
+                                               .point_fields = false,
+                                               .names = false,
+                                               .patch_names = false,
+                                               .fields = false},
+                                              {.extension = ".vtk",
+                                               .name = "vtk",
+                                               .read = read_vtk,
+                                               .write = {{".vtk", write_alone<write_vtk>}},
+                                               .parts = printable_parts,
+                                               .own_cell_fields = {"material", vtk_surface_field},
+                                               .second_order = true},
+                                              {.extension = ".inp",
+                                               .name = "abaqus",
+                                               .read = read_abaqus,
+                                               .write = {{".inp", write_alone<write_abaqus>}},
+                                               .parts = parts_by<abaqus_names>,
+                                               .point_fields = false,
+                                               .fields = false,
+                                               .second_order = true},
+                                              {.extension = ".bdf",
+                                               .name = "nastran",
+                                               .read = read_nastran,
+                                               .write = {{".bdf", write_alone<write_nastran>}},
+                                               .parts = parts_by<nastran_names>,
+                                               .point_fields = false,
+                                               .fields = false,
+                                               .second_order = true},
+                                              {.extension = ".feb",
+                                               .name = "febio",
+                                               .write = {{".feb", write_alone<write_febio>}},
+                                               .parts = parts_by<febio_names>,
+                                               .fields = false,
+                                               .second_order = true},
+                                              {.extension = ".xdmf",
+                                               .name = "xdmf",
+                                               .read_files = read_xdmf_files,
+                                               .write = xdmf,
+                                               .parts = printable_parts,
+                                               .own_cell_fields = {"material"},
+                                               .second_order = true},
+                                              {.extension = ".node",
+                                               .name = "tetgen",
+                                               .read_files = read_tetgen_files,
+                                               .write = tetgen,
+                                               .parts = printable_parts,
+                                               .fields = false},
+                                              {.extension = ".ele",
+                                               .name = "tetgen",
+                                               .read_files = read_tetgen_files,
+                                               .write = tetgen,
+                                               .parts = printable_parts,
+                                               .fields = false}};
+  return formats;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/io/contents/read_tet_mesh_result.h"
+#include "common/io/text/text_scanner.h"
+#include "common/types.h"
+
+namespace tetwright {
+
+/// What legacy VTK files of all datasets share: the head, points, lists of cells, fields. A reader derives
+/// from it and calls read_sections(). Errors are InputErrors with the line.
+class VtkSections {
+ protected:
+  enum class Data { none, points, cells };
+
+  /// A list of cells: each takes points[offsets[c]] and so on.
+  class Cells {
+   public:
+    std::size_t count() const { return offsets_.empty() ? 0 : offsets_.size() - 1; }
+    std::size_t size(std::size_t cell) const {
+      return static_cast<std::size_t>(offsets_[cell + 1] - offsets_[cell]) - before_each_;
+    }
+    std::size_t begin(std::size_t cell) const { return static_cast<std::size_t>(offsets_[cell]); }
+    /// The point at this place; it may be one that is not there.
+    std::int64_t point(std::size_t place) const { return points_[place]; }
+    void free_points() { points_ = {}; }
+
+   private:
+    friend class VtkSections;
+    std::vector<std::int64_t> offsets_, points_;
+    std::size_t before_each_ = 0;  ///< numbers between two cells: in old files the size of the next one
+  };
+
+  VtkSections(std::string_view bytes, const std::string& name) : in_(bytes, name) {}
+  ~VtkSections() = default;
+
+  /// Reads the head and all sections, and appends what is dropped.
+  void read_sections(std::vector<Dropped>& dropped);
+
+  /// For a section that this class does not know, with its keyword in lower case: false if it is none.
+  virtual bool read_section(const std::string& part) = 0;
+  /// The word after DATASET, in lower case; fails if it is not one for this reader.
+  virtual void check_dataset(std::string_view word) = 0;
+  /// The number of cells; called where their data begin.
+  virtual std::size_t cell_count() = 0;
+  virtual void take_field(Data data, MeshField field) = 0;
+  /// An array of the whole dataset: false if it is to be dropped.
+  virtual bool take_dataset_array(const std::string& name, const std::vector<double>& values) = 0;
+
+  /// What follows the keyword of a list of cells; `begin` becomes the place of the first number, for
+  /// fail_at().
+  Cells read_cells(const std::string& keyword, TextScanner& begin);
+  /// A count and as many numbers, likewise.
+  std::vector<std::int64_t> read_whole_numbers(const char* count_of, const char* what, TextScanner& begin);
+  /// The point at a place of a list of cells that began at `begin`, checked.
+  Index checked_point(const Cells& cells, std::size_t cell, std::size_t place,
+                      const TextScanner& begin) const;
+  /// Throws InputError with the line of the k-th number of a list that begins at `begin`.
+  [[noreturn]] void fail_at(TextScanner begin, std::size_t k, const std::string& message) const;
+
+  TextScanner in_;
+  std::vector<Vec3> points_;
+  bool has_points_ = false;
+
+ private:
+  void read_head();
+  void read_part(const std::string& part, std::string_view word);
+  void read_points();
+  std::string type_word();
+  std::string name_word();
+  void expect_word(const char* expected);
+  void begin_data(Data data);
+  void add_field(const std::string& name, std::size_t components, const std::string& type);
+  std::size_t checked_components(std::int64_t n) const;
+  bool read_attribute(const std::string& part);
+  void read_scalars_head(std::size_t& components);
+  void skip_colours(std::size_t n, std::size_t components);
+  void read_field();
+  void skip_metadata();
+
+  bool binary_ = false;
+  Data data_ = Data::none;
+  std::size_t items_ = 0;                                            ///< points or cells that data is for
+  std::vector<std::string> dataset_arrays_, text_arrays_, colours_;  ///< names of what is not taken
+  KindCounts rounded_;                                               ///< integers of fields
+};
+
+}  // namespace tetwright

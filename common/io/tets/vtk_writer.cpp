@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "common/io/elements/vtk_cells.h"
+#include "common/io/names/mesh_fields.h"
+#include "common/io/names/mesh_parts.h"
+#include "common/io/tets/vtk.h"
+#include "common/io/text/text_writer.h"
+
+namespace tetwright {
+
+namespace {
+
+/// A name as one word, as VTK encodes it.
+std::string encoded(const std::string& name) {
+  constexpr const char* digits = "0123456789ABCDEF";
+  std::string out;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte > ' ' && byte < 127 && c != '%' && c != '"')
+      out += c;
+    else
+      out.append({'%', digits[byte / 16], digits[byte % 16]});
+  }
+  return out;
+}
+
+/// Names as an array of bytes, a line "NUMBER<tab>NAME" for each, since few readers know arrays of text.
+template <class Parts, class NumberOf>
+void write_names(TextWriter& out, const char* array, const Parts& parts, const NumberOf& number_of) {
+  std::string text;
+  for (const auto& part : parts) text += std::to_string(number_of(part)) + '\t' + part.name + '\n';
+  out << array << " 1 " << text.size() << " unsigned_char\n";
+  for (const char c : text) out << unsigned{static_cast<unsigned char>(c)} << '\n';
+}
+
+/// The fields as arrays of FIELD.
+void write_fields(TextWriter& out, const std::vector<MeshField>& fields, std::vector<std::string> taken,
+                  std::size_t items) {
+  if (fields.empty()) return;
+  const std::vector<std::string> names = field_names_to_write(fields, std::move(taken));
+  out << "FIELD FieldData " << fields.size() << '\n';
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const bool whole = fields[f].integer && all_whole(fields[f]);
+    const bool small = std::all_of(fields[f].values.begin(), fields[f].values.end(), [](double value) {
+      return std::fabs(value) <= std::numeric_limits<std::int32_t>::max();
+    });
+    const auto components = static_cast<std::size_t>(fields[f].components);
+    out << encoded(names[f]) << ' ' << components << ' ' << items << ' '
+        << (!whole  ? "double"
+            : small ? "int"
+                    : "long")
+        << '\n';
+    for (std::size_t i = 0; i < fields[f].values.size(); ++i) {
+      const double value = fields[f].values[i];
+      if (whole)
+        out << static_cast<std::int64_t>(value);
+      else if (std::isnan(value))
+        out << "nan";  // without the sign that nan may have
+      else
+        out << value;
+      out << ((i + 1) % components == 0 ? '\n' : ' ');
+    }
+  }
+}
+
+/// The fields of the tets with values for `triangles` more cells.
+std::vector<MeshField> fields_of_cells(std::vector<MeshField> fields, std::size_t triangles) {
+  for (MeshField& field : fields)
+    field.values.resize(field.values.size() + triangles * static_cast<std::size_t>(field.components),
+                        field.integer ? 0.0 : std::numeric_limits<double>::quiet_NaN());
+  return fields;
+}
+
+}  // namespace
+
+void write_vtk(const MeshToWrite& written, const ByteSink& sink) {
+  const TetMesh& mesh = written.mesh;
+  const MidsideNodes* midside = written.midside;
+  const MeshParts parts = mesh_parts(mesh, printable_names());
+  const std::size_t tets = mesh.tets.size(), triangles = mesh.interfaces.size();
+  TextWriter out(sink);
+  out << "# vtk DataFile Version 3.0\nwritten by tetwright\nASCII\nDATASET UNSTRUCTURED_GRID\n";
+  out << "POINTS " << written.nodes() << " double\n";
+  for (std::size_t i = 0; i < written.nodes(); ++i) {
+    const Vec3& p = written.node(i);
+    out << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
+  }
+  const std::size_t of_tet = midside ? 10 : 4, of_triangle = midside ? 6 : 3;
+  out << "CELLS " << tets + triangles << ' ' << tets * (1 + of_tet) + triangles * (1 + of_triangle) << '\n';
+  for (std::size_t t = 0; t < tets; ++t) {
+    out << of_tet;
+    for (const Index v : mesh.tets[t]) out << ' ' << v;
+    if (midside)
+      for (const Index m : midside->of_tets[t]) out << ' ' << mesh.points.size() + m;
+    out << '\n';
+  }
+  for (std::size_t i = 0; i < triangles; ++i) {
+    out << of_triangle;
+    for (const Index v : mesh.interfaces[i].ids) out << ' ' << v;
+    if (midside)
+      for (const Index m : midside->of_faces[i]) out << ' ' << mesh.points.size() + m;
+    out << '\n';
+  }
+  out << "CELL_TYPES " << tets + triangles << '\n';
+  for (std::size_t t = 0; t < tets; ++t) out << (midside ? vtk_quadratic_tet_type : vtk_tet_type) << '\n';
+  for (std::size_t i = 0; i < triangles; ++i)
+    out << (midside ? vtk_quadratic_triangle_type : vtk_triangle_type) << '\n';
+  // Simple readers expect the points first.
+  out << "FIELD FieldData " << (parts.surfaces.empty() ? 1 : 2) << '\n';
+  write_names(out, vtk_material_names, parts.materials, [](const auto& m) { return m.tag; });
+  if (!parts.surfaces.empty())
+    write_names(out, vtk_surface_names, parts.surfaces, [](const auto& s) { return s.number; });
+  out << "CELL_DATA " << tets + triangles << "\nSCALARS material int 1\nLOOKUP_TABLE default\n";
+  for (const MaterialTag tag : mesh.materials) out << tag << '\n';
+  for (const InterfaceTriangle& t : mesh.interfaces) out << t.material << '\n';
+  if (triangles > 0) {
+    std::vector<std::int64_t> surface_of(triangles);
+    for (const MeshParts::Surface& s : parts.surfaces)
+      for (const std::size_t f : s.faces) surface_of[f] = s.number;
+    out << "SCALARS " << vtk_surface_field << " int 1\nLOOKUP_TABLE default\n";
+    for (std::size_t t = 0; t < tets; ++t) out << "0\n";
+    for (const std::int64_t number : surface_of) out << number << '\n';
+  }
+  write_fields(out, fields_of_cells(mesh.cell_fields, triangles), {"material", vtk_surface_field},
+               tets + triangles);
+  if (!mesh.point_fields.empty()) {
+    out << "POINT_DATA " << written.nodes() << '\n';
+    write_fields(out, written.node_fields(), {}, written.nodes());
+  }
+  out.flush();
+}
+
+}  // namespace tetwright

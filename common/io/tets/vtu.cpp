@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/tets/vtu.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "common/error.h"
+#include "common/io/elements/midside_nodes_read.h"
+#include "common/io/elements/vtk_cells.h"
+#include "common/io/encodings/vtu_arrays.h"
+#include "common/io/encodings/vtu_data.h"
+#include "common/io/names/mesh_fields.h"
+#include "common/io/names/unique_names.h"
+#include "common/io/text/text_scanner.h"
+#include "common/io/text/xml_text.h"
+
+namespace tetwright {
+
+namespace {
+
+class VtuReader {
+ public:
+  VtuReader(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options)
+      : data_(bytes, name), name_(name), options_(options), file_size_(bytes.size()) {}
+
+  ReadTetMesh read() {
+    const std::vector<pugi::xml_node> pieces = data_.pieces("UnstructuredGrid");
+    for (const pugi::xml_node piece : pieces) read_piece(piece);
+    if (result_.mesh.tets.empty())
+      data_.fail(pieces[0].parent(), "there are no tets (type 10 or 24) among its " + std::to_string(cells_) +
+                                         " cells; a tet mesh is needed");
+    other_cells_.append_flat_to(result_.dropped);
+    if (pieces.size() > 1) join_pieces();
+    for (std::size_t t = 0; t < midside_of_tets_.size(); t += midside_per_tet)
+      midside_.add_tet(std::span(midside_of_tets_).subspan(t, midside_per_tet));
+    read_names(pieces[0].parent());
+    std::vector<Triangle> no_triangles;
+    midside_.remove_from(result_, no_triangles);
+    take_material(result_, options_, name_);
+    note_dropped_arrays(pieces[0].parent(), pieces);
+    rounded_.append_to(result_.dropped);
+    return std::move(result_);
+  }
+
+ private:
+  static constexpr std::size_t midside_per_tet = 6;
+  /// VTK's name of the array that marks points and cells which another piece has, too.
+  static constexpr const char* ghost_marks = "vtkGhostType";
+
+  /// Adds its points, tets and fields to what there is.
+  void read_piece(pugi::xml_node piece) {
+    TetMesh& mesh = result_.mesh;
+    const std::size_t points = data_.count(piece, "NumberOfPoints"),
+                      cells = data_.count(piece, "NumberOfCells"), first_tet = mesh.tets.size();
+    if (mesh.points.size() + points >= no_index)
+      data_.fail(piece, "more than " + std::to_string(no_index - 1) + " points; split the mesh");
+    first_points_.push_back(static_cast<Index>(mesh.points.size()));
+    const std::vector<Vec3> of_piece = data_.points(piece, points);
+    mesh.points.insert(mesh.points.end(), of_piece.begin(), of_piece.end());
+    const std::vector<std::size_t> tet_to_cell = read_cells(piece, points, cells);
+    cells_ += cells;
+    add_fields(mesh.point_fields, data_.fields(piece.child("PointData"), points, nullptr, &rounded_),
+               first_points_.back(), points);
+    add_fields(mesh.cell_fields,
+               data_.fields(piece.child("CellData"), cells,
+                            tet_to_cell.size() < cells ? &tet_to_cell : nullptr, &rounded_),
+               first_tet, mesh.tets.size() - first_tet);
+  }
+
+  /// Fields that not all pieces have are left out; a piece without items, which parallel writers make, has no
+  /// say. `before` and `items`: points or tets of the pieces before and of this one.
+  void add_fields(std::vector<MeshField>& all, std::vector<MeshField> added, std::size_t before,
+                  std::size_t items) {
+    // What it marks is no longer there.
+    std::erase_if(added, [](const MeshField& field) { return field.name == ghost_marks; });
+    if (items == 0) return;
+    if (before == 0) {
+      all = std::move(added);
+      return;
+    }
+    for (MeshField& field : all) {
+      const auto same = std::find_if(added.begin(), added.end(), [&](const MeshField& f) {
+        return f.name == field.name && f.components == field.components;
+      });
+      if (same == added.end()) {
+        field_names_of_some_pieces_.push_back(field.name);
+        field.components = 0;
+        continue;
+      }
+      field.integer &= same->integer;
+      field.values.insert(field.values.end(), same->values.begin(), same->values.end());
+      added.erase(same);
+    }
+    std::erase_if(all, [](const MeshField& field) { return field.components == 0; });
+    for (const MeshField& field : added) field_names_of_some_pieces_.push_back(field.name);
+  }
+
+  /// Marks of vtkGhostType: of each cell that a neighbouring piece has, too.
+  std::vector<std::int64_t> ghosts(pugi::xml_node piece, std::size_t cells) const {
+    const pugi::xml_node node =
+        piece.child("CellData").find_child_by_attribute("DataArray", "Name", ghost_marks);
+    return node ? data_.integers(node, cells) : std::vector<std::int64_t>();
+  }
+
+  /// Returns the cells that the tets are.
+  std::vector<std::size_t> read_cells(pugi::xml_node piece, std::size_t points, std::size_t cell_count) {
+    constexpr std::int64_t duplicate_cell = 1;
+    const pugi::xml_node cells = piece.child("Cells");
+    if (!cells) data_.fail(piece, "there are no Cells in it");
+    const pugi::xml_node types_node = data_.array(cells, "types"),
+                         offsets_node = data_.array(cells, "offsets"),
+                         connectivity_node = data_.array(cells, "connectivity");
+    const std::vector<std::uint32_t> types = data_.counts(types_node, cell_count);
+    data_.expect_size(types_node, types.size(), cell_count);
+    const std::vector<std::uint32_t> offsets = data_.counts(offsets_node, cell_count);
+    data_.expect_size(offsets_node, offsets.size(), cell_count);
+    const std::vector<std::uint32_t> connectivity =
+        data_.counts(connectivity_node, offsets.empty() ? 0 : offsets.back());
+    const std::vector<std::int64_t> ghost = ghosts(piece, cell_count);
+    const Index first_point = first_points_.back();
+    std::vector<std::size_t> tet_to_cell;
+    std::size_t begin = 0;
+    for (std::size_t c = 0; c < cell_count; ++c) {
+      const std::size_t end = offsets[c];
+      if (end < begin || end > connectivity.size())
+        data_.fail(offsets_node, "cell " + std::to_string(c) + " ends at " + std::to_string(end) + " of " +
+                                     std::to_string(connectivity.size()) + "; the file is damaged");
+      if (c < ghost.size() && (ghost[c] & duplicate_cell)) {
+        ++ghost_cells_;
+      } else if (is_vtk_tet(types[c])) {
+        const std::size_t nodes = vtk_nodes_of(types[c]);
+        if (end - begin != nodes)
+          data_.fail(offsets_node, "cell " + std::to_string(c) + " is a tet of " +
+                                       std::to_string(end - begin) + " points; the file is damaged");
+        std::array<Index, 4 + midside_per_tet> ids;
+        for (std::size_t k = 0; k < nodes; ++k) {
+          const std::uint32_t id = connectivity[begin + k];
+          if (id >= points)
+            data_.fail(connectivity_node, "cell " + std::to_string(c) + " names point " + std::to_string(id) +
+                                              " of " + std::to_string(points) + "; export the file again");
+          ids[k] = first_point + id;
+        }
+        result_.mesh.tets.push_back({ids[0], ids[1], ids[2], ids[3]});
+        if (nodes > 4) midside_of_tets_.insert(midside_of_tets_.end(), ids.begin() + 4, ids.end());
+        tet_to_cell.push_back(c);
+      } else {
+        other_cells_.add(types[c], c);
+      }
+      begin = end;
+    }
+    if (other_cells_.has_volumes()) data_.fail(types_node, other_cells_.refusal());
+    return tet_to_cell;
+  }
+
+  /// Where pieces meet each has points of its own: those at one place become that of the first piece, with
+  /// its values. Several that a piece has at one place are meant, and go with as many of the others, in their
+  /// order.
+  void join_pieces() {
+    TetMesh& mesh = result_.mesh;
+    const auto coordinates = [&](Index p) {
+      const Vec3& x = mesh.points[p];
+      return std::array{x[0], x[1], x[2]};
+    };
+    std::vector<Index> order(mesh.points.size());
+    std::iota(order.begin(), order.end(), Index{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](Index a, Index b) { return coordinates(a) < coordinates(b); });
+    std::vector<Index> to(mesh.points.size());
+    std::vector<Index> slots;
+    for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+      while (end < order.size() && coordinates(order[end]) == coordinates(order[begin])) ++end;
+      slots.clear();
+      std::size_t piece = 0, used = 0;  // pieces count from 1 here
+      for (std::size_t i = begin; i < end; ++i) {
+        const Index p = order[i];
+        const auto own = static_cast<std::size_t>(
+            std::upper_bound(first_points_.begin(), first_points_.end(), p) - first_points_.begin());
+        used = own == piece ? used + 1 : 0;
+        piece = own;
+        if (used == slots.size()) slots.push_back(p);
+        to[p] = slots[used];
+      }
+    }
+    renumber(to);
+  }
+
+  /// `to`: the point that each becomes, none with a greater number.
+  void renumber(std::vector<Index>& to) {
+    TetMesh& mesh = result_.mesh;
+    Index kept = 0;
+    for (Index p = 0; p < to.size(); ++p) {
+      if (to[p] != p) {
+        to[p] = to[to[p]];
+        continue;
+      }
+      mesh.points[kept] = mesh.points[p];
+      for (MeshField& field : mesh.point_fields) {
+        const auto n = static_cast<std::size_t>(field.components);
+        std::copy_n(field.values.begin() + static_cast<std::ptrdiff_t>(p * n), n,
+                    field.values.begin() + static_cast<std::ptrdiff_t>(kept * n));
+      }
+      to[p] = kept++;
+    }
+    joined_points_ = to.size() - kept;
+    mesh.points.resize(kept);
+    for (MeshField& field : mesh.point_fields)
+      field.values.resize(static_cast<std::size_t>(field.components) * kept);
+    for (Tet& tet : mesh.tets)
+      for (Index& p : tet) p = to[p];
+    for (Index& p : midside_of_tets_) p = to[p];
+  }
+
+  void read_names(pugi::xml_node grid) {
+    const pugi::xml_node node =
+        grid.child("FieldData").find_child_by_attribute("DataArray", "Name", vtk_material_names);
+    if (!node) return;
+    std::string text;
+    // Compressed data may be longer than the file, but names hardly are.
+    for (std::int64_t c : data_.integers(node, file_size_)) text += static_cast<char>(c);
+    for (auto& [tag, name] : parse_vtk_names(text, vtk_material_names, name_))
+      result_.mesh.material_names[checked_material(tag, name_, 0)] = name;
+  }
+
+  /// Arrays of the whole dataset, and arrays of text.
+  void note_dropped_arrays(pugi::xml_node grid, const std::vector<pugi::xml_node>& pieces) {
+    const auto is_array = [](pugi::xml_node node) {
+      return std::string_view(node.name()) == "DataArray" || std::string_view(node.name()) == "Array";
+    };
+    const auto name_of = [](pugi::xml_node node) { return field_name(node.attribute("Name").as_string()); };
+    std::vector<std::string> of_dataset, text;
+    // Some programs put FieldData beside the grid or into the piece.
+    std::vector<pugi::xml_node> parents{data_.root(), grid};
+    parents.insert(parents.end(), pieces.begin(), pieces.end());
+    for (const pugi::xml_node parent : parents)
+      for (const pugi::xml_node node : parent.child("FieldData").children())
+        if (is_array(node) && !(parent == grid && name_of(node) == vtk_material_names))
+          of_dataset.push_back(name_of(node));
+    for (const char* part : {"PointData", "CellData"})
+      for (const pugi::xml_node node : pieces[0].child(part).children())
+        if (is_array(node) && !holds_numbers(node)) text.push_back(name_of(node));
+    append_dropped_names(result_.dropped, "arrays of the whole dataset", of_dataset);
+    append_dropped_names(result_.dropped, "arrays of text", text);
+    append_dropped_names(result_.dropped, "fields that not all pieces have", field_names_of_some_pieces_);
+    if (ghost_cells_ > 0)
+      result_.dropped.push_back({"cells that other pieces have, too (vtkGhostType)", ghost_cells_});
+    if (joined_points_ > 0)
+      result_.dropped.push_back({"points of several pieces at one place but for the first", joined_points_});
+  }
+
+  VtuData data_;
+  std::string name_;
+  const ReadTetMeshOptions& options_;
+  std::size_t file_size_;
+  std::size_t cells_ = 0, ghost_cells_ = 0, joined_points_ = 0;
+  std::vector<Index> first_points_;     ///< of the pieces
+  std::vector<Index> midside_of_tets_;  ///< of tets of ten nodes
+  std::vector<std::string> field_names_of_some_pieces_;
+  OtherVtkCells other_cells_;
+  KindCounts rounded_;  ///< integers of fields
+  MidsideNodesRead midside_;
+  ReadTetMesh result_;
+};
+
+void write_field(const ByteSink& sink, const MeshField& field, const std::string& name) {
+  const auto write = [&]<class Number>(Number, const char* type) {
+    write_vtu_numbers(sink, type, xml_text(name),
+                      "NumberOfComponents=\"" + std::to_string(field.components) + "\" ", field.values.size(),
+                      [&](std::size_t i) { return static_cast<Number>(field.values[i]); });
+  };
+  const auto narrow = [](double value) { return value >= INT32_MIN && value <= INT32_MAX; };
+  if (!field.integer || !all_whole(field))
+    write(double{}, "Float64");
+  else if (std::all_of(field.values.begin(), field.values.end(), narrow))
+    write(std::int32_t{}, "Int32");
+  else
+    write(std::int64_t{}, "Int64");
+}
+
+}  // namespace
+
+ReadTetMesh read_vtu(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options) {
+  return VtuReader(bytes, name, options).read();
+}
+
+std::string write_vtu(const MeshToWrite& written) {
+  std::string out;
+  write_vtu(written, [&](std::string_view bytes) { out += bytes; });
+  return out;
+}
+
+MeshParts vtu_parts(const TetMesh& mesh) {
+  MeshParts parts;
+  UniqueNames names(printable_name);
+  std::map<std::string, std::string> written;  // materials of one name keep it
+  for (const auto& [tag, name] : mesh.material_names) {
+    const auto [known, added] = written.try_emplace(name);
+    if (added) known->second = names.add(name);
+    parts.materials.push_back({tag, tag, known->second, {}});
+  }
+  return parts;
+}
+
+void write_vtu(const MeshToWrite& written, const ByteSink& sink) {
+  const TetMesh& mesh = written.mesh;
+  const MidsideNodes* midside = written.midside;
+  sink(vtu_head("UnstructuredGrid"));
+  if (!mesh.material_names.empty()) {
+    std::vector<std::pair<std::int64_t, std::string>> names;
+    for (const MeshParts::Material& m : vtu_parts(mesh).materials) names.emplace_back(m.tag, m.name);
+    sink("<FieldData>\n");
+    write_vtu_names(sink, vtk_material_names, names);
+    sink("</FieldData>\n");
+  }
+  sink("<Piece NumberOfPoints=\"" + std::to_string(written.nodes()) + "\" NumberOfCells=\"" +
+       std::to_string(mesh.tets.size()) + "\">\n<Points>\n");
+  write_vtu_numbers(sink, "Float64", "Points", "NumberOfComponents=\"3\" ", 3 * written.nodes(),
+                    [&](std::size_t i) { return written.node(i / 3)[static_cast<Eigen::Index>(i % 3)]; });
+  sink("</Points>\n<Cells>\n");
+  const std::size_t of_tet = midside ? 10 : 4;
+  write_vtu_numbers(sink, "Int64", "connectivity", "", of_tet * mesh.tets.size(), [&](std::size_t i) {
+    const std::size_t t = i / of_tet, k = i % of_tet;
+    return k < 4 ? std::int64_t{mesh.tets[t][k]}
+                 : static_cast<std::int64_t>(mesh.points.size() + midside->of_tets[t][k - 4]);
+  });
+  write_vtu_numbers(sink, "Int64", "offsets", "", mesh.tets.size(),
+                    [&](std::size_t i) { return static_cast<std::int64_t>(of_tet * (i + 1)); });
+  write_vtu_numbers(sink, "UInt8", "types", "", mesh.tets.size(), [&](std::size_t) {
+    return static_cast<std::uint8_t>(midside ? vtk_quadratic_tet_type : vtk_tet_type);
+  });
+  sink("</Cells>\n");
+  if (!mesh.point_fields.empty()) {
+    sink("<PointData>\n");
+    const std::vector<MeshField> fields = written.node_fields();
+    const std::vector<std::string> names = field_names_to_write(fields, {});
+    for (std::size_t f = 0; f < names.size(); ++f) write_field(sink, fields[f], names[f]);
+    sink("</PointData>\n");
+  }
+  sink("<CellData Scalars=\"material\">\n");
+  write_vtu_numbers(sink, "Int32", "material", "", mesh.tets.size(),
+                    [&](std::size_t i) { return std::int32_t{mesh.materials[i]}; });
+  const std::vector<std::string> names = field_names_to_write(mesh.cell_fields, {"material"});
+  for (std::size_t f = 0; f < names.size(); ++f) write_field(sink, mesh.cell_fields[f], names[f]);
+  sink("</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
+}
+
+}  // namespace tetwright

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "common/message_text.h"
+#include "common/types.h"
+
+namespace tetwright {
+
+/// Parses a whole token. Returns false if it is not a number. "nan" and "inf" are numbers; overflow gives an
+/// infinity, underflow 0 or a subnormal number.
+bool parse_number(std::string_view token, double& value);
+bool parse_number(std::string_view token, std::int64_t& value);
+
+/// Splits a text file into words and counts its lines, which end with \n, \r\n or \r. The bytes must outlive
+/// the scanner.
+///
+/// Our own, since messages need the line of every word, and numbers are parsed exactly in every locale.
+class TextScanner {
+ public:
+  /// `comment`: the character that begins a comment, which ends with its line; 0 for none.
+  TextScanner(std::string_view bytes, std::string name, char comment = 0)
+      : bytes_(bytes), name_(std::move(name)), comment_(comment) {
+    // Skips the byte order mark that some editors write before UTF-8.
+    if (bytes_.starts_with("\xef\xbb\xbf")) position_ = 3;
+  }
+
+  /// The next word, on this or a later line; empty at the end of the file.
+  std::string_view word();
+  /// The next word of this line; empty at the end of the line.
+  std::string_view word_on_line();
+  /// The rest of this line without its line end; the next line is current afterwards.
+  std::string_view rest_of_line();
+  /// Skips the rest of this line.
+  void skip_line() { (void)rest_of_line(); }
+  /// The next `n` bytes as they are, or fewer at the end. Their line feeds are counted as lines.
+  std::string_view take_bytes(std::size_t n);
+
+  /// The next word as a number; `what` names it in messages ("coordinate", "index of a point"). Throws
+  /// InputError at the end of the file, if the word is not a number, or if a coordinate is not finite.
+  double coordinate(std::string_view what = "coordinate");
+  std::int64_t integer(std::string_view what);
+  /// Any number, including nan and infinities.
+  double number(std::string_view what);
+  /// An integer that counts items that follow in the file, each of at least `bytes_each` bytes. Throws
+  /// InputError if it is negative or more than the rest of the file can hold.
+  std::size_t count(std::string_view what, std::size_t bytes_each);
+
+  bool at_end();                                    ///< only white space and comments are left
+  std::size_t offset() const { return position_; }  ///< bytes consumed
+  std::size_t left() const { return bytes_.size() - position_; }
+  std::size_t line() const { return line_; }  ///< of the last word, from 1
+  const std::string& name() const { return name_; }
+
+  /// Throws InputError with the file and the line of the last word.
+  [[noreturn]] void fail(const std::string& message) const;
+  /// Throws the InputError for a file that ends where `what` was expected.
+  [[noreturn]] void fail_cut_short(std::string_view what) const;
+
+ private:
+  void skip_space(bool across_lines);
+  std::string_view take_word();
+
+  std::string_view bytes_;
+  std::string name_;
+  std::size_t position_ = 0;
+  std::size_t line_ = 1;
+  char comment_;
+};
+
+/// Throws InputError unless `value` is a material tag (a 32-bit integer).
+MaterialTag checked_material(std::int64_t value, const std::string& file, std::size_t line);
+
+}  // namespace tetwright

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "common/files/atomic_file.h"
+#include "common/number_text.h"
+
+namespace tetwright {
+
+/// Text on its way into a file, handed over in pieces of about a megabyte.
+class TextWriter {
+ public:
+  /// `sink` must outlive this object.
+  explicit TextWriter(const ByteSink& sink) : sink_(sink) {}
+  TextWriter(const TextWriter&) = delete;
+  TextWriter& operator=(const TextWriter&) = delete;
+
+  /// Numbers as append_number() writes them.
+  template <class Value>
+  TextWriter& operator<<(const Value& value) {
+    if constexpr (std::is_same_v<Value, char>)
+      text_ += value;
+    else if constexpr (std::is_arithmetic_v<Value>)
+      append_number(text_, value);
+    else
+      text_ += std::string_view(value);
+    if (text_.size() >= piece_size) flush();
+    return *this;
+  }
+
+  /// To be called at the end.
+  void flush() {
+    sink_(text_);
+    text_.clear();
+  }
+
+ private:
+  static constexpr std::size_t piece_size = std::size_t{1} << 20;
+
+  const ByteSink& sink_;
+  std::string text_;
+};
+
+}  // namespace tetwright

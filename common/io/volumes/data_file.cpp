@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/volumes/data_file.h"
+
+#include <filesystem>
+
+#include "common/error.h"
+#include "common/io/encodings/vtk_numbers.h"
+#include "common/io/text/text_scanner.h"
+#include "common/lower_case.h"
+
+namespace tetwright {
+
+DataFile read_data_file(const HeaderFields& header, const std::string& field, const FileReader& read) {
+  const std::string_view named = header.text(field);
+  if (named.empty()) header.fail(field, field + " names no file");
+  const std::vector<std::string_view> words = header.words(field);
+  if (lower_case(words[0]) == "list" || (words.size() > 2 && words[0].find('%') != std::string_view::npos))
+    header.fail(field, "voxels in several files (" + in_quotes(named) +
+                           ") are not supported; save the volume as one file");
+  // A header may come from anywhere, and the message is one line of text.
+  for (const char c : named)
+    if (static_cast<unsigned char>(c) < ' ') header.fail(field, in_quotes(named) + " is no name of a file");
+  DataFile data;
+  data.path = (std::filesystem::path(header.file()).parent_path() / std::string(named)).string();
+  try {
+    data.bytes = read(data.path);
+  } catch (const InputError& error) {
+    header.fail(field,
+                std::string("the file with the voxels: ") + error.what() + "; put it where the header says");
+  }
+  return data;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/volumes/metaimage.h"
+
+#include <array>
+
+#include "common/error.h"
+#include "common/io/encodings/byte_order.h"
+#include "common/io/encodings/vtk_numbers.h"
+#include "common/io/volumes/header_fields.h"
+#include "common/io/volumes/voxel_data.h"
+#include "common/trimmed.h"
+
+namespace tetwright {
+
+namespace {
+
+VoxelType metaimage_voxel_type(const HeaderFields& header) {
+  // A long has 4 bytes in these files, wherever they were written.
+  constexpr std::array<std::pair<std::string_view, VoxelType>, 12> names{
+      {{"met_char", VoxelType::int8},
+       {"met_uchar", VoxelType::uint8},
+       {"met_short", VoxelType::int16},
+       {"met_ushort", VoxelType::uint16},
+       {"met_int", VoxelType::int32},
+       {"met_uint", VoxelType::uint32},
+       {"met_long", VoxelType::int32},
+       {"met_ulong", VoxelType::uint32},
+       {"met_long_long", VoxelType::int64},
+       {"met_ulong_long", VoxelType::uint64},
+       {"met_float", VoxelType::float32},
+       {"met_double", VoxelType::float64}}};
+  const std::string type = header.lower_text("elementtype");
+  for (const auto& [name, value] : names)
+    if (name == type) return value;
+  header.fail("elementtype",
+              "type " + in_quotes(header.text("elementtype")) +
+                  " of the voxels is not supported; save the labels as MET_UCHAR, MET_SHORT or "
+                  "MET_INT");
+}
+
+/// Up to and with the line that says where the voxels are.
+HeaderFields read_metaimage_header(TextScanner& in) {
+  if (in.left() == 0) in.fail("the file is empty");
+  HeaderFields header(in.name());
+  while (in.left() > 0) {
+    const std::size_t line = in.line();
+    const std::string_view text = in.rest_of_line();
+    if (trimmed(text).empty() || trimmed(text)[0] == '#') continue;
+    const std::size_t equals = text.find_first_of("=:");
+    if (equals == std::string_view::npos)
+      throw InputError(
+          in.name(), line,
+          "expected \"name = value\", found " + in_quotes(text) + "; is this a MetaImage header?");
+    header.add(text.substr(0, equals), text.substr(equals + 1), line);
+    if (header.has("elementdatafile")) break;
+  }
+  return header;
+}
+
+bool flag(const HeaderFields& header, const std::string& field, bool otherwise) {
+  if (!header.has(field)) return otherwise;
+  const std::string value = header.lower_text(field);
+  if (value == "true" || value == "t" || value == "1") return true;
+  if (value != "false" && value != "f" && value != "0")
+    header.fail(field, "expected True or False as " + field + ", found " + in_quotes(header.text(field)));
+  return false;
+}
+
+LabelVolume read_geometry(const HeaderFields& header) {
+  if (header.has("objecttype") && header.lower_text("objecttype") != "image")
+    header.fail("objecttype",
+                "an object of type Image is needed, this one is " + in_quotes(header.text("objecttype")));
+  if (const std::int64_t n = header.integer("ndims"); n != 3)
+    header.fail("ndims", std::to_string(n) + " dimensions; a volume of labels has 3");
+  if (header.has("elementnumberofchannels"))
+    if (const std::int64_t n = header.integer("elementnumberofchannels"); n != 1)
+      header.fail("elementnumberofchannels",
+                  std::to_string(n) + " channels; a volume with one label a voxel is needed");
+  LabelVolume volume;
+  volume.size = checked_size(header.integers("dimsize"), header.file(), header.line("dimsize"));
+  if (const std::string field = header.any_of({"offset", "position", "origin"}); header.has(field)) {
+    const std::vector<double> origin = header.numbers(field, 3);
+    volume.origin = Vec3(origin[0], origin[1], origin[2]);
+  }
+  if (const std::string field = header.any_of({"transformmatrix", "rotation", "orientation"});
+      header.has(field)) {
+    // Axis after axis, the direction of each.
+    const std::vector<double> matrix = header.numbers(field, 9);
+    volume.directions = Eigen::Map<const Eigen::Matrix3d>(matrix.data());
+  }
+  // The size of voxels is their spacing unless there are gaps, which the spacing then counts in.
+  if (const std::string field = header.any_of({"elementspacing", "elementsize"}); header.has(field)) {
+    const std::vector<double> spacing = header.numbers(field, 3);
+    for (int axis = 0; axis < 3; ++axis)
+      volume.directions.col(axis) *= spacing[static_cast<std::size_t>(axis)];
+  }
+  // Coordinates are ITK's wherever the header says how the patient lies.
+  if (header.has("anatomicalorientation") && header.text("anatomicalorientation") != "???")
+    volume.space = "left-posterior-superior";
+  check_geometry(volume, header.file());
+  return volume;
+}
+
+}  // namespace
+
+LabelVolume read_metaimage(std::string_view bytes, const std::string& name, const FileReader& read) {
+  TextScanner in(bytes, name);
+  const HeaderFields header = read_metaimage_header(in);
+  LabelVolume volume = read_geometry(header);
+  VoxelFormat format;
+  format.type = metaimage_voxel_type(header);
+  const bool big = flag(header, header.any_of({"elementbyteordermsb", "binarydatabyteordermsb"}), false);
+  format.swap = big == little_endian_machine;
+  const bool packed = flag(header, "compresseddata", false);
+  const bool as_text = !flag(header, "binarydata", true);
+  if (packed && as_text) header.fail("compresseddata", "compressed text is not supported; save it as binary");
+
+  const bool local = header.lower_text("elementdatafile") == "local";
+  DataFile file{name, {}};
+  if (!local) file = read_data_file(header, "elementdatafile", read);
+  const std::string_view whole = local ? bytes : std::string_view(file.bytes);
+  std::string_view data = local ? bytes.substr(in.offset()) : whole;
+  if (const std::int64_t skip = header.has("headersize") ? header.integer("headersize") : 0; skip == -1) {
+    if (packed || as_text) header.fail("headersize", "HeaderSize -1, which only raw data allow");
+    std::uint64_t needed = voxel_bytes(format.type);
+    for (const int n : volume.size) needed *= static_cast<std::uint64_t>(n);
+    if (needed < data.size()) data.remove_prefix(data.size() - static_cast<std::size_t>(needed));
+  } else if (skip != 0) {
+    // From the beginning of the file, whichever it is.
+    if (skip < 0 || static_cast<std::uint64_t>(skip) > whole.size())
+      header.fail("headersize",
+                  std::to_string(skip) + " bytes to be skipped of " + std::to_string(whole.size()));
+    data = whole.substr(static_cast<std::size_t>(skip));
+  }
+  if (as_text) {
+    TextScanner body(data, file.path);
+    volume.labels = read_voxels_as_text(body, volume.size);
+    return volume;
+  }
+  ByteSource source(data, packed ? ByteSource::Packing::deflate : ByteSource::Packing::none, file.path);
+  volume.labels = read_voxels(source, format, volume.size);
+  return volume;
+}
+
+}  // namespace tetwright

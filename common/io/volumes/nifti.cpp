@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/volumes/nifti.h"
+
+#include <cmath>
+
+#include "common/error.h"
+#include "common/io/encodings/byte_order.h"
+#include "common/io/volumes/voxel_data.h"
+#include "common/number_text.h"
+#include "common/tolerances.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Where a version of the format has its numbers, and of what type they are.
+struct Layout {
+  int header_size;
+  std::size_t magic;
+  std::size_t dim, dim_bytes;      ///< integers of 2 or 8 bytes
+  std::size_t type;                ///< int16
+  std::size_t pixdim, real_bytes;  ///< floats, of 4 or 8 bytes as all that follow
+  std::size_t offset;              ///< a float, or an integer of 8 bytes
+  std::size_t slope, intercept;
+  std::size_t qform, sform, code_bytes;  ///< integers of 2 or 4 bytes
+  std::size_t quaternion, qoffset, srow;
+};
+constexpr Layout version_1{348, 344, 40, 2, 70, 76, 4, 108, 112, 116, 252, 254, 2, 256, 268, 280};
+constexpr Layout version_2{540, 4, 16, 8, 12, 104, 8, 168, 176, 184, 344, 348, 4, 352, 376, 400};
+
+class NiftiHeader {
+ public:
+  NiftiHeader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {
+    if (bytes_.empty()) fail("the file is empty");
+    if (bytes_.size() < sizeof(std::int32_t))
+      fail("only " + std::to_string(bytes_.size()) + " bytes; it is cut short");
+    const auto size = load<std::int32_t>(bytes_.data(), false),
+               other = load<std::int32_t>(bytes_.data(), true);
+    const bool second = size == version_2.header_size || other == version_2.header_size;
+    if (second) layout_ = &version_2;
+    if (size != layout_->header_size && other != layout_->header_size)
+      fail("the header's size is " + std::to_string(size) + ", not 348 or 540; is this a NIfTI file?");
+    swap_ = size != layout_->header_size;
+    if (bytes_.size() < header_size())
+      fail("only " + std::to_string(bytes_.size()) + " bytes, but the header has " +
+           std::to_string(header_size()) + "; the file is cut short");
+    const std::string_view magic = bytes_.substr(layout_->magic, 4);
+    const std::string_view number = second ? "2" : "1";
+    detached_ = magic == "ni" + std::string(number) + std::string(1, '\0');
+    if (!detached_ && magic != "n+" + std::string(number) + std::string(1, '\0'))
+      fail("expected \"n+" + std::string(number) + "\" at byte " + std::to_string(layout_->magic) +
+           ", found " + in_quotes(magic) +
+           "; ANALYZE files say nothing of left and right, save the volume as NIfTI");
+  }
+
+  std::size_t header_size() const { return static_cast<std::size_t>(layout_->header_size); }
+  /// The voxels are in a file of their own, .img.
+  bool detached() const { return detached_; }
+  bool swap() const { return swap_; }
+
+  std::array<int, 3> size() const {
+    const std::int64_t axes = dim(0);
+    if (axes < 3 || axes > 7)
+      fail("dim[0] is " + std::to_string(axes) + "; a volume of labels has 3 dimensions");
+    std::array<std::int64_t, 3> sizes;
+    for (int k = 1; k <= axes; ++k) {
+      const std::int64_t n = dim(static_cast<std::size_t>(k));
+      if (k <= 3)
+        sizes[static_cast<std::size_t>(k - 1)] = n;
+      else if (n != 1)
+        fail("dim[" + std::to_string(k) + "] is " + std::to_string(n) +
+             (k == 4 ? "; a volume of one moment is needed, save one of them"
+                     : "; a volume with one label a voxel is needed"));
+    }
+    return checked_size(sizes, name_, 0);
+  }
+
+  VoxelFormat format() const {
+    VoxelFormat format;
+    format.type = type();
+    format.swap = swap_;
+    // A slope of 0, or none that is a number, means no scaling.
+    const double slope = real(layout_->slope), intercept = real(layout_->intercept);
+    if (slope != 0 && std::isfinite(slope)) {
+      if (!std::isfinite(intercept)) fail("scl_inter is not finite; repair the header");
+      format.slope = slope;
+      format.intercept = intercept;
+    }
+    return format;
+  }
+
+  /// Of the first voxel in its file.
+  std::size_t offset() const {
+    const double offset = layout_ == &version_2 ? static_cast<double>(number<std::int64_t>(layout_->offset))
+                                                : real(layout_->offset);
+    // Behind the header are four bytes that say whether extensions follow.
+    const std::size_t min_offset = detached_ ? 0 : header_size() + 4;
+    if (offset == 0) return min_offset;
+    if (!(offset >= static_cast<double>(min_offset) && offset < 0x1p31 && offset == std::floor(offset)))
+      fail("vox_offset is " + text(offset) + ", not " + std::to_string(min_offset) +
+           " or more; repair the header");
+    return static_cast<std::size_t>(offset);
+  }
+
+  void read_geometry(LabelVolume& volume) const {
+    // NIfTI's own definition: x to the right, y to the front, z up.
+    volume.space = "right-anterior-superior";
+    if (code(layout_->sform) > 0) {
+      for (std::size_t row = 0; row < 3; ++row) {
+        const auto r = static_cast<int>(row);
+        for (std::size_t column = 0; column < 3; ++column)
+          volume.directions(r, static_cast<int>(column)) = real(layout_->srow, 4 * row + column);
+        volume.origin[r] = real(layout_->srow, 4 * row + 3);
+      }
+      return;
+    }
+    Vec3 spacing;
+    for (int k = 0; k < 3; ++k) {
+      spacing[k] = real(layout_->pixdim, static_cast<std::size_t>(k) + 1);
+      if (!(spacing[k] > 0))
+        fail("pixdim[" + std::to_string(k + 1) + "] is " + text(spacing[k]) +
+             "; a spacing must be positive, repair the header");
+    }
+    if (code(layout_->qform) > 0) {
+      volume.directions = rotation();
+      if (real(layout_->pixdim) < 0) volume.directions.col(2) *= -1;
+      for (int k = 0; k < 3; ++k) volume.origin[k] = real(layout_->qoffset, static_cast<std::size_t>(k));
+    } else {
+      volume.space.clear();  // nothing is said of where x points to
+    }
+    volume.directions = volume.directions * spacing.asDiagonal();
+  }
+
+ private:
+  template <class Number>
+  Number number(std::size_t offset) const {
+    return load<Number>(bytes_.data() + offset, swap_);
+  }
+  /// The i-th real number from `offset` on.
+  double real(std::size_t offset, std::size_t i = 0) const {
+    return layout_->real_bytes == 8 ? number<double>(offset + 8 * i)
+                                    : static_cast<double>(number<float>(offset + 4 * i));
+  }
+  std::int64_t dim(std::size_t i) const {
+    return layout_->dim_bytes == 8 ? number<std::int64_t>(layout_->dim + 8 * i)
+                                   : std::int64_t{number<std::int16_t>(layout_->dim + 2 * i)};
+  }
+  int code(std::size_t offset) const {
+    return layout_->code_bytes == 4 ? number<std::int32_t>(offset) : int{number<std::int16_t>(offset)};
+  }
+
+  VoxelType type() const {
+    const int type = number<std::int16_t>(layout_->type);
+    switch (type) {
+      case 2:
+        return VoxelType::uint8;
+      case 4:
+        return VoxelType::int16;
+      case 8:
+        return VoxelType::int32;
+      case 16:
+        return VoxelType::float32;
+      case 64:
+        return VoxelType::float64;
+      case 256:
+        return VoxelType::int8;
+      case 512:
+        return VoxelType::uint16;
+      case 768:
+        return VoxelType::uint32;
+      case 1024:
+        return VoxelType::int64;
+      case 1280:
+        return VoxelType::uint64;
+      default:
+        fail("type " + std::to_string(type) + " (" + type_name(type) +
+             ") of the voxels is not supported; save the labels as integers");
+    }
+  }
+
+  static const char* type_name(int type) {
+    switch (type) {
+      case 1:
+        return "single bits";
+      case 128:
+        return "RGB colours";
+      case 2304:
+        return "RGBA colours";
+      case 32:
+      case 1792:
+      case 2048:
+        return "complex numbers";
+      case 1536:
+        return "floats of 128 bits";
+      default:
+        return "unknown";
+    }
+  }
+
+  /// Of the quaternion (a, b, c, d), of which the header has the last three; a >= 0 makes it a unit one.
+  Eigen::Matrix3d rotation() const {
+    double b = real(layout_->quaternion), c = real(layout_->quaternion, 1), d = real(layout_->quaternion, 2);
+    const double rest = 1 - (b * b + c * c + d * d);
+    if (!std::isfinite(rest)) fail("the quaternion of the qform is not finite; repair the header");
+    double a = 0;
+    // Rounding may have made a half turn's quaternion too long.
+    if (rest < tolerance::unit_quaternion) {
+      const double length = std::sqrt(b * b + c * c + d * d);
+      b /= length;
+      c /= length;
+      d /= length;
+    } else {
+      a = std::sqrt(rest);
+    }
+    Eigen::Matrix3d r;
+    r << a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c),  //
+        2 * (b * c + a * d), a * a + c * c - b * b - d * d, 2 * (c * d - a * b),   //
+        2 * (b * d - a * c), 2 * (c * d + a * b), a * a + d * d - b * b - c * c;
+    return r;
+  }
+
+  static std::string text(double value) {
+    std::string out;
+    append_number(out, value);
+    return out;
+  }
+
+  [[noreturn]] void fail(const std::string& message) const { throw InputError(name_ + ": " + message); }
+
+  std::string_view bytes_;
+  const std::string& name_;
+  const Layout* layout_ = &version_1;
+  bool swap_ = false, detached_ = false;
+};
+
+/// The voxels of a header "a.hdr" are in "a.img", in capitals where that is.
+std::string image_of(const std::string& name) {
+  if (name.ends_with(".HDR")) return name.substr(0, name.size() - 4) + ".IMG";
+  return (name.ends_with(".hdr") ? name.substr(0, name.size() - 4) : name) + ".img";
+}
+
+ByteSource source_of(std::string_view bytes, const std::string& name) {
+  return {bytes, bytes.starts_with("\x1f\x8b") ? ByteSource::Packing::deflate : ByteSource::Packing::none,
+          name};
+}
+
+}  // namespace
+
+LabelVolume read_nifti(std::string_view bytes, const std::string& name, const FileReader& read_file) {
+  ByteSource source = source_of(bytes, name);
+  // The size of the header stands at its beginning.
+  std::string header_bytes(source.take(static_cast<std::size_t>(version_1.header_size)));
+  if (header_bytes.size() >= 4 && (load<std::int32_t>(header_bytes.data(), false) == version_2.header_size ||
+                                   load<std::int32_t>(header_bytes.data(), true) == version_2.header_size))
+    header_bytes += source.take(static_cast<std::size_t>(version_2.header_size - version_1.header_size));
+  const NiftiHeader header(header_bytes, name);
+  LabelVolume volume;
+  volume.size = header.size();
+  header.read_geometry(volume);
+  check_geometry(volume, name);
+  const VoxelFormat format = header.format();
+  const auto read_from = [&](ByteSource& voxels, const std::string& file, std::size_t taken) {
+    const std::size_t between = header.offset() - taken;
+    if (voxels.skip(between) < between)
+      throw InputError(file + ": the voxels begin at byte " + std::to_string(header.offset()) + " of " +
+                       std::to_string(voxels.taken()) + "; the file is cut short");
+    volume.labels = read_voxels(voxels, format, volume.size);
+  };
+  if (!header.detached()) {
+    read_from(source, name, header.header_size());
+    return volume;
+  }
+  const std::string image = image_of(name);
+  const std::string image_bytes = read_file(image);
+  ByteSource voxels = source_of(image_bytes, image);
+  read_from(voxels, image, 0);
+  return volume;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,443 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesher/cut/vertex_snapping.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+#include <optional>
+#include <span>
+
+#include "common/geometry/quality.h"
+#include "common/parallel/parallel_sort.h"
+#include "common/tolerances.h"
+#include "mesher/cut/cutting.h"
+#include "mesher/cut/independent_rounds.h"
+#include "mesher/cut/link_topology.h"
+
+namespace tetwright {
+
+namespace {
+
+/// A cut closer to an end of its edge than this fraction of the edge is too close; long edges join two
+/// corners or two centres of cells, short ones a corner and a centre. Tuned on scans: with the classic 0.25
+/// and 0.41, points snap onto flat patches from both sides and tets would be inverted.
+constexpr double near_long = 0.35;
+constexpr double near_short = 0.49;
+
+/// A move must not give a lattice tet a solid angle below 0.1 sr. This controls the smallest dihedral angle
+/// of the result: 0.06 sr gives 6 degrees, 0.1 sr gives 11, 0.14 sr gives 13, but more moves are refused.
+/// Stored as the tangent of half the angle, which is what is compared.
+constexpr double min_tangent = 0.05004170837553879;
+
+/// Distances are compared in steps of this fraction of an edge, because all points along a flat face have
+/// nearly the same distance.
+constexpr double distance_steps = 32;  // a byte holds it
+
+/// Number of points that one thread processes one after another.
+constexpr std::size_t group_size = 16;
+
+/// A hash that spreads neighbouring points over the order, so that groups processed at the same time rarely
+/// share points.
+std::uint32_t scattered(Index i) {
+  std::uint32_t h = i * 0x9e3779b9u;
+  h ^= h >> 15;
+  h *= 0x85ebca6bu;
+  return h ^ h >> 13;
+}
+
+/// Splits a list into groups of neighbouring items of equal priority and scatters the groups within each
+/// priority. `priority(item)` must not decrease along the list, and items of equal priority that are near
+/// each other in space should be near each other in the list. Returns the places where groups start, and the
+/// end.
+template <class Priority>
+std::vector<std::size_t> scatter_groups(std::vector<Index>& items, Priority&& priority) {
+  struct Group {
+    std::size_t first, last;
+    std::uint32_t key;
+  };
+  std::vector<Group> groups;
+  for (std::size_t i = 0, j; i < items.size(); i = j) {
+    for (j = i + 1; j < items.size() && j - i < group_size && priority(items[j]) == priority(items[i]);) ++j;
+    groups.push_back({i, j, scattered(items[i])});
+  }
+  for (std::size_t i = 0, j; i < groups.size(); i = j) {
+    const auto now = priority(items[groups[i].first]);
+    for (j = i; j < groups.size() && priority(items[groups[j].first]) == now;) ++j;
+    std::sort(groups.begin() + static_cast<std::ptrdiff_t>(i),
+              groups.begin() + static_cast<std::ptrdiff_t>(j),
+              [](const Group& a, const Group& b) { return a.key < b.key; });
+  }
+  std::vector<Index> scattered_items;
+  scattered_items.reserve(items.size());
+  std::vector<std::size_t> starts{0};
+  for (const Group& g : groups) {
+    scattered_items.insert(scattered_items.end(), items.begin() + static_cast<std::ptrdiff_t>(g.first),
+                           items.begin() + static_cast<std::ptrdiff_t>(g.last));
+    starts.push_back(scattered_items.size());
+  }
+  items.swap(scattered_items);
+  return starts;
+}
+
+/// A point too close to a cut, and where it could be moved.
+struct Candidate {
+  Index point;
+  Index other;     ///< the other end of the edge with the nearest cut
+  Vec3 projected;  ///< projection onto where all regions of the star meet
+  /// The edge to `other` before any point was moved; a multiple of half lattice units, exact in a float.
+  Eigen::Vector3f edge;
+  std::uint8_t at_junction;  ///< 1 if the star has more than two regions
+  std::uint8_t rank;         ///< distance from the interface or junction, in steps
+
+  double room() const { return edge.cast<double>().norm(); }
+  /// Points near junction curves are moved first: once moved onto an interface they could not reach the
+  /// curve.
+  int priority() const { return at_junction ? rank : rank + static_cast<int>(distance_steps) + 1; }
+};
+
+class Mover {
+ public:
+  Mover(LabelledLattice& lattice, const MaterialField& field, Progress* progress)
+      : lattice_(lattice), field_(field), rounds_(lattice), progress_(progress) {}
+
+  SnapCounts run() {
+    find_candidates();
+    SnapCounts counts;
+    counts.candidates = candidates_.size();
+    std::vector<Index> order(candidates_.size());
+    std::iota(order.begin(), order.end(), Index{0});
+    std::vector<Index> left = attempt(
+        std::move(order), [&](Index i) { return candidate(i).priority(); },
+        [&](Index i, FieldSampler&) { return move(candidate(i)); });
+    // The neighbours may have been moved in the meantime so that the move is valid now.
+    left = attempt(std::move(left), one_priority, [&](Index i, FieldSampler& sampler) {
+      return move(candidate(i)) || project_nearer_to_middle(candidate(i), sampler);
+    });
+    counts.moved = candidates_.size() - left.size();
+    counts.pushed = left.size() - attempt(left, one_priority, [&](Index i, FieldSampler& sampler) {
+                                    return push_away(candidate(i), sampler);
+                                  }).size();
+    // The first sweep improves most stars; later ones improve those whose neighbours had to be moved first.
+    std::vector<Candidate>().swap(candidates_);
+    std::vector<Index>().swap(by_rank_);
+    constexpr int sweeps = 4;
+    std::vector<Index> tets = improve_worst_stars(lattice_.tets.size(), [](std::size_t i) { return i; });
+    for (int sweep = 1; sweep < sweeps && !tets.empty(); ++sweep)
+      tets = improve_worst_stars(tets.size(), [&](std::size_t i) { return tets[i]; });
+    return counts;
+  }
+
+ private:
+  StarMap::Tets star(Index p) const { return lattice_.stars.tets(p); }
+
+  /// The candidate that is tried as number i.
+  const Candidate& candidate(Index i) const { return candidates_[by_rank_[i]]; }
+
+  static constexpr auto one_priority = [](Index) { return 0; };
+
+  /// Calls `work(i, sampler)` for the listed candidates, in groups and one priority after another. Returns
+  /// the candidates for which it returned false, in the order of their points.
+  template <class Priority, class Work>
+  std::vector<Index> attempt(std::vector<Index> list, Priority&& priority, Work&& work) {
+    const std::vector<std::size_t> starts = scatter_groups(list, priority);
+    std::vector<Index> points(list.size());
+    for (std::size_t k = 0; k < list.size(); ++k) points[k] = candidate(list[k]).point;
+    std::vector<std::uint8_t> done(list.size(), 0);
+    run_groups(points, starts,
+               [&](std::size_t k, FieldSampler& sampler) { done[k] = work(list[k], sampler); });
+    std::vector<Index> left;
+    for (std::size_t k = 0; k < list.size(); ++k)
+      if (!done[k]) left.push_back(list[k]);
+    parallel_sort(left, [&](Index a, Index b) { return by_rank_[a] < by_rank_[b]; });
+    return left;
+  }
+
+  /// Calls `work(k, sampler)` for each index k of `points`; groups with a common star point run in their
+  /// order.
+  template <class Work>
+  void run_groups(std::span<const Index> points, std::span<const std::size_t> starts, Work&& work) {
+    rounds_.run(
+        points, starts,
+        [&](std::span<const Index> groups) {
+          const std::unique_ptr<FieldSampler> owned = field_.sampler();
+          FieldSampler& sampler = *owned;
+          for (Index g : groups)
+            for (std::size_t k = starts[g]; k < starts[g + 1]; ++k) work(k, sampler);
+        },
+        [&](std::size_t done) {
+          if (!progress_) return;
+          progress_->throw_if_stopped();
+          progress_->update(static_cast<double>(done) / static_cast<double>(starts.size()));
+        });
+  }
+
+  /// The candidate for a point, or nothing if no cut is too close to the point or it must not be moved.
+  std::optional<Candidate> as_candidate(Index p, FieldSampler& sampler) const {
+    const RegionIndex own = lattice_.first_region[p];
+    if (field_.is_certain(lattice_.positions[p])) return std::nullopt;
+    const std::optional<RegionSet> regions = pure_regions(lattice_, p);
+    if (!regions) return std::nullopt;
+    const unsigned faces = lattice_.box_faces(p);
+    double nearest = 0;
+    Index other = no_index;
+    bool too_near = false;
+    for (Index t : star(p))
+      for (Index q : lattice_.tets[t]) {
+        const RegionIndex r = lattice_.first_region[q];
+        if (r == own) continue;
+        const double share = lattice_.cut_share(p, own, q, r);
+        too_near |= share <= (lattice_.is_centre[p] == lattice_.is_centre[q] ? near_long : near_short);
+        if ((lattice_.box_faces(q) & faces) != faces) continue;  // out of reach
+        const double length = share * (lattice_.positions[q] - lattice_.positions[p]).norm();
+        if (other == no_index || length < nearest || (length == nearest && q < other)) {
+          nearest = length;
+          other = q;
+        }
+      }
+    if (!too_near || other == no_index) return std::nullopt;
+    const Vec3 &from = lattice_.positions[p], &to = lattice_.positions[other];
+    Candidate c;
+    c.point = p;
+    c.other = other;
+    c.at_junction = regions->size() > 2;
+    c.edge = (to - from).cast<float>();
+    c.projected = from;
+    // Across a ridge of the distance the gradient does not lead to the interface.
+    if (!sampler.project(*regions, c.projected, held_axes(p)) || (c.projected - from).norm() > c.room())
+      c.projected = on_edge(c);
+    const double distance = c.at_junction ? (c.projected - from).norm() : lattice_.margin(p);
+    c.rank = static_cast<std::uint8_t>(std::clamp(distance / c.room(), 0.0, 1.0) * distance_steps);
+    return c;
+  }
+
+  /// The axes that a point cannot move along, a bit for each: points stay on the faces, edges and corners of
+  /// the box.
+  unsigned held_axes(Index p) const {
+    const unsigned faces = lattice_.box_faces(p);
+    unsigned axes = 0;
+    for (int a = 0; a < 3; ++a)
+      if (faces >> 2 * a & 3) axes |= 1u << a;
+    return axes;
+  }
+  Vec3 without_held(Index p, Vec3 step) const {
+    const unsigned held = held_axes(p);
+    for (int a = 0; a < 3; ++a)
+      if (held >> a & 1) step[a] = 0;
+    return step;
+  }
+
+  /// The nearest cut; valid until the point is moved.
+  Vec3 on_edge(const Candidate& c) const {
+    const double share =
+        lattice_.cut_share(c.point, lattice_.first_region[c.point], c.other, other_region(c));
+    return lattice_.positions[c.point] + c.edge.cast<double>() * share;
+  }
+  /// The region at the other end of the edge with the nearest cut.
+  RegionIndex other_region(const Candidate& c) const { return lattice_.first_region[c.other]; }
+
+  void find_candidates() {
+    const std::vector<Index>& near = lattice_.stars.points();
+    candidates_ = parallel_collect<Candidate>(
+        0, near.size(), 1 << 13, [&](std::size_t begin, std::size_t end, std::vector<Candidate>& out) {
+          const std::unique_ptr<FieldSampler> owned = field_.sampler();
+          FieldSampler& sampler = *owned;
+          for (std::size_t i = begin; i < end; ++i)
+            if (const std::optional<Candidate> c = as_candidate(near[i], sampler)) out.push_back(*c);
+        });
+    by_rank_.resize(candidates_.size());
+    std::iota(by_rank_.begin(), by_rank_.end(), Index{0});
+    parallel_sort(by_rank_, [&](Index a, Index b) {
+      return std::pair(candidates_[a].priority(), a) < std::pair(candidates_[b].priority(), b);
+    });
+  }
+
+  /// True if all incident lattice tets would have solid angles of at least 0.1 sr with the point at `place`.
+  bool star_is_good(Index p, const Vec3& place) const {
+    for (Index t : star(p)) {
+      std::array<const Vec3*, 4> x;
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Index v = lattice_.tets[t][k];
+        x[k] = v == p ? &place : &lattice_.positions[v];
+      }
+      if (!(min_solid_angle_tangent(*x[0], *x[1], *x[2], *x[3]) >= min_tangent)) return false;
+    }
+    return true;
+  }
+
+  bool move(const Candidate& c) {
+    const Vec3 cut = on_edge(c);
+    const bool projected = star_is_good(c.point, c.projected);
+    if (!projected && !star_is_good(c.point, cut)) return false;
+    const std::optional<RegionSet> regions = regions_if_moved(lattice_, c.point);
+    if (!regions) return false;
+    // The cut of an edge is on the interface of two regions, not on a junction curve.
+    const bool on_interface_of_two = regions->size() == 2 && regions->contains(other_region(c));
+    if (projected && (c.projected != cut || on_interface_of_two)) return put(c.point, c.projected);
+    return on_interface_of_two && star_is_good(c.point, cut) && put(c.point, cut);
+  }
+
+  bool put(Index p, const Vec3& place) {
+    lattice_.positions[p] = place;
+    lattice_.is_on[p] = 1;
+    return true;
+  }
+
+  /// The mean of the other vertices of all incident tets, with multiplicity.
+  Vec3 middle_of_star(Index p) const {
+    Vec3 sum = Vec3::Zero();
+    double count = 0;
+    for (Index t : star(p))
+      for (Index q : lattice_.tets[t])
+        if (q != p) {
+          sum += lattice_.positions[q];
+          ++count;
+        }
+    return sum / count;
+  }
+
+  /// Moves the point to a projection onto the interface nearer to the middle of its star, where the incident
+  /// tets are better shaped. False if no such place is valid.
+  bool project_nearer_to_middle(const Candidate& c, FieldSampler& sampler) {
+    const Index p = c.point;
+    const std::optional<RegionSet> regions = regions_if_moved(lattice_, p);
+    if (!regions) return false;
+    const Vec3 to_middle = without_held(p, middle_of_star(p) - lattice_.positions[p]);
+    for (double share : {0.0, 0.5, 1.0}) {
+      Vec3 place = lattice_.positions[p] + share * to_middle;
+      if (sampler.project(*regions, place, held_axes(p)) &&
+          (place - lattice_.positions[p]).norm() <= c.room() && star_is_good(p, place))
+        return put(p, place);
+    }
+    return false;
+  }
+
+  double worst_piece(Index p) const {
+    double worst = 1;
+    for (Index t : star(p)) worst = std::min(worst, worst_piece_tangent(lattice_, lattice_.tets[t]));
+    return worst;
+  }
+
+  /// Moves a point to whichever of `places` gives the best worst piece of its star, if that is better than
+  /// where it is. The point keeps its region, and lattice tets keep solid angles of 0.1 sr. True if it was
+  /// moved.
+  bool take_best(Index p, std::span<const Vec3> places, FieldSampler& sampler) {
+    const bool on = lattice_.is_on[p];
+    const Vec3 from = lattice_.positions[p];
+    Vec3 best_place = from;
+    const std::span<float> values = lattice_.star_values(p);
+    std::vector<float> best_values(values.begin(), values.end());
+    double best = worst_piece(p);
+    for (const Vec3& place : places) {
+      if (!on) {
+        const NearestRegion there = sampler.nearest(place);
+        if (there.region != lattice_.first_region[p] || there.margin >= field_.band()) continue;
+      }
+      if (!star_is_good(p, place)) continue;
+      lattice_.positions[p] = place;
+      if (!on) sampler.values(place, lattice_.star_regions(p), values.data());
+      if (const double worst = worst_piece(p); worst > best) {
+        best = worst;
+        best_place = place;
+        best_values.assign(values.begin(), values.end());
+      }
+    }
+    lattice_.positions[p] = best_place;
+    std::copy(best_values.begin(), best_values.end(), values.begin());
+    return best_place != from;
+  }
+
+  /// Moves a point away from the interface that it could not be moved onto, so that the pieces around it
+  /// become thicker.
+  bool push_away(const Candidate& c, FieldSampler& sampler) {
+    const Index p = c.point;
+    Vec3 gradient;
+    const double value =
+        sampler.between(lattice_.first_region[p], other_region(c), lattice_.positions[p], gradient);
+    gradient = without_held(p, gradient);
+    const double slope = gradient.norm();
+    if (!(slope > 0)) return false;
+    std::vector<Vec3> places;
+    for (double share : {0.15, 0.25, 0.35, 0.5})
+      if (const double step = share * c.room() - std::abs(value); step > 0)
+        places.push_back(lattice_.positions[p] - gradient * (step / slope));
+    return take_best(p, places, sampler);
+  }
+
+  /// Of `count` tets with the numbers `tet(i)`, finds those with a piece below the limit and moves their
+  /// points near interfaces: points on an interface stay on it, the others keep their region. Returns the
+  /// tets whose pieces may have changed.
+  template <class TetOf>
+  std::vector<Index> improve_worst_stars(std::size_t count, TetOf&& tet) {
+    std::vector<Index> points = parallel_collect<Index>(
+        0, count, 1 << 12, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+          const auto near = [&](Index v) { return lattice_.stars.lists(v); };
+          for (std::size_t i = begin; i < end; ++i) {
+            const Tet& t = lattice_.tets[tet(i)];
+            if (std::none_of(t.begin(), t.end(), near) || worst_piece_tangent(lattice_, t) >= min_tangent)
+              continue;
+            std::copy_if(t.begin(), t.end(), std::back_inserter(out), near);
+          }
+        });
+    parallel_sort_unique(points);
+    const std::vector<std::size_t> starts = scatter_groups(points, one_priority);
+    run_groups(points, starts,
+               [&](std::size_t k, FieldSampler& sampler) { improve_star(points[k], sampler); });
+    std::vector<Index> touched;
+    for (Index p : points)
+      for (Index t : star(p)) touched.push_back(t);
+    parallel_sort_unique(touched);
+    return touched;
+  }
+
+  void improve_star(Index p, FieldSampler& sampler) {
+    if (!lattice_.is_on[p] && field_.is_certain(lattice_.positions[p])) return;
+    std::vector<Vec3> places;
+    const Vec3 from = lattice_.positions[p], to_middle = without_held(p, middle_of_star(p) - from);
+    if (lattice_.is_on[p]) {
+      const std::optional<RegionSet> regions = pure_regions(lattice_, p);
+      if (!regions) return;
+      for (double share : {0.25, 0.5, 1.0}) {
+        Vec3 place = from + share * to_middle;
+        if (sampler.project(*regions, place, held_axes(p))) places.push_back(place);
+      }
+    } else if (const RegionIndex other = nearest_other(p); other != on_interface) {
+      Vec3 gradient;
+      const double value = sampler.between(lattice_.first_region[p], other, from, gradient);
+      gradient = without_held(p, gradient);
+      // Steps are fractions of the distance, so that the point keeps its side whatever the size of the cells.
+      for (double share : {-0.4, -0.2, 0.3, 0.6})
+        places.push_back(from + gradient * (share * value /
+                                            std::max(tolerance::min_squared_slope, gradient.squaredNorm())));
+      places.push_back(from + 0.5 * to_middle);
+    }
+    take_best(p, places, sampler);
+  }
+
+  /// Of the other regions in the star, the one of the smallest distance; on_interface if there is none.
+  RegionIndex nearest_other(Index p) const {
+    RegionIndex best = on_interface;
+    float smallest = HUGE_VALF;
+    const auto regions = lattice_.star_regions(p);
+    const auto values = lattice_.star_values(p);
+    for (std::size_t i = 0; i < regions.size(); ++i)
+      if (regions[i] != lattice_.first_region[p] && values[i] < smallest)
+        smallest = values[i], best = regions[i];
+    return best;
+  }
+
+  LabelledLattice& lattice_;
+  const MaterialField& field_;
+  IndependentRounds rounds_;
+  Progress* progress_;
+  std::vector<Candidate> candidates_;  ///< in the order of their points
+  std::vector<Index> by_rank_;         ///< indices into candidates_, by priority, then point
+};
+
+}  // namespace
+
+SnapCounts snap_vertices(LabelledLattice& lattice, const MaterialField& field, Progress* progress) {
+  return Mover(lattice, field, progress).run();
+}
+
+}  // namespace tetwright

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "common/geometry/morton.h"
+#include "common/types.h"
+#include "mesher/domain/regions.h"
+
+namespace tetwright {
+
+/// Cells are at most this many levels smaller than a voxel for sheets between surfaces and thin labels.
+inline constexpr int max_refinement = 3;
+
+/// Where the octree must have smaller cells than the interface alone asks for.
+struct RefinementRegions {
+  int refinement = 0;  ///< levels below a voxel
+  /// The cells to be split: one ascending list for each level of a lattice refined that far, and possibly
+  /// one for cells of two voxels.
+  std::vector<std::vector<MortonKey>> cells;
+  int coarsest_interface_level = 2;  ///< see OctreeOptions
+};
+
+/// A region that is too thin for its cells in some places.
+struct ThinPart {
+  RegionIndex region;
+  std::size_t places;  ///< number of voxels, or of finest cells for a sheet between two level sets
+  Vec3 first;          ///< one of these places, in voxels
+};
+
+}  // namespace tetwright

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace tetwright {
+
+/// Memory of the program and its libraries, bytes.
+inline constexpr double program_bytes = 38e6;
+/// Peak memory for each leaf of an octree and its lattice points, bytes, before there is any tet.
+inline constexpr double bytes_per_leaf = 150;
+
+}  // namespace tetwright

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simplify/schedule/edge_length_adaptation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "simplify/operations/collapse.h"
+#include "simplify/operations/insertion.h"
+#include "simplify/schedule/bulk_improvement.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Edges are halved twice in three rounds or so: enough for some that are a million times too long.
+constexpr int max_adaptation_rounds = 60;
+/// Share of the edges, each counted once for each tet, that may be left out of what a size field wants; of
+/// bounds none.
+constexpr double few = 0.002;
+/// A round that leaves more than this share of the excess that the best one before left gains too little; so
+/// many may.
+constexpr double size_idle_above = 0.97;
+constexpr int max_idle_adaptation_rounds = 2;
+/// Of the bound of shapes: what collapses and splits must leave. Flips and better places mend it.
+constexpr float adaptation_floor = 0.3f;
+constexpr int shape_rounds = 2;  ///< of flips and better places between
+
+class EdgeLengthAdaptation {
+ public:
+  EdgeLengthAdaptation(const ImprovementTools& tools, ImprovementArea& area, const SizePlan& plan)
+      : tools_(tools),
+        mesh_(tools.mesh),
+        sizes_(*tools.rules.sizes),
+        area_(area),
+        plan_(plan),
+        bound_(static_cast<float>(shape_quality_bound(tools.rules.objective.shape, plan.angle))),
+        resizing_(tools.rules) {
+    resizing_.max_error = std::numeric_limits<double>::infinity();
+    resizing_.good_enough = adaptation_floor * bound_;
+    resizing_.count = {plan.min_tets, plan.max_tets};
+  }
+
+  void run() {
+    double min_excess = std::numeric_limits<double>::infinity();
+    int idle = 0;
+    for (int i = 0; i < max_adaptation_rounds; ++i) {
+      const OutOfBounds out = out_of_bounds();
+      if (out.share == 0 || (sizes_.has_target_length() && !sizes_.has_bounds() && out.share <= few)) break;
+      idle = out.excess > size_idle_above * min_excess ? idle + 1 : 0;
+      if (idle > max_idle_adaptation_rounds) break;
+      min_excess = std::min(min_excess, out.excess);
+      {
+        RoundRecorder::Round round(tools_.recorder, plan_.kind, 0);
+        round.report().percent = 100 * out.share;
+        collapse_short();
+        split_long();
+        round.finish();
+      }
+      (void)run_bulk_improvement(tools_, area_,
+                                 {.kind = plan_.kind,
+                                  .bad_quality = bound_,
+                                  .min_tets = plan_.min_tets,
+                                  .max_tets = plan_.max_tets,
+                                  .max_rounds = shape_rounds,
+                                  .remodel = false});
+    }
+  }
+
+ private:
+  /// Edges that are too long or too short, each counted once for each tet.
+  struct OutOfBounds {
+    double share;   ///< of all edges
+    double excess;  ///< mean of the binary logarithms of the factors: halving one that is far too long counts
+  };
+
+  OutOfBounds out_of_bounds() {
+    std::size_t out = 0, all = 0;
+    double excess_sum = 0;
+    for (const TetSnapshot& t : area_.bad_tets(1))
+      for (const auto& e : tet_edges) {
+        const EdgeSizes::Excess excess =
+            sizes_.excess(mesh_.position(t.points[e[0]]), mesh_.position(t.points[e[1]]));
+        ++all;
+        const double factor = std::max(excess.longer, excess.shorter);
+        if (!(factor > 1)) continue;
+        ++out;
+        excess_sum += std::log2(factor);
+      }
+    const auto edges = static_cast<double>(std::max<std::size_t>(1, all));
+    return {static_cast<double>(out) / edges, excess_sum / edges};
+  }
+
+  void collapse_short() {
+    BlockRules rules = resizing_;
+    rules.collapse_short_only = true;
+    tools_.runner.each_star(area_.bad_points(1), Operation::collapse,
+                            [&](Workspace& ws) { return collapse(ws, rules); });
+  }
+
+  /// A point in the middle of the tet's edge that is too long by the largest factor.
+  void split_long() {
+    tools_.runner.tets(
+        area_.bad_tets(1),
+        [&](Workspace& ws, const TetSnapshot& item, int) {
+          if (!exists(mesh_, item)) return Outcome::stale;
+          int longest = -1;
+          double max_ratio = 1;
+          for (int e = 0; e < 6; ++e) {
+            const double longer = sizes_
+                                      .excess(mesh_.position(item.points[tet_edges[e][0]]),
+                                              mesh_.position(item.points[tet_edges[e][1]]))
+                                      .longer;
+            if (longer <= max_ratio) continue;
+            longest = e;
+            max_ratio = longer;
+          }
+          if (longest < 0) return Outcome::no_candidate;
+          return insert_in_edge(ws, resizing_, item.tet, longest, InsertionPlace::centre, true);
+        },
+        [] { return false; });
+  }
+
+  const ImprovementTools& tools_;
+  const EditableMesh& mesh_;
+  const EdgeSizes& sizes_;
+  ImprovementArea& area_;
+  const SizePlan& plan_;
+  float bound_;
+  BlockRules resizing_;
+};
+
+}  // namespace
+
+void adapt_edge_lengths(const ImprovementTools& tools, ImprovementArea& area, const SizePlan& plan) {
+  EdgeLengthAdaptation(tools, area, plan).run();
+}
+
+}  // namespace tetwright

@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesher/input/connected_components.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "common/parallel/parallel.h"
+#include "common/random.h"
+
+namespace tetwright::connected_components_test {
+namespace {
+
+using Size = std::array<int, 3>;
+using Regions = std::vector<RegionIndex>;
+
+Regions merged(Regions regions, const Size& size, std::size_t min_voxels) {
+  merge_small_islands(regions, size, min_voxels, nullptr);
+  return regions;
+}
+
+/// One row of voxels, a digit each.
+Regions row(const std::string& digits) {
+  Regions regions;
+  for (char c : digits) regions.push_back(static_cast<RegionIndex>(c - '0'));
+  return regions;
+}
+std::string merged_row(const std::string& digits, std::size_t min_voxels) {
+  std::string text;
+  for (RegionIndex r : merged(row(digits), {static_cast<int>(digits.size()), 1, 1}, min_voxels))
+    text += static_cast<char>('0' + r);
+  return text;
+}
+/// A plane of 3 x 3 voxels.
+std::string merged_plane(const std::string& nine, std::size_t min_voxels) {
+  std::string text;
+  for (RegionIndex r : merged(row(nine), {3, 3, 1}, min_voxels)) text += static_cast<char>('0' + r);
+  return text;
+}
+
+/// The rules taken literally: all islands sought again after each merge.
+class Plain {
+ public:
+  Plain(Regions regions, const Size& size) : regions_(std::move(regions)), size_(size) {}
+
+  Regions merge(std::size_t min_voxels) {
+    for (;;) {
+      std::vector<std::vector<std::size_t>> islands = find();
+      // By their lowest voxels so far; equal sizes stay in that order.
+      const auto largest = std::max_element(islands.begin(), islands.end(),
+                                            [](const auto& a, const auto& b) { return a.size() < b.size(); });
+      if (largest->size() < min_voxels) return regions_;
+      const auto size = [&](const auto& island) {
+        return continues(island) ? std::max(island.size(), min_voxels) : island.size();
+      };
+      std::stable_sort(islands.begin(), islands.end(),
+                       [&](const auto& a, const auto& b) { return size(a) < size(b); });
+      if (size(islands.front()) >= min_voxels) return regions_;
+      std::map<RegionIndex, int> faces;
+      for (std::size_t v : islands.front())
+        for (std::size_t n : neighbours(v))
+          if (regions_[n] != regions_[v]) ++faces[regions_[n]];
+      const auto best = std::max_element(faces.begin(), faces.end(),
+                                         [](const auto& a, const auto& b) { return a.second < b.second; });
+      for (std::size_t v : islands.front()) regions_[v] = best->first;
+    }
+  }
+
+  std::vector<std::vector<std::size_t>> find() const {
+    std::vector<std::vector<std::size_t>> islands;
+    std::vector<char> seen(regions_.size(), 0);
+    for (std::size_t start = 0; start < regions_.size(); ++start) {
+      if (seen[start]) continue;
+      seen[start] = 1;
+      std::vector<std::size_t> island{start};
+      for (std::size_t i = 0; i < island.size(); ++i)
+        for (std::size_t n : neighbours(island[i]))
+          if (!seen[n] && regions_[n] == regions_[start]) {
+            seen[n] = 1;
+            island.push_back(n);
+          }
+      islands.push_back(island);
+    }
+    return islands;
+  }
+
+ private:
+  /// True for the outside at the border.
+  bool continues(const std::vector<std::size_t>& island) const {
+    if (regions_[island[0]] != outside_region) return false;
+    return std::any_of(island.begin(), island.end(), [&](std::size_t v) {
+      for (int n : size_) {
+        const std::size_t count = static_cast<std::size_t>(n), at = v % count;
+        if (count > 1 && (at == 0 || at + 1 == count)) return true;
+        v /= count;
+      }
+      return false;
+    });
+  }
+
+  std::vector<std::size_t> neighbours(std::size_t v) const {
+    std::vector<std::size_t> result;
+    std::size_t step = 1, rest = v;
+    for (int n : size_) {
+      const std::size_t count = static_cast<std::size_t>(n), at = rest % count;
+      if (at > 0) result.push_back(v - step);
+      if (at + 1 < count) result.push_back(v + step);
+      rest /= count;
+      step *= count;
+    }
+    return result;
+  }
+
+  Regions regions_;
+  Size size_;
+};
+
+TEST(ConnectedComponents, TheSameAsByTheRulesTakenLiterally) {
+  Random random(1);
+  std::size_t changed = 0;
+  for (int round = 0; round < 1500; ++round) {
+    const Size size{1 + static_cast<int>(random.below(7)), 1 + static_cast<int>(random.below(7)),
+                    1 + static_cast<int>(random.below(7))};
+    const std::uint32_t labels = 2 + random.below(4), same = random.below(4);
+    Regions regions(static_cast<std::size_t>(size[0] * size[1] * size[2]));
+    for (std::size_t i = 0; i < regions.size(); ++i)
+      regions[i] =
+          i > 0 && random.below(4) < same ? regions[i - 1] : static_cast<RegionIndex>(random.below(labels));
+    const std::size_t min_voxels = 1 + random.below(14);
+    SCOPED_TRACE("round " + std::to_string(round));
+    Plain plain(regions, size);
+    const std::vector<std::vector<std::size_t>> islands = plain.find();
+    const Regions expected = plain.merge(min_voxels);
+    Regions result = regions;
+    const IslandMerging merging = merge_small_islands(result, size, min_voxels, nullptr);
+    ASSERT_EQ(result, expected);
+    changed += result != regions;
+
+    // What it says was done is what was done.
+    std::map<Index, MergedIsland> merged;
+    for (const MergedIsland& m : merging.merged) merged[m.voxel] = m;
+    ASSERT_EQ(merged.size(), merging.merged.size());
+    std::size_t largest = 0;
+    for (const std::vector<std::size_t>& island : islands) {
+      largest = std::max(largest, island.size());
+      const auto found = merged.find(static_cast<Index>(island[0]));
+      ASSERT_EQ(found != merged.end(), result[island[0]] != regions[island[0]]);
+      if (found == merged.end()) continue;
+      EXPECT_EQ(found->second.voxels, island.size());
+      EXPECT_EQ(found->second.from, regions[island[0]]);
+      EXPECT_EQ(found->second.to, result[island[0]]);
+      merged.erase(found);
+    }
+    EXPECT_TRUE(merged.empty());
+    EXPECT_EQ(merging.islands, min_voxels > 1 ? islands.size() : 0);
+    EXPECT_EQ(merging.none_reaches, min_voxels > 1 && largest < min_voxels);
+  }
+  EXPECT_GT(changed, 500u);
+}
+
+TEST(ConnectedComponents, JoinWhatTheyShareMostFacesWith) {
+  EXPECT_EQ(merged_plane("111"
+                         "121"
+                         "333",
+                         2),
+            "111111333");
+  EXPECT_EQ(merged_plane("313"
+                         "323"
+                         "111",
+                         2)
+                .substr(3, 3),
+            "333");
+}
+
+TEST(ConnectedComponents, BetweenEqualNeighboursTheSmallestRegionIsJoined) {
+  EXPECT_EQ(merged_row("3331222", 2), "3332222");
+  EXPECT_EQ(merged_row("2221333", 2), "2222333");
+  EXPECT_EQ(merged_row("2221000", 2), "2220000");
+}
+
+TEST(ConnectedComponents, OfEqualIslandsThatWithTheLowestVoxelIsFirst) {
+  // The 1 joins the 2, which then is large enough; the other way round 2 would be gone.
+  EXPECT_EQ(merged_row("3331233", 2), "3332233");
+  // Here the 2 joins the 1.
+  EXPECT_EQ(merged_row("3332133", 2), "3331133");
+}
+
+TEST(ConnectedComponents, TheSmallestIsFirst) {
+  // The 2 joins the 1, which then is large enough; before it, the 1 would have joined the 0.
+  EXPECT_EQ(merged_row("00001123333", 3), "00001113333");
+}
+
+TEST(ConnectedComponents, ChainsOfMerges) {
+  // The 3 joins the 2, both the 1, all of them the 4, as each is still too small.
+  EXPECT_EQ(merged_row("44444112300000", 1), "44444112300000");
+  EXPECT_EQ(merged_row("5555552311155555", 4), "5555551111155555");
+  EXPECT_EQ(merged_row("9999991299999", 4), "9999999999999");
+  // One that joins two of a region makes them one, large enough.
+  EXPECT_EQ(merged_row("999991121199999", 5), "999991111199999");
+}
+
+TEST(ConnectedComponents, OutsideGoesOnBeyondTheBorder) {
+  EXPECT_EQ(merged_row("0111", 2), "0111");
+  EXPECT_EQ(merged_row("1110", 2), "1110");
+  EXPECT_EQ(merged_row("1101", 2), "1111");
+  EXPECT_EQ(merged_plane("111"
+                         "110"
+                         "111",
+                         4),
+            "111110111");
+  // In a slice there is no way out across it.
+  EXPECT_EQ(merged_plane("111"
+                         "101"
+                         "111",
+                         4),
+            "111111111");
+  // What joins it is outside for good, however small both are.
+  EXPECT_EQ(merged_row("22222223100", 5), "22222220000");
+  Regions notch(27, 1);
+  notch[13 - 9] = outside_region;  // the middle of the lowest plane
+  EXPECT_EQ(merged(notch, {3, 3, 3}, 8), notch);
+  Regions hole(27, 1);
+  hole[13] = outside_region;
+  EXPECT_EQ(merged(hole, {3, 3, 3}, 8), Regions(27, 1));
+}
+
+TEST(ConnectedComponents, OutsideIsARegionLikeOthersAndBeyondTheVolumeIsNothing) {
+  EXPECT_EQ(merged_row("1101", 2), "1111");
+  EXPECT_EQ(merged_row("1000", 2), "0000");
+  // A corner has three faces beyond the volume, which don't count.
+  Regions corner(27, 1);
+  corner[0] = 2;
+  EXPECT_EQ(merged(corner, {3, 3, 3}, 2), Regions(27, 1));
+}
+
+TEST(ConnectedComponents, IslandsHangTogetherByFacesAlone) {
+  EXPECT_EQ(merged_plane("100"
+                         "010"
+                         "000",
+                         2),
+            "000000000");
+  // Neither do rows or planes follow each other.
+  EXPECT_EQ(merged_plane("001"
+                         "100"
+                         "000",
+                         2),
+            "000000000");
+  Regions planes(18, 0);
+  planes[8] = planes[9] = 1;
+  EXPECT_EQ(merged(planes, {3, 3, 2}, 2), Regions(18, 0));
+}
+
+TEST(ConnectedComponents, NothingIsMergedWhereNoIslandReachesTheNumber) {
+  for (const std::string text : {"0123", "1", "1111"}) {
+    Regions regions = row(text);
+    const Size size{static_cast<int>(text.size()), 1, 1};
+    const IslandMerging merging = merge_small_islands(regions, size, 5, nullptr);
+    EXPECT_EQ(regions, row(text));
+    EXPECT_TRUE(merging.none_reaches);
+    EXPECT_TRUE(merging.merged.empty());
+    EXPECT_EQ(merging.islands, std::set<char>(text.begin(), text.end()).size());
+  }
+  Regions regions = row("1121");
+  EXPECT_TRUE(merge_small_islands(regions, {4, 1, 1}, std::size_t{1} << 40, nullptr).none_reaches);
+}
+
+TEST(ConnectedComponents, TheSameForAnyNumberOfThreads) {
+  Random random(2);
+  const Size size{40, 30, 50};
+  Regions regions(60000);
+  for (std::size_t i = 0; i < regions.size(); ++i)
+    regions[i] = i > 1200 && random.below(3) ? regions[i - (random.below(2) ? 1 : 1200)]
+                                             : static_cast<RegionIndex>(random.below(5));
+  for (std::size_t min_voxels : {2u, 20u}) {
+    std::vector<Regions> results;
+    for (unsigned threads : {1u, 2u, 3u, 8u}) {
+      const ThreadLimit limit(threads);
+      results.push_back(merged(regions, size, min_voxels));
+      EXPECT_EQ(results.back(), results[0]) << threads;
+    }
+    EXPECT_NE(results[0], regions);
+  }
+}
+
+/// By flood fill: the parts of a region, of the outside only those that do not reach the border.
+std::size_t plain_parts(const Regions& regions, const Size& size, RegionIndex region, bool touching) {
+  std::vector<std::uint8_t> seen(regions.size(), 0);
+  const auto at_border = [&](const Size& p) {
+    for (int a = 0; a < 3; ++a)
+      if (p[a] == 0 || p[a] == size[a] - 1) return true;
+    return false;
+  };
+  const auto place = [&](const Size& p) {
+    return (static_cast<std::size_t>(p[2]) * size[1] + p[1]) * size[0] + p[0];
+  };
+  std::size_t parts = 0;
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    if (seen[i] || regions[i] != region) continue;
+    seen[i] = 1;
+    const int n = static_cast<int>(i);
+    std::vector<Size> open{{n % size[0], n / size[0] % size[1], n / size[0] / size[1]}};
+    bool border = false;
+    while (!open.empty()) {
+      const Size p = open.back();
+      open.pop_back();
+      border |= at_border(p);
+      for (int k = 0; k < 27; ++k) {
+        const Size step{k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
+        if (!touching && std::abs(step[0]) + std::abs(step[1]) + std::abs(step[2]) > 1) continue;
+        const Size q{p[0] + step[0], p[1] + step[1], p[2] + step[2]};
+        bool inside = true;
+        for (int a = 0; a < 3; ++a) inside &= q[a] >= 0 && q[a] < size[a];
+        if (!inside || regions[place(q)] != region || seen[place(q)]) continue;
+        seen[place(q)] = 1;
+        open.push_back(q);
+      }
+    }
+    parts += region != outside_region || !border;
+  }
+  return parts;
+}
+
+TEST(ConnectedComponents, PartsAreThoseOfAFloodFill) {
+  Random random(7);
+  for (const Size& size : {Size{6, 5, 4}, Size{9, 1, 7}, Size{1, 8, 8}, Size{13, 12, 1}, Size{20, 9, 10}})
+    for (int round = 0; round < 20; ++round) {
+      Regions regions(static_cast<std::size_t>(size[0]) * size[1] * size[2]);
+      for (RegionIndex& r : regions) r = static_cast<RegionIndex>(random.below(2 + round % 4));
+      const std::vector<RegionParts> parts = count_parts(regions, size, 5, nullptr);
+      for (RegionIndex r = 0; r < 5; ++r) {
+        EXPECT_EQ(parts[r].by_faces, plain_parts(regions, size, r, false));
+        EXPECT_EQ(parts[r].touching, plain_parts(regions, size, r, true));
+        EXPECT_EQ(parts[r].smallest == no_index, parts[r].by_faces == 0);
+        if (parts[r].smallest != no_index) {
+          EXPECT_EQ(regions[parts[r].smallest], r);
+        }
+      }
+    }
+  Regions two = row("1101000100");
+  EXPECT_EQ(count_parts(two, {10, 1, 1}, 2, nullptr)[1].smallest, 3u);
+}
+
+TEST(ConnectedComponents, CanBeInterrupted) {
+  Progress progress;
+  progress.cancel();
+  Regions regions = row("1121");
+  EXPECT_THROW(merge_small_islands(regions, {4, 1, 1}, 2, &progress), Interrupted);
+  EXPECT_THROW(count_parts(regions, {4, 1, 1}, 3, &progress), Interrupted);
+}
+
+}  // namespace
+}  // namespace tetwright::connected_components_test

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Groups of a surface's triangles: they come out as patches of the dense mesh, with their borders.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "mesher/input/split_solids.h"
+#include "mesher/mesher.h"
+#include "tests/common/features/parts.h"
+#include "tests/common/io/expect_error.h"
+#include "tests/mesher/test_surfaces.h"
+
+namespace tetwright::surface_regions_test {
+namespace {
+
+/// A unit cube whose sides are grids of n x n squares.
+TriangleMesh gridded_cube(int n) {
+  TriangleMesh mesh;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {0, 1})
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+          const auto first = static_cast<Index>(mesh.points.size());
+          for (const auto& [u, v] : {std::pair(i, j), {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}) {
+            Vec3 p;
+            p[axis] = side;
+            p[(axis + 1) % 3] = static_cast<double>(u) / n;
+            p[(axis + 2) % 3] = static_cast<double>(v) / n;
+            mesh.points.push_back(p);
+          }
+          for (Triangle t : {Triangle{first, first + 1, first + 2}, Triangle{first, first + 2, first + 3}}) {
+            if (side == 0) std::swap(t[1], t[2]);
+            mesh.triangles.push_back(t);
+          }
+        }
+  return mesh;
+}
+
+template <class GroupOf>
+TriangleMesh grouped(TriangleMesh mesh, std::vector<SurfaceRegion> groups, const GroupOf& group_of) {
+  for (const auto& [a, b, c] : mesh.triangles)
+    mesh.triangle_groups.push_back(group_of((mesh.points[a] + mesh.points[b] + mesh.points[c]) / 3));
+  mesh.groups = std::move(groups);
+  return mesh;
+}
+
+/// A square of half the side in the middle of the side z = 1.
+TriangleMesh cube_with_inlet() {
+  TriangleMesh mesh = grouped(gridded_cube(8), {{}, {7, "inlet"}}, [](const Vec3& p) {
+    return p.z() == 1 && (p - Vec3(0.5, 0.5, 1)).cwiseAbs().maxCoeff() < 0.25 ? 1U : 0U;
+  });
+  return turned(std::move(mesh));
+}
+
+DenseMesh mesh_of(std::vector<MaterialSurface> surfaces, int resolution, FeatureAngle angle = {}) {
+  MesherOptions options;
+  options.resolution = resolution;
+  options.feature_angle = angle;
+  return mesh_surfaces(make_mesher_input(std::move(surfaces)), options, nullptr);
+}
+
+std::map<std::string, double> areas_of(const TetMesh& mesh) {
+  std::map<std::string, double> areas;
+  for (const InterfaceTriangle& t : mesh.interfaces) {
+    const auto group = mesh.patch_groups.find({t.pair(), t.patch});
+    const Vec3& a = mesh.points[t.ids[0]];
+    areas[group == mesh.patch_groups.end() ? "" : group->second.name] +=
+        (mesh.points[t.ids[1]] - a).cross(mesh.points[t.ids[2]] - a).norm() / 2;
+  }
+  return areas;
+}
+
+TEST(SurfaceRegions, KeepTheirBordersOnAPlane) {
+  for (const FeatureAngle::Rule rule : {FeatureAngle::Rule::automatic, FeatureAngle::Rule::off})
+    for (const int resolution : {16, 28}) {
+      const DenseMesh dense = mesh_of({{"cube", 1, cube_with_inlet(), "cube.obj"}}, resolution, {rule, 0});
+      EXPECT_EQ(broken_promise(dense.mesh.points, dense.mesh.tets), "");
+      const auto areas = areas_of(dense.mesh);
+      ASSERT_EQ(areas.size(), 2U);
+      // A point may stop just before the border for the sake of a tet.
+      EXPECT_NEAR(areas.at("inlet"), 0.25, 1e-5) << resolution;
+      if (rule == FeatureAngle::Rule::automatic) {
+        EXPECT_NEAR(areas.at(""), 5.75, 1e-5);
+      }
+      // The corners of the square and, unless there are none, those of the cube.
+      EXPECT_EQ(dense.report.creases.corners.size(), rule == FeatureAngle::Rule::off ? 4U : 12U);
+    }
+}
+
+TEST(SurfaceRegions, DivideASmoothSurface) {
+  const TriangleMesh halves = grouped(make_sphere(1), {{0, "above"}, {0, "below"}},
+                                      [](const Vec3& p) { return p.z() > 0 ? 0U : 1U; });
+  const DenseMesh dense = mesh_of({{"ball", 1, halves, "ball.stl"}}, 32);
+  const auto areas = areas_of(dense.mesh);
+  ASSERT_EQ(areas.size(), 2U);
+  EXPECT_NEAR(areas.at("above") / areas.at("below"), 1, 0.01);
+}
+
+TEST(SurfaceRegions, OfTwoSurfacesMustDifferInName) {
+  const auto named = [](const SurfaceRegion& group) {
+    return grouped(unit_cube(), {{}, group}, [](const Vec3& p) { return p.z() > 0.9 ? 1U : 0U; });
+  };
+  TriangleMesh apart = named({0, "top"});
+  const std::string message = error_of<InputError>([&] {
+    make_mesher_input({{"a", 1, named({0, "top"}), "a.stl"}, {"b", 2, apart, "b.stl"}});
+  });
+  EXPECT_NE(message.find("b.stl: a patch is called 'top' like one of a.stl"), std::string::npos) << message;
+  const MesherInput input =
+      make_mesher_input({{"a", 1, named({3, ""}), "a.ply"}, {"b", 2, named({3, ""}), "b.ply"}});
+  EXPECT_EQ(input.bodies[0].groups[1], (SurfaceRegion{0, "a_3"}));
+  EXPECT_EQ(input.bodies[1].groups[1], (SurfaceRegion{0, "b_3"}));
+}
+
+TEST(SurfaceRegions, StayWithTheirTrianglesInRepair) {
+  // Repeated and collapsed triangles are left out, and the others are sorted.
+  TriangleMesh mesh = grouped(gridded_cube(2), {{0, "low"}, {0, "high"}},
+                              [](const Vec3& p) { return p.x() > 0.5 ? 1U : 0U; });
+  mesh.triangles.insert(mesh.triangles.begin(), {0, 0, 1});
+  mesh.triangle_groups.insert(mesh.triangle_groups.begin(), 1);
+  mesh.triangles.push_back(mesh.triangles[5]);
+  mesh.triangle_groups.push_back(mesh.triangle_groups[5]);
+  const RepairedSurface s = repair_surface(mesh, "f").surface;
+  ASSERT_EQ(s.groups.size(), s.triangles.size());
+  for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+    const auto& [a, b, c] = s.triangles[t];
+    EXPECT_EQ(s.groups[t], (s.points[a] + s.points[b] + s.points[c]).x() / 3 > 0.5 ? 1U : 0U);
+  }
+}
+
+TEST(SurfaceRegions, AreSplitIntoSolids) {
+  TriangleMesh two = unit_cube();
+  two.triangle_groups.assign(two.triangles.size(), 2);
+  const TriangleMesh other = make_sphere(1, Vec3(4, 0, 0), 2);
+  const auto first = static_cast<Index>(two.points.size());
+  two.points.insert(two.points.end(), other.points.begin(), other.points.end());
+  for (const auto& [a, b, c] : other.triangles) {
+    two.triangles.push_back({first + a, first + b, first + c});
+    two.triangle_groups.push_back(0);
+  }
+  two.groups = {{5, ""}, {}, {0, "box"}};
+  const std::vector<NamedSurface> solids = split_solids(two, "parts");
+  ASSERT_EQ(solids.size(), 2U);
+  EXPECT_EQ(solids[0].name, "box");
+  EXPECT_EQ(solids[1].name, "parts_5");
+  const auto expect_same = [](const TriangleMesh& a, const TriangleMesh& b) {
+    EXPECT_EQ(a.points.size(), b.points.size());
+    ASSERT_EQ(a.triangles.size(), b.triangles.size());
+    for (std::size_t t = 0; t < a.triangles.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(a.points[a.triangles[t][k]], b.points[b.triangles[t][k]]);
+    EXPECT_TRUE(a.groups.empty());
+  };
+  expect_same(solids[0].surface, unit_cube());
+  expect_same(solids[1].surface, other);
+  EXPECT_EQ(split_solids(unit_cube(), "cube")[0].name, "cube");
+}
+
+TEST(SurfaceRegions, OfSurfacesThatMeetAreKept) {
+  const auto halves = [](const std::string& name, double shift) {
+    TriangleMesh mesh = grouped(gridded_cube(4), {{0, name + "1"}, {0, name + "2"}},
+                                [&](const Vec3& p) { return p.x() == 0 ? 0U : 1U; });
+    for (Vec3& p : mesh.points) p.x() += shift;
+    return mesh;
+  };
+  const DenseMesh dense = mesh_of({{"left", 1, halves("a", 0), "a"}, {"right", 2, halves("b", 1), "b"}}, 38);
+  EXPECT_EQ(dense.report.features[0].found.verdict, SurfacePatches::Verdict::meeting);
+  EXPECT_TRUE(dense.report.creases.segments.empty());
+  std::set<std::string> names;
+  for (const auto& [patch, group] : dense.mesh.patch_groups) names.insert(group.name);
+  EXPECT_EQ(names, (std::set<std::string>{"a1", "a2", "b1", "b2"}));
+  // Known to a cell only, as the curve is in which the surfaces meet.
+  EXPECT_FALSE(dense.reference->has_patches());
+}
+
+TEST(SurfaceRegions, OfWhichRepairLeavesNothingAreKnown) {
+  TriangleMesh mesh = gridded_cube(2);
+  const std::size_t own = mesh.triangles.size();
+  mesh.triangles.push_back(mesh.triangles.front());
+  mesh.groups = {{0, "cube"}, {0, "again"}, {0, "empty"}};
+  mesh.triangle_groups.assign(own, 0);
+  mesh.triangle_groups.push_back(1);
+  const MesherInput input = make_mesher_input({{"cube", 1, mesh, "a"}});
+  ASSERT_EQ(input.groups.size(), 2u);
+  EXPECT_EQ(input.groups[0].group.name, "again");
+  EXPECT_DOUBLE_EQ(input.groups[0].area, 0.125);
+  EXPECT_DOUBLE_EQ(input.groups[1].area, 6);
+}
+
+TEST(SurfaceRegions, WhereSurfacesMeetNoCreasesAreKept) {
+  TriangleMesh above = unit_cube(), apart = unit_cube();
+  for (Vec3& p : above.points) p.z() += 1;
+  for (Vec3& p : apart.points) p.x() += 3;
+  using Verdict = SurfacePatches::Verdict;
+  const DenseMesh dense =
+      mesh_of({{"below", 1, unit_cube(), "a"}, {"above", 2, above, "b"}, {"c", 3, apart, "c"}}, 40);
+  ASSERT_EQ(dense.report.features.size(), 3U);
+  EXPECT_EQ(dense.report.features[0].found.verdict, Verdict::meeting);
+  EXPECT_EQ(dense.report.features[1].found.verdict, Verdict::meeting);
+  EXPECT_EQ(dense.report.features[2].found.verdict, Verdict::part);
+  EXPECT_EQ(dense.report.creases.corners.size(), 8U);
+}
+
+}  // namespace
+}  // namespace tetwright::surface_regions_test
