@@ -24,7 +24,7 @@ std::string text_of(const nlohmann::json& json) {
   return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// A line of /proc/self/status.
+/// Value of an entry of /proc/self/status.
 std::size_t bytes_of(const char* name) {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;)
@@ -105,7 +105,7 @@ std::size_t resident_bytes_now() { return bytes_of("VmRSS:"); }
 
 void reset_peak() {
   malloc_trim(0);
-  std::ofstream("/proc/self/clear_refs") << 5;  // proc(5): resets VmHWM to what is resident
+  std::ofstream("/proc/self/clear_refs") << 5;  // proc(5): resets VmHWM to the resident size
 }
 
 double ThreadStopwatch::now() {

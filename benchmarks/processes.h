@@ -10,25 +10,26 @@
 
 namespace tetwright {
 
-/// Carries `work` out in a forked child and hands back what it returned: its memory is its own then, and what
-/// it leaves behind is gone. {"error": "..."} if it threw or died. To be called while this process has a
-/// single thread.
+/// Runs `work` in a forked child process, so that its memory is its own and is released in the end.
+///
+/// \return the result of `work`; {"error": "..."} if it threw or died.
+/// \pre This process has a single thread.
 nlohmann::json in_child(const std::function<nlohmann::json()>& work);
 
 struct ProgramRun {
-  int status = 0;              ///< as a shell gives it
-  double seconds = 0;          ///< from start to end
-  std::size_t peak_bytes = 0;  ///< largest resident size
+  int status = 0;              ///< exit status, as in a shell
+  double seconds = 0;          ///< wall time
+  std::size_t peak_bytes = 0;  ///< peak resident size
 };
 
-/// Runs a program to its end; what it prints on stdout is dropped.
+/// Runs a program to its end; its standard output is dropped.
 ProgramRun run_program(const std::vector<std::string>& arguments);
 
-/// Largest resident size of this process since its start or reset_peak() (VmHWM).
+/// Peak resident size of this process since its start or reset_peak() (VmHWM).
 std::size_t peak_bytes_now();
-/// What of this process is resident now (VmRSS).
+/// Current resident size of this process (VmRSS).
 std::size_t resident_bytes_now();
-/// Gives free memory back to the system and begins the peak anew at what is resident.
+/// Returns free memory to the system and resets the peak to the current resident size.
 void reset_peak();
 
 class Stopwatch {
@@ -41,7 +42,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Processor time of the thread that asks: what waits for others on a busy machine does not count.
+/// Processor time of the calling thread: waiting on a busy machine does not count.
 class ThreadStopwatch {
  public:
   double seconds() const { return now() - start_; }
@@ -51,7 +52,7 @@ class ThreadStopwatch {
   double start_ = now();
 };
 
-/// A folder in the system's temporary one, removed with all that is in it.
+/// A folder in the system's temporary folder, removed with its contents.
 class ScratchFolder {
  public:
   ScratchFolder();
@@ -64,7 +65,9 @@ class ScratchFolder {
   std::string path_;
 };
 
-/// Writes JSON, or throws OutputError; nothing to do for an empty path.
+/// Writes JSON; does nothing if the path is empty.
+///
+/// \throws OutputError if the file cannot be written.
 void write_json(const nlohmann::json& json, const std::string& path);
 
 }  // namespace tetwright

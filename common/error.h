@@ -6,8 +6,8 @@
 
 namespace tetwright {
 
-/// Base of all errors that a user can cause. `what()` is one line that names the file, the place and the
-/// value, and says what to do.
+/// Base of all errors that a user can cause. `what()` is one line: the file, the location in it, the value
+/// and the remedy.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -23,7 +23,7 @@ class UsageError : public Error {
 class InputError : public Error {
  public:
   using Error::Error;
-  /// "file: line N: message" or, with line 0, "file: message".
+  /// Composes "file: line N: message", or "file: message" if `line` is 0.
   InputError(const std::string& file, std::size_t line, const std::string& message)
       : Error(file + (line ? ": line " + std::to_string(line) : std::string()) + ": " + message) {}
 };
@@ -53,20 +53,20 @@ class OutOfTime : public Error {
   using Error::Error;
 };
 
-/// An invariant of this library is broken: a bug of ours, not of the caller. The objects that took part must
-/// not be used any more; the host program goes on.
+/// A broken invariant of this library: a bug here, not in the caller. The objects involved must not be used
+/// any more; the host program can go on.
 class InternalError : public std::logic_error {
  public:
   using std::logic_error::logic_error;
 };
 
 namespace detail {
-/// Throws InternalError, which names the condition and the place in the source.
+/// \throws InternalError naming the condition and the location in the source; never returns
 [[noreturn]] void check_failed(const char* condition, const char* file, int line);
 }  // namespace detail
 
 }  // namespace tetwright
 
-/// Checks an invariant of ours, in every build: going on would hand out a wrong mesh.
+/// Checks an invariant of this library in every build: going on would return a wrong mesh.
 #define TETWRIGHT_CHECK(condition) \
   ((condition) ? void(0) : ::tetwright::detail::check_failed(#condition, __FILE__, __LINE__))

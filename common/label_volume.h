@@ -13,26 +13,28 @@ namespace tetwright {
 /// A segmented volume: a label for each voxel of a regular grid, whose axes need be neither perpendicular nor
 /// right-handed.
 ///
-/// Voxels are cell-centred: index (i, j, k) is the centre of a voxel, which reaches half a step to each side.
+/// Voxels are cell-centred: index (i, j, k) is the centre of a voxel, which extends half a step to each side.
 struct LabelVolume {
   std::array<int, 3> size{};   ///< voxels along each axis, 1 or more
   Vec3 origin = Vec3::Zero();  ///< centre of voxel (0, 0, 0), input units
   /// Column a is the step from one voxel to the next along axis a, input units; of rank 3.
   Eigen::Matrix3d directions = Eigen::Matrix3d::Identity();
-  /// What the file says its coordinates are: "left-posterior-superior", "right-anterior-superior" and so on,
-  /// or empty. Nothing is converted between them.
+  /// Coordinate system that the file names: "left-posterior-superior", "right-anterior-superior" and so on,
+  /// or empty. Readers do not convert between them.
   std::string space;
   std::vector<MaterialTag> labels;  ///< the first axis fastest
-  /// What the file calls its labels, also some that no voxel has; names may repeat.
+  /// Names of labels in the file, including labels that no voxel has; names may repeat.
   std::map<MaterialTag, std::string> names = {};
-  /// The colours that it gives them: red, green, blue, 0 to 1.
+  /// Colours of labels in the file: red, green, blue, each 0 to 1.
   std::map<MaterialTag, std::array<double, 3>> colours = {};
 
-  /// The position of a voxel index, which need not be whole, input units.
+  /// Position of a voxel index, input units. `index` may be fractional.
   Vec3 to_input(const Vec3& index) const;
 };
 
-/// Throws InputError unless origin and directions are finite and the directions can be inverted.
+/// Checks the grid of a volume.
+/// \param file named in messages
+/// \throws InputError unless origin and directions are finite and the directions are invertible
 void check_geometry(const LabelVolume& volume, const std::string& file);
 
 }  // namespace tetwright

@@ -7,7 +7,7 @@
 
 namespace tetwright {
 
-/// ASCII letters in lower case; all other bytes as they are.
+/// Converts ASCII letters to lower case; other bytes are unchanged.
 inline std::string lower_case(std::string_view text) {
   std::string out(text);
   for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

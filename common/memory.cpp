@@ -18,7 +18,7 @@ namespace {
 
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 
-/// The number in a file of a control group; no limit for "max", or where the file cannot be read.
+/// Reads a limit from a file of a control group; no limit for "max", or if the file cannot be read.
 double limit_in(const std::filesystem::path& file) {
   std::ifstream in(file);
   std::string text;
@@ -28,8 +28,8 @@ double limit_in(const std::filesystem::path& file) {
   return end != text.c_str() && *end == 0 && value > 0 ? value : no_limit;
 }
 
-/// The smallest limit in the files called `name` in the folder of `group` under `mount` and in all above it.
-/// In a container the group may be named as the host sees it: then only the mount itself has the file.
+/// Minimum limit in the files called `name` in the folder of `group` under `mount` and in all its ancestors.
+/// In a container the group may have its name on the host: then only the mount itself has the file.
 double smallest_limit(const std::filesystem::path& mount, std::filesystem::path group, const char* name) {
   double smallest = limit_in(mount / name);
   for (group = group.relative_path(); !group.empty(); group = group.parent_path())
@@ -37,13 +37,13 @@ double smallest_limit(const std::filesystem::path& mount, std::filesystem::path 
   return smallest;
 }
 
-/// True if a list "a,b,c" names the controller.
+/// Whether a list "a,b,c" contains the controller.
 bool lists_controller(const std::string& list, const std::string& controller) {
   return ("," + list + ",").find("," + controller + ",") != std::string::npos;
 }
 
-/// The limits of the control groups that the process belongs to. A line of /proc/self/cgroup reads
-/// "number:controllers:path"; version 2 has the number 0 and no controllers.
+/// Limit of the control groups of the process. A line of /proc/self/cgroup reads "number:controllers:path";
+/// version 2 has the number 0 and no controllers.
 double control_group_limit(const std::filesystem::path& root) {
   const std::filesystem::path mount = root / "sys/fs/cgroup";
   std::ifstream in(root / "proc/self/cgroup");

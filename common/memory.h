@@ -6,17 +6,18 @@
 
 namespace tetwright {
 
-/// The memory that this process may use in all, bytes: the smallest of what the machine has, of the limits of
-/// the container (control groups of version 1 and 2: the process's own group and all above it) and of the
-/// limits on the address space and on data (RLIMIT_AS, RLIMIT_DATA), and of a MemoryLimit of this thread.
-/// What other processes use is not taken off.
+/// Memory that this process may use in total, bytes: the minimum of
+/// - the memory of the machine,
+/// - the limits of the container (control groups of version 1 and 2: the process's own group and all its
+///   ancestors),
+/// - the limits on address space and data (RLIMIT_AS, RLIMIT_DATA),
+/// - the MemoryLimit of the calling thread.
 ///
-/// `root` is the folder that /proc and /sys are looked for in; files that are not there set no limit. May be
-/// called concurrently.
+/// Memory in use by other processes is not subtracted. May be called concurrently.
+/// \param root folder in which /proc and /sys are looked up; a missing file sets no limit
 double available_memory(const std::filesystem::path& root = "/");
 
-/// What the thread that makes it may use, as far as require_memory() is asked on that thread, until its end;
-/// in bytes, 0 for no limit.
+/// Limits available_memory() on the constructing thread until destruction. Bytes; 0: no limit.
 class MemoryLimit {
  public:
   explicit MemoryLimit(double bytes);
@@ -28,8 +29,9 @@ class MemoryLimit {
   double before_;
 };
 
-/// Throws OutputError where `bytes` are more than available_memory(): "<what> would take about 12.3 GB of
-/// memory, and 8 GB are available; <remedy>".
+/// Checks that `bytes` can be allocated.
+/// \throws OutputError if `bytes` exceeds available_memory(): "<what> would take about 12.3 GB of memory, and
+///   8 GB are available; <remedy>"
 void require_memory(double bytes, const std::string& what, const std::string& remedy);
 
 }  // namespace tetwright

@@ -10,8 +10,8 @@
 
 namespace tetwright {
 
-/// How long-running functions report and get cancelled. The base class only cancels; a program derives one
-/// that draws.
+/// Progress reports and cancellation of long-running functions. The base class only cancels; a program
+/// derives a class that displays progress.
 ///
 /// `begin_stage`, `update`, `finish` and `set_deadline` are called from the thread that called the
 /// long-running function; `cancel` may be called from any thread and from a signal handler.
@@ -22,11 +22,11 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   virtual ~Progress() = default;
 
-  /// A new stage of work begins, for example "signed distances".
+  /// Begins a stage of work, for example "signed distances".
   virtual void begin_stage(std::string_view /*name*/) {}
-  /// The share of the current stage that is done, 0 to 1.
+  /// Reports the fraction of the current stage that is done, 0 to 1.
   virtual void update(double /*fraction*/) {}
-  /// All stages are done, and what follows may print.
+  /// Ends the last stage; the caller may print afterwards.
   virtual void finish() {}
   /// The name of the current stage, empty before the first.
   virtual std::string stage() const { return {}; }
@@ -36,7 +36,7 @@ class Progress {
 
   using Clock = std::chrono::steady_clock;
   static constexpr Clock::time_point no_deadline = Clock::time_point::max();
-  /// When the work has to end with what there is by then, or with OutOfTime.
+  /// Sets the time at which the work ends, with its result so far or with OutOfTime.
   void set_deadline(Clock::time_point deadline) noexcept {
     deadline_.store(deadline, std::memory_order_relaxed);
   }
@@ -47,14 +47,15 @@ class Progress {
   }
 
   bool stopped() const noexcept { return cancelled() || out_of_time(); }
-  /// Throws Interrupted once cancel() was called, OutOfTime once the deadline has passed.
+  /// \throws Interrupted after cancel()
+  /// \throws OutOfTime after the deadline
   void throw_if_stopped() const {
     if (cancelled()) throw Interrupted();
     if (out_of_time()) throw OutOfTime();
   }
 
  private:
-  // Relaxed: both carry no other data, they only have to arrive some time.
+  // Relaxed: neither publishes other data; they only have to become visible eventually.
   std::atomic<bool> cancelled_{false};
   std::atomic<Clock::time_point> deadline_{no_deadline};
 };

@@ -8,41 +8,42 @@
 
 namespace tetwright {
 
-/// The material on one side of a face; nothing for outside.
+/// Material on one side of a face; std::nullopt: outside.
 using MaterialOrOutside = std::optional<MaterialTag>;
 
-/// What a simplified mesh is measured against and its points are projected onto: the interfaces of the
-/// original.
+/// Interfaces of the original mesh: a simplified mesh is measured against them and its points are projected
+/// onto them.
 ///
-/// `mesher/` implements it by its signed distance fields, `simplify/` needs nothing else of them.
-/// All functions may be called concurrently.
+/// `mesher/` implements it with its signed distance fields; `simplify/` depends on nothing else of them. All
+/// functions may be called concurrently.
 class ReferenceSurface {
  public:
   virtual ~ReferenceSurface() = default;
 
-  /// Distance of `point` from the surface of `material`, negative inside it, in input units. Farther away
-  /// than the reference's band the value only has the right sign and is at least the band in size.
+  /// Signed distance of `point` from the surface of `material`, negative inside, input units. Beyond the band
+  /// of the reference only the sign is exact, and the absolute value is at least the band.
   virtual double signed_distance(const Vec3& point, MaterialTag material) const = 0;
 
-  /// The point of the interface between two regions near `point`, or nothing where there is none within
-  /// `max_distance` (input units). It need not be the nearest one, and no farther than twice the nearest's
-  /// distance.
+  /// Projects `point` onto the interface between two regions.
+  /// \param max_distance input units
+  /// \return a point of the interface at most twice as far away as the nearest one, or std::nullopt if there
+  ///   is none within `max_distance`
   virtual std::optional<Vec3> project(const Vec3& point, MaterialOrOutside first, MaterialOrOutside second,
                                       double max_distance) const = 0;
 
-  /// Whether it knows the patches of the mesh's interfaces, by their numbers, with the creases and corners
-  /// where they meet. If so, what is asked for below is exact; else nothing is found, and the borders of the
-  /// patches that the mesh has are kept as its junction curves are.
+  /// Whether the patches of the mesh's interfaces are known by number, with the creases and corners where
+  /// they meet. If so, the queries below are exact. Otherwise they find nothing, and borders of patches in
+  /// the mesh are preserved like its junction curves.
   virtual bool has_patches() const { return false; }
-  /// The nearest point of a patch of the interface between two regions within `max_distance` (input units).
+  /// Nearest point of a patch of the interface between two regions within `max_distance` (input units).
   virtual std::optional<Vec3> onto_patch(const Vec3& /*point*/, MaterialOrOutside /*first*/,
                                          MaterialOrOutside /*second*/, std::uint16_t /*patch*/,
                                          double /*max_distance*/) const {
     return {};
   }
-  /// The same of the creases between any patches.
+  /// Nearest point of the creases between any patches within `max_distance` (input units).
   virtual std::optional<Vec3> onto_crease(const Vec3& /*point*/, double /*max_distance*/) const { return {}; }
-  /// The same of corners.
+  /// Nearest corner within `max_distance` (input units).
   virtual std::optional<Vec3> onto_corner(const Vec3& /*point*/, double /*max_distance*/) const { return {}; }
 };
 

@@ -7,10 +7,10 @@
 
 namespace tetwright {
 
-/// A part of a surface, or of the boundary and the interfaces of a mesh, that a file tells apart: its faces
-/// stay together, and come out under the same name.
+/// A region of a surface, or of the boundary and the interfaces of a mesh, that a file distinguishes. Its
+/// faces stay together and are written under the same name.
 struct SurfaceRegion {
-  std::int64_t number = 0;  ///< of formats that number their groups; 0: none
+  std::int64_t number = 0;  ///< in formats that number their groups; 0: none
   std::string name;         ///< empty: only a number
 
   /// False: no region.

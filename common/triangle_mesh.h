@@ -15,8 +15,8 @@ struct TriangleMesh {
   std::vector<Vec3> points;  ///< input units
   std::vector<Triangle>
       triangles;  ///< indices into points; counter-clockwise seen from outside where it is closed
-  /// What a file tells apart, and for each triangle an index into it; both are empty where it does not. One
-  /// of them may be no group.
+  /// Regions that the file distinguishes, and the index of each triangle's region; both empty if it
+  /// distinguishes none. One entry may be no region.
   std::vector<SurfaceRegion> groups = {};
   std::vector<std::uint32_t> triangle_groups = {};
 };

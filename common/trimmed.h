@@ -5,7 +5,7 @@
 
 namespace tetwright {
 
-/// Without ASCII white space at either end.
+/// Removes ASCII white space at both ends.
 inline std::string_view trimmed(std::string_view text) {
   constexpr std::string_view white_space = " \t\r\n\v\f";
   const std::size_t begin = text.find_first_not_of(white_space);

@@ -19,7 +19,7 @@ inline constexpr Index no_index = std::numeric_limits<Index>::max();
 using Triangle = std::array<Index, 3>;
 using Tet = std::array<Index, 4>;
 
-/// The user's integer for a material: any value, handed back unchanged. Outside is never a tag.
+/// Integer that identifies a material: any value, returned unchanged. Outside has no tag.
 using MaterialTag = std::int32_t;
 
 /// Face i of a positive tet lies opposite its vertex i; its three vertices are listed so that the normal

@@ -13,7 +13,7 @@ Utf8Part first_utf8_part(std::string_view text) {
                                                         : 1;
   if (n == 1) return {1, false};
   for (std::size_t i = 1; i < n; ++i) {
-    // The second byte tells overlong forms, surrogates and values beyond the last code point.
+    // The second byte reveals overlong forms, surrogates and values beyond the last code point.
     const unsigned char low = i > 1 ? 0x80 : first == 0xe0 ? 0xa0 : first == 0xf0 ? 0x90 : 0x80;
     const unsigned char high = i > 1 ? 0xbf : first == 0xed ? 0x9f : first == 0xf4 ? 0x8f : 0xbf;
     if (i == text.size() || byte(i) < low || byte(i) > high) return {i, false};

@@ -7,21 +7,20 @@
 
 namespace tetwright {
 
-/// The beginning of a text.
+/// First part of a text.
 struct Utf8Part {
   std::size_t size;  ///< bytes
-  bool valid;        ///< one character; otherwise bytes that begin none, up to the first that tells
+  bool valid;        ///< true: one character; false: bytes that begin none, up to the first that shows it
 };
 
-/// The first part of `text`, which must not be empty. Overlong forms, surrogates and values beyond the last
-/// code point are not valid.
+/// First part of `text`, which must not be empty. Overlong forms, surrogates and values beyond the last code
+/// point are invalid.
 Utf8Part first_utf8_part(std::string_view text);
 
-/// The text with a replacement character (U+FFFD) for each part that is not valid: what `--stats` makes of
-/// it, too.
+/// Replaces each invalid part by the replacement character (U+FFFD), as `--stats` does.
 std::string valid_utf8(std::string_view text);
 
-/// valid_utf8() with underscores for control characters: a name as it may stand on a line.
+/// valid_utf8() with underscores for control characters: a name that fits on one line.
 std::string printable_name(const std::string& name);
 
 }  // namespace tetwright

@@ -32,7 +32,8 @@ constexpr double max_tets = 2e9;
 /// Coordinates must resolve this fraction of a finest cell, or rounding them could invert a thin tet.
 constexpr double cell_share_of_rounding = 0x1p-20;
 
-/// Gives the faces on the sides of the frame's box the patches 1 to 6. `sides` are the box_faces() of points.
+/// Gives the faces on the sides of the frame's box the patches 1 to 6.
+/// \param sides box_faces() of each point
 void number_box_patches(std::vector<InterfaceTriangle>& interfaces, const std::vector<std::uint8_t>& sides) {
   parallel_for(0, interfaces.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -91,14 +92,14 @@ std::vector<std::uint8_t> regions_there(const MaterialField& field,
   return there;
 }
 
-/// The estimate from the regions at the centres of leaves. Nearly exact, except that cuts between two
-/// materials are not counted.
+/// The estimate from the regions at the centres of leaves. Nearly exact, except that it ignores cuts between
+/// two materials.
 MesherEstimate estimate_from_lattice(const Octree& octree, const LatticePoints& points,
                                      const std::vector<NearestRegion>& regions, const MemoryModel& memory,
                                      const MesherOptions& options) {
-  // Tets for each leaf whose centre is inside, and outside less than half, or less than one leaf from an
-  // interface. Fitted to 23 inputs: within 5 % of the lattice's tets, and of the dense ones within 6 % for
-  // one material and 16 % for several.
+  // Tets per leaf by its centre: inside; outside and less than half a leaf from an interface; outside and
+  // less than one leaf from it. Fitted to 23 inputs: within 5 % of the lattice's tets, and within 6 % of the
+  // dense ones for one material, 16 % for several.
   constexpr double dense_inside = 12.03, dense_near = 6.2;
   constexpr double lattice_inside = 12.16, lattice_near = 24.1, lattice_beside = 5.8;
   constexpr double kept_uniform = 12.2, kept = 13.6, cut_share = 1.025;  // with the outside, for all leaves
@@ -150,7 +151,7 @@ double finest_cell_size(const MesherOptions& options, double longest_side, doubl
 }
 
 int max_possible_refinement(const GridFrame& frame, double max_coordinate) {
-  // As make_grid_frame() requires.
+  // Required by make_grid_frame().
   constexpr double max_cells = 1 << 18;
   const double cells = *std::max_element(frame.cells.begin(), frame.cells.end());
   int depth = 0;

@@ -27,7 +27,7 @@ class Stages {
   double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
-  /// As Progress does.
+  /// Delegates to Progress.
   void throw_if_stopped() const {
     if (progress_) progress_->throw_if_stopped();
   }
@@ -38,26 +38,31 @@ class Stages {
   std::chrono::steady_clock::time_point start_;
 };
 
-/// The edge of a finest cell, input units, for an input with this longest side and largest coordinate. Throws
-/// UsageError for option values out of range, InputError (about `file`) if coordinates are too large for
-/// cells this small.
+/// The edge of a finest cell, input units.
+/// \param longest_side of the input, input units
+/// \param max_coordinate largest absolute coordinate of the input, input units
+/// \throws UsageError for option values out of range
+/// \throws InputError about `file` if coordinates are too large for cells this small
 double finest_cell_size(const MesherOptions& options, double longest_side, double max_coordinate,
                         const std::string& file);
 
-/// How many times cells of this frame can be halved so that the lattice can be numbered and coordinates of
-/// this size still tell its points apart.
+/// How many times cells of this frame can be halved so that the lattice can still be numbered and coordinates
+/// of this size still distinguish its points.
 int max_possible_refinement(const GridFrame& frame, double max_coordinate);
 
-/// In input units.
+/// Converts to input units.
 ThickenedWallsReport thickened_report(const ThickenedWalls& left, const GridFrame& frame);
 
 /// Meshes a field: builds the octree and the lattice, moves points, cuts tets, and transforms the result to
-/// input units. To be called within the stage "octree".
-///
-/// `interface_voxels` are the field's, `finer` says where cells are halved. `validate_regions` gets a flag
-/// for each region, 0 if nothing is left of it, and throws if such a region is required. The remaining fields
-/// of `report` are filled in. Throws what `validate_regions` throws, OutputError (not enough memory),
-/// Interrupted.
+/// input units.
+/// \param interface_voxels of the field
+/// \param finer cells to be halved
+/// \param report its remaining fields are filled in
+/// \param validate_regions receives a flag for each region, 0 if nothing is left of it; throws if that region
+///   is required
+/// \pre the current stage is "octree"
+/// \throws OutputError if the memory does not suffice
+/// \throws Interrupted and whatever `validate_regions` throws
 DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<MortonKey> interface_voxels,
                      RefinementRegions finer, const MesherOptions& options, const MemoryModel& memory,
                      MesherReport report, Stages& stages,

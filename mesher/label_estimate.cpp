@@ -11,20 +11,20 @@ namespace tetwright {
 
 namespace {
 
-/// Dense tets for each face between voxels (as large as a squared cell) and each side of it that is meshed,
-/// see surface_estimate.cpp; faces of voxels have about one and a half times the area of the interface.
+/// Dense tets per voxel face (as large as a squared cell) and meshed side of it, see surface_estimate.cpp.
+/// Voxel faces have about one and a half times the area of the interface.
 constexpr double tets_per_face_side = 21.5, half_full_label_thickness = 0.6;
 /// Lattice tets on a side of a face that is not meshed.
 constexpr double outside_tets_per_face = 10;
-/// Dense tets of uniform cells, for each cell and each face to the outside.
+/// Dense tets of uniform cells, per cell and per face to the outside.
 constexpr double label_tets_per_cell = 12, tets_per_outer_face = 1;
-/// Tets for each cell that is split where labels are thin, by whether its centre is in a label.
+/// Tets per cell that is split where labels are thin, by whether its centre is in a label.
 constexpr double dense_per_thin_cell = 96, lattice_per_thin_cell_outside = 30;
-/// For each voxel while the volume is read, bytes: its label in the file and its region.
+/// Per voxel while the volume is read, bytes: its label in the file and its region.
 constexpr double bytes_per_voxel_read = 6;
 
-/// Dense tets as a share of those that finest cells everywhere would give, for cells of this fraction of a
-/// voxel. The interface of labels is curved as much as voxels are small.
+/// Dense tets as a share of those of finest cells everywhere.
+/// \param cell size of a cell, voxels; the interface of labels curves on the scale of voxels
 double coarse_share(double cell, double adaptivity) {
   constexpr double largest_with_coarse = 0.1, largest_with_coarsest = 0.025;
   if (!(adaptivity > 0)) return 1;
@@ -57,7 +57,7 @@ MesherEstimate estimate_mesh(const LabelInput& labels, const MesherOptions& opti
     size.dense = label_tets_per_cell * meshed + tets_per_outer_face * outer;
     size.lattice = size.dense + outside_tets_per_face * outer;
   } else {
-    // Smoothing takes some area off, which only small cells show.
+    // Smoothing reduces the area, which only small cells resolve.
     constexpr double small_cell = 0.75, smooth_share = 0.87;
     const double cell = h / voxel_size(labels);
     const double share = (cell < small_cell ? smooth_share : 1) * coarse_share(cell, options.adaptivity);

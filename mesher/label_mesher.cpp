@@ -14,11 +14,11 @@ namespace tetwright {
 
 namespace {
 
-/// Whole cells fill the volume along each axis: larger ones than this share of its shortest side would be
-/// flat. They are taken smaller for that, but no further than this.
+/// Whole cells fill the volume along each axis, so cells larger than this multiple of its shortest side would
+/// be flat. They shrink to that, but not below this fraction of the size wanted.
 constexpr double max_cell_share = 1.5, min_share_of_wanted = 0.25;
 
-/// Of the whole volume, input units.
+/// Sides of the whole volume, input units.
 Vec3 sides(const LabelInput& labels) {
   Vec3 lengths = labels.directions.colwise().norm();
   for (int a = 0; a < 3; ++a) lengths[a] *= labels.size[a];

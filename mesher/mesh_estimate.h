@@ -11,52 +11,53 @@
 
 namespace tetwright {
 
-// What meshing takes is known ever better: from the input alone (estimate_mesh() in mesher.h), from the
-// octree, and nearly exactly once every lattice point has its region. The constants were fitted to the inputs
-// in README.md.
+// Three estimates of tets and memory, each better than the last: from the input alone (estimate_mesh() in
+// mesher.h), from the octree, and, nearly exact, once every lattice point has its region. The constants were
+// fitted to the inputs in README.md.
 
 inline constexpr int max_resolution = 4096;  ///< finest cells along the longest side
 
-/// Peak memory for each tet of the lattice, bytes, while its points are moved and it is cut.
+/// Peak memory per lattice tet while points are moved and tets cut, bytes.
 inline constexpr double surface_bytes_per_lattice_tet = 40, label_bytes_per_lattice_tet = 33;
-/// Uniform cells have their peak while the lattice is laid out, as most of their leaves are far from
+/// Peak memory with uniform cells, bytes. It occurs while the lattice is built, as most leaves are far from
 /// interfaces.
 inline constexpr double uniform_bytes_per_lattice_tet = 19, uniform_bytes_per_leaf = 124;
-/// For each voxel of a volume: its region and the labels' distances.
+/// Per voxel of a volume: its region and the labels' distances, bytes.
 inline constexpr double bytes_per_voxel = 4;
 
-/// Dense tets at interfaces as a share of those that finest cells would give, where some of the interface is
-/// so flat that its cells have twice the size, and some of that so flat that they have four times the size.
+/// Dense tets at interfaces as a share of those of finest cells.
+/// \param coarse fraction of the interface flat enough for cells of twice the size
+/// \param coarsest fraction of the interface flat enough for cells of four times the size, part of `coarse`
 inline double share_of_coarse_cells(double coarse, double coarsest) {
   constexpr double tets_at_coarse = 0.15, tets_at_coarsest = 0.08;
   return (1 - coarse) + tets_at_coarse * (coarse - coarsest) + tets_at_coarsest * coarsest;
 }
 
-/// How much of everything there is of a mesh.
+/// Sizes of a mesh and its intermediate structures.
 struct MeshSize {
-  double leaves = 0;   ///< of the octree; used for uniform cells only
+  double leaves = 0;   ///< leaves of the octree; used for uniform cells only
   double lattice = 0;  ///< tets before cutting
   double dense = 0;    ///< tets of the mesh
 };
 
-/// What memory depends on beside the size, bytes.
+/// Memory that does not follow from MeshSize, bytes.
 struct MemoryModel {
   double per_lattice_tet = surface_bytes_per_lattice_tet;  ///< of an adaptive octree
-  double beside = 0;  ///< of the input and its distances, as long as there is a lattice
-  double before = 0;  ///< at the peak before there is an octree
+  double beside = 0;  ///< input and its distances, while there is a lattice
+  double before = 0;  ///< peak before there is an octree
 };
 
 /// The memory model of segmented volumes.
 MemoryModel label_memory(const LabelInput& labels);
 
-/// The estimate for a size.
+/// The tets and memory of a mesh of this size.
 MesherEstimate estimate_of(const MeshSize& size, const MemoryModel& memory, const MesherOptions& options);
 
-/// Throws OutputError where the mesh would have more tets than can be numbered or take more memory than there
-/// is, see require_memory().
+/// \throws OutputError if the mesh has more tets than can be numbered or needs more memory than is available,
+///   see require_memory()
 void validate_estimate(const MesherEstimate& estimate);
 
-/// estimate_mesh() where it is known which cells are split because labels are thin.
+/// estimate_mesh() with known cells that are split because labels are thin.
 MesherEstimate estimate_mesh(const LabelInput& labels, const MesherOptions& options, const ThinCells& thin);
 
 /// The edge of a finest cell, input units.

@@ -26,74 +26,74 @@ struct MesherOptions {
   int resolution = 128;   ///< finest cells along the longest side, 4 to 4096; ignored if voxel_size is given
   double voxel_size = 0;  ///< edge of a finest cell, input units; 0: determined by the resolution
   bool uniform = false;   ///< finest cells everywhere instead of an octree
-  /// The error that a coarser cell may have at an interface, finest cells; 0: no coarser cells at interfaces.
+  /// Maximum error of a coarser cell at an interface, finest cells; 0: no coarser cells at interfaces.
   double adaptivity = 0.05;
-  /// How many times cells are halved where walls and gaps of a surface are thin, 0 to 8; by default 3, and up
+  /// How many times cells are halved where walls and gaps of a surface are thin, 0 to 8. Default: 3, and up
   /// to 8 where that adds fewer tets than the mesh has anyway.
   std::optional<int> max_refinement;
-  /// Gaps of a surface that are narrower are closed, and walls that are thinner left out; input units.
+  /// Gaps of a surface narrower than this are closed, walls thinner than this omitted; input units.
   double min_gap = 0, min_thickness = 0;
-  /// Where cells are halved besides, up to max_refinement times, as long as that at most doubles the mesh;
-  /// input units.
+  /// Additional points around which cells are halved, input units: up to max_refinement times, as long as
+  /// that at most doubles the mesh.
   std::vector<RefinementRegion> refinement_regions;
-  /// The largest cell that is wanted at a place, input units: cells inside, and with keep_outside all, are
-  /// split until they are no larger, at surfaces down to a finest cell. Empty: any. Not with `uniform`.
+  /// The largest cell wanted at a point, input units. Cells inside, and with keep_outside all cells, are
+  /// split until they are no larger; at surfaces down to a finest cell. Empty: no limit. Not with `uniform`.
   std::function<double(const Vec3&)> max_cell;
-  /// Which edges of the surfaces stay sharp.
+  /// Determines which edges of the surfaces stay sharp.
   FeatureAngle feature_angle;
-  /// Mesh the outside too, in a box (that of the volume for labels), as the material `outside` of tag 0.
+  /// Mesh the outside too, in a box (for labels that of the volume), as the material `outside` of tag 0.
   bool keep_outside = false;
-  /// Memory that the caller needs afterwards for each dense tet, bytes; meshing is refused if that does not
-  /// fit.
+  /// Memory that the caller needs afterwards per dense tet, bytes. Meshing is refused if that does not fit.
   double later_bytes_per_tet = 0;
 };
 
-/// A material, or the outside, that is too thin for the cells in some places.
+/// A material, or the outside, that is somewhere too thin for the cells.
 struct ThinPartReport {
   std::string name;  ///< empty for the outside: a gap
   std::size_t places = 0;
-  Vec3 first = Vec3::Zero();  ///< one of the places, input units
+  Vec3 first = Vec3::Zero();  ///< position of one of them, input units
   /// True if cells there were refined as far as possible: a sheet between two surfaces, or a thin label.
   bool refined = false;
 };
 
-/// Walls that are shown thicker than they are, since cells are too large for them.
+/// Walls shown thicker than they are because the cells are too large. All but `points` describe the worst
+/// point.
 struct ThickenedWallsReport {
-  std::size_t points = 0;     ///< of the boundary that could not be moved back; the numbers of the worst:
-  double offset = 0;          ///< of one side, input units
-  double thickness = 0;       ///< that the wall has, input units
+  std::size_t points = 0;     ///< boundary points that could not be moved back
+  double offset = 0;          ///< distance of one side from the real surface, input units
+  double thickness = 0;       ///< true thickness of the wall, input units
   Vec3 place = Vec3::Zero();  ///< input units
 };
 
-/// Gaps of a surface that were closed, or walls that were left out: connected ones together.
+/// A connected gap of a surface that was closed, or wall that was omitted.
 struct ClosedGapReport {
   std::string name;           ///< of the material
-  bool gap = true;            ///< false: a wall that was left out
+  bool gap = true;            ///< false: an omitted wall
   bool on_purpose = false;    ///< within min_gap or min_thickness
-  double width = 0;           ///< the smallest one, input units
+  double width = 0;           ///< smallest width or thickness, input units
   double area = 0;            ///< input units squared
-  Vec3 place = Vec3::Zero();  ///< where it is smallest, input units
+  Vec3 place = Vec3::Zero();  ///< where it is narrowest, input units
 };
 
-/// The solid that a material is meant to be.
+/// The solid expected of a material.
 struct ExpectedSolid {
   std::string name;
   MaterialTag tag = 0;
   SolidShape shape;  ///< input units
-  /// True: by the surfaces as they were given. False: by the distances, where surfaces are open, intersect
-  /// or meet those of other materials.
+  /// True: derived from the surfaces as given. False: from the distances, because surfaces are open,
+  /// intersect themselves or meet those of other materials.
   bool by_surface = true;
-  /// Shells smaller than this (input units cubed) say nothing: by the distances, those of less than a cell.
+  /// Shells smaller than this (input units cubed) are not significant; for solids from distances, those of
+  /// less than a cell.
   double min_volume = 0;
-  /// How far the volume may be off beside that, input units cubed: distances chamfer creases that the mesh
-  /// has.
+  /// Additional tolerance of the volume, input units cubed: distances chamfer creases that the mesh has.
   double volume_slack = 0;
 };
 
-/// What meshing takes.
+/// Expected size of a mesh, and memory needed to make it.
 struct MesherEstimate {
   std::size_t tets = 0;   ///< of the dense mesh
-  std::size_t bytes = 0;  ///< of memory at the peak, the program and its libraries among them
+  std::size_t bytes = 0;  ///< peak memory, including the program and its libraries
 };
 
 /// The patches of a surface.
@@ -103,28 +103,28 @@ struct FeatureReport {
 };
 
 struct MesherReport {
-  double cell_size = 0;               ///< edge of a finest cell (a voxel), input units
-  int resolution = 0;                 ///< finest cells along the longest side
-  int refinement = 0;                 ///< how many times cells were halved beyond that where sheets are thin
-  std::size_t cells = 0;              ///< leaves of the octree
+  double cell_size = 0;   ///< edge of a finest cell (a voxel), input units
+  int resolution = 0;     ///< finest cells along the longest side
+  int refinement = 0;     ///< how many times cells were halved beyond `resolution` where sheets are thin
+  std::size_t cells = 0;  ///< leaves of the octree
   std::size_t lattice_tets = 0;       ///< before cutting, without those far outside
-  std::size_t isolated_vertices = 0;  ///< parts and cavities of a single lattice point, which are left out
+  std::size_t isolated_vertices = 0;  ///< components and cavities of one lattice point, omitted
   std::vector<ThinPartReport> thin_parts;
   ThickenedWallsReport thickened;
   std::vector<ClosedGapReport> closed_gaps;
-  /// Tets that fill thin walls with parallel sides in good shapes, about; 0 without any.
+  /// Approximate number of well-shaped tets that fill thin walls with parallel sides; 0 without any.
   std::size_t filling_tets = 0;
-  /// For each material of surfaces, in their order, what it is meant to be; not of layers and what they are
+  /// The expected solids of materials given by surfaces, in their order; without layers and the body they are
   /// cut from.
   std::vector<ExpectedSolid> expected;
-  /// Of these the ones for which neither surfaces nor distances say it: cells were refined, or all of it is
-  /// smaller than a cell.
+  /// Materials whose expected solid cannot be determined: surfaces do not determine it, and cells were
+  /// refined or all of it is smaller than a cell.
   std::vector<std::string> unknown;
   std::vector<FeatureReport> features;  ///< of each surface, in their order
-  CreaseCurves creases;                 ///< of all of them
-  bool out_of_time = false;             ///< a deadline ended the search for cells small enough
+  CreaseCurves creases;                 ///< creases of all surfaces
+  bool out_of_time = false;             ///< a deadline ended the search for small enough cells
   MesherEstimate estimate;              ///< from the input, see estimate_mesh()
-  MesherEstimate lattice_estimate;      ///< from the regions of the lattice's points
+  MesherEstimate lattice_estimate;      ///< from the regions of the lattice points
   double seconds_sdf = 0, seconds_octree = 0, seconds_lattice = 0, seconds_move = 0, seconds_cut = 0;
 };
 
@@ -134,70 +134,86 @@ class OutputFiles;
 struct DenseMesh {
   TetMesh mesh;  ///< input units, with interface triangles; README.md lists its invariants
   std::shared_ptr<const MaterialField> field;  ///< the signed distances it was cut from
-  /// What simplify() takes as its reference: the field, or where surfaces have creases or labels are cut off
-  /// by their volume's border a surface that knows these and the field.
+  /// The reference for simplify(): the field, or, where surfaces have creases or labels are cut off by their
+  /// volume's border, a surface that knows these and the field.
   std::shared_ptr<const ReferenceSurface> reference;
-  /// The surfaces of all bodies as they were meshed, repaired; null for label volumes.
+  /// The repaired surfaces of all bodies as meshed; null for label volumes.
   std::shared_ptr<const TriangleMesh> surface;
   MesherReport report;
 };
 
-/// Writes a .vdb file with one level set for each material (not for the outside), named like it: the signed
+/// Writes a .vdb file with a level set for each material (not for the outside), of the same name: the signed
 /// distance from the material's interfaces, which is half the difference between its own distance and the
-/// smallest other one. With `files` it appears when these are committed (see atomic_file.h). Throws
-/// OutputError.
+/// smallest other one.
+/// \param files if given, the file appears when these are committed (see atomic_file.h)
+/// \throws OutputError
 void write_fields(const MaterialField& field, const std::string& path, OutputFiles* files = nullptr);
 
-/// What mesh_surfaces() would take, from samples of the surfaces, in some tenths of a second: mostly within
-/// 25 %, see mesher/README.md. Throws UsageError and InputError as mesh_surfaces() does.
+/// Estimates the result of mesh_surfaces() from samples of the surfaces, in some tenths of a second: mostly
+/// within 25 %, see mesher/README.md.
+/// \throws UsageError and InputError as mesh_surfaces() does
 MesherEstimate estimate_mesh(const MesherInput& input, const MesherOptions& options);
 
-/// Meshes surfaces: a dense tet mesh with the invariants of README.md, the same bytes for any number of
-/// threads.
+/// Meshes surfaces: a dense tet mesh with the invariants of README.md. The bytes do not depend on the number
+/// of threads. Time is proportional to the number of cells times the number of materials.
 ///
-/// `progress` may be null. Throws UsageError (option values), InputError (too far from the origin for cells
-/// this small, a material carved away entirely, a layer thicker than the body, a surface that is open and
-/// encloses nothing), NothingToMeshError (no lattice point is inside), OutputError (the mesh would not fit in
-/// memory), Interrupted. Time is proportional to the number of cells times the number of materials.
+/// \param progress may be null
+/// \throws UsageError for option values out of range
+/// \throws InputError for surfaces too far from the origin for cells this small, a material carved away
+///   entirely, a layer thicker than the body, or a surface that is open and encloses nothing
+/// \throws NothingToMeshError if no lattice point is inside
+/// \throws OutputError if the mesh would not fit in memory
+/// \throws Interrupted
 DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, Progress* progress);
 
-/// mesh_surfaces() with cells that bring the surfaces within half of `tolerance` (input units, above 0) of
-/// the mesh: begins with cells of twice that size (where surfaces have creases, and may have flat faces, it
-/// tries six times as large ones before) or, if they are smaller, those of `options`, measures at
-/// vertices and centroids, and halves them up to max_refinement times where that is not enough; all become
-/// smaller where that leaves more than most of the tolerance. Where cells of `options` are the smaller ones,
-/// most of the tolerance is enough at once. What is reached in the end is for the caller to
-/// find out. Throws as mesh_surfaces() does; UsageError where cells would be too small.
+/// mesh_surfaces() with cells that bring surface and mesh within half of `tolerance` of each other, measured
+/// at vertices and centroids.
+///
+/// Starts with cells of twice the tolerance, or those of `options` if they are smaller. (Where surfaces have
+/// creases, and may have flat faces, cells six times as large are tried first.) Cells where the distance is
+/// too large are halved up to max_refinement times; if that leaves more than 80 % of the tolerance, all cells
+/// become smaller. If the cells of `options` were the smaller ones, 80 % suffices from the start. The caller
+/// must measure the distance reached.
+/// \param tolerance input units, above 0
+/// \throws UsageError if cells would be too small, and as mesh_surfaces() does
 DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double tolerance, Progress* progress);
 
-/// Meshes a segmented volume: a dense tet mesh with the same invariants and a material for each label. Where
-/// a label is thinner than two cells, cells are halved up to three times (not with `uniform`); the report
-/// names what is still too thin. `options.voxel_size` should not exceed the smallest spacing unless a coarser
-/// mesh is wanted.
+/// Meshes a segmented volume: a dense tet mesh with the invariants of mesh_surfaces() and a material for each
+/// label. Where a label is thinner than two cells, cells are halved up to three times (not with `uniform`);
+/// the report lists labels that are still too thin. `options.voxel_size` should not exceed the smallest
+/// spacing unless a coarser mesh is wanted.
 ///
-/// `progress` may be null. Throws as mesh_surfaces() does; InputError where nothing is left of a label.
+/// \param progress may be null
+/// \throws InputError if nothing is left of a label, and otherwise as mesh_surfaces() does
 DenseMesh mesh_labels(const LabelInput& labels, const MesherOptions& options, Progress* progress);
 
-/// What mesh_labels() would take, from the faces between voxels of different labels and the places where
-/// labels are thin: mostly within 25 %. Throws as mesh_labels() does for options.
+/// Estimates the result of mesh_labels() from the faces between voxels of different labels and the voxels
+/// where labels are thin: mostly within 25 %.
+/// \throws UsageError and InputError for options, as mesh_labels() does
 MesherEstimate estimate_mesh(const LabelInput& labels, const MesherOptions& options);
 
 /// The smallest spacing, or the smallest possible cell size of a volume this long, input units.
 double default_cell_size(const LabelInput& labels);
 
-/// The cell size that gives about five dense tets for each of `target_tets`, at least a quarter of a voxel,
-/// input units; where cells of two or four voxels still give 20 and save half of the tets, those. Of
-/// `options` the cell size is not looked at. Throws UsageError for a target of 0.
+/// The cell size, input units, that gives about five dense tets for each of `target_tets`, at least a quarter
+/// of a voxel. Cells of four or two voxels are chosen if they still give 20 dense tets each and save half of
+/// the tets.
+/// \param options its cell size is ignored
+/// \throws UsageError for a target of 0
 double cell_size_for_target(const LabelInput& labels, std::size_t target_tets, const MesherOptions& options);
 
 /// The resolution that gives about 40 dense tets for each of `target_tets`, as many as a simplifier needs to
-/// have a choice, or 100 where surfaces have creases at this angle: at least 32, and at most some 20 million
-/// dense tets. Throws UsageError for a target of 0, InputError as find_patches() does.
+/// have a choice, or 100 where surfaces have creases at this angle. At least 32, and at most some 20 million
+/// dense tets.
+/// \throws UsageError for a target of 0
+/// \throws InputError as find_patches() does
 int resolution_for_target(const MesherInput& input, std::size_t target_tets, const FeatureAngle& angle);
 
-/// Sets the resolution, at least that of `options`, and the fine places of `options` so that dense cells are
-/// small enough for edges of the lengths that `target_length` asks for at the surfaces, or that are at most
-/// `max_edge` long. `target_length` may be null, `max_edge` infinite.
+/// Sets the resolution, max_cell and refinement regions of `options` so that dense cells are small enough for
+/// the wanted edge lengths: those of `target_length`, or at most `max_edge`. With `max_edge` alone the
+/// resolution of `options` is a lower bound; `target_length` replaces it.
+/// \param target_length may be null
+/// \param max_edge input units, may be infinite
 void choose_cells_for_sizes(const MesherInput& input, const SizeField* target_length, double max_edge,
                             MesherOptions& options);
 

@@ -16,23 +16,23 @@ namespace tetwright {
 
 namespace {
 
-/// Dense tets of an adaptive mesh for each squared finest cell of interface and each side of it that is
-/// meshed: they tend to the first number where the material is thick, and half of it fill one that has as
-/// many finest cells of volume for each squared cell of interface as the second number says.
+/// Dense tets of an adaptive mesh per squared finest cell of interface and meshed side of it. The number
+/// tends to the first value where the material is thick, and is half of it where the material has as many
+/// finest cells of volume per squared cell of interface as the second value.
 constexpr double tets_per_area = 29, half_full_wall_thickness = 1.6;
-/// Lattice tets for each squared cell on a side that is not meshed, and on uniform cells.
+/// Lattice tets per squared cell on a side that is not meshed, adaptive and uniform.
 constexpr double outside_tets_per_area = 14, outside_tets_per_area_uniform = 15.5;
-/// Dense tets of uniform cells: for each cell, and for each squared cell of interface.
+/// Dense tets of uniform cells: per cell, and per squared cell of interface.
 constexpr double solid_tets_per_cell = 12, cut_tets_per_area = 0.7, kept_outside_tets_per_area = 3;
-/// Memory for each triangle while signed distances are computed, bytes; open parts take a tree as well.
+/// Memory per triangle while signed distances are computed, bytes; open parts also need a tree.
 constexpr double bytes_per_triangle = 150, bytes_per_open_triangle = 300;
 
-/// Samples of a surface, and of the inside of bodies along each axis.
+/// Samples of a surface, and of the interior of bodies along each axis.
 constexpr int surface_samples = 256, volume_samples = 24;
-/// Distances at a surface sample are needed as far as this, finest cells.
+/// Distances at a surface sample are needed up to this, finest cells.
 constexpr double sample_reach = 12;
-/// So many triangles are enough for distances; of finer surfaces every other one, or every third, ... is
-/// read.
+/// Maximum number of triangles used for distances; of finer surfaces only every second one, or every third,
+/// ... is read.
 constexpr std::size_t max_triangles = 1 << 20;
 
 /// A low-discrepancy sequence in the unit interval (Roberts 2018: multiples of the inverses of the plastic
@@ -41,10 +41,10 @@ double sequence(int i, double step) { return std::fmod(0.5 + i * step, 1.0); }
 constexpr double first_step = 0.7548776662466927, second_step = 0.5698402909980532;
 
 struct Sample {
-  Vec3 place, normal;  ///< finest cells; the normal points out
+  Vec3 place, normal;  ///< finest cells; outward normal
 };
 
-/// A surface in grid coordinates and what can be asked about it.
+/// A surface in grid coordinates and its estimated properties.
 class SampledSurface {
  public:
   SampledSurface(const RepairedSurface& surface, const GridFrame& frame) : surface_(surface), frame_(frame) {
@@ -55,12 +55,12 @@ class SampledSurface {
   double area() const { return surface_.area / (frame_.cell_size * frame_.cell_size); }
   double volume() const { return std::max(0.0, surface_.volume) / std::pow(frame_.cell_size, 3); }
 
-  /// Dense tets at its flat parts as a share of those that finest cells everywhere would give.
+  /// Dense tets of the surface as a share of those of finest cells everywhere: fewer where it is flat.
   double coarse_share(double adaptivity) {
     if (!(adaptivity > 0) || samples_.empty()) return 1;
     const SurfaceTree tree = nearby_triangles();
-    // Half of what is smooth but curved: one in twenty of OpenVDB's distances is off by more than 0.05 voxels
-    // there, which keeps about half of such cells from being coarse.
+    // Samples that are smooth but curved count half: one in twenty of OpenVDB's distances is off by
+    // more than 0.05 voxels there, which keeps about half of such cells from being coarse.
     std::atomic<int> coarse = 0, coarsest = 0;
     parallel_for(0, samples_.size(), 8, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
@@ -74,7 +74,7 @@ class SampledSurface {
     return share_of_coarse_cells(coarse / n, coarsest / n);
   }
 
-  /// All triangles.
+  /// A tree of all triangles.
   SurfaceTree tree() const {
     std::vector<Vec3> points(surface_.points.size());
     for (std::size_t i = 0; i < points.size(); ++i) points[i] = frame_.to_grid(surface_.points[i]);
@@ -87,7 +87,7 @@ class SampledSurface {
             frame_.to_grid(surface_.points[t[2]])};
   }
 
-  /// Places spread evenly over the area.
+  /// Takes points spread evenly over the area.
   void take_samples() {
     double sum = 0;
     int next = 0;
@@ -138,9 +138,9 @@ class SampledSurface {
     return {points, triangles};
   }
 
-  /// True if the cell of a level around a sample and those beside it along the surface could be that large:
-  /// as the octree does, trilinear interpolation between the corners is compared with the distances. With
-  /// `plane` the surface must also be a plane there.
+  /// True if the cell of a level around a sample and its neighbours along the surface could be that large.
+  /// Compares trilinear interpolation between the corners with the distances, as the octree does.
+  /// \param plane require that the surface is a plane there
   static bool is_flat(const SurfaceTree& tree, const Sample& sample, int level, double adaptivity,
                       bool plane) {
     const Vec3 first = sample.normal.unitOrthogonal(), second = sample.normal.cross(first);
@@ -149,11 +149,10 @@ class SampledSurface {
       if (!interpolates(tree, sample, sample.place + side * step, level, adaptivity, plane)) return false;
     return true;
   }
-  /// How far a place is above the surface along the sample's normal; the surface near the sample is one
-  /// sheet.
+  /// Height of a point above the surface along the sample's normal; the surface near the sample is one sheet.
   static double height_over(const SurfaceTree& tree, const Sample& sample, const Vec3& place) {
     const double height = (place - sample.place).dot(sample.normal);
-    // The surface is as far from the sample's plane there, on the side that is nearer to it.
+    // The surface has this distance from the sample's plane there, on the closer side.
     const Vec3 in_plane = place - height * sample.normal;
     constexpr double aside = 0.25;
     const double away = tree.distance(in_plane, sample_reach);
@@ -190,10 +189,10 @@ class SampledSurface {
   std::vector<Sample> samples_;
 };
 
-/// Interfaces by area, squared finest cells.
+/// Areas of interfaces, squared finest cells.
 struct Interfaces {
-  double meshed_sides = 0;  ///< each side that is meshed counts
-  double outside = 0;       ///< with the outside, which is not meshed
+  double meshed_sides = 0;  ///< each meshed side counts
+  double outside = 0;       ///< interfaces with an outside that is not meshed
 };
 
 class SurfaceEstimate {
@@ -222,9 +221,9 @@ class SurfaceEstimate {
     return trees_[body]->winding_number(place) > 0.5;
   }
 
-  /// What is left of a body's surface, as later bodies carve it, and what is on either side of it.
+  /// The visible part of a body's surface, as later bodies carve it, by the materials on either side.
   Interfaces interfaces_of(std::size_t body) const {
-    constexpr double beside = 0.1;  // finest cells from a sample to the places that tell its sides
+    constexpr double beside = 0.1;  // finest cells from a sample to the points that determine its sides
     Interfaces found;
     const std::vector<Sample>& samples = surfaces_[body].samples();
     if (samples.empty()) return found;
@@ -255,7 +254,7 @@ class SurfaceEstimate {
     return for_inside([](const Vec3&) {});
   }
 
-  /// Calls `use(place)` for sample places inside of any body; returns the volume that they stand for.
+  /// Calls `use(point)` for sample points inside any body; returns the volume that they represent.
   template <class Use>
   double for_inside(Use&& use) const {
     const Vec3 low = frame_.to_grid(input_.low), size = frame_.to_grid(input_.high) - low;
@@ -294,7 +293,7 @@ class SurfaceEstimate {
       const double share = surfaces_[b].coarse_share(options_.adaptivity);
       const double body_volume = surfaces_[b].volume();
       if (b == 0) add_layers(found.meshed_sides);
-      // The outside around, or the body that this one lies in, is thick as a rule.
+      // The surrounding outside, or the body that contains this one, is usually thick.
       const double own = std::min(found.meshed_sides, surfaces_[b].area()), others = found.meshed_sides - own;
       double tets = share * tets_per_area *
                     filling(b == 0 && !input_.layers.empty() ? found.meshed_sides : own, body_volume);
@@ -306,7 +305,7 @@ class SurfaceEstimate {
     return estimate_of({0, lattice, dense}, {surface_bytes_per_lattice_tet, 0, before}, options_);
   }
 
-  /// Sides of interfaces in a volume, less as it gets full of tets.
+  /// Sides of interfaces in a volume, reduced as tets fill it.
   static double filling(double sides, double volume) {
     return volume > 0 ? sides / (1 + half_full_wall_thickness * sides / volume) : 0;
   }
@@ -326,8 +325,8 @@ class SurfaceEstimate {
     }
   }
 
-  /// The area of the surface at a depth inside the first body, squared finest cells: of the volume between
-  /// two depths not far apart.
+  /// The area of the surface at a depth inside the first body, squared finest cells: the volume between two
+  /// depths close together, divided by their distance.
   double area_at_depth(const SurfaceTree& tree, double depth) {
     const Vec3 size = (input_.high - input_.low) / h_;
     constexpr int n = volume_samples;
@@ -344,7 +343,7 @@ class SurfaceEstimate {
     return size.prod() * found / (n * n * n) / (2 * half);
   }
 
-  /// As field_thickness.h refines for sheets.
+  /// The limit below which field_thickness.h refines sheets.
   static constexpr double sheet_cells = 1.5;
 
   const MesherInput& input_;
@@ -352,7 +351,7 @@ class SurfaceEstimate {
   double h_;
   GridFrame frame_;
   std::vector<SampledSurface> surfaces_;
-  std::vector<std::unique_ptr<SurfaceTree>> trees_;  ///< of several bodies
+  std::vector<std::unique_ptr<SurfaceTree>> trees_;  ///< one for each body, if there are several
 };
 
 }  // namespace

@@ -24,15 +24,15 @@ namespace tetwright {
 
 namespace {
 
-/// Tets that thin walls and gaps may add, or as many as there are without them.
+/// Tets that thin walls and gaps may add, or as many as there are without them if that is more.
 constexpr double max_added_tets = 8e6;
-/// So many are cheap whatever the rest of the mesh takes.
+/// Tets that always count as cheap.
 constexpr double min_cheap_tets = 1e6;
 
-/// In diagonals: a surface that is nowhere farther from a plane encloses nothing, whatever its cells.
+/// In diagonals: a surface whose points are all this close to a plane encloses nothing, in cells of any size.
 constexpr double flat_surface = 1e-6;
 
-/// Whether all its points are on the plane of its largest triangle.
+/// True if all points are on the plane of the largest triangle.
 bool is_flat(const RepairedSurface& surface) {
   Vec3 normal = Vec3::Zero(), on_plane = Vec3::Zero();
   Box3 box;
@@ -51,7 +51,7 @@ bool is_flat(const RepairedSurface& surface) {
   });
 }
 
-/// Throws InputError about a surface, of which nothing is left, that is not closed.
+/// Throws InputError about a surface that vanished, if it is flat or not closed.
 void validate_encloses(const MesherInput::Body& body) {
   if (is_flat(body.surface))
     throw InputError(body.file, 0,
@@ -63,7 +63,7 @@ void validate_encloses(const MesherInput::Body& body) {
         "its holes, or use a higher resolution if it is closed but for small ones");
 }
 
-/// Refuses an input of which a material has nothing left: which one, and what to do about it.
+/// Throws an error that names the vanished material and a remedy.
 void validate_materials_left(const MesherInput& input, const MaterialField& field,
                              const std::vector<std::uint8_t>& there) {
   if (std::count(there.begin() + 1, there.end(), 1) == 0) {
@@ -96,7 +96,8 @@ void validate_materials_left(const MesherInput& input, const MaterialField& fiel
   }
 }
 
-/// By the surfaces where they say it, else by the distances where the voxels show all of them.
+/// Determines the expected solids: from the surfaces where they suffice, else from the distances if the
+/// voxels resolve all of them.
 void expect_materials(const MesherInput& input, const MaterialField& field,
                       const std::vector<MortonKey>& interface_voxels, bool refined, MesherReport& report) {
   std::vector<std::optional<SolidShape>> solids = expected_solids(input);
@@ -122,7 +123,7 @@ void expect_materials(const MesherInput& input, const MaterialField& field,
   }
 }
 
-/// What is closed or left out is measured cell by cell around each place of the surface.
+/// Closing and omitting measure cell by cell around each point of the surface.
 void validate_limits(const MesherOptions& options, double cell) {
   constexpr double max_cells = 16;
   for (const auto& [name, limit] :
@@ -140,14 +141,15 @@ void validate_limits(const MesherOptions& options, double cell) {
                      ", not " + std::to_string(*options.max_refinement));
 }
 
-/// Tets that fill a thin wall in good shapes where its rims stay sharp, times what they are else.
+/// Factor on the tets that fill a thin wall in good shapes, where its rims stay sharp.
 constexpr double filling_with_creases = 1.5;
-/// A patch that is smaller is none: cells do not show it.
+/// Smallest area of a patch, squared cells: cells do not resolve smaller ones.
 constexpr double min_patch_cells = 8;
-/// What turns within this is no corner: cells do not show it.
+/// Turns within this distance are not corners: cells do not resolve them.
 constexpr double corner_reach_cells = 1;
 
-/// The cells that a body's patches are shown by: those that are thin all over are meshed with smaller ones.
+/// Size of the cells that resolve a body's patches: bodies that are thin everywhere are meshed with smaller
+/// ones.
 double patch_cell(const RepairedSurface& surface, const MesherOptions& options, double cell) {
   if (options.uniform || surface.closed < surface.triangles.size()) return cell;
   const double mean_thickness = 2 * std::abs(surface.volume) / surface.area;
@@ -155,7 +157,7 @@ double patch_cell(const RepairedSurface& surface, const MesherOptions& options, 
   return std::clamp(mean_thickness, std::ldexp(cell, -halvings), cell);
 }
 
-/// The surfaces of all bodies in one.
+/// The surfaces of all bodies, concatenated.
 TriangleMesh all_surfaces(const MesherInput& input) {
   TriangleMesh all;
   for (const MesherInput::Body& body : input.bodies) {
@@ -169,14 +171,14 @@ TriangleMesh all_surfaces(const MesherInput& input) {
 
 /// The patches of all bodies.
 std::vector<SurfacePatches> patches_of(const MesherInput& input, const MesherOptions& options, double cell) {
-  constexpr std::size_t max_patches = 0xfffe;  // beside that of faces on no surface
+  constexpr std::size_t max_patches = 0xfffe;  // one more is used by faces on no surface
   std::size_t count = 0;
   std::vector<SurfacePatches> patches;
   for (const MesherInput::Body& body : input.bodies) {
     const RepairedSurface& surface = body.surface;
     const double shown = patch_cell(surface, options, cell);
     PatchOptions patch_options{options.feature_angle, min_patch_cells * shown * shown};
-    // Where parts meet there are creases that no edge of the surface shows.
+    // Where parts intersect there are creases that are not edges of the surface.
     const bool intersecting =
         surface.intersects_itself && options.feature_angle.rule != FeatureAngle::Rule::off;
     if (intersecting) patch_options.angle.rule = FeatureAngle::Rule::off;
@@ -194,7 +196,7 @@ std::vector<SurfacePatches> patches_of(const MesherInput& input, const MesherOpt
   return patches;
 }
 
-/// But for the borders of groups.
+/// Gives up the creases of a body except the borders of groups.
 void give_up_creases(const MesherInput::Body& body, SurfacePatches& found) {
   if (!found.any()) return;
   PatchOptions options;
@@ -203,8 +205,8 @@ void give_up_creases(const MesherInput::Body& body, SurfacePatches& found) {
   found.verdict = SurfacePatches::Verdict::meeting;
 }
 
-/// Gives up the creases of surfaces that meet others: those curves are known to half a cell, and no tets of
-/// good shape fit between them and exact creases.
+/// Gives up the creases of surfaces that meet others: the curves in which they meet are known to half a cell,
+/// and no well-shaped tets fit between these and exact creases.
 void give_up_where_surfaces_meet(const MesherInput& input, const TetMesh& mesh,
                                  std::vector<SurfacePatches>& patches) {
   if (input.bodies.size() == 1) return;
@@ -228,8 +230,8 @@ void give_up_where_surfaces_meet(const MesherInput& input, const TetMesh& mesh,
   for (const std::size_t b : meeting) give_up_creases(input.bodies[b], patches[b]);
 }
 
-/// The same of surfaces whose own gaps are closed over more than a small part of their area: creases would
-/// run within the solid.
+/// Gives up the creases of surfaces whose own gaps are closed over more than a small part of their area:
+/// those creases would lie inside the solid.
 void give_up_where_gaps_are_closed(const MesherInput& input, const MesherReport& report,
                                    std::vector<SurfacePatches>& patches) {
   constexpr double max_closed_share = 0.01;
@@ -242,7 +244,8 @@ void give_up_where_gaps_are_closed(const MesherInput& input, const MesherReport&
   }
 }
 
-/// Creases of surfaces that meet others or themselves run within the solid, too, and are not compared.
+/// Reports patches and creases. Creases of surfaces that meet others or themselves may also lie inside the
+/// solid, and are not compared.
 void report_features(const MesherInput& input, const std::vector<SurfacePatches>& patches,
                      MesherReport& report) {
   for (std::size_t b = 0; b < patches.size(); ++b) {
@@ -258,8 +261,8 @@ void report_features(const MesherInput& input, const std::vector<SurfacePatches>
   }
 }
 
-/// Leaves out creases that later bodies carve away, and what is near curves where three regions meet: these
-/// are known to half a cell.
+/// Drops creases that later bodies carve away, and those near curves where three regions meet, which are
+/// known to half a cell.
 void keep_visible(CreaseCurves& creases, const MesherInput& input, const DenseMesh& dense) {
   if (input.bodies.size() == 1) return;
   const double near = 1.5 * dense.report.cell_size;
@@ -285,7 +288,7 @@ void keep_visible(CreaseCurves& creases, const MesherInput& input, const DenseMe
   std::erase_if(creases.corners, is_hidden);
 }
 
-/// The distances chamfer creases, and the mesh does not.
+/// Sets the slack of volumes derived from distances: these chamfer creases, and the mesh does not.
 void allow_for_chamfers(MesherReport& report) {
   double length = 0;
   for (const auto& [a, b] : report.creases.segments)
@@ -294,7 +297,7 @@ void allow_for_chamfers(MesherReport& report) {
     if (!e.by_surface) e.volume_slack = 0.5 * length * report.cell_size * report.cell_size;
 }
 
-/// Fitting creases has moved walls, too.
+/// Measures thickened walls again, since fitting creases has moved them too.
 void measure_walls(DenseMesh& dense, const MaterialField& field) {
   if (dense.report.thickened.points == 0) return;
   const GridFrame& frame = field.frame();
@@ -378,7 +381,7 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   };
   add_thin(sheets.too_thin, true);
   {
-    // Where distances come from the triangles the parts and gaps are reported otherwise.
+    // Where distances come from the triangles, thin parts and gaps are reported separately.
     std::vector<MortonKey> elsewhere = interface_voxels;
     std::erase_if(elsewhere, [&](MortonKey key) {
       const auto [x, y, z] = morton_decode(key);
@@ -413,7 +416,8 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
     for (const InterfaceTriangle& t : dense.mesh.interfaces)
       if (const SurfaceRegion group = features->group_of(t.patch))
         dense.mesh.patch_groups[{t.pair(), t.patch}] = group;
-    // Where surfaces meet the borders of groups are known to a cell, as the curves are in which they meet.
+    // Where surfaces meet, the borders of groups are known to a cell only, like the curves in which they
+    // meet.
     if (std::none_of(patches.begin(), patches.end(), [](const SurfacePatches& p) {
           return p.verdict == SurfacePatches::Verdict::meeting && p.any();
         }))

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Cells for a wanted number of tets. These rules of thumb only have to be roughly right, but must not change
-// with estimate_mesh(): they decide what mesh a user gets.
+// Cells for a wanted number of tets. These rules of thumb need only be roughly right, but must not change
+// with estimate_mesh(): they determine the mesh a user gets.
 
 #include <algorithm>
 #include <array>
@@ -26,37 +26,37 @@ namespace tetwright {
 
 namespace {
 
-/// Dense tets of an adaptive mesh for each squared finest cell of surface: they tend to the first number
-/// where the solid is thick, and half of it fill one that is as thick as the second, in finest cells of
-/// volume for each of surface. Fitted to scans at 32 to 256 cells: within 10 % there, up to twice too high
-/// for flat ones.
+/// Dense tets of an adaptive mesh per squared finest cell of surface. The number tends to the first value
+/// where the solid is thick, and is half of it where the solid is as thick as the second value, in finest
+/// cells of volume per squared cell of surface. Fitted to scans at 32 to 256 cells: within 10 % there, up to
+/// twice too high for flat ones.
 constexpr double tets_per_area_thick = 29;
 constexpr double half_full_thickness = 1.6;
-/// Lattice tets along the surface that are accepted at most for each dense tet that is wanted.
+/// Maximum number of lattice tets along the surface per dense tet wanted.
 constexpr double max_lattice_per_dense = 4;
 /// Thin layers take smaller cells, see field_thickness.h.
 constexpr double cells_per_sheet = 1.5, min_refined = 0.125;
-/// Dense tets for each tet that is wanted in the end: fewer leave the simplifier no choice, more take time.
+/// Dense tets per tet wanted in the end: fewer leave the simplifier no choice, more take time.
 constexpr double surface_dense_per_target = 40, label_dense_per_target = 5;
-/// The same of surfaces with creases. Their patches may be narrower than a cell, and what cells show of them
-/// is what can be kept: of nine parts at 10,000 tets, the two with strips of half a cell are within half and
-/// a third of the distance from creases (99th percentile) at 100 that they have at 40, and lose no corners.
+/// Dense tets per tet wanted for surfaces with creases. Their patches may be narrower than a cell, and only
+/// what cells resolve can be kept. Of nine parts at 10,000 tets, the two with strips of half a cell have, at
+/// 100 instead of 40, half and a third of the distance from creases (99th percentile), and lose no corners.
 constexpr double creased_dense_per_target = 100;
 constexpr double max_dense_tets = 20e6;
 constexpr int min_target_resolution = 32;
-/// Dense tets of labels for each face between two materials, as large as a squared cell; half of them for one
-/// to the outside.
+/// Dense tets of labels per face between two materials, as large as a squared cell; half as many per face to
+/// the outside.
 constexpr double tets_per_face = 45;
-/// Finer cells show nothing more of voxels.
+/// Finer cells resolve no more of the voxels.
 constexpr int max_cells_per_voxel = 4;
-/// Cells larger than a voxel, in voxels, the largest first: by powers of two, so that halved ones meet voxels
-/// as those of a voxel do. Larger ones, halved max_refinement times, would not show what a voxel alone does.
+/// Cells larger than a voxel, in voxels, largest first: powers of two, so that halved ones align with voxels.
+/// Larger ones, halved max_refinement times, would not resolve a single voxel.
 constexpr std::array<int, 2> large_cells{4, 2};
-/// Dense tets for each that is wanted in cells this large, and the share of those in cells of a voxel from
-/// which on they save nothing worth their roughness: where labels are thin cells are halved anyway.
+/// Dense tets per tet wanted in cells this large, and the share of those in cells of a voxel above which
+/// large cells save too little to be worth their coarseness: where labels are thin cells are halved anyway.
 constexpr double large_cells_dense_per_target = 20, max_share_of_voxel_cells = 0.5;
-/// A ball of so many large cells loses 1 % of its volume to chords: measured, 0.27 (cell / radius)^2. Labels
-/// of few voxels change more by smoothing.
+/// A ball of this many large cells loses 1 % of its volume to chords: measured, 0.27 (cell / radius)^2.
+/// Labels of few voxels change more by smoothing.
 constexpr double min_cells_of_part = 590, few_voxels = 1000;
 
 /// Dense tets of surfaces with finest cells of edge `h`, input units.
@@ -68,7 +68,7 @@ double dense_tets(const MesherInput& input, double h) {
     const double thickness = volume / area;
     tets += sides * tets_per_area_thick * area * thickness / (thickness + half_full_thickness);
   };
-  // On a surface within another body there are tets on both sides.
+  // A surface inside another body has tets on both sides.
   for (std::size_t b = 0; b < input.bodies.size(); ++b) add(input.bodies[b].surface, b == 0 ? 1 : 2);
   for (const MaterialLayer& layer : input.layers) {
     double sides = 2;
@@ -87,37 +87,37 @@ bool has_creases(const MesherInput& input, const FeatureAngle& angle) {
   });
 }
 
-/// Cells of a dense mesh for edges of a wanted length, over that: 1 / 2.5, so that the simplifier has a
-/// choice.
+/// Size of dense cells per edge length wanted: 1 / 2.5, so that the simplifier has a choice.
 constexpr double cell_per_edge = 0.4;
-/// The same of the largest cells inside, which are halved until they are as small: half as small on average.
+/// Limit of the cells inside per edge length wanted: cells are halved until they are within it, so they are
+/// about half of it on average.
 constexpr double inner_cell_per_edge = 0.8;
-/// Cells along the longest side for wanted sizes, at most; where smaller ones are wanted, cells are halved
-/// and edges split.
+/// Maximum number of cells along the longest side for wanted sizes; where smaller cells are wanted, cells are
+/// halved and edges split.
 constexpr double max_sized_resolution = 256;
-/// Places of each surface where sizes are asked for.
+/// Number of points on each surface at which sizes are evaluated.
 constexpr double sized_places = 20000;
 
-/// The share of a tolerance that a dense mesh may use up.
+/// The fraction of a tolerance that a dense mesh may use up.
 constexpr double dense_tolerance_share = 0.5;
-/// Cells at first, in tolerances: where surfaces are smooth their meshes are within half of one.
+/// Initial cells, in tolerances: smooth surfaces come within half of one.
 constexpr double first_cell = 2;
-/// The same of surfaces with creases: where their faces are flat, larger cells show them as well.
+/// Initial cells of surfaces with creases, in tolerances: flat faces need no smaller ones.
 constexpr double first_cell_of_part = 12;
 constexpr int min_tolerance_resolution = 64;
-/// Memory over what is estimated of cells so small that they show the input's facets: 1.8 for a bunny at 780
-/// cells along its longest side.
+/// Factor on the estimated memory for cells so small that they resolve the input's facets: 1.8 for a bunny at
+/// 780 cells along its longest side.
 constexpr double faceted_memory = 2.5;
-/// Cells, or tolerances if that is more, within which the surface and the mesh stand for each other.
+/// Distance within which surface and mesh correspond: cells, or tolerances if that is more.
 constexpr double reach_cells = 2, reach_tolerances = 2;
 constexpr int max_fine_rounds = 4, max_worse_rounds = 2;
-/// Where halving cells at places gains nothing more: up to this share of the tolerance samples can be kept;
-/// else all cells become smaller.
+/// Fraction of the tolerance that is good enough where halving cells locally gains nothing more: the
+/// simplifier's samples can still be kept within the tolerance. Otherwise all cells become smaller.
 constexpr double enough_share = 0.8;
 constexpr double resolution_growth = 1.5;
 constexpr int max_attempts = 12;
-/// Of the largest distance, that smaller cells must leave less than: the border of a hole has no more to
-/// give.
+/// Smaller cells must reduce the largest distance below this fraction: it does not shrink at the border of a
+/// hole.
 constexpr double min_level_gain = 0.9;
 constexpr std::size_t place_grain = 256;
 
@@ -133,15 +133,15 @@ std::vector<Vec3> places_on(const ProjectionTree& surface) {
   return places;
 }
 
-/// Where a dense mesh and its surface are too far from each other.
+/// Points where a dense mesh and its surface are too far from each other.
 struct Misfit {
-  std::vector<RefinementRegion>
-      places;  ///< with the halvings of cells that would do if distances fell in proportion
+  /// With the halvings of cells that would suffice if distances fell in proportion.
+  std::vector<RefinementRegion> places;
   double worst = 0;
 };
 
-/// Adds the places of one surface that are farther from the other than `allowed`. What is farther than
-/// `reach` stands for something else: a cap, a layer, the box of an outside.
+/// Adds the points of one surface that are farther from the other than `allowed`. Points farther than `reach`
+/// have no counterpart: a cap, a layer, the box of an outside.
 void add_misfit(const ProjectionTree& from, const ProjectionTree& to, double allowed, double reach,
                 Misfit& misfit) {
   struct Far {
@@ -167,7 +167,7 @@ void add_misfit(const ProjectionTree& from, const ProjectionTree& to, double all
   }
 }
 
-/// `Face` has the points of a triangle, `corners(face)` says which.
+/// \param corners corners(face) gives the points of a triangle
 template <class Face, class Corners>
 ProjectionTree tree_of(const std::vector<Vec3>& points, const std::vector<Face>& faces,
                        const Corners& corners) {
@@ -188,12 +188,12 @@ int resolution_for_target(const MesherInput& input, std::size_t target_tets, con
   for (const MesherInput::Body& b : input.bodies) area += b.surface.area;
   const auto enough = [&](int resolution) {
     const double h = longest / resolution;
-    // A body thinner than a cell has few tets but a lattice as large as its surface: there is no end to
-    // refining it.
+    // A body thinner than a cell has few tets but a lattice as large as its surface: refining it would have
+    // no end.
     const double lattice = tets_per_area_thick * area / (h * h);
     return std::floor(dense_tets(input, h)) >= dense || lattice >= max_lattice_per_dense * dense;
   };
-  // The smallest one that is enough; the number of tets grows with the resolution.
+  // Find the smallest sufficient one; the number of tets grows with the resolution.
   int low = min_target_resolution, high = max_resolution;
   while (low < high) {
     const int middle = (low + high) / 2;
@@ -207,7 +207,7 @@ int resolution_for_target(const MesherInput& input, std::size_t target_tets, con
 
 namespace {
 
-/// Where a dense mesh is farther from its surface, or that from it, than a tolerance leaves it.
+/// Points where a dense mesh and its surface are farther from each other than `allowed`.
 Misfit misfit_of(const DenseMesh& dense, double allowed, double reach) {
   const ProjectionTree mesh = tree_of(dense.mesh.points, dense.mesh.interfaces,
                                       [](const InterfaceTriangle&t) { return t.ids; }),
@@ -239,7 +239,8 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
         longest / (first_cell * max_resolution));
     throw UsageError(text);
   }
-  // Cells that a count takes are more than the tolerance alone would: what samples can keep is enough then.
+  // A given count takes more cells than the tolerance alone would: then the fraction that the simplifier's
+  // samples can keep is enough.
   const bool counted = options.resolution > std::max<double>(min_tolerance_resolution, cells);
   options.resolution = std::max({min_tolerance_resolution, options.resolution, static_cast<int>(cells)});
   const MesherEstimate estimate = estimate_mesh(input, options);
@@ -247,9 +248,9 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
                  "a tolerance of " + short_number(tolerance) + ", which takes about " +
                      short_number(static_cast<double>(estimate.tets)) + " tets,",
                  "give a larger one");
-  // What cells cannot show is shown thicker by as much as a tolerance is wide, or closed.
+  // Otherwise thin walls would be thickened, and gaps closed, by up to a tolerance.
   if (!options.max_refinement) options.max_refinement = max_wall_refinement;
-  const std::vector<RefinementRegion> refinement_regions = options.refinement_regions;  // of wanted sizes
+  const std::vector<RefinementRegion> refinement_regions = options.refinement_regions;  // for wanted sizes
   const double allowed = dense_tolerance_share * tolerance;
   const int coarse = std::max({min_tolerance_resolution, counted ? options.resolution : 0,
                                static_cast<int>(std::ceil(longest / (first_cell_of_part * tolerance)))});
@@ -349,8 +350,8 @@ void choose_cells_for_sizes(const MesherInput& input, const SizeField* target_le
     }
   }
   if (places.empty()) return;
-  // Where cells of one size make as many as those of the wanted sizes, or somewhat smaller ones, so that few
-  // have to be halved; never smaller than the smallest.
+  // Choose the cell size that gives as many cells as the wanted sizes do, or a somewhat smaller one, so that
+  // few cells have to be halved; never smaller than the smallest.
   const double smallest = std::min_element(places.begin(), places.end(), [](const auto& x, const auto& y) {
                             return x.cell < y.cell;
                           })->cell;
@@ -368,7 +369,7 @@ double cell_size_for_target(const LabelInput& labels, std::size_t target_tets, c
   const FaceAreas areas = face_areas(labels);
   const double voxel = voxel_size(labels), target = static_cast<double>(target_tets);
   const double smallest_cell = longest_side(labels) / max_resolution;
-  // Tets grow with the square of the cells.
+  // The number of tets is proportional to the inverse square of the cell size.
   const double at_voxel =
       std::max(1.0, std::floor(tets_per_face * (areas.inner + 0.5 * areas.outer) / (voxel * voxel)));
   const double finer = std::sqrt(label_dense_per_target * target / at_voxel);
@@ -380,7 +381,7 @@ double cell_size_for_target(const LabelInput& labels, std::size_t target_tets, c
     of_cell.voxel_size = cell;
     return static_cast<double>(estimate_mesh(labels, of_cell).tets);
   };
-  double smallest = std::numeric_limits<double>::max();  // part of a label on average, voxels
+  double smallest = std::numeric_limits<double>::max();  // of the labels' average parts, voxels
   for (const LabelMaterial& m : labels.materials)
     if (const auto voxels = static_cast<double>(m.voxels); voxels > few_voxels)
       smallest = std::min(smallest, voxels / static_cast<double>(m.parts.by_faces));

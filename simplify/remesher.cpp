@@ -23,22 +23,24 @@ namespace tetwright {
 namespace {
 
 constexpr std::size_t remesh_grain = 8192;  ///< tets a parallel loop hands out at a time
-/// Free slots at first, as a share of what there is: the arrays grow in place beyond them.
+/// Initial free slots: the inverse of their share of what there is, and their min number. Beyond them the
+/// arrays grow in place.
 constexpr std::size_t remesh_spare_share = 64, min_remesh_spare = 4096;
-/// Over min_solid_angle: what is improved, and what may leave the surface a little for it, as in improve().
+/// Factors on min_solid_angle: tets below the first are improved, and for tets below the second points may
+/// leave the surface a little, as in improve().
 constexpr double bad_margin = 1.27, leave_surface_margin = 1;
-/// Of the bound: what coarsening and refining must leave of shapes that were good.
+/// Share of the bound that coarsening and refining must leave of shapes that were good.
 constexpr double floor_share = 0.3;
 
 struct Field {
   Field(std::size_t count, std::vector<double>&& numbers) : components(count), values(std::move(numbers)) {
-    values.reserve(2 * values.size());  // as the mesh has room for twice as many slots
+    values.reserve(2 * values.size());  // since the mesh has room for twice as many slots
   }
   std::size_t components;
   std::vector<double> values;
 };
 
-/// The values of a field by new numbers.
+/// A field's values after a renumbering.
 std::vector<double> renumbered_values(const Field& field, const std::vector<Index>& numbers,
                                       std::size_t slots) {
   std::vector<double> values(field.components * slots, 0);
@@ -65,7 +67,7 @@ struct Remesher::Impl {
     keep_surfaces();
   }
 
-  /// Compacts, and builds anew what goes with the whole mesh.
+  /// Compacts, and rebuilds what depends on the whole mesh.
   void renumber(Renumbering* numbers) {
     SlotNumbers slots;
     const std::size_t spare = mesh.live_tets() / remesh_spare_share + min_remesh_spare;
@@ -97,9 +99,11 @@ struct Remesher::Impl {
   }
 
   std::vector<Index> tets_of(const RemeshRegion& region);
-  /// The interface faces of an ascending list of tets, each once.
+  /// The interface faces of the tets, each once.
+  /// \pre `tets` is ascending.
   std::vector<InterfaceFace> interface_faces_of(const std::vector<Index>& tets) const;
-  /// Onto the surfaces at these points, ascending.
+  /// Projection onto the surfaces at these points.
+  /// \pre `points` is ascending.
   SurfaceProjection project_onto(const std::vector<Index>& points);
   RemeshAim usual_aim() const;
   template <class Work>
@@ -119,11 +123,11 @@ struct Remesher::Impl {
   PointTree places;
   ChangeJournal journal;
   BlockRules rules;
-  double diagonal = 0;                              ///< when points were last numbered
+  double diagonal = 0;                              ///< when points were last renumbered
   std::optional<SurfaceProjection> first_surfaces;  ///< with RemesherOptions::keep_surfaces
   Neighbourhood near;
   std::vector<Field> point_fields, tet_fields;
-  std::vector<std::array<Index, 2>> copies;  ///< points, and what was split off from them; ascending
+  std::vector<std::array<Index, 2>> copies;  ///< points and copies split off from them; ascending
 };
 
 std::vector<Index> Remesher::Impl::tets_of(const RemeshRegion& region) {
@@ -158,7 +162,7 @@ std::vector<InterfaceFace> Remesher::Impl::interface_faces_of(const std::vector<
   for (Index t : tets)
     for (int f = 0; f < 4; ++f) {
       const FaceLink link = mesh.link(t, f);
-      // One between two of the tets once.
+      // List a face between two of the tets once.
       if (!link.is_interface() ||
           (!link.is_outside() && link.tet() < t && std::binary_search(tets.begin(), tets.end(), link.tet())))
         continue;
@@ -255,7 +259,7 @@ void Remesher::Impl::move_points(std::span<const Index> points, std::span<const 
   std::vector<Index> moved;
   std::vector<Vec3> targets;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (mesh.original(points[i]) != points[i]) continue;  // goes with what it was split off from
+    if (mesh.original(points[i]) != points[i]) continue;  // a copy follows its original
     const Vec3 to = mesh.space().to_working(positions[i]);
     moved.push_back(points[i]);
     targets.push_back(to);

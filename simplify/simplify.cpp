@@ -26,47 +26,47 @@ namespace tetwright {
 
 namespace {
 
-/// Where time is limited: the share of it that the loop may take. The closing takes about as long as the last
-/// fifth of the loop.
+/// Share of the time limit, if there is one, that the loop may use. The closing takes about as long as the
+/// last fifth of the loop.
 constexpr double loop_time_share = 0.75;
-/// The same of loop and closing together, where the result is compared with a tolerance.
+/// Share that loop and closing may use together if the result is compared with a tolerance.
 constexpr double changing_time_share = 0.8;
-/// Rounds that close simplify().
+/// Max rounds of the closing of simplify().
 constexpr int max_closing_rounds = 40;
-/// The closing works on tets whose quality is below this many times the bound: dihedral angles up to 25
-/// degrees.
+/// Multiple of the bound below which the closing works on tets: dihedral angles up to 25 degrees.
 constexpr double closing_margin = 1.27;
-/// For tets worse than this multiple of the bound, improve() may move points off the surface (dihedral angles
-/// up to 30 degrees). In the closing that would move the surface a quarter farther.
+/// Multiple of the bound below which improve() may move points off the surface for a tet: dihedral angles up
+/// to 30 degrees. In the closing that would move the surface a quarter farther.
 constexpr double improve_margin = 1.5;
-/// The share by which closing may change the count where none was asked for.
+/// Max relative change of the count in the closing if no count was asked for.
 constexpr double free_closing_slack = 1;
 constexpr int sweeps_before_closing = 1, sweeps_after_closing = 2;
-/// Sweeps of fit_to_crease() before it.
+/// Sweeps of fit_to_crease() before the closing.
 constexpr int crease_sweeps = 3;
-/// Share of the tets below the bound above which improve() begins in bulk. Scans and what programs make of
-/// them have up to 32 % below 0.15 sr at first, and the rounds alone end them in half the time.
+/// Share of bad tets above which improve() begins in bulk. Scans and results of other programs initially have
+/// up to 32 % of tets below 0.15 sr; on these, improvement without bulk takes half the time.
 constexpr double bulk_before = 0.4;
-/// In the end improve() takes up all tets below this solid angle, steradians, by the cheap operations alone:
-/// the mean rises by 0.01 sr. The rounds would take four times as long as all before for as much again.
+/// Solid angle, steradians, below which improve() finally works on all tets, with cheap operations only: the
+/// mean rises by 0.01 sr. The rounds would take four times as long as everything before to gain that much
+/// again.
 constexpr double polish_below = 0.2;
 constexpr int max_polish_rounds = 3;
-/// Rounds kept for that and for what comes after it.
+/// Max rounds reserved for that and for the rounds after it.
 constexpr int max_last_rounds = 20;
-/// Of the bad tets, that a call of a Remesher must leave fewer than for another one.
+/// Another call of the Remesher is made only if the last one left less than this fraction of the bad tets.
 constexpr double min_call_gain = 0.95;
-/// Factors by which the count may change with ImproveOptions::free_count, so that detail is not lost by the
-/// way and no mesh grows for ever.
+/// Min and max factor on the count with ImproveOptions::free_count, so that no detail is lost on the way and
+/// no mesh grows for ever.
 constexpr double min_free = 0.8, max_free = 4;
-/// The first bound on the way there, for a --min-solid-angle of next to nothing.
+/// Min value of the first bound, for a --min-solid-angle of nearly 0.
 constexpr double min_first_bound = 1e-3;
-/// Share of the tets that improve() may add or take away; 5 % are promised.
+/// Max relative change of the count in improve(); 5 % are promised.
 constexpr double improve_slack = 0.045;
-/// E of improve(), in edges of a regular mesh of that count: the paper's first E.
+/// E of improve(), in edges of a regular mesh of that count: the paper's initial E.
 constexpr double improve_error_edges = 1;
 
-/// Peak memory of the process: its libraries, and the editable mesh with what it is made from, for each tet
-/// of the input. README.md, Memory, compares it with what was measured.
+/// Estimate of the process's peak memory: its libraries, and for each input tet the editable mesh with the
+/// input that it is made from. README.md, Memory, compares it with measurements.
 constexpr double program_bytes = 40e6;
 constexpr double bytes_per_tet = 105;
 
@@ -87,12 +87,12 @@ void fit(Engine& engine, int sweeps, float floor) {
   }
 }
 
-/// The first of the bounds that rise to the one to be reached.
+/// First of the rising bounds.
 double first_bound(double min_solid_angle) {
   return std::max(min_first_bound, closing_margin * min_solid_angle);
 }
 
-/// Checks what both calls share, before any work.
+/// Checks shared by both calls, before any work.
 void check(const TetMesh& mesh, const std::string& name) {
   if (mesh.tets.empty()) throw InputError(name, 0, "no tets in it");
   require_memory(program_bytes + bytes_per_tet * static_cast<double>(mesh.tets.size()),
@@ -100,7 +100,7 @@ void check(const TetMesh& mesh, const std::string& name) {
                  "free some, or use a machine or a container limit with more");
 }
 
-/// The number of tets that wanted lengths decide; that their bounds allow.
+/// Number of tets that follows from target lengths, or that their bounds allow.
 std::size_t target_for_sizes(const Engine& engine, const SimplifyOptions& options) {
   double tets = static_cast<double>(options.target_tets);
   if (options.sizes)
@@ -125,8 +125,8 @@ void check_options(const SimplifyOptions& options) {
     throw UsageError("beta must be above 0 and gamma at least 0");
 }
 
-/// True where it was done; false where the deadline of `progress` ended it. What was changed until then is
-/// kept: a BlockRunner stops between batches, where the mesh is whole.
+/// False if the deadline of `progress` ended the work. Changes made before are kept: a BlockRunner stops
+/// between batches, when the mesh is whole.
 template <class Work>
 bool done_in_time(const Work& work) {
   try {
@@ -137,7 +137,7 @@ bool done_in_time(const Work& work) {
   return true;
 }
 
-/// Until the end of its life the deadline is earlier: at this share of the time that is left.
+/// Moves the deadline forward to this share of the remaining time for as long as it lives.
 class EarlierDeadline {
  public:
   EarlierDeadline(Progress* progress, double share) : progress_(progress) {
@@ -159,14 +159,14 @@ class EarlierDeadline {
 
 bool out_of_time(const Progress* progress) { return progress && progress->out_of_time(); }
 
-/// What improve() returns where the deadline has passed before anything was changed.
+/// Result of improve() if the deadline has passed before any change.
 TetMesh unchanged(TetMesh mesh, SimplifyReport* report) {
   if (mesh.interfaces.empty()) mesh.interfaces = find_interfaces(mesh);
   if (report) report->out_of_time = true;
   return mesh;
 }
 
-/// The same of simplify(): its distance from the surface is measured all the same.
+/// Result of simplify() then: the distance from the surface is measured all the same.
 TetMesh not_simplified(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report,
                        const Progress* progress) {
   if (options.tolerance > 0 && report)
@@ -178,8 +178,10 @@ bool is_bounded(const SimplifyOptions& options) {
   return options.sizes || options.min_edge > 0 || std::isfinite(options.max_edge);
 }
 
-/// The improvement that closes the tuned schedule. `target`: of tets; 0: what is there. Sets the deviation if
-/// it knows that of the result.
+/// The improvement that closes the tuned schedule.
+///
+/// \param target number of tets; 0: the current one.
+/// \param deviation set if that of the result is known.
 void close(Engine& engine, const SimplifyOptions& options, std::size_t target, std::size_t first_count,
            std::optional<DeviationReport>& deviation) {
   const bool bounded = is_bounded(options);
@@ -198,7 +200,7 @@ void close(Engine& engine, const SimplifyOptions& options, std::size_t target, s
   };
   const bool counted = target > 0 && !options.sizes && (!bounded || near_target(engine.mesh().live_tets()));
   const auto count = static_cast<double>(counted ? std::min(target, first_count) : engine.mesh().live_tets());
-  // Without a count shapes are worth some tets more, and edges shorter than wanted.
+  // Without a count, better shapes are worth more tets, and edges shorter than the target length.
   const double slack = counted ? closing_slack : free_closing_slack;
   if (options.sizes) engine.allow_shorter_edges();
   const ImprovementPlan plan{.kind = "close",
@@ -210,13 +212,13 @@ void close(Engine& engine, const SimplifyOptions& options, std::size_t target, s
                              .fast = false,
                              .brief = false,
                              .max_rounds = max_closing_rounds};
-  // Where a point has arrived its neighbours may have more room.
+  // After a point has arrived, its neighbours may have more room.
   for (int i = 0; i < crease_sweeps; ++i) engine.fit_creases();
   fit(engine, sweeps_before_closing, quality_at(engine, plan.angle));
   WholeMesh whole(engine);
   improve_area(tools_of(engine), whole, plan, 1);
   if (!counted) refine_bad_tets(tools_of(engine), whole, plan, options.min_solid_angle);
-  // Shapes were had at the cost of places.
+  // Better shapes have cost fit.
   fit(engine, sweeps_after_closing, quality_at(engine, plan.angle));
   // Fitting may cost a tet that is just above the bound.
   if (!counted) refine_bad_tets(tools_of(engine), whole, plan, options.min_solid_angle);
@@ -225,7 +227,7 @@ void close(Engine& engine, const SimplifyOptions& options, std::size_t target, s
   if (deviation->upper() <= options.tolerance) return;
   engine.throw_if_stopped();
   deviation.reset();
-  // Where the tolerance has held the count back it may do so here.
+  // If the tolerance has held the count back in the loop, it may do so here.
   ImprovementPlan holding = plan;
   const auto live = static_cast<double>(engine.mesh().live_tets());
   if (live > static_cast<double>(plan.max_tets))
@@ -258,7 +260,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
       engine.rules.objective.quality =
           TetQuality::for_target(engine.mesh().total_volume(), static_cast<double>(target), options.beta);
   }
-  // Of a mesh that is large for the time there is, each of these takes a good part of it.
+  // Each step takes a good part of the time for a mesh that is large for its limit.
   const bool built = done_in_time([&] {
     engine.throw_if_stopped();
     if (tuned) engine.compact();
@@ -283,7 +285,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     });
     loop_end = seconds_since(start);
     if (tuned) {
-      // A count that was not reached is no aim for the closing.
+      // A count that was not reached is no target for the closing.
       const std::size_t closing_target = in_time ? target : engine.mesh().live_tets();
       in_time &= done_in_time([&] {
         engine.recorder().begin_stage("improve");
@@ -314,7 +316,7 @@ DeviationReport deviation(const TetMesh& mesh, const TriangleMesh& surface, cons
 
 namespace {
 
-/// improve() with `only_below`: a Remesher works on the regions of bad tets alone.
+/// improve() with `only_below`: a Remesher works on the regions of bad tets only.
 TetMesh improve_bad_regions(TetMesh&& mesh, const ImproveOptions& options, std::size_t min_tets,
                             std::size_t max_tets, SimplifyReport* report, Progress* progress) {
   const auto start = std::chrono::steady_clock::now();
@@ -333,7 +335,7 @@ TetMesh improve_bad_regions(TetMesh&& mesh, const ImproveOptions& options, std::
   int rounds = options.max_iterations;
   const auto improve_up_to = [&](double angle) {
     const double bound = shape_quality_bound(options.objective, angle);
-    // The last bound gets what is left, each other one half of it.
+    // Each bound gets half of the remaining rounds, the last one all.
     const int kept = angle < options.only_below ? rounds / 2 : 0;
     for (double min_bad = std::numeric_limits<double>::infinity(); rounds > kept;) {
       std::vector<Index> bad;
@@ -388,7 +390,7 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
   const double build = seconds_since(start);
   engine.rules.max_error = improve_error_edges * engine.rules.objective.quality.ideal_edge;
   const double below = improve_margin * options.min_solid_angle;
-  // The last rounds are kept for what comes in the end.
+  // Reserve the last rounds for the end.
   const int kept_rounds = std::min(options.max_iterations / 2, max_last_rounds);
   ImprovementPlan plan{.kind = "improve",
                        .angle = below,
@@ -418,7 +420,7 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
                                              .max_tets = plan.max_tets,
                                              .max_rounds = std::min(plan.max_rounds, max_polish_rounds),
                                              .remodel = false});
-    // Other connectivity around them lets the last ones go on.
+    // Other connectivity around the last bad tets lets them improve further.
     if (plan.max_rounds > 0) run_improvement(tools, whole, plan);
   });
   if (report) {

@@ -8,29 +8,37 @@
 namespace tetwright {
 
 /// Simplifies a valid mesh to about `target_tets` (within 1 % where topology and shapes allow) and improves
-/// its shapes: block iteration of Cutler, Dorsey & McMillan 2004 with a tuned schedule (README.md), then
-/// closing rounds at that count. Every material, component, handle, cavity and interface survives; the
-/// boundary does not come to intersect itself; all tets stay positive by exact sign. The result
-/// has its interface triangles.
+/// its shapes: the block iteration of Cutler, Dorsey & McMillan 2004 with a tuned schedule (README.md), then
+/// closing rounds at that count. A mesh with fewer tets than the target is only improved.
 ///
-/// Uses thread_count() threads; the same input, options and seed give the same bytes for any number. A mesh
-/// that has fewer tets than the target is only improved. Throws InputError if a coordinate is not finite, a
-/// tet repeats a point or a face has more than two tets, OutputError if there is too little memory,
-/// UsageError for impossible options, Interrupted when cancelled. The deadline of `progress` ends it with
-/// what there is then, as valid as ever (the same mesh, perhaps renumbered, if nothing was changed yet): the
-/// loop before, so that the shapes can be improved, too, and that with a tolerance before, so that distances
-/// can be measured. Renumbering after the last round is added to that, and what it takes to bound the
-/// distances at all.
+/// Every material, component, handle, cavity and interface survives; the boundary does not come to intersect
+/// itself; all tets stay positive by exact sign. The result has its interface triangles. Uses thread_count()
+/// threads; the same input, options and seed give the same bytes for any number of them.
+///
+/// The deadline of `progress` ends the work with the current mesh, as valid as ever (the input, perhaps
+/// renumbered, if nothing has changed yet). The loop ends earlier, so that shapes can still be improved, and
+/// with a tolerance the improvement ends earlier, so that distances can be measured. The final renumbering,
+/// and the least work that bounds the distances, exceed the deadline.
+///
+/// \param report gets the record of the work; may be null.
+/// \param progress may be null.
+/// \throws InputError if a coordinate is not finite, a tet repeats a point or a face has more than two tets.
+/// \throws OutputError if there is too little memory.
+/// \throws UsageError for impossible options.
+/// \throws Interrupted when cancelled.
 TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report = nullptr,
                  Progress* progress = nullptr);
 
-/// How far a mesh's surface is from the one that it was made from, proven. `surface` in input units, wound
-/// outwards. Works on a copy. Throws InputError as simplify() does. Parallel; the result does not depend on
-/// the threads. `progress` (may be null) ends it as it ends surface_deviation().
+/// Two-sided distance between a mesh's surface and the surface that it was made from, with proven bounds.
+/// Works on a copy. Parallel; the result does not depend on the threads.
+///
+/// \param surface wound outwards, input units.
+/// \param progress ends it as it ends surface_deviation(); may be null.
+/// \throws InputError as simplify().
 DeviationReport deviation(const TetMesh& mesh, const TriangleMesh& surface,
                           const Progress* progress = nullptr);
 
-/// Improves the shapes of a mesh at about its count: what closes simplify(), by itself. The same guarantees,
+/// Improves the shapes of a mesh at about its count, like the end of simplify(), with the same guarantees,
 /// threads and errors.
 TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* report = nullptr,
                 Progress* progress = nullptr);

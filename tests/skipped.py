@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lists the tests that CTest skipped, and fails if there are others than those whose optional package is missing.
+"""Lists the tests that CTest skipped, and fails if one is not due to a missing optional package.
 
-usage: skipped.py RESULTS.xml OPTIONAL    (what ctest --output-junit wrote; tools/optional)
+usage: skipped.py RESULTS.xml OPTIONAL    (from ctest --output-junit; tools/optional)
 """
 import subprocess
 import sys
@@ -9,13 +9,13 @@ import xml.etree.ElementTree
 
 
 def skipped_tests(results):
-    """The names of the tests that did not run."""
+    """Names of the tests that did not run."""
     cases = xml.etree.ElementTree.parse(results).getroot().iter("testcase")
     return [case.get("name") for case in cases if case.get("status") == "notrun" or case.find("skipped") is not None]
 
 
 def optional_packages(file):
-    """For each test that may be skipped its package and what is not tried without it."""
+    """For each test that may be skipped its package and the checks lost without it."""
     lines = [line.split(maxsplit=2) for line in open(file, encoding="utf-8") if line.strip() and not line.startswith("#")]
     return {test: (package, text.strip()) for package, test, text in lines}
 

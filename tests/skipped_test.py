@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""skipped.py on results of CTest: what may be skipped, and what may not."""
+"""Tests skipped.py on results of CTest: permitted and forbidden skips."""
 import pathlib
 import subprocess
 import sys

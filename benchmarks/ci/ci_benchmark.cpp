@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Every hot stage on inputs that are made here: what tools/bench --ci measures and --compare compares.
+// Benchmarks of every hot stage on inputs made here, measured by tools/bench --ci and compared by --compare.
 // benchmarks/bench.py reads the counters: peak_MB, poor_% (tets under 0.1 sr) and those that end in _s,
 // seconds of a stage.
 #include <benchmark/benchmark.h>
@@ -47,7 +47,7 @@ TetMesh dense_mesh(const MesherInput& input, int resolution, bool uniform) {
   return mesh_surfaces(input, options, nullptr).mesh;
 }
 
-/// The inputs of all that begins with a mesh: some 300,000 and 100,000 tets, made once in a process.
+/// Input meshes: some 300,000 and 100,000 tets, made once in a process.
 const TetMesh& knot_mesh() {
   static const TetMesh mesh = dense_mesh(input_of("knot"), 90, false);
   return mesh;
@@ -270,7 +270,7 @@ void improve_again(benchmark::State& state) {
 }
 TETWRIGHT_CI(improve_again, "improve");
 
-/// Calls of a Remesher on boxes about points of the mesh.
+/// Times Remesher calls on boxes around points of the mesh.
 void remesh(benchmark::State& state) {
   constexpr int calls = 60;
   const TetMesh& mesh = knot_mesh();

@@ -10,7 +10,7 @@
 namespace tetwright {
 namespace {
 
-/// Meshes again and again; seconds of each stage as counters.
+/// Times repeated meshing; reports the seconds of each stage as counters.
 void run(benchmark::State& state, const MesherInput& input, bool uniform) {
   MesherOptions options;
   options.resolution = static_cast<int>(state.range(0));
@@ -30,11 +30,11 @@ void run(benchmark::State& state, const MesherInput& input, bool uniform) {
   state.counters["cut_s"] = r.seconds_cut;
   state.counters["tets/s_without_sdf"] =
       tets / (r.seconds_octree + r.seconds_lattice + r.seconds_move + r.seconds_cut);
-  // Of the whole process so far: look at it with a filter that leaves one case.
+  // Peak of the whole process so far: meaningful only with a filter that leaves one case.
   state.counters["peak_MB"] = static_cast<double>(usage.ru_maxrss) / 1e3;
 }
 
-/// Doubling the cells should take about four times as long and as much memory.
+/// Doubling the cells should take about four times the time and memory.
 void adaptive(benchmark::State& state) { run(state, benchmark_input(), false); }
 BENCHMARK(adaptive)
     ->Name("mesh_surfaces/adaptive")
@@ -51,7 +51,7 @@ BENCHMARK(uniform)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
-/// The same body with two layers: three materials.
+/// The body with two layers: three materials.
 void layered(benchmark::State& state) {
   MesherInput input = benchmark_input();
   const double size = (input.high - input.low).maxCoeff();

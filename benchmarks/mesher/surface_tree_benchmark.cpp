@@ -43,7 +43,7 @@ std::vector<Vec3> queries(const TriangleMesh& mesh, double reach) {
   return points;
 }
 
-/// One thread; the reach in thousandths of the sphere's radius.
+/// One thread. The reach is in thousandths of the sphere's radius.
 void winding_numbers(benchmark::State& state) {
   const TriangleMesh mesh = bumpy_sphere();
   const SurfaceTree tree(mesh.points, mesh.triangles);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Time of a Remesher's calls by the size of their region and of the mesh, and what many calls leave behind.
+// Time of Remesher calls by the size of region and mesh, and memory and quality after many calls.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -17,18 +17,18 @@
 namespace tetwright {
 namespace {
 
-/// How far the points of the lattice stand from where they belong, and how far a simulation moves those of a
-/// region before improve(), in cubes: the second turns some tets over.
+/// Max displacements, in cubes: of the lattice's points, and of a region's points by the simulation before
+/// improve(). The second inverts some tets.
 constexpr double lattice_jitter = 0.1, simulated_motion = 0.22;
-/// Points nearer than this to boundary or interface stay as far from it as they are: a simulation leaves
-/// surfaces smooth.
+/// Points nearer than this to boundary or interface keep their distance from it: a simulation leaves surfaces
+/// smooth.
 constexpr double surface_share = 0.3;
-/// Edges of the lattice are 1, 1.41 and 1.73 long: coarsening to this size takes the short ones, refining to
-/// that one halves the longest.
+/// Edges of the lattice are 1, 1.41 and 1.73 long: coarsening to the first size collapses the short ones,
+/// refining to the second halves the longest.
 constexpr double coarse_size = 2, fine_size = 1.2;
 /// Cubes between the regions of a series of calls.
 constexpr int gap = 4;
-/// Three kinds of calls, with regions given in two ways.
+/// Three kinds of calls on two kinds of regions.
 constexpr std::size_t series_of_a_size = 6;
 
 struct Options {
@@ -45,13 +45,13 @@ struct Options {
 enum class Kind { improve, coarsen, refine };
 constexpr const char* kind_names[] = {"improve", "coarsen", "refine"};
 
-/// A region with so many tets, as a list and as a box.
+/// A region, as a list of tets and as a box.
 struct Place {
   std::vector<Index> tets;
   Box3 box;
 };
 
-/// A lattice and what is done to it.
+/// A lattice and the operations on it.
 class Subject {
  public:
   Subject(double tets, const Options& o)
@@ -62,7 +62,7 @@ class Subject {
     if (o.fields) add_fields();
   }
 
-  /// Goes on with a new Remesher of the same mesh.
+  /// Replaces the Remesher by a new one of the same mesh.
   void renew(bool fields) {
     TetMesh mesh = remesher_->mesh();
     remesher_.emplace(std::move(mesh));
@@ -70,11 +70,12 @@ class Subject {
   }
 
   Remesher& remesher() { return *remesher_; }
-  /// To make the lattice and to take it over.
+  /// Seconds for making the lattice and the Remesher.
   double seconds() const { return seconds_; }
 
-  /// So many regions of `tets` tets each, as far as there is room, apart from each other, from the boundary
-  /// and from those of earlier calls; every other one on the interface. After places_for() of that size.
+  /// Up to `count` regions of `tets` tets each, apart from each other, from the boundary and from the regions
+  /// of earlier calls; every other one on the interface.
+  /// \pre places_for() has been called for that size.
   std::vector<Place> places(std::size_t tets, std::size_t count) {
     const auto begin = centres_.begin() + static_cast<std::ptrdiff_t>(std::min(taken_, centres_.size()));
     taken_ += count;
@@ -82,13 +83,13 @@ class Subject {
     return regions_at({begin, end}, tets, width_of(tets));
   }
 
-  /// How many regions of a size there is room for.
+  /// Number of regions of a size that there is room for.
   std::size_t places_for(std::size_t tets) {
     list_centres(width_of(tets));
     return centres_.size();
   }
 
-  /// Moves the points of some tets that are within a box.
+  /// Moves those points of the tets that are within a box.
   void shake(const std::vector<Index>& tets, const Box3& box) {
     std::vector<Index> points;
     for (const Index t : tets)
@@ -132,7 +133,7 @@ class Subject {
     remesher_->add_tet_field(1, std::move(at_tets));
   }
 
-  /// Cubes across a region, with a gap.
+  /// Width of a region with a gap, in cubes.
   static int width_of(std::size_t tets) {
     return static_cast<int>(std::ceil(std::cbrt(static_cast<double>(tets) / 6))) + gap;
   }
@@ -155,17 +156,18 @@ class Subject {
     }
   }
 
-  /// Looks at the whole mesh, so that a call finds the caches of the processor cold.
+  /// Finds the regions at the centres. Scans the whole mesh, so that a call starts with cold processor
+  /// caches.
   std::vector<Place> regions_at(const std::vector<Vec3>& centres, std::size_t tets, double width) const {
     struct Candidate {
-      double distance;  ///< of its nearest vertex from the centre, the largest coordinate
+      double distance;  ///< distance of its nearest vertex from the centre, in the max norm
       Index tet;
       bool operator<(const Candidate& b) const {
         return distance != b.distance ? distance < b.distance : tet < b.tet;
       }
     };
     std::vector<std::vector<Candidate>> near(centres.size());
-    // Which centre is near a point: they stand in the cells of a grid.
+    // Find the centre near a point: each cell of a grid has at most one.
     const auto cell = [&](const Vec3& p) {
       const auto axis = [&](double x) { return static_cast<int>(std::floor(x / width)); };
       return std::array<int, 3>{axis(p.x() - n_ / 2.0 + width / 2), axis(p.y() - gap / 2.0),
@@ -203,7 +205,7 @@ class Subject {
   std::optional<Remesher> remesher_;
   double seconds_ = 0;
   std::vector<Vec3> centres_;  ///< of regions
-  std::size_t taken_ = 0;      ///< of these
+  std::size_t taken_ = 0;      ///< centres used
 };
 
 double median(std::vector<double> values) {
@@ -215,7 +217,7 @@ double median(std::vector<double> values) {
 
 double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / 1e6; }
 
-/// Calls of every kind on regions of a size.
+/// Measures calls of every kind on regions of a size.
 nlohmann::json measure_calls(double size, std::size_t tets, const Options& o) {
   const ThreadLimit one(1);
   Subject subject(size, o);
@@ -258,9 +260,9 @@ nlohmann::json measure_calls(double size, std::size_t tets, const Options& o) {
           {"series", series}};
 }
 
-/// Many calls in a row: at each of many places a region is refined, coarsened, moved and improved. What is
-/// left after the first call and after each quarter, and after another quarter by a new Remesher of that
-/// mesh: what only the old one has gathered would show there.
+/// Measures a long series of calls: each of many regions is refined, coarsened, moved and improved. Records
+/// the state after the first call, after each quarter, and after another quarter by a new Remesher of the
+/// same mesh: the difference is what the old one has accumulated.
 nlohmann::json measure_row(const Options& o) {
   const ThreadLimit one(1);
   Subject subject(o.calls_size, o);

@@ -27,7 +27,7 @@ struct Options {
   std::string program, json;
 };
 
-/// Arithmetic on registers: what the machine's threads are worth at this moment.
+/// Times arithmetic on registers: the current speed of the machine's threads.
 double compute_seconds(unsigned threads) {
   constexpr std::uint64_t steps = 400'000'000;
   const Stopwatch watch;
@@ -41,7 +41,7 @@ double compute_seconds(unsigned threads) {
     });
   for (std::thread& t : all) t.join();
   const double seconds = watch.seconds();
-  // Looked at, so that the compiler keeps the loops.
+  // Read the sums, so that the compiler keeps the loops.
   for (const std::uint64_t s : sums)
     if (s == 0) std::printf(" ");
   return seconds;
@@ -78,10 +78,10 @@ class Scaling {
   }
 
  private:
-  /// The number of tets; the mesh is at `path`.
+  /// Writes a mesh to `path` and returns its number of tets.
   std::size_t make_mesh(double size, const std::string& path) {
-    // Tets grow with the cube of the resolution: the last mesh, or a small first one, says how many there
-    // are.
+    // The number of tets grows with the cube of the resolution: extrapolate from the last mesh, or from a
+    // small first one.
     if (tets_per_cell_ == 0) {
       const std::size_t trial = mesh_once(48, path);
       tets_per_cell_ = static_cast<double>(trial) / (48.0 * 48 * 48);
@@ -103,7 +103,7 @@ class Scaling {
     return read_json(stats)["result"]["tets"];
   }
 
-  /// One run of the program, with what its statistics say.
+  /// Runs the program once and adds its statistics.
   nlohmann::json simplify_once(const std::string& mesh, std::size_t target, unsigned threads) {
     const std::string stats = scratch_ / "simplify.json";
     const ProgramRun r = run_program({o_.program, "simplify", mesh, "-o", scratch_ / "out.vtu",
@@ -162,8 +162,8 @@ class Scaling {
     std::fflush(stdout);
   }
 
-  /// Straight line through the peaks of the smallest mesh of about a million tets or more and of the largest,
-  /// with the first number of threads; of smaller meshes only, through the first and the last.
+  /// Straight line through the peaks of the smallest mesh of at least about a million tets and of the
+  /// largest, with the first number of threads. If all are smaller, through the first and the last.
   nlohmann::json memory_line() const {
     std::vector<std::pair<double, double>> points;
     for (const auto& c : cases_)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Meshes the same bodies with Tetwright, Gmsh, TetGen and Netgen and compares what the meshes are worth to a solver.
+"""Meshes the same bodies with Tetwright, Gmsh, TetGen and Netgen and compares the value of the meshes to a solver.
 
-usage: compare.py [--help]    (Debian's python3; gmsh, tetgen and python3-netgen where they are installed)
+usage: compare.py [--help]    (Debian's python3; gmsh, tetgen and python3-netgen if they are installed)
 
-Tetwright meshes a scan to a count, as it does by default and with a bound on the edges that makes all of about one
-size. The others fill the boundary of each of these meshes, to the same count within a few percent: they keep the
-triangles of a surface that they are given, and a scan has far too many for such a count. So all have the same surface, of
-good triangles, and differ in what they make inside.
+Tetwright meshes a scan to a count, once by default and once with a bound on the edges that makes all of about one size.
+The others fill the boundary of each of these meshes, to the same count within a few percent, since they keep the triangles
+of their input surface, and a scan has far too many for such a count. So all meshes have the same surface of good triangles
+and differ only inside.
 """
 import argparse
 import json
@@ -27,15 +27,15 @@ PYTHON = "/usr/bin/python3"  # another one on the path may not see Debian's modu
 COUNT_TOLERANCE = 0.02
 MOST_TRIALS = 10
 SECONDS_FOR_A_MESH = 600
-# Times the edge of the regular tet of the mean volume: tets of good shapes and about one size have edges up to this,
-# and a much shorter bound makes more tets than are wanted.
+# Times the edge of the regular tet with the mean volume: well-shaped tets of about one size have edges up to
+# this, and a much shorter bound makes more tets than the target.
 LONGEST_EDGE = 1.6
 SCANS = {"bunny": "scans/bunny_pmp.off", "armadillo": "scans/armadillo_libigl.obj", "dragon": "scans/dragon_quartet.obj"}
 SAMPLES = ("knot", "sphere", "torus", "cube")
 
 
 def run(*command, folder=None):
-    """What a program printed; None, with a line on stderr, where it failed or took too long."""
+    """Returns the standard output of a program; None, with a line on stderr, if it failed or took too long."""
     command = [str(c) for c in command]
     try:
         answer = subprocess.run(command, cwd=folder, check=False, capture_output=True, text=True, errors="replace",
@@ -43,7 +43,7 @@ def run(*command, folder=None):
     except subprocess.TimeoutExpired:
         print(f"{command[0]}: more than {SECONDS_FOR_A_MESH} s", file=sys.stderr)
         return None
-    # 1 is tetwright's mesh that is short of what was asked; a mesh that is there is judged by its measures.
+    # Status 1: tetwright's mesh falls short of the request. A mesh that exists is judged by its measures.
     if answer.returncode not in (0, 1):
         print(f"{command[0]}: status {answer.returncode}: {(answer.stderr or answer.stdout)[-300:]}", file=sys.stderr)
         return None
@@ -81,10 +81,10 @@ class Gmsh:
 
 
 class TetGen:
-    """Quality Delaunay that keeps the surface; the parameter is the largest volume.
+    """Quality Delaunay that keeps the surface; the parameter is the max volume.
 
-    Of the bounds on shapes (ratio of circumradius and shortest edge / dihedral angle) the strictest is taken that alone
-    makes no more tets than are wanted.
+    Uses the strictest bound on shapes (ratio of circumradius and shortest edge / dihedral angle) that alone makes no more
+    tets than the target.
     """
     name, first, power = "TetGen", None, -1
     BOUNDS = ("1.2/10", "1.3/5", "1.414", "2", "3", "5")
@@ -141,10 +141,10 @@ class Netgen:
 
 
 def search(program, surface, target, first, folder):
-    """Meshes with different parameters until the count is reached; returns the file whose count is nearest.
+    """Meshes with different parameters until the count is reached; returns the file with the nearest count.
 
-    Between two trials that enclose the count the next parameter comes from the straight line through the logarithms
-    of both, drawn towards the middle; else from the power by which counts follow the parameter.
+    If two trials enclose the count, the next parameter is on the straight line through the logarithms of both, shifted
+    towards the middle; otherwise it follows the power law between parameter and count.
     """
     program.begin(surface, target, folder)
     below = above = best = None  # (parameter, count) on either side of the target; (miss, file, count)
@@ -176,7 +176,7 @@ def regular_edge(volume):
 
 
 def prepare(surface, target, options, folder, *more):
-    """Tetwright's mesh and its count and volume; its boundary goes to surface.off and surface.stl."""
+    """Returns Tetwright's mesh, its count and its volume; writes its boundary to surface.off and surface.stl."""
     folder.mkdir(parents=True, exist_ok=True)
     mesh, stats, skin = folder / "tetwright.vtu", folder / "tetwright.json", folder / "surface.off"
     run(options.bin / "tetwright", "prepare", surface, "-o", mesh, "--target-tets", target, "--boundary", skin,
@@ -189,7 +189,7 @@ def prepare(surface, target, options, folder, *more):
 
 
 def fill(name, mesh, count, volume, programs):
-    """Meshes of the surface beside Tetwright's, by the name of their program."""
+    """Returns the meshes of the surface, Tetwright's among them, by the name of their program."""
     meshes = {"Tetwright": mesh}
     for program in programs:
         first = {"Gmsh": regular_edge(volume / count), "TetGen": 2 * volume / count}.get(program.name, program.first)
@@ -202,7 +202,7 @@ def fill(name, mesh, count, volume, programs):
 
 
 def measure(name, surface, meshes, options):
-    """What the solver program says of the meshes, as a table and by program."""
+    """Prints the solver program's measures of the meshes as a table and returns them by program."""
     report = meshes["Tetwright"].with_name("measured.json")
     run(options.bin / "solver", *meshes.values(), "--surface", surface, "--json", report)
     rows = dict(zip(meshes, json.loads(report.read_text())))

@@ -19,8 +19,9 @@ struct Elasticity {
   double poisson = 0.3;
 };
 
-/// What linear finite elements need of a tet: its volume and the constant gradients of the four functions
-/// that are 1 at one vertex and 0 at the others. The tet must be positive.
+/// A tet of linear finite elements: its volume and the constant gradients of the four basis functions, each 1
+/// at one vertex and 0 at the others.
+/// \pre The tet is positive.
 struct LinearTet {
   double volume;
   std::array<Vec3, 4> gradients;
@@ -29,27 +30,27 @@ struct LinearTet {
 
 std::array<Vec3, 4> corners_of(const TetMesh& mesh, const Tet& tet);
 
-/// Stiffness matrix of a tet for -div grad u, unit conductivity.
+/// Stiffness matrix of a tet for -div grad u with unit conductivity.
 Eigen::Matrix4d heat_stiffness(const LinearTet& tet);
 /// Stiffness matrix of a tet for linear elasticity; unknown 3 i + a is the displacement of vertex i along
 /// axis a.
 ElasticMatrix elastic_stiffness(const LinearTet& tet, const Elasticity& material);
 
-/// The matrices of a mesh, whole, with no boundary condition. All tets must be positive.
+/// The full matrices of a mesh, without boundary conditions.
+/// \pre All tets are positive.
 SparseMatrix heat_matrix(const TetMesh& mesh);
 SparseMatrix elastic_matrix(const TetMesh& mesh, const Elasticity& material);
 
-/// The volume that each point stands for: a quarter of each of its tets. Unit density times this is the
-/// lumped mass.
+/// Volume of each point: a quarter of each of its tets. With unit density these are the lumped masses.
 Eigen::VectorXd point_volumes(const TetMesh& mesh);
 
-/// Flags of the points of faces that belong to one tet only.
+/// By point: whether it has a face with one tet only.
 std::vector<std::uint8_t> boundary_points(const TetMesh& mesh);
 
-/// Takes out the points that no tet uses, for which a matrix would have an empty row.
+/// Removes points that no tet uses: a matrix would have empty rows for them.
 void remove_unused_points(TetMesh& mesh);
 
-/// The equations of the unknowns that are free when those flagged in `fixed` have the values in `values`.
+/// The equations of the free unknowns, where those flagged in `fixed` have the given `values`.
 struct FreeSystem {
   SparseMatrix matrix;
   Eigen::VectorXd right_side;
@@ -57,7 +58,7 @@ struct FreeSystem {
 
   FreeSystem(const SparseMatrix& all, const Eigen::VectorXd& load, const std::vector<std::uint8_t>& fixed,
              const Eigen::VectorXd& values);
-  /// The whole solution: `values` with the free ones replaced.
+  /// The full solution: `values` with the free ones replaced.
   Eigen::VectorXd expand(const Eigen::VectorXd& solution, Eigen::VectorXd values) const;
 };
 

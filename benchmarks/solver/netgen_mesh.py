@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fills a closed surface with Netgen's tets; the surface's triangles stay.
+"""Fills a closed surface with Netgen's tets; keeps the surface's triangles.
 
 usage: netgen_mesh.py SURFACE.off GRADING OUT.msh    (Debian's python3-netgen; prints the number of tets)
 
-GRADING is how fast tets may grow away from the surface, and so the way to a number of tets.
+GRADING is how fast tets may grow away from the surface, and so controls the number of tets.
 """
 import sys
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Surfaces between the programs: reads the .off files that tetwright writes, and writes .stl for Gmsh."""
+"""Exchange of surfaces between the programs: reads the .off files that tetwright writes, and writes .stl for Gmsh."""
 
 
 def read_off(path):
-    """Points as triples of numbers and triangles as triples of their indices."""
+    """Returns points as triples of numbers and triangles as triples of their indices."""
     with open(path, encoding="ascii") as file:
         words = iter(file.read().split())
     if next(words) != "OFF":
@@ -19,7 +19,7 @@ def read_off(path):
 
 
 def write_stl(places, faces, path):
-    """As text with every digit, so that equal points stay equal; readers compute the normals."""
+    """Writes text with every digit, so that equal points stay equal; readers compute the normals."""
     with open(path, "w", encoding="ascii") as file:
         file.write("solid body\n")
         for face in faces:

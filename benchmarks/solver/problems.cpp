@@ -13,11 +13,11 @@ namespace tetwright {
 
 namespace {
 
-/// Of the residual, relative to the right side: usual for engineering.
+/// Relative residual at which iterations stop: usual in engineering.
 constexpr double iterations_tolerance = 1e-8;
-/// Errors of the discretisation that are measured are larger by many orders.
+/// Relative residual far below the discretisation errors to be measured.
 constexpr double poisson_tolerance = 1e-11;
-/// Of the bounding box, which is held.
+/// Share of the bounding box that is held.
 constexpr double held_share = 0.1;
 
 using ConjugateGradient = Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper,
@@ -45,7 +45,7 @@ Eigen::AlignedBox3d bounding_box(const TetMesh& mesh) {
   return box;
 }
 
-/// Three plane waves in orthogonal directions that are none of the axes'.
+/// Three plane waves in orthogonal directions, none along an axis.
 class PlaneWaves {
  public:
   PlaneWaves(const Eigen::AlignedBox3d& box, double wavelengths)
@@ -57,15 +57,16 @@ class PlaneWaves {
   Vec3 gradient(const Vec3& p) const {
     return number_ * (directions_.transpose() * phases(p).array().cos().matrix());
   }
-  /// -div grad of the value.
+  /// -div grad u.
   double source(const Vec3& p) const { return number_ * number_ * value(p); }
 
  private:
   Vec3 phases(const Vec3& p) const {
-    return number_ * (directions_ * (p - origin_)) + Vec3(0, 1, 2);  // else all three vanish at the origin
+    return number_ * (directions_ * (p - origin_)) +
+           Vec3(0, 1, 2);  // otherwise all three vanish at the origin
   }
   Vec3 origin_;
-  double number_;  ///< wave number, radians for an input unit
+  double number_;  ///< wave number, radians per input unit
   Eigen::Matrix3d directions_;
 };
 
@@ -86,7 +87,7 @@ struct RelativeErrors {
   double l2, energy;
 };
 
-/// Of the linear field with these values at the points.
+/// Errors of the linear field with these values at the points.
 RelativeErrors errors_of(const TetMesh& mesh, const PlaneWaves& exact, const Eigen::VectorXd& values) {
   double l2 = 0, l2_exact = 0, energy = 0, energy_exact = 0;
   for (const Tet& t : mesh.tets) {

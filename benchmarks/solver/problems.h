@@ -5,29 +5,32 @@
 
 namespace tetwright {
 
-/// Conjugate gradients with the diagonal as preconditioner (Eigen's), from zero, until the residual is below
-/// 1e-8 of the right side.
+/// Iterations of conjugate gradients with diagonal preconditioner (Eigen's), started at zero, until the
+/// residual is below 1e-8 of the right side.
 struct Iterations {
   int heat = 0;     ///< unit source, temperature 0 on the held part
   int elastic = 0;  ///< gravity, the held part clamped
 };
 
-/// The held part are the points of the boundary in the lowest tenth of the bounding box along its longest
-/// axis; gravity pulls along the next axis, and bends the body. Throws std::runtime_error where conjugate
-/// gradients do not converge.
+/// Solves both problems. The held part are the boundary points in the lowest tenth of the bounding box along
+/// its longest axis; gravity acts along the next axis and bends the body.
+///
+/// \throws std::runtime_error if conjugate gradients do not converge.
 Iterations count_iterations(const TetMesh& mesh, const SparseMatrix& heat, const SparseMatrix& elastic);
 
-/// Errors of the solution of a Poisson problem, in shares of the exact solution's norm.
+/// Relative errors of the solution of a Poisson problem, in the exact solution's norm.
 struct PoissonErrors {
   double l2 = 0;
-  double energy = 0;  ///< of the gradient
-  double interpolation =
-      0;  ///< the energy error of the exact values at the points: what no solver can beat by much
+  double energy = 0;  ///< L2 error of the gradient
+  /// Energy error of the interpolated exact solution: no solver can be much better.
+  double interpolation = 0;
 };
 
-/// Solves -div grad u = f with the exact u at the boundary's points. u is a sum of three plane waves, the
-/// same everywhere in space, so that how well a mesh follows a body's surface does not come into it, but only
-/// what its tets make of a smooth field. `wavelengths` fit into the diagonal of the bounding box.
+/// Solves -div grad u = f with the exact u at the boundary's points. u is a sum of three plane waves fixed in
+/// space, so that the errors do not depend on how well a mesh fits the body's surface, but only on how its
+/// tets resolve a smooth field.
+///
+/// \param wavelengths number that fits into the diagonal of the bounding box.
 PoissonErrors poisson_errors(const TetMesh& mesh, const SparseMatrix& heat, double wavelengths = 2);
 
 }  // namespace tetwright

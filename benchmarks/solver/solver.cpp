@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// What a mesh is worth to a solver: iterations, time steps, eigenvalues and errors of linear finite elements.
+// The value of meshes to a solver: iterations, time steps, eigenvalues and errors of linear finite elements.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -19,8 +19,9 @@
 namespace tetwright {
 namespace {
 
-/// Reads a mesh of any program and turns its tets to be positive. Throws InputError if that is not possible,
-/// since a solver could not use them.
+/// Reads any program's mesh and makes its tets positive.
+///
+/// \throws InputError if that is not possible, since a solver could not use them.
 TetMesh read_for_solver(const std::string& path) {
   TetMesh mesh = read_tet_mesh(path).mesh;
   const ImportCleanupReport report = make_coherent(mesh);
@@ -31,7 +32,7 @@ TetMesh read_for_solver(const std::string& path) {
   return mesh;
 }
 
-/// Speed of the fastest waves in the material with unit density.
+/// Speed of the fastest waves in the material, with unit density.
 double wave_speed(const Elasticity& e) {
   return std::sqrt(e.young * (1 - e.poisson) / ((1 + e.poisson) * (1 - 2 * e.poisson)));
 }
@@ -44,7 +45,7 @@ TriangleMesh boundary(const TetMesh& mesh) {
   return surface;
 }
 
-/// How far the mesh's boundary is from the surface that the body was given as.
+/// Distances between the mesh's boundary and the given surface of the body.
 nlohmann::json distances(const TetMesh& mesh, const TriangleMesh& reference) {
   const TriangleMesh surface = boundary(mesh);
   const SurfaceDistance distance = surface_distance(surface, reference);

@@ -11,7 +11,7 @@ struct GaussPoint {
   double place, weight;
 };
 
-/// Gauss and Legendre's rule of four points, exact to degree 7, on [0, 1].
+/// Gauss-Legendre rule of four points on [0, 1], exact to degree 7.
 std::array<GaussPoint, 4> gauss_points() {
   const double inner = std::sqrt(3. / 7 - 2. / 7 * std::sqrt(6. / 5));
   const double outer = std::sqrt(3. / 7 + 2. / 7 * std::sqrt(6. / 5));
@@ -29,7 +29,7 @@ std::vector<TetQuadraturePoint> collapsed_cube() {
     for (const GaussPoint& s : gauss)
       for (const GaussPoint& t : gauss) {
         const double x = r.place, y = (1 - x) * s.place, z = (1 - x) * (1 - s.place) * t.place;
-        // The determinant of the collapse, over the volume 1/6 of the tet.
+        // Determinant of the collapse, divided by the tet's volume 1/6.
         const double stretch = 6 * (1 - x) * (1 - x) * (1 - s.place);
         points.push_back({{1 - x - y - z, x, y, z}, stretch * r.weight * s.weight * t.weight});
       }

@@ -9,7 +9,7 @@
 
 namespace tetwright {
 
-/// A point to integrate at: its barycentric coordinates, and its share of the tet's volume.
+/// A quadrature point: its barycentric coordinates, and its share of the tet's volume.
 struct TetQuadraturePoint {
   Eigen::Vector4d barycentric;
   double weight;
@@ -20,8 +20,8 @@ struct TetQuadraturePoint {
   }
 };
 
-/// Four Gauss points along each axis of a cube that is collapsed to the tet (Stroud, "Approximate Calculation
-/// of Multiple Integrals", 1971, section 2.5): 64 points inside the tet with positive weights, exact for
+/// Four Gauss points along each axis of a cube collapsed to the tet (Stroud, "Approximate Calculation of
+/// Multiple Integrals", 1971, section 2.5): 64 points inside the tet with positive weights, exact for
 /// polynomials of degree 5. The weights add up to 1.
 const std::vector<TetQuadraturePoint>& tet_quadrature();
 

@@ -9,10 +9,10 @@ namespace {
 
 struct Queued {
   WeighedCollapse collapse;
-  std::uint32_t version;  ///< of the origin when it was weighed
+  std::uint32_t version;  ///< version of the origin when it was weighed
 };
 
-/// Heaps of the standard library have the largest first.
+/// Order for heaps of the standard library, which have the largest first.
 bool later(const Queued& a, const Queued& b) {
   const WeighedCollapse &x = a.collapse, &y = b.collapse;
   return x.weight != y.weight   ? x.weight > y.weight
@@ -49,7 +49,7 @@ class ProgressiveMesh {
     return versions_[q.collapse.origin] == q.version && piece_.alive(q.collapse.origin);
   }
 
-  /// Puts the half-edges that begin at a point into fresh_.
+  /// Weighs the half-edges that begin at a point into fresh_.
   void weigh(Index p) {
     weighed_.clear();
     ++versions_[p];
@@ -62,7 +62,7 @@ class ProgressiveMesh {
 
   void take(const WeighedCollapse& c) {
     if (!piece_.gather(task_, c.origin) || !piece_.propose(task_, c.target))
-      return;  // until its star changes
+      return;  // illegal until its star changes
     link_ = task_.star.points;
     piece_.carry_out(task_);
     for (const Index p : link_) weigh(p);
@@ -73,7 +73,7 @@ class ProgressiveMesh {
     fresh_.clear();
   }
 
-  /// Memory would grow without end.
+  /// Removes outdated entries: memory would otherwise grow without bound.
   void drop_outdated() {
     std::erase_if(heap_, [&](const Queued& q) { return !current(q); });
     std::make_heap(heap_.begin(), heap_.end(), later);
@@ -84,7 +84,7 @@ class ProgressiveMesh {
   bool eager_;
   VolumeLedger ledger_;  // no bounds: the paper has none
   Workspace task_;
-  std::vector<std::uint32_t> versions_;  ///< by point; grows when what it begins is weighed anew
+  std::vector<std::uint32_t> versions_;  ///< by point; incremented when its half-edges are weighed again
   std::vector<Queued> heap_, fresh_;
   std::size_t drop_outdated_at_ = 0;
   std::vector<WeighedCollapse> weighed_;

@@ -13,8 +13,8 @@ Workpiece::Workpiece(TetMesh input, std::size_t target_tets)
   rules.objective.quality = TetQuality::for_target(mesh.total_volume(), static_cast<double>(target));
   rules.max_error = std::numeric_limits<double>::infinity();
   rules.count.min = 0;
-  // Shape refuses only what falls far behind what stands there, in both orderings alike: none could reach the
-  // target if nothing might become worse.
+  // Refuse only shapes far worse than the current ones, in both orderings alike: neither could reach the
+  // target if nothing might get worse.
   rules.accept_worse = 1;
   rules.annealing_floor = 0.1f;
   grid.build(mesh, rules.objective.quality.ideal_edge / 2);

@@ -10,7 +10,7 @@
 
 namespace tetwright {
 
-/// What an ordering of collapses cost.
+/// Cost of an ordering of collapses.
 struct StrategyCounts {
   std::uint64_t weights = 0;  ///< collapses evaluated: Weight = length + Error of a half-edge
   std::uint64_t tests = 0;  ///< collapses whose legality was tested: signs, quality, link condition, surface
@@ -18,13 +18,13 @@ struct StrategyCounts {
   std::uint64_t collapses = 0;  ///< carried out
 };
 
-/// A half-edge: `origin` is drawn onto `target`.
+/// A half-edge: `origin` collapses onto `target`.
 struct WeighedCollapse {
   double weight;
   Index origin, target;
 };
 
-/// A mesh on its way to a target, with the pieces of simplify/ that both orderings are made of. One thread.
+/// A mesh that is being simplified, with the parts of simplify/ that both orderings share. One thread.
 class Workpiece {
  public:
   Workpiece(TetMesh mesh, std::size_t target_tets);
@@ -34,16 +34,16 @@ class Workpiece {
   /// Quality(t)^3 of every tet.
   void rate_all();
 
-  /// Gathers the star of a living point; false where it is too large for an operation.
+  /// Gathers the star of a live point; false if it is too large for an operation.
   bool gather(Workspace& ws, Index point);
-  /// Appends the weights of all half-edges that begin at the gathered star's centre and that dimensions and
-  /// materials allow; only those to a point for which `wanted` is true.
+  /// Appends the weights of all half-edges from the gathered star's centre that dimensions and materials
+  /// allow, to points for which `wanted` is true.
   void weigh(
       Workspace& ws, std::vector<WeighedCollapse>& out,
       const std::function<bool(Index)>& wanted = [](Index) { return true; });
-  /// Whether a collapse of the gathered star's centre is legal; then it is proposed.
+  /// Proposes the collapse of the gathered star's centre if it is legal; returns whether it is.
   bool propose(Workspace& ws, Index onto);
-  /// Carries out what was proposed.
+  /// Carries out the proposal.
   void carry_out(Workspace& ws);
 
   TetMesh result() && { return std::move(mesh).to_mesh(); }

@@ -6,17 +6,17 @@
 
 namespace tetwright {
 
-/// A row of Table 1 of Cutler, Dorsey & McMillan 2004 (Pentium 4 Xeon at 2.4 GHz), and the scan that stands
-/// for its model.
+/// A row of Table 1 of Cutler, Dorsey & McMillan 2004 (Pentium 4 Xeon at 2.4 GHz), and the scan used for its
+/// model.
 struct PaperRow {
   const char* model;
   const char* scan;          ///< in the data folder
-  std::size_t initial_tets;  ///< of the dense mesh
+  std::size_t initial_tets;  ///< tets of the dense mesh
   std::size_t target_tets;
   int iterations;
   int seconds;
   double below_before, below_after;  ///< percent of tets under 0.1 sr
-  double min_after;                  ///< smallest solid angle, steradians
+  double min_after;                  ///< min solid angle, steradians
 };
 
 inline constexpr const char* bunny_scan = "scans/bunny_pmp.off";

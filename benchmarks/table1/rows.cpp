@@ -58,7 +58,7 @@ nlohmann::json make_dense(const std::string& scan, std::size_t tets, const std::
   MesherOptions options;
   options.uniform = true;
   options.voxel_size = (input.high - input.low).maxCoeff() / 64;
-  // Tets grow with the cube of the resolution.
+  // The number of tets grows with the cube of the resolution.
   options.voxel_size *= std::cbrt(static_cast<double>(estimate_mesh(input, options).tets) / wanted);
   double last_size = 0, last_count = 0;
   for (int step = 1; step <= max_steps; ++step) {

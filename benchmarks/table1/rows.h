@@ -10,19 +10,22 @@
 namespace tetwright {
 
 /// Meshes a scan with the uniform mesher to within 3 % of a count, and writes the dense mesh to `path`
-/// (.vtu). The voxel size comes from the estimate's, then by secant steps between the logarithms of voxel
-/// size and count. Answers {voxel_size, tets, steps, seconds_mesh}; throws what the mesher throws.
+/// (.vtu). The voxel size starts at an estimate and is refined by secant steps between the logarithms of
+/// voxel size and count.
+///
+/// \return {voxel_size, tets, steps, seconds_mesh}.
+/// \throws as the mesher.
 nlohmann::json make_dense(const std::string& scan, std::size_t tets, const std::string& path);
 
 struct RowOptions {
   SimplifyOptions simplify;
   unsigned threads = 0;      ///< 0: all
-  std::string write_to;      ///< the result's file; empty: not kept
-  bool measure_more = true;  ///< else only time, memory and counts: enough for a repetition
+  std::string write_to;      ///< file of the result; empty: not kept
+  bool measure_more = true;  ///< otherwise only time, memory and counts, as for a repetition
 };
 
-/// Simplifies the dense mesh of a file and measures the result. Times are of simplify() alone; the peak is
-/// that of the process while it runs, with the mesh it is given and what it returns.
+/// Simplifies the dense mesh in a file and measures the result. Times are of simplify() alone; the peak is
+/// the process's during that, with the input mesh and the result.
 nlohmann::json run_row(const std::string& dense, const std::string& scan, const RowOptions& options);
 
 }  // namespace tetwright

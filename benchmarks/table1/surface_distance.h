@@ -7,7 +7,7 @@
 
 namespace tetwright {
 
-/// Of the bounding box of all points that a triangle has.
+/// Diagonal of the bounding box of all points that a triangle uses.
 double diagonal(const TriangleMesh& surface);
 
 /// Distances of one surface's samples from another surface.
@@ -20,11 +20,12 @@ struct SurfaceDistance {
   OneWayDistance from_reference;  ///< from the scan to the mesh's boundary
 };
 
-/// Samples of a surface: each triangle gets samples in proportion to its area, at random places, so that
-/// their mean is a mean over the surface (systematic sampling: the running sum of areas is cut into `count`
-/// equal parts, one sample in each). The rms is taken over these; the maximum also over all vertices, edge
-/// midpoints and centroids. Distances are exact, from the nearest of all triangles of the other surface.
-/// Deterministic. In the surfaces' unit.
+/// Two-way distance between surfaces, in their unit. Deterministic.
+///
+/// A surface is sampled at random points, in proportion to the triangles' areas, so that the samples' mean is
+/// a mean over the surface (systematic sampling: the running sum of areas is cut into `count` equal parts,
+/// one sample in each). The rms is over these samples; the maximum also over all vertices, edge midpoints and
+/// centroids. Distances to the nearest triangle of the other surface are exact.
 SurfaceDistance surface_distance(const TriangleMesh& surface, const TriangleMesh& reference,
                                  std::size_t count = 200000);
 

@@ -87,7 +87,7 @@ void print_row(const PaperRow& p, const std::string& schedule, const nlohmann::j
   std::fflush(stdout);
 }
 
-/// All repetitions of one row with one schedule, each in a process of its own.
+/// Measures all repetitions of a row with one schedule, each in a process of its own.
 nlohmann::json measure(const PaperRow& p, const std::string& schedule, const std::string& dense,
                        const std::string& scan, const Options& o) {
   nlohmann::json row;

@@ -11,8 +11,8 @@ namespace tetwright {
 
 namespace {
 
-/// Triangles without area get the normal of the one across their longest edge that has some: else patches
-/// would hang together across them.
+/// Gives triangles without area the normal of a neighbour across their longest edge whose neighbour has one;
+/// otherwise patches would be connected across them.
 void take_normals_beside(std::span<const Vec3> points, const std::vector<EdgeUse>& uses,
                          std::vector<Vec3>& normals) {
   const auto is_flat = [&](Index t) { return normals[t].isZero(0); };

@@ -10,15 +10,16 @@
 
 namespace tetwright {
 
-/// An edge between two triangles of a group.
+/// An edge shared by two triangles of a group.
 struct InnerEdge {
   std::array<Index, 2> ends, triangles;
   double length;
-  double turn;  ///< radians, 0 to pi; 0 where a triangle has no area
+  double turn;  ///< angle between the normals, radians, 0 to pi; 0 where there is no normal
 };
 
-/// The edges in which two triangles of a group meet that are wound alike, ascending by their ends. `uses` are
-/// the edge_uses() of the triangles. Triangles without area turn as what is beside them does.
+/// Edges shared by two consistently oriented triangles of a group, ascending by their endpoints. A triangle
+/// without area gets the normal of a neighbour.
+/// \param uses edge_uses() of the triangles
 std::vector<InnerEdge> inner_edges(std::span<const Vec3> points, std::span<const Triangle> triangles,
                                    const std::vector<EdgeUse>& uses);
 

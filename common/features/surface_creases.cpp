@@ -79,7 +79,7 @@ class CreasePoints {
     bool is_plain() const { return count == 2 && !mixed; }
   };
 
-  /// The first place at least `reach` from a point, or the end of the crease; visits those before it.
+  /// The first point at least `reach` from a point, or the end of the crease; visits those before it.
   template <class Visit>
   Index walk(Index from, Index towards, double reach, const Visit& visit) const {
     Index last = from, now = towards;

@@ -18,13 +18,13 @@ namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180;
 
-// Angles and shares found on 11 parts, 6 prints and 13 scans, and 55 more files.
+// Angles and fractions tuned on 11 parts, 6 prints and 13 scans, and 55 more files.
 constexpr double automatic_angle = 35;   ///< degrees
-constexpr double low_share = 15.0 / 35;  ///< of the angle: edges that turn less never are borders
-constexpr double min_sharp_share = 0.5;  ///< of a border's length turns by more than the angle
+constexpr double low_share = 15.0 / 35;  ///< of the angle: edges that turn less are never borders
+constexpr double min_sharp_share = 0.5;  ///< sharp fraction of a border's length below which it vanishes
 constexpr double max_loose_low = 0.09;   ///< parts have up to 0.07, scans that pass the other test 0.10
 constexpr double max_loose_high = 0.2;   ///< parts have up to 0.10, scans that pass the other test 0.43
-/// A staircase has many patches, each of few triangles; or its sharp edges are those of equal boxes.
+/// A staircase has many patches of few triangles each, or its sharp edges are those of equal boxes.
 constexpr std::size_t min_staircase_patches = 256;
 constexpr std::size_t max_staircase_triangles = 4;
 constexpr double same_length = 1e-3, right_angle = 90 * degree, same_angle = 1 * degree;
@@ -47,8 +47,8 @@ std::vector<std::uint8_t> points_between(const std::vector<EdgeUse>& uses, std::
   return between;
 }
 
-/// The share of the edges that turn by more than the angle at which a chain of such edges ends, other than at
-/// the points of `ends`.
+/// Loose ends: points other than `ends` at which a chain of edges that turn by more than the angle ends, over
+/// the number of these edges.
 double loose_ends(const std::vector<InnerEdge>& edges, const std::vector<std::uint8_t>& ends, double angle) {
   std::vector<std::uint32_t> degrees(ends.size(), 0);
   std::size_t sharp = 0;
@@ -62,7 +62,7 @@ double loose_ends(const std::vector<InnerEdge>& edges, const std::vector<std::ui
   return sharp == 0 ? 0 : static_cast<double>(loose) / static_cast<double>(sharp);
 }
 
-/// Whether all edges that turn by more than the angle do so by 90 degrees and have one of three lengths.
+/// Whether all edges that turn by more than the angle turn by 90 degrees and have at most three lengths.
 bool are_of_boxes(const std::vector<InnerEdge>& edges, double angle) {
   std::vector<double> lengths;
   for (const InnerEdge& e : edges) {
@@ -76,7 +76,7 @@ bool are_of_boxes(const std::vector<InnerEdge>& edges, double angle) {
   return true;
 }
 
-/// Parts of a surface that are merged across the border that turns least.
+/// Merges parts of a surface across their least sharp borders.
 class PatchMerger {
  public:
   PatchMerger(std::vector<double> areas, const std::vector<InnerEdge>& edges, double angle)
@@ -93,7 +93,7 @@ class PatchMerger {
     }
   }
 
-  /// Merges across borders of which too little is sharp.
+  /// Merges across borders whose sharp fraction is too small.
   void merge_weak() {
     for (const auto& [a, neighbours] : borders_)
       for (const auto& [b, border] : neighbours)
@@ -108,7 +108,8 @@ class PatchMerger {
     for (Index t = 0; t < sets_.size(); ++t) roots += sets_.is_root(t);
     return roots;
   }
-  /// Parts below `min_area`, the smallest first, go to the neighbour with the weakest border; how many.
+  /// Merges parts below `min_area`, the smallest first, with the neighbour across the weakest border. Returns
+  /// their number.
   std::size_t merge_small(double min_area) {
     std::set<std::pair<double, Index>> small;
     const auto list = [&](Index part) {
@@ -137,7 +138,7 @@ class PatchMerger {
     }
     return dropped;
   }
-  /// The part of each triangle: the number of one of its triangles.
+  /// Part of each triangle: the index of one of its triangles.
   std::vector<Index> parts() {
     std::vector<Index> parts(sets_.size());
     for (std::size_t t = 0; t < parts.size(); ++t) parts[t] = sets_.root(static_cast<Index>(t));
@@ -190,7 +191,7 @@ class PatchMerger {
   std::set<Queued> queue_;
 };
 
-/// The parts of each group, as if no edge were a crease.
+/// Groups as parts, as if no edge were a crease.
 std::vector<Index> whole_groups(std::span<const std::uint32_t> groups) {
   std::map<std::uint32_t, Index> firsts;
   std::vector<Index> parts(groups.size());
@@ -199,7 +200,8 @@ std::vector<Index> whole_groups(std::span<const std::uint32_t> groups) {
   return parts;
 }
 
-/// What find_patches() answers but for the numbers, and the part of each triangle, by one of its triangles.
+/// Result of find_patches() except the patch numbers, and the part of each triangle, as the index of one of
+/// its triangles.
 struct FoundParts {
   SurfacePatches found;
   std::vector<Index> parts;
@@ -232,7 +234,7 @@ FoundParts find_parts(std::span<const Vec3> points, std::span<const Triangle> tr
   }
   PatchMerger merger(triangle_areas(points, triangles), edges, sharp);
   merger.merge_weak();
-  // Before small ones go, which depends on the size of cells.
+  // Before small parts are merged, which depends on the size of cells.
   const std::size_t count = merger.count();
   if (automatic && count >= min_staircase_patches &&
       (count > max_patches || count * max_staircase_triangles > triangles.size() ||
@@ -260,7 +262,7 @@ SurfacePatches find_patches(std::span<const Vec3> points, std::span<const Triang
                             const PatchOptions& options, std::span<const std::uint32_t> groups,
                             const std::string& file) {
   FoundParts found = find_parts(points, triangles, options, groups);
-  // In the order of their first triangles.
+  // Numbered in the order of their first triangles.
   std::vector<std::uint32_t> numbers(triangles.size(), no_index);
   std::uint32_t count = 0;
   for (std::size_t t = 0; t < triangles.size(); ++t) {

@@ -32,15 +32,15 @@ constexpr std::string_view standard_stream = "-";
                     (error ? std::strerror(error) : ""));
 }
 
-/// The file that a chain of links leads to; it need not exist.
+/// Target of a chain of links; it need not exist.
 std::string link_target(const std::string& path) {
   fs::path target = path;
   std::error_code error;
-  // As many links as the system itself follows.
+  // The system's own limit on links.
   for (int i = 0; i < 40 && fs::is_symlink(fs::symlink_status(target, error)); ++i) {
     const fs::path next = fs::read_symlink(target, error);
     if (error) fail(path, "the link can't be followed", error.value());
-    target = target.parent_path() / next;  // an absolute `next` replaces it all
+    target = target.parent_path() / next;  // an absolute `next` replaces the whole path
   }
   if (fs::is_symlink(fs::symlink_status(target, error))) fail(path, "too many links", ELOOP);
   return target.string();
@@ -51,7 +51,7 @@ std::string folder_of(const std::string& path) {
   return folder.empty() ? "." : folder.string();
 }
 
-/// While one exists, exceeding the file size limit makes write() fail instead of ending the process.
+/// Makes write() fail at the file size limit during its lifetime, instead of ending the process.
 class FileSizeSignalIgnored {
  public:
   FileSizeSignalIgnored() {
@@ -75,7 +75,7 @@ class FileSizeSignalIgnored {
   static inline struct sigaction before_ = {};
 };
 
-/// The names of the temporary files, where a signal handler can read them.
+/// Names of the temporary files, readable by a signal handler.
 struct TemporaryName {
   std::atomic<bool> taken{false};
   /// Set after `path` is filled in.
@@ -84,9 +84,9 @@ struct TemporaryName {
 };
 std::array<TemporaryName, 256> temporary_names;
 
-// The protocol between threads that create or rename files and abandon_output_files(). All of it is
-// sequentially consistent: either a thread sees `abandoned` and goes no further, or abandon_output_files()
-// sees it in `changing` and waits for it.
+// Protocol between threads that create or rename files and abandon_output_files(). All accesses are
+// sequentially consistent: either a thread sees `abandoned` and stops, or abandon_output_files() sees it in
+// `changing` and waits for it.
 std::atomic<bool> abandoned{false};
 std::atomic<int> changing{0};
 std::atomic<bool> any_committed{false};
@@ -97,7 +97,7 @@ void sleep_a_moment() noexcept {
   nanosleep(&moment, nullptr);
 }
 
-/// While one exists its thread changes folders, and abandon_output_files() waits. The signals whose handlers
+/// Marks its thread as changing folders, for which abandon_output_files() waits. The signals whose handlers
 /// might call that are blocked in this thread, which would wait for itself.
 class FolderChange {
  public:
@@ -132,7 +132,7 @@ class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& folder) {
     static std::atomic<unsigned> number{0};
-    // Other processes may write into the same folder; one that crashed may have had our number.
+    // Other processes may write into the same folder; a crashed one may have had this process's number.
     for (int attempt = 0; attempt < 100 && file_ < 0; ++attempt) {
       path_ = folder + "/" + temporary_beginning(getpid()) + std::to_string(number++) + temporary_ending;
       const FolderChange change;
@@ -160,7 +160,7 @@ class TemporaryFile {
     file_ = -1;
     return result;
   }
-  /// False, with errno, if it failed.
+  /// Returns false and sets errno on failure.
   bool rename_to(const std::string& target) {
     if (std::rename(path_.c_str(), target.c_str()) != 0) return false;
     exists_ = false;
@@ -191,11 +191,10 @@ class TemporaryFile {
   TemporaryName* name_ = nullptr;
 };
 
-/// Bytes that are written between two looks at whether the work was cancelled. Some systems refuse more than
-/// 2 GiB at once anyway.
+/// Bytes written between two checks for cancellation. Some systems reject more than 2 GiB at once anyway.
 constexpr std::size_t piece_size = std::size_t{1} << 26;
 
-/// Whoever reads a pipe gets the bytes as they come: they cannot be taken back.
+/// Writes to standard output. The reader of a pipe gets the bytes at once: they cannot be taken back.
 void write_to_stdout(std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(STDOUT_FILENO, bytes.data(), std::min(bytes.size(), piece_size));
@@ -205,7 +204,7 @@ void write_to_stdout(std::string_view bytes) {
   }
 }
 
-/// The new names reach the disk with the folder; where that can't be synced the file is there all the same.
+/// Syncs new names in a folder to disk; if the folder cannot be synced, the files are there all the same.
 void sync_folder(const std::string& path) {
   const int folder = open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder < 0) return;
@@ -213,11 +212,11 @@ void sync_folder(const std::string& path) {
   close(folder);
 }
 
-/// All bytes up to the end, about `size` of them.
+/// Reads all bytes up to the end, about `size` of them.
 std::string read_all(int file, const std::string& path, std::size_t size) {
   std::string bytes;
   std::size_t used = 0;
-  // One more than the size, so that the end is met without growing; a pipe's size is 0.
+  // One more than the size, so that the end is reached without growing; a pipe's size is 0.
   bytes.resize(size + 1);
   for (;;) {
     if (used == bytes.size()) bytes.resize(bytes.size() * 2 + 4096);
@@ -237,9 +236,9 @@ std::string real_path(const std::string& path) {
   std::error_code error;
   fs::path target = fs::absolute(path, error);
   try {
-    target = link_target(target.string());  // also to a file that is not there, unlike weakly_canonical()
+    target = link_target(target.string());  // also if the target does not exist, unlike weakly_canonical()
   } catch (const OutputError&) {
-    return target.string();  // a circle of links
+    return target.string();  // links form a cycle
   }
   const fs::path whole = fs::weakly_canonical(target, error);
   return (error ? target.lexically_normal() : whole).string();
@@ -349,7 +348,7 @@ void remove_temporary_files(const std::string& path, int process) noexcept try {
     if (name.starts_with(beginning) && name.ends_with(temporary_ending)) fs::remove(entry.path(), error);
   }
 } catch (...) {
-  // They take room and harm nobody.
+  // The files only take space.
 }
 
 bool abandon_output_files() noexcept {
@@ -362,7 +361,7 @@ bool abandon_output_files() noexcept {
 
 std::string read_whole_file(const std::string& path) {
   int file = -1;
-  // Opening a pipe waits for who writes into it; signals that the host handles do not end this.
+  // Opening a pipe waits for its writer; signals that the host handles do not interrupt this.
   do file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   while (file < 0 && errno == EINTR);
   if (file < 0) throw InputError("cannot read " + path + ": " + std::strerror(errno));

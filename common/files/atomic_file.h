@@ -11,25 +11,26 @@ namespace tetwright {
 
 class Progress;
 
-/// Throws OutputError unless a file can be written at `path` ("-" always can): its folder exists and is
-/// writable, and what is already at `path` is a writable regular file, or a link to one or to nothing.
-/// Changes nothing. To be called before any work.
+/// Checks that a file can be written at `path`; changes nothing. Call it before any work.
+/// \param path "-" (standard output) always passes
+/// \throws OutputError unless the folder exists and is writable, and anything already at `path` is a writable
+///   regular file or a link to one or to nothing
 void check_output_file(const std::string& path);
 
-/// The absolute path of what `path` leads to, links followed: equal for all ways to name a file, whether or
-/// not it exists. Not for hard links.
+/// Absolute path of the target of `path`, links followed: equal for all names of a file, whether or not it
+/// exists. Hard links are not recognised.
 std::string real_path(const std::string& path);
 
-/// Takes the bytes of a file piece by piece.
+/// Receives the bytes of a file piece by piece.
 using ByteSink = std::function<void(std::string_view)>;
 
 /// Files that appear together or not at all, each of them whole.
 ///
-/// write() puts a file beside its target, under another name, and syncs it to the disk; commit() renames all
+/// write() puts a file beside its target, under a temporary name, and syncs it to disk; commit() renames all
 /// of them over their targets. Until then the targets are untouched, and whatever ends the work (an
-/// exception, a full disk, cancelling, abandon_output_files()) leaves nothing behind. Only a rename that
-/// fails, or a machine that stops during commit(), can leave some of the files in place without the others,
-/// each of them whole; SIGKILL leaves the files under their other names (".tetwright-*.tmp").
+/// exception, a full disk, cancellation, abandon_output_files()) leaves nothing behind. Only a rename that
+/// fails, or a machine that stops during commit(), can leave some files in place without the others, each of
+/// them whole. SIGKILL leaves the temporary files (".tetwright-*.tmp").
 ///
 /// "-" is standard output: its bytes are kept in memory and written by commit() before the first rename.
 ///
@@ -37,20 +38,22 @@ using ByteSink = std::function<void(std::string_view)>;
 /// during write(), for the whole process. Different objects may be used concurrently.
 class OutputFiles {
  public:
-  /// Once `progress` is cancelled, write() throws Interrupted before the next piece of at most 64 MB, and
-  /// commit() before its first rename. Null: nothing is cancelled.
+  /// \param progress if it is cancelled, write() throws Interrupted before the next piece of at most 64 MB,
+  ///   and commit() before its first rename; null: no cancellation
   explicit OutputFiles(const Progress* progress = nullptr);
   /// Removes what was not committed.
   ~OutputFiles();
   OutputFiles(const OutputFiles&) = delete;
   OutputFiles& operator=(const OutputFiles&) = delete;
 
-  /// `content` hands the bytes over. What it throws is thrown on, and the file is removed. Throws OutputError
-  /// if the file can't be written.
+  /// Writes one temporary file.
+  /// \param content passes the bytes to its argument; its exceptions are rethrown, and the file is removed
+  /// \throws OutputError if the file cannot be written
   void write(const std::string& path, const std::function<void(const ByteSink&)>& content);
   void write(const std::string& path, std::string_view bytes);
 
-  /// Throws OutputError if a file can't be renamed. Further files may be written afterwards.
+  /// Renames all files over their targets. Further files may be written afterwards.
+  /// \throws OutputError if a file cannot be renamed
   void commit();
 
  private:
@@ -64,25 +67,28 @@ class OutputFiles {
 void write_file_atomically(const std::string& path, std::string_view bytes);
 void write_file_atomically(const std::string& path, const std::function<void(const ByteSink&)>& content);
 
-/// Removes what a process that has ended without its own clean-up has left beside the file `path`.
+/// Removes the temporary files beside `path` of a process that ended without its own clean-up.
 void remove_temporary_files(const std::string& path, int process) noexcept;
 
-/// For handlers of signals and of std::terminate that end the process: removes the files that were written
-/// but not committed. From then on no other thread creates or renames one, so that the process must end.
-/// Returns whether any file was committed in the life of the process. Async-signal-safe.
+/// Removes the files that were written but not committed, for handlers of signals and of std::terminate that
+/// end the process. Afterwards no other thread creates or renames a file, so that the process must end.
+/// Async-signal-safe.
 ///
-/// The handler's signal should be blocked while a file is created or renamed; this is so for SIGHUP, SIGINT
-/// and SIGTERM, in the thread that does it. Files beyond the 256th at a time, or with names beyond 4,000
-/// bytes, are not known to this function.
+/// The handler's signal should be blocked while a file is created or renamed; SIGHUP, SIGINT and SIGTERM are,
+/// in the thread that does so. Files beyond the 256th at a time, or with names beyond 4,000 bytes, are
+/// unknown to this function.
+/// \return whether the process has ever committed a file
 bool abandon_output_files() noexcept;
 
-/// Brings the name of a new file to the disk, as far as its folder allows that.
+/// Syncs the name of a new file to disk, as far as its folder allows.
 void sync_folder_of(const std::string& path);
 
-/// All bytes of a file or pipe. Throws InputError if it can't be read or is neither.
+/// Reads a file or pipe to its end.
+/// \throws InputError if it cannot be read or is neither
 std::string read_whole_file(const std::string& path);
 
-/// All bytes of standard input. Throws InputError.
+/// Reads standard input to its end.
+/// \throws InputError
 std::string read_standard_input();
 
 }  // namespace tetwright

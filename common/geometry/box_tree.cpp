@@ -12,9 +12,9 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t node_grain = 256;   ///< leaves a parallel loop hands out at a time
-constexpr std::size_t item_grain = 4096;  ///< items likewise
-/// Ranges of more items are halved by one thread, smaller ones in parallel.
+constexpr std::size_t node_grain = 256;   ///< leaves for each task of a parallel loop
+constexpr std::size_t item_grain = 4096;  ///< items for each task
+/// Larger ranges are halved by one thread, smaller ones in parallel.
 constexpr std::size_t parallel_below = 1 << 14;
 
 }  // namespace

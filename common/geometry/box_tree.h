@@ -45,12 +45,12 @@ struct Box3 {
   }
 };
 
-/// A bounding volume hierarchy over items that stand in an order of the caller's: neighbours in the order
-/// should be neighbours in space (morton_order(), median_order()). The tree knows positions in that order and
-/// boxes, never the items.
+/// A bounding volume hierarchy over items in an order of the caller's: neighbours in the order should be
+/// neighbours in space (morton_order(), median_order()). The tree stores positions in that order and boxes,
+/// never the items.
 ///
-/// A node of L > 1 leaves is halved into L / 2 and the other leaves, so that its shape follows from the
-/// number of items alone. Nodes stand in depth-first order: the first child of node k is k + 1, and `next` is
+/// A node of L > 1 leaves is split into L / 2 and the remaining leaves, so that its shape depends on the
+/// number of items alone. Nodes are in depth-first order: the first child of node k is k + 1, and `next` is
 /// the first node that is not below k. Built in O(n); 64 bytes for each node. Immutable after construction;
 /// all functions may be called concurrently.
 class BoxTree {
@@ -66,7 +66,8 @@ class BoxTree {
   };
 
   BoxTree() = default;
-  /// `box_at(position)` returns an item's box. Fewer than 2^31 items.
+  /// \param box_at returns the box of the item at a position
+  /// \pre fewer than 2^31 items
   BoxTree(std::size_t count, std::size_t leaf_size, const std::function<Box3(std::size_t)>& box_at);
 
   bool empty() const { return nodes_.empty(); }
@@ -74,9 +75,11 @@ class BoxTree {
   bool is_leaf(const Node& node) const { return node.end - node.begin <= leaf_size_; }
   Range all() const { return {0, nodes_.empty() ? 0 : nodes_[0].end}; }
 
-  /// Visits items nearest boxes first: `visit(position, best)` returns the smaller of `best` and the squared
-  /// distance of the item from `p`. Leaves farther away than the best so far are passed over, those at the
-  /// same distance are not. Only items of `range`. Returns the best, `squared_limit` where nothing is nearer.
+  /// Visits the items of `range`, nearest boxes first. Leaves farther away than the best so far are skipped,
+  /// those at the same distance are not.
+  /// \param visit `visit(position, best)` returns the minimum of `best` and the squared distance of the item
+  ///   from `p`
+  /// \return the best squared distance; `squared_limit` if nothing is nearer
   template <class Visit>
   double nearest(const Vec3& p, double squared_limit, const Range& range, const Visit& visit) const {
     double best = squared_limit;
@@ -110,7 +113,8 @@ class BoxTree {
   }
 
   /// Calls `visit(position)` for the items of `range` in leaves whose box contains `p`, in ascending order,
-  /// until it returns true. Whether it did.
+  /// until it returns true.
+  /// \return whether it returned true
   template <class Visit>
   bool any_containing(const Vec3& p, const Range& range, const Visit& visit) const {
     for (std::size_t k = 0; k < nodes_.size();) {
@@ -129,8 +133,8 @@ class BoxTree {
     return false;
   }
 
-  /// Calls `visit(position)` for all items in leaves such that `enter(box)` holds for their boxes and those
-  /// of all nodes above, in ascending order.
+  /// Calls `visit(position)`, in ascending order, for the items of all leaves for which `enter(box)` holds on
+  /// the leaf and all its ancestors.
   template <class Enter, class Visit>
   void for_each_in(const Enter& enter, const Visit& visit) const {
     for (std::size_t k = 0; k < nodes_.size();) {
@@ -145,8 +149,8 @@ class BoxTree {
     }
   }
 
-  /// Calls `visit(leaf)` for the leaf `own` (a place in nodes()) and each later leaf whose box intersects its
-  /// own: over all leaves, each pair once.
+  /// Calls `visit(leaf)` for the leaf `own` (an index into nodes()) and each later leaf whose box intersects
+  /// its box: over all leaves, each pair once.
   template <class Visit>
   void for_each_later_intersecting_leaf(std::size_t own, const Visit& visit) const {
     const Node& leaf = nodes_[own];
@@ -161,24 +165,24 @@ class BoxTree {
     }
   }
 
-  /// The number of leaves for so many items.
+  /// Number of leaves for a number of items.
   static std::size_t leaf_count(std::size_t items, std::size_t leaf_size) {
     return (items + leaf_size - 1) / leaf_size;
   }
 
  private:
-  static constexpr std::size_t stack_size = 64;  // the tree is at most 32 high, each level leaves one entry
+  static constexpr std::size_t stack_size = 64;  // height at most 32, and each level leaves one entry
 
   std::vector<Node> nodes_;
   std::size_t leaf_size_ = 1;
 };
 
-/// The items 0 to boxes.size() - 1 in the Morton order of their boxes' centres.
+/// Items 0 to boxes.size() - 1 in the Morton order of their boxes' centres.
 std::vector<Index> morton_order(std::span<const Box3> boxes);
 
-/// The items 0 to centres.size() - 1, halved at the median of the longest side of their boxes in whole
-/// leaves, again and again, as BoxTree halves its nodes: tighter boxes than Morton order gives. The same for
-/// any number of threads.
+/// Items 0 to centres.size() - 1, split recursively at the median of the longest side of their boxes into
+/// whole leaves, as BoxTree splits its nodes: tighter boxes than in Morton order. The result does not depend
+/// on the number of threads.
 std::vector<Index> median_order(std::span<const Box3> boxes, std::span<const Vec3> centres,
                                 std::size_t leaf_size);
 

@@ -11,8 +11,7 @@ namespace tetwright {
 
 namespace {
 
-/// Its cube is far from what a double holds, and so is what is made of that. Single precision fields hold
-/// 1e38.
+/// Its cube and derived values are far below the largest double. Single precision fields hold 1e38.
 constexpr double max_coordinate = 1e50;
 
 }  // namespace

@@ -7,13 +7,18 @@
 
 namespace tetwright {
 
-/// Throws InputError for `what` ("surface", "mesh") of `file` if areas and volumes, which take squares and
-/// cubes of coordinates, would overflow or vanish. Both in input units: the longest side of its box, and the
-/// largest absolute value of a coordinate.
+/// Checks that areas and volumes, which involve squares and cubes of coordinates, neither overflow nor
+/// vanish.
+/// \param longest_side of the bounding box, input units
+/// \param largest_coordinate maximum absolute value of a coordinate, input units
+/// \param what "surface" or "mesh"
+/// \param file named in messages
+/// \throws InputError if they would
 void require_measurable(double longest_side, double largest_coordinate, const char* what,
                         const std::string& file);
 
-/// The same for the tets and points of a mesh, whose indices must be in range.
+/// Checks the tets and points of a mesh.
+/// \pre indices in range
 void require_measurable(const TetMesh& mesh, const std::string& file);
 
 }  // namespace tetwright

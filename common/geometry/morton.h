@@ -12,9 +12,8 @@
 
 namespace tetwright {
 
-/// Morton keys: the bits of three coordinates interleaved, x in the lowest place. Cells of a cube of 2^k
-/// cells that are sorted by key are in the order of a depth-first walk of its octree. Coordinates in [0,
-/// 2^21).
+/// Morton keys: the bits of three coordinates in [0, 2^21) interleaved, x in the lowest bit. Cells of a cube
+/// of 2^k cells, sorted by key, are in the order of a depth-first traversal of its octree.
 using MortonKey = std::uint64_t;
 
 /// Half the diagonal of a cell over its edge: sqrt(3) / 2.
@@ -22,7 +21,7 @@ inline constexpr double half_cube_diagonal = 0.8660254037844386;
 
 namespace detail {
 
-/// Two zero bits between any two of the lowest 21 bits of v.
+/// Inserts two zero bits between any two of the lowest 21 bits of v.
 constexpr std::uint64_t spread_bits(std::uint64_t v) {
   v &= 0x1fffff;
   v = (v | v << 32) & 0x001f00000000ffff;
@@ -58,19 +57,19 @@ constexpr std::array<int, 3> morton_decode(MortonKey key) {
           static_cast<int>(detail::gather_bits(key >> 2))};
 }
 
-/// Morton keys of places in a box, 2^21 cells to its longest side.
+/// Morton keys of points in a box, with 2^21 cells along its longest side.
 class MortonGrid {
  public:
   MortonGrid(const Vec3& low, const Vec3& high) : low_(low) {
     const double extent = std::max((high - low).maxCoeff(), std::numeric_limits<double>::min());
     to_cell_ = (0x1p21 - 1) / extent;
   }
-  /// Points outside the box get the key of a cell on its boundary; so do all points of a box whose extent
+  /// Points outside the box get the key of a cell on its boundary, as do all points of a box whose extent
   /// overflows.
   MortonKey key(const Vec3& p) const {
     const auto cell = [&](int axis) {
       const double c = (p[axis] - low_[axis]) * to_cell_;
-      return c > 0 ? static_cast<int>(std::min(c, 0x1p21 - 1)) : 0;  // also where c is not a number
+      return c > 0 ? static_cast<int>(std::min(c, 0x1p21 - 1)) : 0;  // also if c is NaN
     };
     return morton_encode(cell(0), cell(1), cell(2));
   }
@@ -80,8 +79,8 @@ class MortonGrid {
   double to_cell_;
 };
 
-/// std::lower_bound in an ascending list, from a place that is likely not far from the result: its time grows
-/// with the logarithm of the way (Bentley & Yao 1976).
+/// std::lower_bound in an ascending list by exponential search from `hint`, a position likely to be near the
+/// result: time is logarithmic in the distance between them (Bentley & Yao 1976).
 inline std::size_t lower_bound_near(const std::vector<std::uint64_t>& ascending, std::uint64_t value,
                                     std::size_t hint) {
   std::size_t low = 0, high = ascending.size();

@@ -9,8 +9,8 @@ namespace tetwright {
 
 namespace {
 
-/// Squared sine of a triangle's angle below which products of its edges say nothing of places within it: at
-/// 1e-8 the rounding of 1e-16 is 1e-8 of its weights.
+/// Squared sine of a triangle's angle below which products of its edges are useless for weights: at 1e-8 the
+/// rounding of 1e-16 is 1e-8 of them.
 constexpr double needle_squared = 1e-8;
 
 Vec3 closest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -24,7 +24,7 @@ Vec3 closest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
 
 Vec3 closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
-  // Barycentric coordinates of the foot on the plane.
+  // Barycentric coordinates of the projection onto the plane.
   const double d00 = ab.dot(ab), d01 = ab.dot(ac), d11 = ac.dot(ac), d20 = ap.dot(ab), d21 = ap.dot(ac);
   const double denominator = d00 * d11 - d01 * d01;
   const bool needle = denominator <= needle_squared * d00 * d11;

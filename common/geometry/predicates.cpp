@@ -8,13 +8,13 @@ namespace tetwright {
 
 namespace {
 
-/// Largest relative error of the rounded orient3d, as a factor on the sum of its absolute terms (Shewchuk
+/// Maximum relative error of the rounded orient3d, as a factor on the sum of its absolute terms (Shewchuk
 /// 1997, section 4.3: (7 + 56 eps) eps with eps = 2^-53).
 constexpr double orient3d_bound = (7 + 56 * 0x1p-53) * 0x1p-53;
-/// The same for orient2d: (3 + 16 eps) eps.
+/// Counterpart for orient2d: (3 + 16 eps) eps.
 constexpr double orient2d_bound = (3 + 16 * 0x1p-53) * 0x1p-53;
 
-/// A sum of doubles that do not overlap, smallest first: an exact number (Shewchuk 1997, section 2).
+/// An exact number as a sum of nonoverlapping doubles, smallest first (Shewchuk 1997, section 2).
 using Expansion = std::vector<double>;
 
 struct TwoParts {
@@ -86,15 +86,15 @@ Expansion plus(Expansion a, const Expansion& b) {
 
 int sign(const Expansion& e) { return e.empty() ? 0 : e.back() > 0 ? 1 : -1; }
 
-/// The power of two that brings the largest coordinate near 2^100: products neither overflow nor, short of
-/// absurd ranges, underflow.
+/// Exponent of the power of two that scales the largest coordinate to about 2^100: products neither overflow
+/// nor, short of absurd ranges, underflow.
 int safe_exponent(std::initializer_list<const Vec3*> points) {
   double largest = 0;
   for (const Vec3* p : points) largest = std::max(largest, p->cwiseAbs().maxCoeff());
   return largest > 0 ? 100 - std::ilogb(largest) : 0;
 }
 
-/// Times 2^exponent, which itself may be beyond the largest double.
+/// Scales by 2^exponent, which itself may exceed the largest double.
 Vec3 scaled(const Vec3& p, int exponent) {
   return {std::ldexp(p.x(), exponent), std::ldexp(p.y(), exponent), std::ldexp(p.z(), exponent)};
 }
@@ -134,8 +134,8 @@ int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
                            std::fabs(by) * (std::fabs(czdx) + std::fabs(cxdz)) +
                            std::fabs(bz) * (std::fabs(cxdy) + std::fabs(cydx));
   const double bound = orient3d_bound * permanent;
-  // Below the second limit products may have lost bits to underflow, above it (infinity, or NaN from one) to
-  // overflow: the filter does not hold there.
+  // Outside these limits the filter does not hold: products may have lost bits to underflow below, to
+  // overflow (infinity, or NaN from one) above.
   if (permanent > 0x1p-900 && permanent < 0x1p1000) {
     if (det > bound) return 1;
     if (det < -bound) return -1;

@@ -16,8 +16,8 @@ inline double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const 
   return bx * (cy * dz - cz * dy) + by * (cz * dx - cx * dz) + bz * (cx * dy - cy * dx);
 }
 
-/// Sign (-1, 0, 1) of the exact orient3d, for finite coordinates. A floating-point filter decides nearly
-/// always, exact expansion arithmetic (Shewchuk 1997) the rest. Exact unless a product of three coordinate
+/// Sign (-1, 0, 1) of the exact orient3d, for finite coordinates. A floating-point filter decides nearly all
+/// cases, exact expansion arithmetic (Shewchuk 1997) the others. Exact unless a product of three coordinate
 /// differences underflows, which needs coordinates more than 2^300 apart in size within one tet.
 int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 

@@ -12,11 +12,11 @@
 
 namespace tetwright {
 
-/// Triangles, segments and points (triangles with equal corners) of several kinds for nearest-point queries:
-/// a tree of boxes over them in Morton order, four to a leaf.
+/// Triangles, segments and points (triangles with equal corners) of several kinds, for nearest-point queries:
+/// a tree of boxes in Morton order, four items to a leaf.
 class ProjectionTree {
  public:
-  /// What items and queries have in common; what the numbers mean is the caller's.
+  /// Key that items and queries share; the caller defines its numbers.
   using Kind = std::array<std::uint32_t, 3>;
   struct Item {
     Triangle corners;  ///< indices into the points given
@@ -30,17 +30,17 @@ class ProjectionTree {
   ProjectionTree(std::vector<Vec3> points, std::vector<Item> items);
 
   bool empty() const { return items_.empty(); }
-  /// In the order of the tree.
+  /// Items in the order of the tree.
   const std::vector<Item>& items() const { return items_; }
   const std::vector<Vec3>& points() const { return points_; }
   const Vec3& corner(const Item& item, int k) const { return points_[item.corners[k]]; }
-  /// The nearest point of an item of items().
+  /// Nearest point of an item of items().
   Vec3 closest_on(std::size_t item, const Vec3& p) const {
     return closest_point(p, corner(items_[item], 0), corner(items_[item], 1), corner(items_[item], 2));
   }
 
-  /// The nearest point on the items for which `accepts(item)` holds, if it is nearer than `max_distance`.
-  /// Safe to call concurrently.
+  /// Nearest point on the items for which `accepts(item)` holds, if it is nearer than `max_distance`. May be
+  /// called concurrently.
   template <class Accepts>
   std::optional<Hit> nearest_of(const Vec3& p, double max_distance, const Accepts& accepts) const {
     std::optional<Hit> found;
@@ -55,7 +55,7 @@ class ProjectionTree {
     });
     return found;
   }
-  /// Whether an item is nearer than or at `max_distance`: faster than to know which one. Safe to call
+  /// Whether an item is at most `max_distance` away: faster than finding the nearest. May be called
   /// concurrently.
   bool any_within(const Vec3& p, double max_distance) const {
     return tree_.nearest(p, max_distance * max_distance, tree_.all(), [&](std::size_t i, double best) {
@@ -65,7 +65,7 @@ class ProjectionTree {
       return -1.0;  // nothing is nearer: ends the search
     }) < 0;
   }
-  /// The same of the items of a kind.
+  /// Nearest point on the items of a kind, if it is nearer than `max_distance`.
   std::optional<Vec3> nearest(const Vec3& p, const Kind& kind, double max_distance) const {
     const auto hit = nearest_of(p, max_distance, [&](const Item& item) { return item.kind == kind; });
     if (!hit) return {};

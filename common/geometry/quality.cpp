@@ -13,12 +13,11 @@ namespace tetwright {
 
 namespace {
 
-/// What the solid angles of a tet are made of: tan(omega_k / 2) = det / denominator[k].
+/// Terms of a tet's solid angles: tan(omega_k / 2) = det / denominator[k].
 struct SolidAngleTerms {
-  double det;  ///< six times the volume
-  std::array<double, 4>
-      denominator;         ///< for each vertex; negative for an angle beyond a half space's 2 pi / 2
-  double longest_squared;  ///< of the six edges
+  double det;                         ///< six times the volume
+  std::array<double, 4> denominator;  ///< for each vertex; negative for an angle above pi
+  double longest_squared;             ///< of the six edges
 };
 
 SolidAngleTerms terms(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
@@ -27,7 +26,7 @@ SolidAngleTerms terms(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
   const double bc2 = bc.squaredNorm(), bd2 = bd.squaredNorm(), cd2 = cd.squaredNorm();
   const double lab = std::sqrt(ab2), lac = std::sqrt(ac2), lad = std::sqrt(ad2);
   const double lbc = std::sqrt(bc2), lbd = std::sqrt(bd2), lcd = std::sqrt(cd2);
-  // The scalar products of two edges at a vertex, from the squared lengths: u.v = (u^2 + v^2 - (u-v)^2) / 2.
+  // Scalar products of two edges at a vertex, from squared lengths: u.v = (u^2 + v^2 - (u-v)^2) / 2.
   const auto corner = [](double lu, double lv, double lw, double u2, double v2, double w2, double uv2,
                          double uw2, double vw2) {
     return lu * lv * lw + 0.5 * ((u2 + v2 - uv2) * lw + (u2 + w2 - uw2) * lv + (v2 + w2 - vw2) * lu);
@@ -42,8 +41,8 @@ SolidAngleTerms terms(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
   return t;
 }
 
-/// All four share the numerator, so the smallest angle has the largest denominator; it is always acute enough
-/// for the denominator to be positive (four angles of a tet sum to less than 2 pi).
+/// Denominator of the smallest angle: all four share the numerator. It is positive, since that angle is acute
+/// enough (four angles of a tet sum to less than 2 pi).
 double max_denominator(const SolidAngleTerms& t) {
   return std::max(std::max(t.denominator[0], t.denominator[1]), std::max(t.denominator[2], t.denominator[3]));
 }
@@ -51,8 +50,8 @@ double smallest_angle(const SolidAngleTerms& t) {
   return 2 * portable_atan2_upper(t.det, max_denominator(t));
 }
 
-/// The same to nine digits: enough for decisions, and the arc tangent is what takes most of the time. The
-/// tangent of half the smallest angle is at most the regular tet's, 0.283: a short series does.
+/// Smallest solid angle to nine digits, enough for decisions: a full arc tangent would take most of the time.
+/// The tangent of half the angle is at most the regular tet's, 0.283, so that a short series suffices.
 double min_angle_for_comparison(const SolidAngleTerms& t) {
   const double x = t.det / max_denominator(t), s = x * x;
   return 2 * x *
@@ -60,8 +59,8 @@ double min_angle_for_comparison(const SolidAngleTerms& t) {
           s * (1.0 / 3 - s * (1.0 / 5 - s * (1.0 / 7 - s * (1.0 / 9 - s * (1.0 / 11 - s * (1.0 / 13)))))));
 }
 
-/// The rounded determinant of edges no longer than l is off by less than 40 l^3 2^-53 (differences, two
-/// products and two sums for each of three terms of size 2 l^3).
+/// Whether a rounded determinant is positive for certain: with edges of length at most l its error is below
+/// 40 l^3 2^-53 (differences, two products and two sums for each of three terms of size 2 l^3).
 bool surely_positive(double det, double longest_cubed) { return det > 40 * 0x1p-53 * longest_cubed; }
 
 }  // namespace
@@ -92,10 +91,10 @@ std::array<double, 6> dihedral_angles(const std::array<Vec3, 4>& p) {
   }
   std::array<double, 6> angles;
   for (int e = 0; e < 6; ++e) {
-    // The two faces at an edge lie opposite the two vertices that are not on it.
+    // The two faces at an edge are opposite the two vertices that are not on it.
     const auto& other = tet_edges[5 - e];
     const Vec3 &n = normal[other[0]], &m = normal[other[1]];
-    // The angle inside is pi minus that between the outward normals.
+    // The inner angle is pi minus that between the outward normals.
     const double across = n.cross(m).norm(), along = -n.dot(m);
     angles[e] = across == 0 && along == 0 ? std::numeric_limits<double>::quiet_NaN()
                                           : portable_atan2_upper(across, along) * (180 / std::numbers::pi);
@@ -134,11 +133,11 @@ namespace {
 /// Sine of a regular tet's dihedral angle, 2 sqrt(2) / 3.
 constexpr double regular_sine = 0.94280904158206336;
 
-/// The smallest sine of the six dihedral angles of a tet of 6 * volume `det`: 3 V l / (2 A B) at an edge of
+/// Smallest sine of the six dihedral angles of a tet of 6 * volume `det`: 3 V l / (2 A B) at an edge of
 /// length l between faces of areas A and B.
 double min_sine(double det, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 ab = b - a, ac = c - a, ad = d - a, bc = c - b, bd = d - b, cd = d - c;
-  // Squared doubled areas of the faces opposite a, b, c, d.
+  // Squared double areas of the faces opposite a, b, c, d.
   const double fa = bc.cross(bd).squaredNorm(), fb = ac.cross(ad).squaredNorm(),
                fc = ab.cross(ad).squaredNorm(), fd = ab.cross(ac).squaredNorm();
   const double min_factor =

@@ -7,7 +7,7 @@ namespace tetwright {
 
 namespace {
 
-/// Side of the line a -> b (in xy) on which the shifted point lies: never 0 unless a and b are at one place.
+/// Side of the line a -> b (in xy) on which the shifted point lies: 0 only if a and b coincide.
 int shifted_side(const Vec3& a, const Vec3& b, const Vec3& point) {
   if (const int side = orient2d(a, b, point, 0, 1)) return side;
   // The derivative of the orientation by the shift (e, e^2): -dy e + dx e^2.

@@ -10,9 +10,9 @@
 namespace tetwright {
 
 /// All pairs of triangles that meet elsewhere than in the vertices and edges they share, by the rules of
-/// triangle_intersection.h; the smaller number first, in ascending order. Ids must be below the number of
-/// points, coordinates finite. O(n log n + pairs of boxes that overlap), parallel; the result does not depend
-/// on the threads.
+/// triangle_intersection.h; the smaller index first, in ascending order. O(n log n + pairs of overlapping
+/// boxes), parallel; the result does not depend on the number of threads.
+/// \pre ids below the number of points, coordinates finite
 std::vector<std::pair<Index, Index>> self_intersections(std::span<const Vec3> points,
                                                         std::span<const Triangle> triangles);
 

@@ -22,25 +22,25 @@ namespace tetwright {
 namespace {
 
 constexpr std::size_t max_pieces = std::size_t{1} << 22;
-/// Of cuts in two. Ties between items that do not meet, as duplicates of each other, have no end.
+/// Maximum depth of bisection. Ties between items that do not meet, such as duplicates, would never end.
 constexpr int max_levels = 150;
-/// Every so many levels pieces are cut in the middle of their longest edge, so that they shrink.
+/// Period in levels at which pieces are cut in the middle of their longest edge, so that they shrink.
 constexpr int halving_period = 4;
-constexpr int bisections = 40;  ///< to find where another item becomes the nearest
-/// Nearer to an end than this share of an edge, the cut is made in the middle.
+constexpr int bisections = 40;  ///< steps to locate where another item becomes the nearest
+/// A cut nearer to an end of an edge than this fraction is moved to the middle.
 constexpr double min_cut = 0.01;
 constexpr std::size_t max_cuts = 4096;  ///< of one triangle, by triangles_beyond()
 constexpr std::size_t grain = 256;
 constexpr std::size_t rms_points = 100000;
 
-/// A point with the item that is nearest to it.
+/// A point and the item nearest to it.
 struct Measured {
   Vec3 at;
   double distance = std::numeric_limits<double>::infinity();
   std::uint32_t item = 0;
 };
 
-/// A triangle, or a part of one, and what no point of it is farther than.
+/// A triangle, or a part of one, and an upper bound of the distance of its points.
 struct Piece {
   std::array<Measured, 3> corners;
   double upper;
@@ -51,7 +51,7 @@ double distance_to(const ProjectionTree& to, std::uint32_t item, const Vec3& p) 
   return std::sqrt(squared_distance(p, to.corner(t, 0), to.corner(t, 1), to.corner(t, 2)));
 }
 
-/// `guess`: an item that may be near.
+/// Measures a point; `guess` is an item that may be near.
 Measured measure(const ProjectionTree& to, const Vec3& at, std::uint32_t guess) {
   Measured m{at, distance_to(to, guess, at), guess};
   if (const auto hit = to.nearest_of(at, m.distance, [](const ProjectionTree::Item&) { return true; }))
@@ -59,7 +59,7 @@ Measured measure(const ProjectionTree& to, const Vec3& at, std::uint32_t guess) 
   return m;
 }
 
-/// Measures points of which neighbours in the list are neighbours in space.
+/// Measures points whose neighbours in the list are neighbours in space.
 std::vector<Measured> measure_all(const ProjectionTree& to, const std::vector<Vec3>& points) {
   std::vector<Measured> out(points.size());
   parallel_for(0, (points.size() + grain - 1) / grain, 1, [&](std::size_t first, std::size_t last) {
@@ -74,7 +74,7 @@ std::vector<Measured> measure_all(const ProjectionTree& to, const std::vector<Ve
   return out;
 }
 
-/// The corners that two items have in common, two of them at most.
+/// Common corners of two items, at most two.
 struct SharedCorners {
   int count = 0;
   std::array<Index, 2> points{};
@@ -87,7 +87,7 @@ struct SharedCorners {
   }
 };
 
-/// How far apart two segments are at places near each other: those that are nearest, up to rounding.
+/// Distance between two segments at their nearest points, up to rounding.
 double distance_between(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1) {
   const Vec3 a = a1 - a0, b = b1 - b0, ba = a0 - b0;
   const double aa = a.squaredNorm(), ab = a.dot(b), bb = b.squaredNorm();
@@ -100,7 +100,8 @@ double distance_between(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Ve
   return (a0 + on_segment((b0 + on_b * b - a0).dot(a), aa) * a - b0 - on_b * b).norm();
 }
 
-/// How far the edge between two corners is from what their items share; infinite where that is nothing.
+/// Distance of the edge between two corners from the common corners of their items; infinite if there are
+/// none.
 double passing_distance(const ProjectionTree& to, const Measured& a, const Measured& b) {
   const SharedCorners shared(to.items()[a.item], to.items()[b.item]);
   if (shared.count == 0) return std::numeric_limits<double>::infinity();
@@ -108,13 +109,13 @@ double passing_distance(const ProjectionTree& to, const Measured& a, const Measu
                           to.points()[shared.points[shared.count - 1]]);
 }
 
-/// What no point of the triangle is farther than from the items that are nearest to its corners; infinite
-/// where two of them do not meet, or three have no corner in common.
+/// Upper bound of the distance of a triangle's points from the items nearest to its corners; infinite if two
+/// of these items do not meet, or three have no common corner.
 ///
-/// The triangle is mapped to the items, linearly in parts: each corner to the point that is nearest to it, of
-/// each edge between different items a point to one that they share, and, of three items, a point within to a
-/// corner of all. Each part has its image in one item, which is convex, and the distance from the image is
-/// largest in a corner of a part.
+/// The triangle is mapped to the items piecewise linearly: each corner to its nearest point, a point of each
+/// edge between different items to a common point of the two, and, for three items, an inner point to a
+/// common corner of all. Each piece has its image in one item, which is convex, and the distance from the
+/// image is largest in a corner of a piece.
 double upper_bound_over_joints(const ProjectionTree& to, const std::array<Measured, 3>& corners) {
   double upper = 0;
   bool all_differ = true;
@@ -145,7 +146,7 @@ double upper_bound(const ProjectionTree& to, const std::array<Measured, 3>& corn
     longest = std::max(longest, (corners[(k + 1) % 3].at - corners[k].at).norm());
     farthest = std::max(farthest, corners[k].distance);
   }
-  // No point of a triangle is farther than this from all corners.
+  // Every point of a triangle is within longest / sqrt(3) of a corner.
   double upper = farthest + longest / std::numbers::sqrt3;
   for (int k = 0; k < 3; ++k) {
     const std::uint32_t item = corners[k].item;
@@ -158,7 +159,7 @@ double upper_bound(const ProjectionTree& to, const std::array<Measured, 3>& corn
   return std::min(upper, upper_bound_over_joints(to, corners));
 }
 
-/// Where on the edge between two corners both corners' items are as near.
+/// Parameter on the edge between two corners at which both corners' items are equally near.
 double transition(const ProjectionTree& to, const Measured& a, const Measured& b) {
   double low = 0, high = 1;
   for (int i = 0; i < bisections; ++i) {
@@ -169,8 +170,8 @@ double transition(const ProjectionTree& to, const Measured& a, const Measured& b
   return low;
 }
 
-/// Cuts a piece in two, by preference where the nearest item changes: parts that have one are settled, while
-/// halving alone would follow every edge of the other surface down to the accuracy.
+/// Bisects a piece, preferably where the nearest item changes: parts with a single nearest item are settled,
+/// while halving alone would refine every edge of the other surface down to the accuracy.
 std::array<Piece, 2> cut(const ProjectionTree& to, const Piece& piece, bool halve) {
   const auto& c = piece.corners;
   int edge = 0;
@@ -178,7 +179,7 @@ std::array<Piece, 2> cut(const ProjectionTree& to, const Piece& piece, bool halv
   for (int k = 0; k < 3; ++k) {
     const Measured &a = c[k], &b = c[(k + 1) % 3];
     const double length = (b.at - a.at).norm();
-    // How much farther than its nearest item the other corner's is.
+    // Excess of the distance of the other corner's item over the nearest one.
     const double jump = a.item == b.item ? -1
                                          : std::max(distance_to(to, b.item, a.at) - a.distance,
                                                     distance_to(to, a.item, b.at) - b.distance);
@@ -206,7 +207,7 @@ double rms_of(const ProjectionTree& from, const ProjectionTree& to) {
   if (!(total > 0)) return 0;
   std::vector<Vec3> points;
   points.reserve(rms_points + 1);
-  double due = 0.5;  // the first point when half of its share has passed
+  double due = 0.5;  // the first point at half of a point's area
   for (const ProjectionTree::Item& item : from.items()) {
     const Vec3& a = from.corner(item, 0);
     for (due += area(item) / total * rms_points; due >= 1; --due) {
@@ -219,7 +220,7 @@ double rms_of(const ProjectionTree& from, const ProjectionTree& to) {
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, points.size())));
 }
 
-/// A point of the triangle that is farther than `limit`, if there is one.
+/// A point of the triangle farther than `limit`, if one is found.
 std::optional<Measured> beyond(const ProjectionTree& to, const Piece& triangle, double limit,
                                double accuracy) {
   for (const Measured& corner : triangle.corners)
@@ -252,7 +253,7 @@ SurfaceDeviation surface_deviation(const ProjectionTree& from, const ProjectionT
     result.lower = m.distance;
     result.place = m.at;
   };
-  // The corners, in the order in which triangles have them.
+  // Corners in the order of the triangles.
   std::vector<Index> number(from.points().size(), no_index);
   std::vector<Vec3> points;
   for (const ProjectionTree::Item& item : from.items())
@@ -268,7 +269,7 @@ SurfaceDeviation surface_deviation(const ProjectionTree& from, const ProjectionT
     return std::max(result.lower * (1 + relative_deviation_accuracy), result.lower + accuracy);
   };
 
-  double settled = result.lower;  // what no point of the triangles that were let go is farther than
+  double settled = result.lower;  // upper bound over the triangles that were discarded
   const std::size_t blocks = (from.items().size() + grain - 1) / grain;
   std::vector<double> block_settled(blocks, 0);
   const double limit = enough();

@@ -12,52 +12,55 @@ namespace tetwright {
 class Progress;
 class ProjectionTree;
 
-/// How near to each other the bounds of a SurfaceDeviation are, as a share of it.
+/// Gap between the bounds of a SurfaceDeviation, relative to the deviation.
 inline constexpr double relative_deviation_accuracy = 0.01;
 
-/// How far a surface is from another: the largest distance of all its points, those between the corners too,
-/// is proven to be from `lower` to `upper`. Units of the input.
+/// One-sided Hausdorff distance of a surface from another, over all its points, not only the vertices: proven
+/// to be between `lower` and `upper`. Input units.
 struct SurfaceDeviation {
   double lower = 0, upper = 0;
-  Vec3 place = Vec3::Zero();  ///< of the first surface, at the distance `lower` from the second
-  double rms = 0;             ///< of 100,000 points spread evenly by area, about
+  Vec3 place = Vec3::Zero();  ///< on the first surface, at the distance `lower` from the second
+  double rms = 0;             ///< over about 100,000 points, evenly distributed by area
 };
 
-/// How far a mesh is from the surface that it stands for, proven; input units. Parts of the dense mesh's own
-/// surface that are far from the one given (caps of holes, layers, the box of an outside that is meshed)
-/// stand for themselves; parts of that one that are far from the dense mesh (inner walls that were removed)
-/// for nothing.
+/// Proven distance of a mesh from the surface that it represents, input units. Parts of the dense mesh's
+/// surface that are far from the given one (caps of holes, layers, the box of a meshed outside) are compared
+/// with themselves. Parts of the given surface that are far from the dense mesh (removed inner walls) are
+/// left out.
 struct DeviationReport {
   SurfaceDeviation from_mesh, from_surface;
-  double apart_area = 0;   ///< of what stands for itself
-  double hidden_area = 0;  ///< of what stands for nothing
+  double apart_area = 0;   ///< of the parts compared with themselves
+  double hidden_area = 0;  ///< of the parts left out
   double upper() const { return std::max(from_mesh.upper, from_surface.upper); }
 };
 
-/// The deviation of `from` from `to`. The bounds are within relative_deviation_accuracy of each other, or
-/// `accuracy` if that is more (above 0; input units); wider only where that would take more than four million
-/// triangles, or 150 cuts of one, which is not to be expected.
+/// Computes the deviation of `from` from `to`.
 ///
 /// Branch and bound over triangles (Tang, Lee & Kim 2009, "Interactive Hausdorff distance computation for
-/// general polygonal models"): the distance from one triangle is convex, so that it is largest in a corner;
-/// any distance grows no faster than the way; over triangles of the other surface that meet, a map to them,
-/// linear in parts, bounds it. Triangles that may be farther than what is known are cut in two, where the
-/// nearest triangle of the other surface changes. Infinite where `to` is empty and `from` is not. Parallel;
-/// the result does not depend on the threads. Throws Interrupted when `progress` (may be null) is cancelled;
-/// once its deadline has passed the bounds are left as far apart as they are.
+/// general polygonal models"): the distance from one triangle is convex, hence largest in a corner; any
+/// distance grows no faster than the path; where triangles of the other surface meet, a piecewise linear map
+/// to them bounds it. Triangles that may exceed the lower bound are bisected where the nearest triangle of
+/// the other surface changes. Parallel; the result does not depend on the number of threads.
+/// \param accuracy gap allowed between the bounds, input units, above 0; relative_deviation_accuracy if that
+///   is more. The gap is larger only where closing it would take more than four million triangles, or 150
+///   cuts of one, which is not to be expected
+/// \param progress may be null; after its deadline the bounds remain as far apart as they are
+/// \return infinite where `to` is empty and `from` is not
+/// \throws Interrupted if `progress` is cancelled
 SurfaceDeviation surface_deviation(const ProjectionTree& from, const ProjectionTree& to, double accuracy,
                                    const Progress* progress = nullptr);
 
 /// A triangle with a point that is far from another surface.
 struct FarTriangle {
-  std::uint32_t item;     ///< of items() of the surface it belongs to
-  std::uint32_t nearest;  ///< the other surface's item that is nearest to that point
-  Vec3 place;             ///< the point
+  std::uint32_t item;     ///< index into items() of its surface
+  std::uint32_t nearest;  ///< item of the other surface nearest to `place`
+  Vec3 place;             ///< the far point
 };
 
-/// The triangles of `from`, ascending, of which a point is farther from `to` than `limit`. Where that is so
-/// by less than `accuracy` (above 0), or not settled after a few thousand cuts, a triangle may be left out.
-/// `to` must not be empty. Parallel; the result does not depend on the threads.
+/// Finds the triangles of `from`, ascending, with a point farther from `to` than `limit`. A triangle that
+/// exceeds it by less than `accuracy` (above 0), or is not settled after a few thousand cuts, may be missing.
+/// Parallel; the result does not depend on the number of threads.
+/// \pre `to` is not empty
 std::vector<FarTriangle> triangles_beyond(const ProjectionTree& from, const ProjectionTree& to, double limit,
                                           double accuracy);
 

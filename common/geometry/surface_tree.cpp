@@ -13,14 +13,14 @@ namespace tetwright {
 
 namespace {
 
-/// Of 4, 8 and 12 the fastest by a little, in benchmarks/mesher/surface_tree_benchmark.cpp.
+/// Slightly the fastest of 4, 8 and 12 in benchmarks/mesher/surface_tree_benchmark.cpp.
 constexpr std::size_t triangles_in_leaf = 8;
 
-/// The series is used from this many radii of a node on. 2 leaves errors up to 0.006, 3 up to 0.001 in twice
-/// the time (surfaces of 200,000 triangles, points near them).
+/// Distance in radii of a node from which the series is used. 2 leaves errors up to 0.006, 3 up to 0.001 in
+/// twice the time (surfaces of 200,000 triangles, points near them).
 constexpr double far_radii = 2;
 
-/// Sum of angles in (-pi, pi) as a product of complex numbers, which needs one arc tangent in all.
+/// Sum of angles in (-pi, pi) as a product of complex numbers, which needs only one arc tangent.
 class AngleSum {
  public:
   /// Adds the angle of (re, im); nothing for im = 0, whatever re is.
@@ -29,7 +29,7 @@ class AngleSum {
     const double shrink = 1 / (std::fabs(re) + std::fabs(im));
     re *= shrink, im *= shrink;
     const double next_re = re_ * re - im_ * im, next_im = re_ * im + im_ * re;
-    // Two angles above 0 whose sum is below 0 went past pi; one of exactly -pi is kept as pi.
+    // Two angles above 0 whose sum is below 0 passed pi; one of exactly -pi is kept as pi.
     if (im_ >= 0 && im > 0 && next_im < 0) ++turns_;
     if (im_ < 0 && im < 0 && next_im >= 0) --turns_;
     re_ = next_re, im_ = next_im;
@@ -39,7 +39,7 @@ class AngleSum {
       re_ *= grow, im_ *= grow;
     }
   }
-  /// In units of a whole turn.
+  /// The sum in full turns.
   double turns() const {
     const double angle = portable_atan2_upper(std::fabs(im_), re_);
     return static_cast<double>(turns_) + (im_ < 0 ? -angle : angle) / (2 * std::numbers::pi);
@@ -59,8 +59,8 @@ void add_half_solid_angle(const Vec3& ta, const Vec3& tb, const Vec3& tc, const 
   sum.add(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb, a.dot(b.cross(c)));
 }
 
-/// Homogeneous polynomials by their coefficients: x, y, z; xx, xy, xz, yy, yz, zz;
-/// xxx, xxy, xxz, xyy, xyz, xzz, yyy, yyz, yzz, zzz.
+/// Coefficients of homogeneous polynomials: x, y, z; xx, xy, xz, yy, yz, zz; xxx, xxy, xxz, xyy, xyz, xzz,
+/// yyy, yyz, yzz, zzz.
 using Quadratic = std::array<double, 6>;
 using Cubic = std::array<double, 10>;
 
@@ -87,14 +87,14 @@ void add(std::array<double, N>& sum, const std::array<double, N>& term, double f
   for (std::size_t i = 0; i < N; ++i) sum[i] += factor * term[i];
 }
 
-/// Moments of the normals of triangles about a centre: with n the normal and d the place of a surface
+/// Moments of the normals of triangles about a centre: with n the normal and d the position of a surface
 /// element, the integrals of n, (n . x)(d . x) and (n . x)(d . x)^2.
 struct Moments {
   Vec3 normal = Vec3::Zero();
   Quadratic quadratic{};
   Cubic cubic{};
 
-  /// A triangle with the corners a, b, c as seen from the centre.
+  /// Adds a triangle with the corners a, b, c relative to the centre.
   void add_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 n = 0.5 * (b - a).cross(c - a), sum = a + b + c;
     normal += n;
@@ -105,7 +105,7 @@ struct Moments {
     add(cubic, product(n, square), 1.0 / 12);
   }
 
-  /// Moments about another centre, `shift` from this one.
+  /// Adds moments about another centre, `shift` from this one.
   void add_moments(const Moments& m, const Vec3& shift) {
     normal += m.normal;
     add(quadratic, m.quadratic);
@@ -116,7 +116,7 @@ struct Moments {
   }
 };
 
-/// The harmonic part, the only one that the derivatives of 1 / r see.
+/// Harmonic part, the only one that the derivatives of 1 / r see.
 Quadratic traceless(Quadratic q) {
   const double third = (q[0] + q[3] + q[5]) / 3;
   q[0] -= third, q[3] -= third, q[5] -= third;
@@ -147,7 +147,7 @@ double value(const Cubic& c, const Vec3& v) {
 SurfaceTree::SurfaceTree(std::span<const Vec3> points, std::span<const Triangle> triangles) {
   const std::size_t n = triangles.size();
   if (n == 0) return;
-  // The longest side becomes about 1: products of up to nine lengths must neither overflow nor vanish.
+  // Scale the longest side to about 1: products of up to nine lengths must neither overflow nor vanish.
   Vec3 low = points[triangles[0][0]], high = low;
   for (const Triangle& t : triangles)
     for (Index v : t) low = low.cwiseMin(points[v]), high = high.cwiseMax(points[v]);
@@ -179,7 +179,7 @@ void SurfaceTree::make_series() {
     for (std::size_t i = first; i < last; ++i) {
       const BoxTree::Node& node = nodes[i];
       Series& series = series_[i];
-      const Vec3 origin = node.box.low;  // sums of differences: nothing is lost far from the origin
+      const Vec3 origin = node.box.low;  // differences keep their digits far from the origin
       Vec3 sum = Vec3::Zero();
       double area = 0;
       for (std::uint32_t t = node.begin; t < node.end; ++t) {

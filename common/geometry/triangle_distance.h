@@ -8,8 +8,8 @@
 
 namespace tetwright {
 
-/// A triangle prepared for the distances of many points: what squared_distance() answers, with what depends
-/// on the triangle alone computed once.
+/// A triangle prepared for distance queries of many points: squared_distance() with the terms that depend on
+/// the triangle alone precomputed.
 class TriangleDistance {
  public:
   TriangleDistance(const Vec3& a, const Vec3& b, const Vec3& c) : a_(a), ab_(b - a), ac_(c - a) {
@@ -29,14 +29,15 @@ class TriangleDistance {
     if (d22 > 0) bc_share_ = bc_ / d22;
   }
 
-  /// The squared distance of a point, or `at_most` where it is no smaller.
+  /// Squared distance of a point, or `at_most` if it is no smaller.
   double squared(const Vec3& p, double at_most) const {
     const Vec3 ap = p - a_;
     const double height = normal_.dot(ap), height2 = height * height;
     if (height2 >= at_most) return at_most;
     const double v = to_b_.dot(ap), w = to_c_.dot(ap);
     if (v >= 0 && w >= 0 && v + w <= 1 && !normal_.isZero(0)) return height2;
-    // Along the edges; one that has the point on the triangle's side cannot have the nearest place alone.
+    // Along the edges. An edge with the point on the triangle's side need not be examined: another one is as
+    // near.
     double best = at_most;
     const auto segment = [&](const Vec3& from, const Vec3& along, const Vec3& share) {
       const double s = std::clamp(share.dot(from), 0.0, 1.0);
@@ -51,7 +52,7 @@ class TriangleDistance {
 
  private:
   Vec3 a_, ab_, ac_, bc_;
-  Vec3 to_b_ = Vec3::Zero(), to_c_ = Vec3::Zero(), normal_ = Vec3::Zero();  ///< of no length for a flat one
+  Vec3 to_b_ = Vec3::Zero(), to_c_ = Vec3::Zero(), normal_ = Vec3::Zero();  ///< zero for a flat triangle
   Vec3 ab_share_ = Vec3::Zero(), ac_share_ = Vec3::Zero(), bc_share_ = Vec3::Zero();
 };
 

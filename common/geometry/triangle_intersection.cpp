@@ -15,8 +15,7 @@ using TriangleCorners = std::array<Vec3, 3>;
 /// The three coordinate planes, as pairs of coordinates.
 constexpr std::array<std::pair<int, int>, 3> planes{{{0, 1}, {1, 2}, {2, 0}}};
 
-/// The coordinate plane in which three points are seen as a proper triangle; nothing (-1) if they are
-/// collinear.
+/// Coordinate plane onto which three points project as a proper triangle; -1 if they are collinear.
 int proper_plane(const Vec3& a, const Vec3& b, const Vec3& c) {
   for (int k = 0; k < 3; ++k)
     if (orient2d(a, b, c, planes[k].first, planes[k].second) != 0) return k;
@@ -25,12 +24,12 @@ int proper_plane(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 bool within(double x, double a, double b) { return std::min(a, b) <= x && x <= std::max(a, b); }
 
-/// For r on the line through p and q, all seen in the plane (u, v).
+/// Whether r, on the line through p and q, is between them, all projected onto the plane (u, v).
 bool between(const Vec3& r, const Vec3& p, const Vec3& q, int u, int v) {
   return within(r[u], p[u], q[u]) && within(r[v], p[v], q[v]);
 }
 
-/// Closed segments ab and pq seen in the plane (u, v); a segment may be a point.
+/// Whether the closed segments ab and pq meet, projected onto the plane (u, v); a segment may be a point.
 bool segments_meet_2d(const Vec3& a, const Vec3& b, const Vec3& p, const Vec3& q, int u, int v) {
   const int oa = orient2d(p, q, a, u, v), ob = orient2d(p, q, b, u, v);
   if (oa == 0 && between(a, p, q, u, v)) return true;
@@ -48,14 +47,14 @@ bool segments_meet_3d(const Vec3& a, const Vec3& b, const Vec3& p, const Vec3& q
   if (plane < 0) plane = proper_plane(p, q, a);
   if (plane < 0) plane = proper_plane(p, q, b);
   if (plane >= 0) return segments_meet_2d(a, b, p, q, planes[plane].first, planes[plane].second);
-  // All on one line, along which every coordinate is monotone: they meet where all three intervals do.
+  // All collinear, and every coordinate is monotone along the line: they meet where all three intervals do.
   for (int k = 0; k < 3; ++k)
     if (std::max(a[k], b[k]) < std::min(p[k], q[k]) || std::max(p[k], q[k]) < std::min(a[k], b[k]))
       return false;
   return true;
 }
 
-/// Closed segment pq against the closed triangle t, which may be degenerate (a segment or a point).
+/// Whether the closed segment pq meets the closed triangle t, which may be degenerate (a segment or a point).
 /// `side_p` and `side_q` are the sides of t's plane on which p and q lie.
 bool segment_meets_triangle(const Vec3& p, const Vec3& q, int side_p, int side_q, const TriangleCorners& t) {
   if (side_p * side_q > 0) return false;
@@ -144,7 +143,7 @@ bool meet_beside_edge(const Vec3& a, const Vec3& b, const Vec3& p, const Vec3& q
 }  // namespace
 
 bool triangles_intersect(const MeshTriangle& f, const MeshTriangle& g) {
-  // What is shared, each id once, and the vertices of each that are not.
+  // Shared vertices, each id once, and the other vertices of each triangle.
   std::array<const Vec3*, 3> shared{}, f_other{}, g_other{};
   std::size_t shared_count = 0, f_count = 0, g_count = 0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -156,7 +155,7 @@ bool triangles_intersect(const MeshTriangle& f, const MeshTriangle& g) {
   }
   if (shared_count == 0) return meet_unconnected(f.points, g.points);
   if (shared_count == 3) return true;
-  // Only a triangle that names a vertex twice can be part of what is shared.
+  // Only a triangle with a repeated vertex can consist of shared vertices.
   if (f_count == 0 || g_count == 0) return false;
   if (shared_count == 2) return meet_beside_edge(*shared[0], *shared[1], *f_other[0], *g_other[0]);
   return meet_beside_vertex(f.points, g.points, {f_other[0], f_other[f_count - 1]},

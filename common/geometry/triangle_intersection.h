@@ -13,10 +13,12 @@ struct MeshTriangle {
   std::array<Vec3, 3> points;
 };
 
-/// True if two triangles of one mesh meet elsewhere than in the vertices and edges they share (equal ids):
-/// without a shared vertex any common point counts, touching too; with one, the edge opposite it reaching the
-/// other triangle; with two, lying in one plane on the same side of the shared edge; with three, always.
+/// Whether two triangles of one mesh meet elsewhere than in the vertices and edges they share (equal ids).
 /// Exact for finite coordinates.
+/// - no shared vertex: any common point counts, touching too;
+/// - one: the edge opposite it reaches the other triangle;
+/// - two: they are coplanar and on the same side of the shared edge;
+/// - three: always.
 bool triangles_intersect(const MeshTriangle& f, const MeshTriangle& g);
 
 }  // namespace tetwright

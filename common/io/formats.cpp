@@ -38,9 +38,9 @@ struct SurfaceFormat {
   const char* extension;
   TriangleMesh (*read)(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped);
   void (*write)(const TriangleMesh& mesh, const ByteSink& sink);  ///< null: the format is only read
-  /// Null: the format has no fields of points. Nothing: the file is a tet mesh.
+  /// Null: the format has no fields of points. Returns nothing for a tet mesh.
   std::optional<SurfaceWithFields> (*read_with_fields)(std::string_view bytes, const std::string& name);
-  /// Makes a name one that it can hold for a group of triangles; null: none is written.
+  /// Converts a name of a group of triangles to one that the format can hold; null: it writes none.
   std::string (*group_name)(const std::string& name) = nullptr;
 };
 
@@ -62,7 +62,7 @@ constexpr std::array<SurfaceFormat, 7> surface_formats{
      {".vtp", read_vtp, write_vtp, always_surface<read_vtp_with_fields>, printable_name},
      {".3mf", read_3mf, nullptr, nullptr},
      {".glb", read_glb, nullptr, nullptr}}};
-/// Those of tet meshes that may hold a surface instead.
+/// Formats of tet meshes that may hold a surface instead.
 constexpr std::array<SurfaceFormat, 3> shared_formats{
     {{".msh", read_msh_surface, nullptr, read_msh_surface_with_fields},
      {".mesh", read_medit_surface, nullptr, nullptr},
@@ -77,8 +77,8 @@ struct VolumeFormat {
   const char* extension;
   LabelVolume (*read)(std::string_view bytes, const std::string& name, const FileReader& others);
   std::string (*write)(const LabelVolume& volume) = nullptr;  ///< null: the format is only read
-  const char* header = nullptr;  ///< extension of the file that is read before this one
-  bool one_file = true;          ///< false: the voxels are in another file
+  const char* header = nullptr;                               ///< extension of the header file
+  bool one_file = true;                                       ///< false: the voxels are in another file
 };
 constexpr std::array<VolumeFormat, 10> volume_formats{{{".nrrd", read_nrrd, write_nrrd},
                                                        {".nhdr", read_nrrd, nullptr, nullptr, false},
@@ -103,7 +103,7 @@ bool is_one_file(const SurfaceFormat&) { return true; }
 bool is_one_file(const TetFormat& format) { return format.read != nullptr; }
 bool is_one_file(const VolumeFormat& format) { return format.one_file; }
 
-/// The format of a file's extension; null if there is none.
+/// Format of a file's extension; null if there is none.
 template <class Formats>
 const typename Formats::value_type* find_format(const Formats& formats, const std::string& path,
                                                 FileUse use) {
@@ -135,7 +135,7 @@ TetFormatInfo info_of(const TetFormat& format) {
           format.patch_names, format.fields,    format.second_order};
 }
 
-/// The files of a format of several have its extensions, in place of the path's: that of another format would
+/// A format of several files replaces the path's extension by its own; the extension of another format would
 /// promise a file that is not written.
 void check_names_format(const std::string& path, const std::string& name) {
   const std::string extension = extension_of(path);
@@ -153,7 +153,7 @@ void check_names_format(const std::string& path, const std::string& name) {
                      own + ", or in no extension");
 }
 
-/// The format of this name, or of the path's extension if there is none.
+/// Format of this name, or of the path's extension if the name is empty.
 const TetFormat& need_written_format(const std::string& path, const std::string& name) {
   if (name.empty()) return need_format(tet_formats(), path, FileKind::tet_mesh, FileUse::write);
   std::string known;
@@ -168,7 +168,8 @@ const TetFormat& need_written_format(const std::string& path, const std::string&
   throw UsageError("there is no format " + in_quotes(name) + " for a tet mesh; known are " + known);
 }
 
-/// The format of this name, an extension that may lack its dot, or of the path's extension if there is none.
+/// Format of this name, an extension with or without its dot, or of the path's extension if the name is
+/// empty.
 template <class Formats>
 const typename Formats::value_type& need_written_format(const Formats& formats, const std::string& path,
                                                         FileKind kind, const std::string& name) {
@@ -186,7 +187,7 @@ const SurfaceFormat& need_surface_format(const std::string& path) {
   return shared ? *shared : need_format(surface_formats, path, FileKind::surface, FileUse::read);
 }
 
-/// The format, which must be one file.
+/// Returns the format, which must have one file.
 template <class Format>
 const Format& streamed(const Format& format, const std::string& name) {
   if (is_one_file(format)) return format;
@@ -195,7 +196,7 @@ const Format& streamed(const Format& format, const std::string& name) {
                    streamed_extensions());
 }
 
-/// The mesh, whose sizes must be such that something can be computed.
+/// Returns the mesh after require_measurable().
 ReadTetMesh measurable(ReadTetMesh read, const std::string& name) {
   require_measurable(read.mesh, name);
   return read;
@@ -207,7 +208,7 @@ NameRules names_of_groups(const SurfaceFormat& format) {
   };
 }
 
-/// Among `files`, or alone if that is null.
+/// Writes a file as one of `files`, or on its own if that is null.
 void write_into(OutputFiles* files, const std::string& path,
                 const std::function<void(const ByteSink&)>& content) {
   if (files)

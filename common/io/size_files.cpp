@@ -32,7 +32,7 @@ using Fields = std::vector<MeshField>;
                    quoted_list(names) + (several ? "; name one \"size\"" : "; add one named \"size\""));
 }
 
-/// The field that read_mesh_sizes() describes.
+/// Selects the field as read_mesh_sizes() describes.
 MeshField take_field(Fields fields, const std::string& file) {
   std::vector<MeshField*> scalars, floating;
   for (MeshField& field : fields) {
@@ -54,7 +54,7 @@ MeshField take_field(Fields fields, const std::string& file) {
   fail_without_field(file, fields, scalars.size() > 1);
 }
 
-/// The field, whose values are checked where an element uses the point.
+/// Returns the field after checking its values where an element uses the point.
 template <class Elements>
 MeshField checked_lengths(Fields fields, const Elements& elements, const std::string& file) {
   MeshField field = take_field(std::move(fields), file);

@@ -20,7 +20,7 @@ BoundaryGroups::BoundaryGroups(const TetMesh& mesh) {
     else
       pairs.insert(t.pair());
   }
-  // Formats hold 32 bits with a sign.
+  // Formats hold signed 32-bit numbers.
   constexpr std::int64_t max_number = std::numeric_limits<std::int32_t>::max();
   std::set<std::int64_t> taken;
   for (const SurfaceRegion& group : of_user)

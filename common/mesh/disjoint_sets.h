@@ -7,7 +7,7 @@
 
 namespace tetwright {
 
-/// Sets of the numbers 0 to n - 1 that are merged step by step (union-find with path halving).
+/// Disjoint sets of the numbers 0 to n - 1, merged step by step (union-find with path halving).
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t n) : parent_(n) {

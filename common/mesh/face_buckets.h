@@ -17,7 +17,7 @@ namespace tetwright {
 /// A face of a tet with its vertices in ascending order.
 struct SortedFace {
   Triangle vertices;
-  /// Whether the tet's outward listing of the face (tet_faces) is an even permutation of `vertices`. Two
+  /// Whether the tet's outward order of the face (tet_faces) is an even permutation of `vertices`. Two
   /// positive tets on opposite sides of a face differ in it.
   bool even;
 };
@@ -36,21 +36,20 @@ inline SortedFace sorted_face(const Tet& tet, int face) {
   return s;
 }
 
-/// The faces of a set of tets in one bucket for each smallest vertex: equal faces meet in one bucket, which
-/// is sorted when it is visited. Takes four Codes for each tet, where a sort of all faces would take eight
-/// times as much.
+/// Faces of a set of tets in one bucket for each smallest vertex: equal faces share a bucket, which is sorted
+/// when it is visited. Takes four Codes for each tet; sorting all faces would take eight times as much.
 ///
-/// `Code` numbers a face as 4 * tet + face: std::uint32_t for fewer than 2^30 tets, else std::uint64_t.
+/// `Code` numbers a face as 4 * tet + face: std::uint32_t for fewer than 2^30 tets, otherwise std::uint64_t.
 template <class Code>
 class FaceBuckets {
  public:
-  /// A tet that a face belongs to.
+  /// A tet with this face.
   struct Use {
     Index tet;
     std::uint8_t face;  ///< opposite this vertex of the tet
     bool even;          ///< SortedFace::even
   };
-  /// Memory that visits reuse; one for each thread.
+  /// Buffers reused by visits; one for each thread.
   struct Workspace {
     struct Entry {
       Index middle, largest;
@@ -60,8 +59,9 @@ class FaceBuckets {
     std::vector<Use> uses;
   };
 
-  /// `tet_at(t)` returns the vertices of tet t, each below `vertices`. With `candidates`, a flag for each
-  /// vertex, only the faces of three flagged vertices are listed.
+  /// \param tet_at `tet_at(t)` returns the vertices of tet t, each below `vertices`
+  /// \param candidates a flag for each vertex: only faces of three flagged vertices are listed; null: all
+  ///   faces
   template <class TetAt>
   FaceBuckets(std::size_t tets, std::size_t vertices, const TetAt& tet_at,
               const std::vector<std::uint8_t>* candidates = nullptr)
@@ -85,8 +85,7 @@ class FaceBuckets {
   }
 
   /// Calls `body(vertices, uses)` for each face whose smallest vertex is `vertex`, in lexicographic order of
-  /// the vertices, with all tets it belongs to in ascending order. Different vertices may be visited
-  /// concurrently.
+  /// the vertices, with all its tets in ascending order. Different vertices may be visited concurrently.
   template <class TetAt, class Body>
   void visit(Index vertex, const TetAt& tet_at, Workspace& ws, const Body& body) const {
     ws.bucket.clear();

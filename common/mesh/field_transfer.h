@@ -5,24 +5,24 @@
 
 namespace tetwright {
 
-/// Replaces the fields of `after`, a mesh of the same thing with other points and tets, by those of `before`
-/// carried over. Without fields in `before`, `after` has none at once.
+/// Replaces the fields of `after`, a mesh of the same body with other points and tets, by those of `before`.
+/// Returns at once with no fields if `before` has none.
 ///
-/// Point fields: a point that is at the place of one of `before` (equal coordinates; of several the first)
-/// has its values to the bit. Others are interpolated linearly in the tet of `before` that holds them, of any
-/// material; where none does, at the nearest place of the nearest tet. Integer fields take the value of the
-/// vertex with the largest weight there, on ties of the smallest number. NaN at a vertex reaches only points
-/// that depend on that vertex.
+/// Point fields: a point with the coordinates of a point of `before` (the first of several) gets its values
+/// bit by bit. Others are interpolated linearly in the containing tet of `before`, of any material, or at the
+/// nearest point of the nearest tet. Integer fields get the value of the vertex with the largest weight, of
+/// the smallest index among equals. NaN at a vertex affects only points that depend on that vertex.
 ///
-/// Cell fields: a tet has the values of the tet of `before` of its material that holds its centroid, or else
-/// is nearest to it (on ties the first). A material that `before` does not have takes from any.
+/// Cell fields: a tet gets the values of the tet of `before` with the same material that contains its
+/// centroid, or is nearest to it (the first among equals). A material that `before` lacks takes values from
+/// any.
 ///
-/// Inverted tets of `before` count as their mirror images; flat ones hold nothing, but may be nearest. If
-/// `before` has no tets at all the values are NaN, or 0 in integer fields.
+/// Inverted tets of `before` count as their mirror images; flat ones contain no point but may be nearest. If
+/// `before` has no tets, values are NaN, or 0 in integer fields.
 ///
-/// Both meshes must be in range, with finite coordinates and fields of the right size. Parallel; the result
-/// does not depend on the number of threads. At the peak 40 bytes for each tet of `before`
-/// and 16 for each of its points beside the fields.
+/// Parallel; the result does not depend on the number of threads. Peak memory beside the fields: 40 bytes for
+/// each tet of `before` and 16 for each of its points.
+/// \pre both meshes in range, with finite coordinates and fields of the right size
 void transfer_fields(const TetMesh& before, TetMesh& after);
 
 }  // namespace tetwright

@@ -27,7 +27,7 @@ int sign(const TetMesh& mesh, const Tet& t) {
   return orient3d(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]);
 }
 
-/// A power of two that brings coordinates to at most 1, so that no volume overflows.
+/// Power of two that scales coordinates to at most 1, so that no volume overflows.
 double scale_of(const TetMesh& mesh) {
   double largest = 0;
   for (const Vec3& p : mesh.points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
@@ -50,7 +50,7 @@ bool all_positive(const TetMesh& mesh) {
   return fine.load();
 }
 
-/// Moves the entries of `values` that stay to the front, in their order.
+/// Moves the kept entries of `values` to the front, in their order.
 template <class T, class Stays>
 void compact(std::vector<T>& values, std::size_t components, const Stays& stays) {
   std::size_t kept = 0;
@@ -67,7 +67,7 @@ void compact(std::vector<MeshField>& fields, const Stays& stays) {
   for (MeshField& field : fields) compact(field.values, static_cast<std::size_t>(field.components), stays);
 }
 
-/// For each point the tet it is used by, or no_index; or nothing if there is a point with two.
+/// Tet of each point, or no_index; empty if a point has two.
 std::vector<Index> owners_in_soup(const TetMesh& mesh) {
   std::vector<Index> owners(mesh.points.size(), no_index);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
@@ -78,12 +78,12 @@ std::vector<Index> owners_in_soup(const TetMesh& mesh) {
   return owners;
 }
 
-/// Returns how many points were merged into others.
+/// Merges the points of a soup; returns the number of points removed.
 std::size_t merge_soup(TetMesh& mesh) {
   if (mesh.tets.size() < 2) return 0;
   std::vector<Index> owners = owners_in_soup(mesh);
   if (owners.empty()) return 0;
-  // From here each entry says into which point its point merges.
+  // From here on each entry is the point that its point merges into.
   std::vector<Index>& target = owners;
   std::size_t merged = 0;
   {
@@ -98,7 +98,7 @@ std::size_t merge_soup(TetMesh& mesh) {
   const auto stays = [&](std::size_t p) { return target[p] == p; };
   compact(mesh.points, 1, stays);
   compact(mesh.point_fields, stays);
-  // Targets are never larger than their points, so that theirs are numbered anew before them.
+  // A target's index never exceeds its point's, so that targets are renumbered first.
   Index next = 0;
   for (std::size_t p = 0; p < target.size(); ++p) target[p] = target[p] == p ? next++ : target[target[p]];
   parallel_for(0, mesh.tets.size(), element_grain, [&](std::size_t begin, std::size_t end) {
@@ -114,7 +114,7 @@ bool repeats_vertex(const Tet& t) {
   return std::any_of(tet_edges.begin(), tet_edges.end(), [&](const auto& e) { return t[e[0]] == t[e[1]]; });
 }
 
-/// Returns how many tets were taken out.
+/// Removes tets with a repeated vertex; returns their number.
 std::size_t remove_repeating(TetMesh& mesh) {
   const auto count = std::count_if(mesh.tets.begin(), mesh.tets.end(), repeats_vertex);
   if (count == 0) return 0;
@@ -125,9 +125,9 @@ std::size_t remove_repeating(TetMesh& mesh) {
   return static_cast<std::size_t>(count);
 }
 
-/// What is across face f of tet t, at place 4 t + f: no_index if not exactly one tet is, otherwise twice that
-/// tet, plus one if the two list the face in the same sense, on which neighbours do not agree. 32 bytes a tet
-/// and 8 a point at the peak.
+/// Neighbour across face f of tet t at index 4 t + f: no_index unless exactly one other tet has the face,
+/// otherwise twice that tet, plus one if the two list the face in the same sense, on which consistently
+/// oriented neighbours differ. Peak memory 32 bytes a tet and 8 a point.
 std::vector<Index> link_faces(const TetMesh& mesh) {
   using Buckets = FaceBuckets<Index>;
   std::vector<Index> across(4 * mesh.tets.size(), no_index);
@@ -147,7 +147,7 @@ std::vector<Index> link_faces(const TetMesh& mesh) {
   return across;
 }
 
-/// Returns how many tets were turned.
+/// Orients the tets; returns how many were reoriented.
 std::size_t orient(TetMesh& mesh) {
   std::vector<Tet>& tets = mesh.tets;
   const std::vector<Index> across = link_faces(mesh);
@@ -187,8 +187,8 @@ std::size_t orient(TetMesh& mesh) {
   return count;
 }
 
-/// Finds the interfaces again where they have patches, and clears them where they have none; how many faces
-/// with a patch there are no more.
+/// Recomputes the interfaces if they have patches, otherwise clears them. Returns the number of faces with a
+/// patch that are lost.
 std::size_t renew_interfaces(TetMesh& mesh) {
   std::map<Triangle, InterfacePatch> before;
   const auto key = [](Triangle ids) {
@@ -199,7 +199,7 @@ std::size_t renew_interfaces(TetMesh& mesh) {
   std::size_t lost = 0;
   for (const InterfaceTriangle& t : mesh.interfaces) {
     if (t.patch == 0) continue;
-    // Both sides of what becomes one face may have a patch.
+    // Both sides of a merged face may have a patch.
     const InterfacePatch own{t.pair(), t.patch};
     const auto [known, added] = before.emplace(key(t.ids), own);
     lost += !added && known->second != own && groups.contains(own);
@@ -208,7 +208,7 @@ std::size_t renew_interfaces(TetMesh& mesh) {
   mesh.patch_groups.clear();
   if (before.empty()) return lost;
   mesh.interfaces = find_interfaces(mesh);
-  // Faces of the boundary may lie between materials now: beside patches with the same number.
+  // Boundary faces may now lie between materials, beside patches with the same number.
   std::map<std::pair<InterfacePatch, InterfacePatch>, std::uint16_t> numbers;
   std::set<InterfacePatch> taken;
   std::map<MaterialPair, std::uint32_t> next_free;
@@ -237,7 +237,7 @@ std::size_t renew_interfaces(TetMesh& mesh) {
 ImportCleanupReport make_coherent(TetMesh& mesh) {
   ImportCleanupReport report;
   bool fine = all_positive(mesh);
-  // A soup of positive tets has four points for each.
+  // A soup of positive tets has four points a tet.
   if (!fine || mesh.points.size() >= 4 * mesh.tets.size()) report.merged_points = merge_soup(mesh);
   if (!fine) {
     report.removed_tets = remove_repeating(mesh);

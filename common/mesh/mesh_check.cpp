@@ -27,7 +27,7 @@ std::string numbers(std::span<const Index> ids) {
   return out;
 }
 
-/// The numbers below `n` for which `is_bad` returns true, ascending. Parallel.
+/// Indices below `n` for which `is_bad` returns true, ascending. Parallel.
 template <class IsBad>
 std::vector<Index> find_bad(std::size_t n, const IsBad& is_bad) {
   constexpr std::size_t part_size = 1 << 14;
@@ -46,7 +46,7 @@ class Checker {
  public:
   Checker(const TetMesh& mesh, const MeshCheckOptions& options) : mesh_(mesh), options_(options) {}
 
-  /// Returns false if the further checks would be meaningless.
+  /// Checks the arrays; false if further checks would be meaningless.
   bool check_arrays() {
     if (mesh_.tets.empty() || mesh_.materials.size() != mesh_.tets.size())
       add(MeshFault::materials_missing, 1, [&](std::size_t) {
@@ -110,7 +110,7 @@ class Checker {
   std::vector<MeshFinding> findings() { return std::move(findings_); }
 
  private:
-  /// `place_of(i)` is the i-th place; one with an empty text is left out.
+  /// Adds a finding; `place_of(i)` describes the i-th item, which is left out if its text is empty.
   template <class PlaceOf>
   void add(MeshFault fault, std::size_t count, const PlaceOf& place_of) {
     if (count == 0) return;
@@ -144,7 +144,7 @@ class Checker {
     return found;
   }
 
-  /// The tets that have the same vertices as a tet with a smaller number.
+  /// Tets with the vertices of a tet of smaller index.
   std::vector<Index> duplicates() const {
     const auto& tets = mesh_.tets;
     const auto sorted = [&](Index t) {
@@ -182,12 +182,12 @@ class Checker {
     return out;
   }
 
-  /// Each point's tets must be chained by faces at the point: corners of tets are joined across faces, and
-  /// there must be one set for each point.
+  /// Checks that each point's tets are connected by faces at the point: corners of tets are joined across
+  /// faces, and each point must have one set.
   void check_stars(const std::vector<MeshFace>& faces) {
     const auto& tets = mesh_.tets;
-    // Numbers of corners, 4 t + k, are kept in 32 bits, since 64 would take twice the memory. Meshes of 2^30
-    // tets and more are therefore not checked here.
+    // Corner indices 4 t + k have 32 bits, since 64 would take twice the memory. Meshes of 2^30 tets and more
+    // are therefore not checked.
     if (tets.size() >= (std::size_t{1} << 30)) return;
     DisjointSets corners(4 * tets.size());
     const auto corner = [&](Index t, Index v) {

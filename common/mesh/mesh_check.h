@@ -10,12 +10,11 @@
 
 namespace tetwright {
 
-/// What can be wrong with a mesh, in the order of the checks. A mesh with one of the first three faults is
-/// not checked any further. Unused points are a warning, since no computation on the tets notices them; all
-/// other faults are errors.
+/// Faults of a mesh, in the order of the checks. After one of the first three no further check is made.
+/// Unused points are a warning, since no computation on the tets notices them; all other faults are errors.
 enum class MeshFault : int {
   materials_missing = 1,              ///< no tets, or not one material for each tet
-  index_out_of_range = 2,             ///< tets that name a point that does not exist
+  index_out_of_range = 2,             ///< tets that refer to a point that does not exist
   coordinates_not_finite = 3,         ///< points
   degenerate_tets = 4,                ///< tets with a vertex twice
   duplicate_tets = 5,                 ///< tets beyond the first with the same vertices
@@ -28,19 +27,19 @@ enum class MeshFault : int {
   self_intersections = 12             ///< pairs of boundary or interface triangles
 };
 
-/// The name in reports that programs read, such as "degenerate_tets".
+/// Name in machine-readable reports, such as "degenerate_tets".
 const char* mesh_fault_name(MeshFault fault);
 
-/// What is counted, in words, such as "tets with a repeated vertex".
+/// Description of the counted items, such as "tets with a repeated vertex".
 const char* mesh_fault_text(MeshFault fault);
 
-/// True for a fault that leaves the mesh valid.
+/// Whether the fault leaves the mesh valid.
 bool is_warning(MeshFault fault);
 
 struct MeshPlace {
   std::string text;           ///< such as "tet 7 (1 2 2 5)" or "point 3 at 0 0.5 1"
-  std::vector<Index> points;  ///< numbers of the points that it is about, in the order of the text
-  std::optional<Vec3> at;     ///< the mean of these, where all are there and finite
+  std::vector<Index> points;  ///< indices of the points concerned, in the order of the text
+  std::optional<Vec3> at;     ///< mean position of the points, if all exist and are finite
 };
 
 struct MeshFinding {
@@ -51,21 +50,22 @@ struct MeshFinding {
 
 struct MeshCheckOptions {
   bool self_intersections = true;  ///< takes as long as all other checks together
-  std::size_t places = 3;          ///< the maximum number of places in each finding
+  std::size_t places = 3;          ///< maximum number of examples in each finding
 };
 
 /// True unless a finding is an error.
 bool is_valid(const std::vector<MeshFinding>& findings);
 
-/// Checks a mesh and returns what is wrong with it. Safe on any mesh, also one with indices out of range.
-/// Numbers in places count from 0. Parallel; the result does not depend on the number of threads. Takes well
-/// under a second for a million tets, and about 120 bytes of memory for each tet.
+/// Checks any mesh, even one with indices out of range. Parallel; the result does not depend on the number of
+/// threads. Takes well under a second for a million tets, and about 120 bytes of memory for each tet.
+/// \return the faults found; numbers in their texts count from 0
 std::vector<MeshFinding> check_mesh(const TetMesh& mesh, const MeshCheckOptions& options = {});
-/// The same, given the result of mesh_faces() for this mesh, whose indices must be in range.
+/// Checks a mesh with the faces that mesh_faces() found in it.
+/// \pre indices in range
 std::vector<MeshFinding> check_mesh(const TetMesh& mesh, const MeshCheckOptions& options,
                                     const std::vector<MeshFace>& faces);
 
-/// One line for a user: "tets with a repeated vertex (degenerate_tets): 3, the first at tet 7 (1 2 2 5)".
+/// One line for messages: "tets with a repeated vertex (degenerate_tets): 3, the first at tet 7 (1 2 2 5)".
 std::string mesh_finding_line(const MeshFinding& finding);
 
 }  // namespace tetwright

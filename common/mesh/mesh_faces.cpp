@@ -9,7 +9,7 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t vertex_grain = 4096;  ///< vertices a parallel loop hands out at a time
+constexpr std::size_t vertex_grain = 4096;  ///< vertices for each task of a parallel loop
 
 template <class Code>
 std::vector<MeshFace> collect_faces(std::span<const Tet> tets, std::size_t points,

@@ -14,7 +14,7 @@ namespace tetwright {
 
 namespace {
 
-/// Fixed, so that sums are rounded the same way for any number of threads.
+/// Fixed, so that rounding of sums does not depend on the number of threads.
 constexpr std::size_t statistics_grain = 1 << 14;
 
 struct PartStatistics {
@@ -38,7 +38,7 @@ std::size_t dihedral_bin(double degrees) {
   return std::min(DihedralHistogram::bins - 1, static_cast<std::size_t>(degrees / DihedralHistogram::step));
 }
 
-/// Lower ends of the bins behind the first, as shares of the mean. Half steps are sqrt(2), no logarithm.
+/// Lower ends of the bins after the first, relative to the mean. Half steps are sqrt(2), without a logarithm.
 std::array<double, QualityHistogram::volume_bins - 1> volume_limits() {
   std::array<double, QualityHistogram::volume_bins - 1> limits;
   for (std::size_t i = 0; i < limits.size(); ++i)
@@ -47,12 +47,12 @@ std::array<double, QualityHistogram::volume_bins - 1> volume_limits() {
   return limits;
 }
 
-/// Six times, so that whole numbers add up without rounding.
+/// Six times the volume, so that integer values add up without rounding.
 double volume_six_times(const TetMesh& mesh, const Tet& t) {
   return orient3d_value(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]);
 }
 
-/// By volume over the mean volume.
+/// Histogram by smallest solid angle and by volume over the mean volume.
 QualityHistogram histogram(const TetMesh& mesh, const std::vector<std::uint8_t>& bin_of_angle, double mean) {
   const auto limits = volume_limits();
   std::vector<QualityHistogram> parts(thread_count());
@@ -77,7 +77,7 @@ void count_interfaces(const TetMesh& mesh, MeshStatistics& out) {
   const std::vector<InterfaceTriangle>& triangles = mesh.interfaces;
   using Pairs = std::map<MaterialPair, InterfaceStatistics>;
   std::vector<Pairs> parts((triangles.size() + statistics_grain - 1) / statistics_grain);
-  std::vector<std::uint64_t> edges(3 * triangles.size());  // smaller id above the larger one
+  std::vector<std::uint64_t> edges(3 * triangles.size());  // smaller id in the upper 32 bits
   parallel_chunks(parts.size(), [&](std::size_t p, unsigned) {
     Pairs::value_type* last_pair = nullptr;
     const std::size_t last = std::min(triangles.size(), (p + 1) * statistics_grain);
@@ -124,7 +124,7 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
       const std::array<Vec3, 4> x{mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]};
       const double volume = volume_six_times(mesh, v);
       double angle = orient3d(x[0], x[1], x[2], x[3]) > 0 ? min_solid_angle(x[0], x[1], x[2], x[3]) : 0.0;
-      // Coordinates beyond 1e100 overflow: such a tet is of no use either.
+      // Coordinates beyond 1e100 overflow: such a tet is useless, too.
       if (!std::isfinite(angle)) angle = 0;
       if (!material || tag != mesh.materials[t]) {
         tag = mesh.materials[t];
@@ -136,7 +136,7 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
       part.sum_angle += angle;
       part.below += angle < threshold;
       for (double dihedral : dihedral_angles(x)) {
-        // Not a number where a face is degenerate: both comparisons are false.
+        // NaN where a face is degenerate: both comparisons are false.
         if (dihedral < part.min_dihedral) part.min_dihedral = dihedral;
         if (dihedral > part.max_dihedral) part.max_dihedral = dihedral;
         if (!std::isnan(dihedral)) ++part.dihedrals.counts[dihedral_bin(dihedral)];

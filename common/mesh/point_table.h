@@ -12,18 +12,19 @@
 
 namespace tetwright {
 
-/// Numbers of points by their coordinates, of which -0 equals 0 and NaN nothing: a hash table of numbers
-/// only, that looks into the points themselves. 8 to 16 bytes for each distinct point. The points of numbers
-/// that were added may not change while it lives. Finding may run concurrently, adding may not.
+/// Finds points by coordinates, where -0 equals 0 and NaN equals nothing: a hash table of indices that
+/// compares the points themselves. 8 to 16 bytes for each distinct point. Concurrent find() is safe, add() is
+/// not.
+/// \pre added points do not change during its lifetime
 class PointTable {
  public:
   explicit PointTable(std::span<const Vec3> points, std::size_t expected = 0)
       : points_(points), slots_(std::bit_ceil(std::max<std::size_t>(smallest, 2 * expected)), no_index) {}
 
-  /// The number that was added first of those with the coordinates of point `i`: `i` itself if it is new.
+  /// \return the first index added with the coordinates of point `i`: `i` itself if they are new
   Index add(Index i) {
     const Vec3& p = points_[i];
-    if (p.hasNaN()) return i;  // would be put in again and again, and never found
+    if (p.hasNaN()) return i;  // would be inserted again and again, and never found
     const std::size_t slot = slot_of(p);
     if (slots_[slot] != no_index) return slots_[slot];
     slots_[slot] = i;
@@ -31,14 +32,14 @@ class PointTable {
     return i;
   }
 
-  /// The number added for these coordinates, or no_index.
+  /// Index added for these coordinates, or no_index.
   Index find(const Vec3& p) const { return slots_[slot_of(p)]; }
 
  private:
-  static constexpr std::size_t smallest = 1 << 10;  // 4 KB: not worth less
+  static constexpr std::size_t smallest = 1 << 10;  // 4 KB
 
-  /// Finalizer of splitmix64 (Steele et al. 2014) after each coordinate: neighbours on a grid differ in few
-  /// bits, high ones, and have to end up far apart.
+  /// Finalizer of splitmix64 (Steele et al. 2014) after each coordinate: neighbours on a grid differ in a few
+  /// high bits and must hash far apart.
   static std::uint64_t hash(const Vec3& p) {
     std::uint64_t h = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -50,8 +51,8 @@ class PointTable {
     return h;
   }
 
-  /// Where the coordinates are, or the empty slot where they would be put: there is one, as at most half of
-  /// the slots are full.
+  /// Slot of these coordinates, or the empty slot for them: there is one, since at most half of the slots are
+  /// full.
   std::size_t slot_of(const Vec3& p) const {
     const std::size_t mask = slots_.size() - 1;
     std::size_t slot = hash(p) & mask;

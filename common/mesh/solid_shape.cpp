@@ -16,7 +16,7 @@ namespace {
 /// A side of a triangle, from its corner `corner` to the next one.
 struct Side {
   Index low, high;  ///< ids of its ends
-  Index corner;     ///< 3 * triangle + number of the corner
+  Index corner;     ///< 3 * triangle + index of the corner
   bool turned;      ///< runs from high to low
   auto operator<=>(const Side&) const = default;
 };

@@ -12,16 +12,16 @@ namespace tetwright {
 /// An edge of a set of triangles.
 struct SurfaceEdge {
   std::array<Index, 2> ids;  ///< ascending
-  std::uint32_t count;       ///< triangles at it
+  std::uint32_t count;       ///< number of its triangles
 };
 
-/// How a set of triangles hangs together, by ids alone.
+/// Connectivity of a set of triangles, by ids alone.
 struct SurfaceChains {
   std::vector<SurfaceEdge> edges;  ///< in lexicographic order
   std::size_t points = 0;          ///< vertices in use
-  std::size_t components = 0;      ///< of triangles chained by shared edges
+  std::size_t components = 0;      ///< of triangles connected by shared edges
   std::vector<Index>
-      touching_points;  ///< ascending; points at which fans of triangles touch that share no edge there
+      touching_points;           ///< ascending; points where fans of triangles without a common edge touch
   std::size_t surplus_fans = 0;  ///< fans around points beyond one for each point
 
   /// Euler characteristic: points - edges + triangles.
@@ -31,7 +31,7 @@ struct SurfaceChains {
   }
 };
 
-/// O(n log n); memory about 100 bytes for each triangle.
+/// Analyses triangles. O(n log n); about 100 bytes of memory for each triangle.
 SurfaceChains surface_chains(std::span<const Triangle> triangles);
 
 }  // namespace tetwright

@@ -11,7 +11,7 @@
 
 namespace tetwright {
 
-/// Weights, one for each vertex of a tet; none negative, their sum is 1 but for rounding.
+/// Barycentric weights, one for each vertex of a tet: none negative, with sum 1 up to rounding.
 using TetWeights = std::array<double, 4>;
 
 /// A tet found for a point, and the point's weights in it.
@@ -20,27 +20,27 @@ struct FoundTet {
   TetWeights weights{};
 };
 
-/// Finds tets by place. Inverted tets count as their mirror images; flat ones hold nothing, but may be
-/// nearest. The mesh, whose tets are in range, may not change while the tree lives. All functions may be
-/// called concurrently. Built in parallel; the same for any number of threads. About 12 bytes for each tet,
-/// 40 while it is built.
+/// Finds tets by position. Inverted tets count as their mirror images; flat ones contain no point but may be
+/// nearest. All functions may be called concurrently. Built in parallel; the result does not depend on the
+/// number of threads. About 12 bytes for each tet, 40 during construction.
+/// \pre tets in range; the mesh does not change during the tree's lifetime
 class TetTree {
  public:
   enum class Order {
     place,          ///< all tets in Morton order
-    material_place  ///< those of each material together, so that a search may be restricted to one
+    material_place  ///< grouped by material, so that a search may be restricted to one
   };
 
   TetTree(const TetMesh& mesh, Order order);
 
   /// All tets, as positions in the tree's order.
   BoxTree::Range all() const { return tree_.all(); }
-  /// The tets of a material, or all if it has none. Only with Order::material_place.
+  /// Tets of a material, or all tets if it has none. Only with Order::material_place.
   BoxTree::Range of(MaterialTag material) const;
 
-  /// A tet of the range that contains `p`, the first in the tree's order, or else the one nearest to it,
-  /// with the weights of its nearest place, of several the one of the smallest number; no_index without tets,
-  /// or where all of them are farther away than `max_distance`.
+  /// Finds the tet of the range that contains `p`, the first in the tree's order.
+  /// \return this tet; if there is none, the tet nearest to `p`, with the smallest index among equals, and
+  ///   the weights of its nearest point; no_index without tets or if all are farther away than `max_distance`
   FoundTet find(const Vec3& p, const BoxTree::Range& range,
                 double max_distance = std::numeric_limits<double>::infinity()) const;
 

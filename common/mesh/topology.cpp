@@ -30,7 +30,7 @@ struct Ranks {
   std::vector<Index> of_tet;
 };
 
-/// How many simplices the domain and each material have.
+/// Numbers of simplices of the domain and of each material.
 struct Counts {
   explicit Counts(std::size_t materials) : of_material(materials, 0) {}
   Topology::Count domain = 0;
@@ -39,7 +39,7 @@ struct Counts {
 
 /// Counts the points (`edges` false) or edges of the domain and of each material.
 Counts count_simplices(const TetMesh& mesh, const Ranks& ranks, bool edges) {
-  // A bucket for each smaller vertex, filled by counting; within it the other vertex and the material.
+  // One bucket for each smaller vertex, filled by counting, with the other vertex and the material.
   struct Entry {
     Index other, rank;
     bool operator==(const Entry&) const = default;
@@ -107,7 +107,7 @@ Topology::Surface surface_of(const std::vector<Triangle>& triangles) {
 }
 
 Topology::Curves curves_of(const std::vector<SurfaceEdge>& edges) {
-  // Points of the curves, once for each edge at them.
+  // Points of the curves, once for each of their edges.
   std::vector<Index> ends;
   Topology::Count count = 0;
   for (const SurfaceEdge& e : edges)
@@ -140,7 +140,7 @@ std::string text(const Topology::Surface& s) {
   return "components " + std::to_string(s.components) + ", euler " + std::to_string(s.euler);
 }
 
-/// The parts by name, in a fixed order.
+/// Descriptions of the parts by name, in a fixed order.
 std::vector<std::pair<std::string, std::string>> parts(const Topology& t) {
   std::vector<std::pair<std::string, std::string>> out;
   const auto add_solid = [&](const std::string& name, const Topology::Solid& s) {

@@ -12,21 +12,21 @@
 
 namespace tetwright {
 
-/// What must not change while a mesh is simplified: how many pieces, handles and cavities its materials,
-/// interfaces and junction curves have.
+/// Topology that simplification preserves: components, handles and cavities of materials, interfaces and
+/// junction curves.
 struct Topology {
   using Count = std::ptrdiff_t;
 
   /// The whole domain or a material.
   struct Solid {
-    Count components = 0;  ///< of tets chained by faces
+    Count components = 0;  ///< of tets connected by faces
     Count euler = 0;       ///< points - edges + faces - tets
     Count boundary_components = 0;
     Count boundary_euler = 0;
     bool operator==(const Solid&) const = default;
   };
   struct Surface {
-    Count components = 0;  ///< of triangles chained by edges
+    Count components = 0;  ///< of triangles connected by edges
     Count euler = 0;
     bool operator==(const Surface&) const = default;
   };
@@ -34,13 +34,13 @@ struct Topology {
   struct Curves {
     Count components = 0;
     Count euler = 0;
-    Count branch_points = 0;  ///< points at which other than two such edges meet
+    Count branch_points = 0;  ///< points where other than two such edges meet
     bool operator==(const Curves&) const = default;
   };
   using Pair = MaterialPair;
 
   Solid domain;
-  // What follows is empty for a mesh of one material: the domain says it all.
+  // Empty for a mesh of one material, which the domain describes.
   std::map<MaterialTag, Solid> materials;
   std::map<Pair, Surface> interfaces;
   std::optional<Count> touching_fans;  ///< fans of boundary and interface triangles beyond one for each point
@@ -49,13 +49,13 @@ struct Topology {
   bool operator==(const Topology&) const = default;
 };
 
-/// Ids must be below the number of points, and each tet must have a material. Takes about 0.3 s for a million
-/// tets and 120 bytes of memory for each.
+/// Computes the topology. About 0.3 s for a million tets and 120 bytes of memory for each.
+/// \pre ids below the number of points, a material for each tet
 Topology topology(const TetMesh& mesh);
-/// The same, with faces that mesh_faces() made of this mesh.
+/// Computes the topology with the faces that mesh_faces() found in this mesh.
 Topology topology(const TetMesh& mesh, const std::vector<MeshFace>& faces);
 
-/// The faces between two materials or a material and outside.
+/// Faces between two materials or a material and outside.
 std::vector<Triangle> boundary_and_interfaces(const TetMesh& mesh, const std::vector<MeshFace>& faces);
 
 /// One line for each part, such as "material 2: components 1, euler 1, boundary components 1, boundary euler

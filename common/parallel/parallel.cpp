@@ -12,11 +12,11 @@ namespace tetwright {
 
 namespace {
 
-/// The number of threads that parallel work of this thread may use; 0 while there is no ThreadLimit. Loops
-/// hand it on to the threads that run their bodies.
+/// Maximum number of threads of parallel work of this thread; 0 without a ThreadLimit. Loops pass it on to
+/// the threads that run their bodies.
 thread_local unsigned thread_limit = 0;
 
-/// Sets thread_limit while it exists.
+/// Sets thread_limit during its lifetime.
 class LimitHere {
  public:
   explicit LimitHere(unsigned limit) : before_(std::exchange(thread_limit, limit)) {}
@@ -29,30 +29,30 @@ class LimitHere {
 };
 
 /// The thread sanitizer cannot see how TBB synchronises its threads, since the library is not instrumented.
-/// These two atomics state what TBB guarantees: everything before a loop happens before each body, and each
-/// body happens before everything after the loop. There are two of them, and no body acquires at its end, so
-/// that no order among the bodies is claimed that does not exist. They are global, so that a body reads
-/// nothing of its caller's before it has acquired.
+/// These two atomics state TBB's guarantees: everything before a loop happens before each body, and each body
+/// happens before everything after the loop. There are two, and no body acquires at its end, so that no order
+/// among bodies is claimed. They are global, so that a body reads nothing of its caller's before it has
+/// acquired.
 std::atomic<unsigned> loop_started{0};
 std::atomic<unsigned> body_ended{0};
 
-/// Releases when a body ends, also by an exception.
+/// Releases at the end of a body, even by an exception.
 struct BodyEnd {
   ~BodyEnd() { body_ended.fetch_add(1, std::memory_order_release); }
 };
-/// Acquires in the caller when the loop ends, also by an exception.
+/// Acquires in the caller at the end of the loop, even by an exception.
 struct LoopEnd {
   ~LoopEnd() { (void)body_ended.load(std::memory_order_acquire); }
 };
 
-/// body(i) for each i in [0, count), on at most thread_count() threads.
+/// Calls body(i) for each i in [0, count), on at most thread_count() threads.
 void run_loop(std::size_t count, const std::function<void(std::size_t)>& body) {
   struct Loop {
     const std::function<void(std::size_t)>& body;
     unsigned limit;
   };
   const Loop loop{body, thread_count()};
-  // Each slot of an arena that has nothing to do still wakes a thread for every loop.
+  // Even an idle slot of an arena wakes a thread for every loop.
   const auto threads = static_cast<unsigned>(std::min<std::size_t>(count, loop.limit));
   loop_started.fetch_add(1, std::memory_order_release);
   const LoopEnd loop_end;
@@ -115,7 +115,7 @@ void parallel_chunks(std::size_t chunks, const std::function<void(std::size_t, u
     for (std::size_t i = 0; i < chunks; ++i) body(i, 0);
     return;
   }
-  // Relaxed, both: the counter only hands out numbers, and the flag only has to arrive some time.
+  // Relaxed: the counter only assigns numbers, and the flag only has to become visible eventually.
   std::atomic<std::size_t> next{0};
   std::atomic<bool> failed{false};
   run_loop(workers, [&](std::size_t worker) {

@@ -11,8 +11,8 @@
 
 namespace tetwright {
 
-/// Sorts by `less`, which must be a total order in which equal items are indistinguishable, so that the
-/// result does not depend on the number of threads. Needs memory for a second copy.
+/// Sorts by `less`; the result does not depend on the number of threads. Needs memory for a second copy.
+/// \pre `less` is a total order in which equal items are indistinguishable
 template <class T, class Less = std::less<>>
 void parallel_sort(std::vector<T>& items, const Less& less = {}) {
   constexpr std::size_t min_chunk = 1 << 13;  // starting a task for fewer items costs more than it saves
@@ -38,7 +38,7 @@ void parallel_sort(std::vector<T>& items, const Less& less = {}) {
   }
 }
 
-/// parallel_sort(), then removes repeated items.
+/// Sorts and removes duplicates.
 template <class T>
 void parallel_sort_unique(std::vector<T>& items) {
   parallel_sort(items);

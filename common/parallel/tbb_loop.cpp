@@ -14,8 +14,8 @@ namespace tetwright {
 namespace {
 
 /// Keeps TBB's threads until the process ends, which stops them wherever they are. Otherwise the last of them
-/// would destroy the library's data while the program is exiting, and waiting for the threads takes minutes
-/// while other programs keep all processors busy.
+/// would destroy the library's data during exit, and waiting for the threads takes minutes while other
+/// programs keep all processors busy.
 struct KeptThreads {
   KeptThreads() : handle(tbb::attach{}) {}
   ~KeptThreads() {}  // the handle is never released
@@ -24,13 +24,13 @@ struct KeptThreads {
   };
 };
 
-/// To be called before the first loop.
+/// Call before the first loop.
 void keep_threads() { static const KeptThreads kept_threads; }
 
 }  // namespace
 
-// Of several such settings TBB takes the smallest, so that one for fewer threads would hold for all threads
-// of the process.
+// TBB uses the minimum of several such settings, so that one for fewer threads would hold for all threads of
+// the process.
 struct TbbThreads::Impl {
   explicit Impl(unsigned threads) {
     if (threads > tbb_concurrency()) control.emplace(tbb::global_control::max_allowed_parallelism, threads);

@@ -8,13 +8,14 @@ namespace tetwright {
 
 /// Only the source of this header includes oneTBB; all other code uses parallel.h. The source is compiled
 /// without the thread sanitizer: TBB synchronises in a library that is not instrumented, so that the half of
-/// it that is in headers would be reported. parallel.cpp, which is instrumented, states the order that TBB
+/// it in headers would be reported. parallel.cpp, which is instrumented, states the ordering that TBB
 /// guarantees.
 
-/// The number of threads that TBB uses by default, at least 1.
+/// Number of threads that TBB uses by default, at least 1.
 unsigned tbb_concurrency();
 
-/// While an object exists, TBB has as many threads as `threads`, if that is more than it has by default.
+/// Raises the number of TBB's threads to `threads` during the object's lifetime, if that is above the
+/// default.
 class TbbThreads {
  public:
   explicit TbbThreads(unsigned threads);
@@ -27,12 +28,12 @@ class TbbThreads {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Calls work(context), whose loops use at most `threads` threads, those of other libraries too. Rethrows.
+/// Calls work(context), whose loops, also of other libraries, use at most `threads` threads. Rethrows.
 void tbb_within(unsigned threads, void (*work)(const void* context), const void* context);
 
 /// Calls body(context, i) for each i in [0, count), concurrently on up to `threads` threads. Rethrows the
-/// first exception. `body` is a plain pointer, since the source, which is not instrumented, would otherwise
-/// read a std::function.
+/// first exception. `body` is a plain pointer, since the uninstrumented source would otherwise read a
+/// std::function.
 void tbb_loop(std::size_t count, unsigned threads, void (*body)(const void* context, std::size_t i),
               const void* context);
 

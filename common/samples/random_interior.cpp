@@ -14,13 +14,14 @@ namespace tetwright {
 namespace {
 
 constexpr std::uint64_t skin_seed = 1, interior_seed = 2, walk_seed = 3;
-/// How far a skin point may be from its place in the grid, in cells: from a quarter on squares could fold.
+/// Maximum displacement of a skin point from the grid, in cells; from a quarter on, squares could fold.
 constexpr double skin_jitter = 0.22;
-/// Steps of a walk to the tet that holds a point, before all tets are looked at: the body is not convex, so
-/// that a walk may end at the skin.
+/// Maximum steps of a walk to the tet that contains a point, before all tets are searched: the body is not
+/// convex, so that a walk may end at the skin.
 constexpr int max_steps = 2000;
 
-/// A place on the surface of the cube from -1 to 1, on the skin. sqrt alone has the same bits everywhere.
+/// Maps a point on the surface of the cube from -1 to 1 to the skin. sqrt alone gives the same bits
+/// everywhere.
 Vec3 on_blob(const Vec3& p, double thickness) {
   const Vec3 u = p / std::sqrt(p.x() * p.x() + p.y() * p.y() + p.z() * p.z());
   const double radius = 1 + 0.3 * u.x() * u.y() + 0.25 * u.z() * u.z() * u.x() - 0.2 * u.y() * u.y();
@@ -48,7 +49,7 @@ class Skin {
     at[(axis + 2) % 3] = v;
     const auto [entry, is_new] = ids_.try_emplace(at, static_cast<Index>(points.size()));
     if (is_new) {
-      // Points of the cube's edges move along them, its corners stay.
+      // Points on the cube's edges move along them; its corners stay.
       Vec3 p;
       for (int k = 0; k < 3; ++k) {
         const Index c = at[static_cast<std::size_t>(k)];
@@ -75,8 +76,8 @@ class Skin {
   std::map<std::array<Index, 3>, Index> ids_;
 };
 
-/// Whether p lies inside the circumsphere of a positive tet, up to rounding: what that decides wrongly leaves
-/// a tet that is Delaunay but for rounding.
+/// Whether p lies inside the circumsphere of a positive tet, up to rounding: a wrong decision leaves a tet
+/// that is Delaunay up to rounding.
 bool in_sphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& p) {
   const Vec3 ap = a - p, bp = b - p, cp = c - p, dp = d - p;
   const auto det = [](const Vec3& u, const Vec3& v, const Vec3& w) {
@@ -88,7 +89,7 @@ bool in_sphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const
          0;
 }
 
-/// Insertion of points one after the other (Bowyer 1981, Watson 1981). No cavity reaches across the skin.
+/// Incremental insertion of points (Bowyer 1981, Watson 1981). No cavity reaches across the skin.
 class Insertion {
  public:
   /// Begins with the skin joined to the origin, which sees all of it.
@@ -110,9 +111,10 @@ class Insertion {
   };
   static constexpr Tet dead{no_index, no_index, no_index, no_index};
   std::vector<Vec3> points;
-  std::vector<Cell> tets;  ///< those with the points `dead` are none
+  std::vector<Cell> tets;  ///< tets with the points `dead` are deleted
 
-  /// False where the point lies on a face, or would lie on one of a tet that cannot go: it is left out.
+  /// Inserts a point, or returns false and leaves it out if it lies on a face, or would lie on one of a tet
+  /// that must stay.
   bool insert(const Vec3& p) {
     const Index first = locate(p);
     if (first == no_index) return false;
@@ -125,12 +127,12 @@ class Insertion {
   }
 
  private:
-  /// Faces at the apex that have one tet so far, by their other two points.
+  /// Faces at the apex with only one tet so far, by their other two points.
   using OpenFaces = std::map<std::pair<Index, Index>, std::pair<Index, int>>;
 
   const Vec3& at(Index t, int k) const { return points[tets[t].points[static_cast<std::size_t>(k)]]; }
 
-  /// The sign of the tet of p and a face: positive where p is on the inner side.
+  /// Orientation of the tet of p and a face: positive if p is on the inner side.
   int side(Index t, int face, const Vec3& p) const {
     const auto& f = tet_faces[static_cast<std::size_t>(face)];
     return -orient3d(at(t, f[0]), at(t, f[1]), at(t, f[2]), p);
@@ -142,7 +144,7 @@ class Insertion {
     return true;
   }
 
-  /// The tet with p inside; no_index if p lies on a face.
+  /// Tet with p inside; no_index if p lies on a face.
   Index locate(const Vec3& p) {
     Index t = last_;
     for (int step = 0; step < max_steps; ++step) {
@@ -179,8 +181,8 @@ class Insertion {
       }
   }
 
-  /// Gives back tets with a face of the cavity's hull that p does not see; true if there was one. Near the
-  /// skin the mesh is not Delaunay, and elsewhere rounding may have decided.
+  /// Removes tets from the cavity that have a hull face hidden from p; returns whether there were any. Near
+  /// the skin the mesh is not Delaunay, and elsewhere rounding may have decided.
   bool drop_hidden_faces(const Vec3& p) {
     const std::size_t before = cavity_.size();
     std::erase_if(cavity_, [&](Index t) {
@@ -196,7 +198,7 @@ class Insertion {
     return cavity_.size() < before;
   }
 
-  /// Whether the cavity still has the tet of p and no point of it is lost.
+  /// Whether the cavity still contains the tet of p and none of its points is lost.
   bool contains_all_of(Index first) {
     if (mark_[first] != round_) return false;
     std::vector<Index> inner, outer;
@@ -220,7 +222,7 @@ class Insertion {
     struct HullFace {
       Triangle ids;
       Index outside;
-      int back;  ///< the face of `outside`
+      int back;  ///< this face of `outside`
     };
     std::vector<HullFace> hull;
     for (const Index t : cavity_)
@@ -234,7 +236,7 @@ class Insertion {
         hull.push_back(
             {{tets[t].points[ids[0]], tets[t].points[ids[1]], tets[t].points[ids[2]]}, next, back});
       }
-    // Mostly there are more new tets than old ones, but not always.
+    // Usually there are more new tets than old ones, but not always.
     for (; cavity_.size() < hull.size() && !free_.empty(); free_.pop_back()) cavity_.push_back(free_.back());
     for (; cavity_.size() < hull.size(); tets.push_back({}))
       cavity_.push_back(static_cast<Index>(tets.size()));
@@ -254,7 +256,7 @@ class Insertion {
     }
   }
 
-  /// Joins a tet (apex, a, b, c) to the others at the apex, by the edges of its face.
+  /// Links a tet (apex, a, b, c) to the others at the apex, across the edges of its outer face.
   void join(Index t, OpenFaces& open) {
     for (int f = 1; f < 4; ++f) {
       const Index a = tets[t].points[static_cast<std::size_t>(f % 3 + 1)];
@@ -268,13 +270,13 @@ class Insertion {
   }
 
   std::vector<Index> cavity_, free_;
-  std::vector<std::uint32_t> mark_;  ///< by tet: the round in which it was in the cavity
+  std::vector<std::uint32_t> mark_;  ///< by tet: round in which it was in the cavity
   std::uint32_t round_ = 0;
   Index last_ = 0;
   Random walk_{walk_seed};
 };
 
-/// Points spread evenly over the body: in the tets of a fan over the skin, chosen by their volumes.
+/// Random points, uniform over the body: in the tets of a fan over the skin, chosen by volume.
 class Interior {
  public:
   explicit Interior(const Skin& skin) : skin_(skin) {
@@ -287,7 +289,7 @@ class Interior {
   Vec3 next() {
     const auto chosen = std::upper_bound(sums_.begin(), sums_.end(), random_.uniform() * sums_.back());
     const auto i = std::min(static_cast<std::size_t>(chosen - sums_.begin()), sums_.size() - 1);
-    // The gaps between three sorted numbers: even over a tet.
+    // The gaps between three sorted random numbers are uniform over a tet.
     std::array<double, 3> w{random_.uniform(), random_.uniform(), random_.uniform()};
     std::sort(w.begin(), w.end());
     const Triangle& s = skin_.triangles[i];

@@ -21,10 +21,10 @@ struct SineCosine {
   double sine, cosine;
 };
 
-/// Sine and cosine of an angle in full turns (0 to 1), computed with + - * / alone, so that samples have the
+/// Sine and cosine of an angle in full turns (0 to 1), computed with + - * / only, so that samples have the
 /// same bits on every machine.
 SineCosine sine_cosine(double turns) {
-  // The power series for an eighth of the angle, which is then doubled three times.
+  // Power series for an eighth of the angle, which is then doubled three times.
   const double x = turns * (2 * std::numbers::pi) / 8;
   double s = 0, c = 0, term = 1;
   for (int k = 1; k < 24; ++k) {
@@ -39,7 +39,7 @@ SineCosine sine_cosine(double turns) {
   return {s, c};
 }
 
-/// A grid of u_count x v_count points that is closed in both directions, as a torus is.
+/// A grid of u_count x v_count points, closed in both directions like a torus.
 template <class At>
 TriangleMesh closed_grid(Index u_count, Index v_count, const At& at) {
   TriangleMesh mesh;
@@ -55,8 +55,7 @@ TriangleMesh closed_grid(Index u_count, Index v_count, const At& at) {
   return mesh;
 }
 
-/// An octahedron whose triangles are split into four `levels` times and whose points are projected onto the
-/// sphere.
+/// A sphere: an octahedron, subdivided `levels` times, with its points projected.
 TriangleMesh sphere(const Vec3& centre, double radius, int levels) {
   TriangleMesh mesh;
   for (int k = 0; k < 6; ++k) mesh.points.push_back(k < 3 ? Vec3::Unit(k) : Vec3(-Vec3::Unit(k - 3)));
@@ -91,8 +90,8 @@ TriangleMesh torus() {
   });
 }
 
-/// A tube along the trefoil (sin t + 2 sin 2t, cos t - 2 cos 2t, -sin 3t). Its cross-sections are spanned by
-/// the curve's normal and binormal (Frenet), which turn smoothly: this curve has no inflection.
+/// A tube along the trefoil (sin t + 2 sin 2t, cos t - 2 cos 2t, -sin 3t). The curve's normal and binormal
+/// (Frenet) span its cross-sections and turn smoothly: the curve has no inflection.
 TriangleMesh knot() {
   return closed_grid(256, 24, [](double u, double v) {
     const auto times = [&](double k) { return sine_cosine(k * u - std::floor(k * u)); };
@@ -109,7 +108,7 @@ TriangleMesh knot() {
   });
 }
 
-/// The cube from -1 to 1, each face cut into n x n squares.
+/// The cube from -1 to 1, each face divided into n x n squares.
 TriangleMesh cube(Index n) {
   TriangleMesh mesh;
   std::map<std::array<Index, 3>, Index> ids;
@@ -157,7 +156,7 @@ TriangleMesh open_sphere() {
     return mesh.points[t[0]].z() + mesh.points[t[1]].z() + mesh.points[t[2]].z() > 3 * 0.875;
   };
   std::erase_if(mesh.triangles, in_hole);
-  // Points that only the hole has are left out, so that every point belongs to the surface.
+  // Points of the hole alone are removed, so that every point is on the surface.
   std::vector<Index> numbers(mesh.points.size(), no_index);
   std::vector<Vec3> points;
   for (Triangle& t : mesh.triangles)
@@ -172,7 +171,7 @@ TriangleMesh open_sphere() {
   return mesh;
 }
 
-/// A box of unit cells / n, each cut into the six tets around its diagonal (Kuhn 1960).
+/// A box of cells of edge `scale`, each divided into the six tets around its diagonal (Kuhn 1960).
 TetMesh box_of_tets(const std::array<Index, 3>& cells, double scale,
                     const std::function<MaterialTag(const Vec3&)>& material) {
   TetMesh mesh;
@@ -221,7 +220,7 @@ TetMesh layers() {
   return mesh;
 }
 
-/// Twice the distance of a voxel from the middle of an axis of 48 voxels, which is a whole number.
+/// Twice the offset of a voxel from the middle of an axis of 48 voxels: a whole number.
 constexpr int organs_size = 48;
 using Doubled = std::array<std::int64_t, 3>;
 

@@ -11,7 +11,7 @@
 
 namespace tetwright {
 
-/// The names of the built-in samples.
+/// Names of the built-in samples.
 /// - Surfaces about the origin, closed and oriented outwards: sphere, torus, cube, two_spheres, knot; and
 ///   open_sphere, a sphere with a hole.
 /// - Tet meshes, all tets positive: tet_cube, two_materials (two halves of a box), layers (four materials on
@@ -22,8 +22,8 @@ std::vector<std::string> sample_names();
 
 using Sample = std::variant<TriangleMesh, TetMesh, LabelVolume>;
 
-/// Makes a sample, with the same bits on every machine. Throws UsageError, which lists the names, for an
-/// unknown one.
+/// Makes a sample, with the same bits on every machine.
+/// \throws UsageError, which lists the names, for an unknown one
 Sample make_sample(const std::string& name);
 
 }  // namespace tetwright

@@ -17,7 +17,7 @@ namespace tetwright {
 
 namespace {
 
-/// The sum of weighted lengths. Differences, so that equal lengths stay to the bit.
+/// Weighted sum of lengths. Differences keep equal lengths bit by bit.
 template <std::size_t n>
 double interpolated(const std::array<Index, n>& corners, const std::array<double, n>& weights,
                     const std::vector<double>& lengths) {
@@ -27,7 +27,7 @@ double interpolated(const std::array<Index, n>& corners, const std::array<double
   return sum;
 }
 
-/// Of each point whether an element uses it.
+/// Whether an element uses each point.
 template <class Elements>
 std::vector<char> used_points(const Elements& elements, std::size_t points) {
   std::vector<char> used(points, 0);
@@ -36,7 +36,7 @@ std::vector<char> used_points(const Elements& elements, std::size_t points) {
   return used;
 }
 
-/// A mesh's points, and the lengths at those that count.
+/// Points of a mesh, and the lengths at those that are used.
 class PointLengths {
  public:
   PointLengths(std::vector<double> lengths, std::vector<char> used)
@@ -82,7 +82,7 @@ class TetMeshSizes : public SizeSource {
  private:
   const TetMesh mesh_;
   const PointLengths of_points_;
-  const double reach_;  ///< outside of the tets
+  const double reach_;  ///< distance outside the tets
   const TetTree tree_;  ///< refers to mesh_
 };
 

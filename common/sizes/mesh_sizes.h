@@ -11,18 +11,19 @@
 
 namespace tetwright {
 
-/// Edge lengths at the points of a mesh, linear in each tet. A place outside of all tets by up to
-/// tolerance::within_mesh of the diagonal (of the points that tets use) counts as the nearest place in them.
-/// Inverted tets count as their mirror images.
-///
-/// `field` is the name of the lengths. `lengths` has one for each point, above 0 and finite where a tet uses
-/// the point; other points and their lengths are of no use. The mesh must be in range, with finite
-/// coordinates. A search takes O(log tets). The tree is built in parallel, and needs memory as TetTree does.
+/// Edge lengths at the points of a mesh, linear in each tet. A position outside the tets by up to
+/// tolerance::within_mesh of the diagonal (of the points that tets use) counts as the nearest point in them.
+/// Inverted tets count as their mirror images. A query takes O(log tets). The tree is built in parallel, and
+/// needs memory as TetTree does.
+/// \param lengths one for each point, above 0 and finite where a tet uses the point; other points and their
+///   lengths are ignored
+/// \param field name of the lengths
+/// \pre mesh in range, coordinates finite
 std::unique_ptr<const SizeSource> tet_mesh_sizes(TetMesh mesh, std::vector<double> lengths,
                                                  std::string field = {});
 
-/// The same at the points of a surface: everywhere that of the nearest place of the surface, linear in each
-/// triangle. Of several that are equally near the choice is always the same.
+/// Edge lengths at the points of a surface, linear in each triangle: everywhere that of the nearest point of
+/// the surface. The choice among several equally near points is deterministic.
 std::unique_ptr<const SizeSource> surface_sizes(TriangleMesh surface, std::vector<double> lengths,
                                                 std::string field = {});
 

@@ -9,12 +9,12 @@
 
 namespace tetwright {
 
-/// The tangent of half of 0.1 sr, as min_solid_angle_tangent() has it.
+/// min_solid_angle_tangent() of a solid angle of 0.1 sr: the tangent of half the angle.
 inline constexpr double tangent_of_bad_tet = 0.05004170837553879;
 
-/// A point that is to be moved by `step`.
+/// A displacement of a point by `step`.
 struct PointMove {
-  /// Of moves that would spoil a tet half is tried, then a quarter, ...; then none.
+  /// A move that would spoil a tet is halved up to this many times, then dropped.
   static constexpr std::uint8_t max_halvings = 4;
 
   Index point;
@@ -24,14 +24,15 @@ struct PointMove {
   double share() const { return halvings > max_halvings ? 0.0 : std::ldexp(1, -halvings); }
 };
 
-/// Moves all points at once; moves at a tet that they spoil are shortened together, until none is spoilt:
-/// tets keep the tangent given, and those that are worse already get no worse. The same result for any number
-/// of threads.
+/// Moves all points at once. Moves at a tet that they spoil are shortened together until no tet is spoilt:
+/// each keeps a tangent of `min_tangent`, or its own if that was smaller. The result does not depend on the
+/// number of threads.
+/// \param min_tangent as min_solid_angle_tangent()
 void displace_with_backtracking(std::vector<Vec3>& points, const std::vector<Tet>& tets,
                                 std::vector<PointMove>& moves, double min_tangent);
 
-/// What is left of moves after displace_with_backtracking(): those that have arrived go, of the others the
-/// rest is to be done.
+/// Removes the moves that displace_with_backtracking() has completed; the others keep their remaining step,
+/// from the current position of their point.
 void keep_remaining(const std::vector<Vec3>& points, std::vector<PointMove>& moves);
 
 }  // namespace tetwright

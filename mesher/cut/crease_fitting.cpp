@@ -21,19 +21,20 @@ namespace {
 using Kind = FeatureLabel::Kind;
 
 constexpr std::size_t fitting_grain = 512, fitted_tet_grain = 1 << 13;
-/// How far a point may be from where it belongs, cells.
+/// Maximum distance of a point from its target, cells.
 constexpr double target_reach = 4;
-/// What tets must keep in each pass, shares of tangent_of_bad_tet: shapes first, then exact creases.
+/// Quality that tets must keep in each pass, in multiples of tangent_of_bad_tet: shapes first, then exact
+/// creases.
 constexpr double pass_floors[] = {1, 1, 0.5, 0.5, 0.2, 0.2, 0.05, 0.05};
-/// Walls that cells have thickened go back as long as tets keep this, and else are reported.
+/// Walls that cells have thickened move back as long as tets keep this quality; otherwise they are reported.
 constexpr double wall_floor = 0.2;
-/// Steps that points around are tried at, in the mean edge there.
+/// Steps tried to make room, in multiples of the mean edge at the point.
 constexpr double room_steps[] = {0.4, 0.2, 0.1, 0.05};
 constexpr int room_sweeps = 2;
-/// Points nearer than this are where they belong, in cells: rounding.
+/// Points closer to their target than this have arrived, in cells: rounding.
 constexpr double arrived = 1e-12;
 
-/// Moves the points of a mesh to where their labels say.
+/// Moves the points of a mesh to the targets that their labels determine.
 class Fitter {
  public:
   Fitter(TetMesh& mesh, const FeatureSurface& surface, const CreaseLabels& labels, const MaterialField& field,
@@ -53,7 +54,7 @@ class Fitter {
   }
 
  private:
-  /// Where a point that is at `at` belongs.
+  /// The target of point p if it were at `at`.
   std::optional<Vec3> place_of(Index p, const Vec3& at) const {
     const FeatureLabel& label = labels_.of(p);
     const FeatureSurface::Patch* patches = label.patches.begin();
@@ -72,7 +73,7 @@ class Fitter {
     return {};
   }
 
-  /// A thickened wall goes back only as far as its tets stay in good shape.
+  /// True for points of thickened walls in passes that would spoil their tets.
   bool must_stay(Index p, double floor) const {
     return floor < wall_floor && labels_.of(p).kind == Kind::patch &&
            field_.changes_walls(field_.frame().to_grid(mesh_.points[p]));
@@ -97,9 +98,9 @@ class Fitter {
                                    mesh_.points[t[3]]);
   }
 
-  /// Moves the points around those that have not arrived to where the worst tet at them is better.
+  /// Moves the neighbours of points that have not arrived so that the worst tet at each neighbour improves.
   void make_room(const std::vector<PointMove>& waiting) {
-    std::vector<std::uint8_t> role(mesh_.points.size(), 0);  // 1: waits, 2: is beside one that does
+    std::vector<std::uint8_t> role(mesh_.points.size(), 0);  // 1: waits, 2: adjacent to a waiting point
     for (const PointMove& m : waiting) role[m.point] = 1;
     const auto tets_with = [&](std::uint8_t wanted) {
       return parallel_collect<Index>(0, mesh_.tets.size(), fitted_tet_grain,
@@ -159,7 +160,7 @@ class Fitter {
         ++count;
       }
     const double edge = edges / count;
-    // Away from the face of the worst tet that the point is too near to, or to the middle.
+    // Away from the face of the worst tet that the point is too close to, or to the middle.
     const Tet& t = mesh_.tets[worst_tet];
     const auto slot = static_cast<std::size_t>(std::find(t.begin(), t.end(), p) - t.begin());
     const auto& face = tet_faces[slot];
@@ -191,8 +192,8 @@ class Fitter {
   double cell_;
 };
 
-/// The patch of a face: the one that its points have in common; of several, or of none, the one that lies
-/// most like it.
+/// The patch of a face: the one that its points have in common. Among several, or if there is none, the
+/// closest and best aligned one.
 FeatureSurface::Patch patch_of(const TetMesh& mesh, const InterfaceTriangle& t, const CreaseLabels& labels,
                                const FeatureSurface& surface, double cell) {
   const std::optional<std::size_t> body = surface.body_of(t);

@@ -7,19 +7,21 @@
 
 namespace tetwright {
 
-/// Gives the boundary faces of a dense mesh the patches of the surface that it was made of, and moves it onto
-/// the surface so that edges follow the creases and points stand at the corners. `cell` is the size of the
-/// cells there, input units; the mesh is within about one of the surface.
+/// Assigns the boundary faces of a dense mesh the patches of its input surface, and moves the mesh onto that
+/// surface so that edges follow creases and vertices lie at corners.
 ///
-/// A mesh that was cut from a lattice chamfers creases: its points lie on either patch, and edges between
-/// them cross the crease. Of each such edge the end nearer to the crease is moved there, or where that would
-/// flatten a triangle the edge gets a point. (As isosurface stuffing does with lattice points, Labelle &
-/// Shewchuk 2007, but on the boundary, so that convex and concave creases are alike.) Then all points go to
-/// their corner, crease or patch as far as tets keep their shapes, and what is around makes room.
+/// A mesh cut from a lattice chamfers creases: its points lie on one patch or the other, and edges between
+/// them cross the crease. The end of such an edge nearer to the crease is moved onto it, or the edge is split
+/// where that would flatten a triangle. (Isosurface stuffing, Labelle & Shewchuk 2007, does so with lattice
+/// points; doing it on the boundary treats convex and concave creases alike.) Then every point moves to its
+/// corner, crease or patch as far as tets keep their shapes, and the points around it make room.
 ///
-/// Points where three regions meet keep to the junction curves they are on, and so do points on the walls
-/// that `field`, which the mesh was cut from, thickens, where shapes would suffer. Where faces came to
-/// intersect points go back to where they were. The same result for any number of threads.
+/// Points where three regions meet stay on their junction curves. Points on walls that `field` thickens stay
+/// where shapes would suffer. Where faces come to intersect, points return to their previous positions. The
+/// result does not depend on the number of threads.
+/// \param mesh within about one cell of the surface
+/// \param field the mesh was cut from it
+/// \param cell size of the cells at the surface, input units
 void fit_creases(TetMesh& mesh, const FeatureSurface& surface, const MaterialField& field, double cell);
 
 }  // namespace tetwright

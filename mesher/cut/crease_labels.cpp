@@ -12,33 +12,33 @@ namespace tetwright {
 namespace {
 
 constexpr std::size_t label_grain = 512, label_tet_grain = 1 << 13;
-/// How far a boundary point may be from the surface, cells.
+/// Maximum distance of a boundary point from the surface, cells.
 constexpr double surface_reach = 2;
-/// How far a corner may be from the point that stands for it, cells.
+/// Maximum distance of a corner from the point that represents it, cells.
 constexpr double corner_reach = 1.5;
-/// How far a crease may be from an edge that crosses it, in edges: the tip of a wedge of 30 degrees is two
-/// edges from its chamfer.
+/// Maximum distance of a crease from an edge that crosses it, in edge lengths: the tip of a wedge of 30
+/// degrees is two edges from its chamfer.
 constexpr double crease_reach = 2.5;
-/// Of a crossed edge the end goes to the crease that has at most this share of the way.
+/// Snap an endpoint to the crease if the crossing lies within this fraction of the edge.
 constexpr double max_snap = 0.5;
-/// New points stay this share of an edge away from its ends.
+/// New points keep at least this fraction of the edge from its ends.
 constexpr double min_split = 0.2;
-/// A point with only creases around belongs to the patch on their other side if that is as near as this,
-/// cells: what a level set knows of a surface near its creases.
+/// A point with only crease points around it gets the patch on their other side if that is closer than this,
+/// cells: the accuracy of a level set near creases.
 constexpr double island_reach = 0.35;
 constexpr int crossing_steps = 3;
-/// Creases with patches between them that are narrower than this, cells, become one.
+/// Creases separated only by patches narrower than this, cells, are merged.
 constexpr double narrow_reach = 0.3;
 constexpr int max_label_rounds = 4;
 
 }  // namespace
 
-/// Where an edge crosses a crease.
+/// The crossing of an edge and a crease.
 struct CreaseLabels::Crossing {
   Index u, v;
-  double share;  ///< of the way from u to v
+  double share;  ///< fraction of the way from u to v
   FeatureSurface::PatchPair crease;
-  PatchSet patches;  ///< that meet there
+  PatchSet patches;  ///< patches that meet there
   FeatureLabel label() const { return {Kind::crease, patches, no_index, crease}; }
 };
 
@@ -93,7 +93,7 @@ void CreaseLabels::label_points() {
       const std::optional<std::size_t> body = surface_.body_of(first);
       if (!one_pair || !body) continue;
       normal.normalize();
-      // Of two materials either may be the body.
+      // Between two materials either may be the body.
       const auto place = surface_.nearest(mesh_.points[points_[i]], *body, surface_reach * cell_,
                                           first.other ? nullptr : &normal);
       if (place) labels_[i] = {Kind::patch, {place->patch}, no_index, {}};
@@ -142,8 +142,8 @@ std::vector<std::array<Index, 2>> CreaseLabels::crossing_edges() const {
 
 void CreaseLabels::take_corners() {
   if (surface_.corners().empty()) return;
-  // Of triangles whose points belong to three patches one goes to the corner, else to one of those that a
-  // crease crosses; else the nearest of these patches.
+  // Choose a point of a triangle whose points belong to three patches of the corner, else of a triangle that
+  // a crease crosses, else the closest point of one of these patches.
   std::vector<Vec3> positions;
   std::vector<ProjectionTree::Item> items;
   for (Index i = 0; i < points_.size(); ++i) {
@@ -160,7 +160,7 @@ void CreaseLabels::take_corners() {
     PatchSet meeting;
     for (const FeatureSurface::Patch p : corner.patches) meeting.insert(p);
     if (meeting.size() < 3) continue;  // see take_kinks()
-    // Two points would not fit beside each other.
+    // Two points would not fit next to each other.
     const auto beside = std::find_if(taken.begin(), taken.end(), [&](const Taken& t) {
       return (surface_.corners()[t.corner].point - corner.point).norm() < narrow_reach * cell_;
     });
@@ -215,7 +215,7 @@ std::optional<CreaseLabels::Crossing> CreaseLabels::find_crossing(Index u, Index
         return (a.contains(pair[0]) && b.contains(pair[1])) || (a.contains(pair[1]) && b.contains(pair[0]));
       }))
     return crossing;
-  // Between the two there may be patches too narrow for cells: their creases become one.
+  // Patches between the two may be too narrow for the cells: their creases are merged.
   if (!find([&](const Pair& pair) {
         return a.contains(pair[0]) || a.contains(pair[1]) || b.contains(pair[0]) || b.contains(pair[1]);
       }))
@@ -238,7 +238,7 @@ std::optional<CreaseLabels::Crossing> CreaseLabels::find_crossing(Index u, Index
 bool CreaseLabels::may_snap(Index point, const PatchSet& patches) const {
   const auto& around = triangles_at_[number_[point]];
   return std::none_of(around.begin(), around.end(), [&](Index t) {
-    // Three points of one crease would make the triangle flat.
+    // With three points on one crease the triangle would become flat.
     PatchSet shared = patches;
     for (const Index p : mesh_.interfaces[t].ids)
       if (p != point) shared = shared.common(labels_[number_[p]].patches);
@@ -297,7 +297,7 @@ void CreaseLabels::resolve_rest() {
 }
 
 void CreaseLabels::take_kinks() {
-  // Points of the crease, so that it passes through the kink.
+  // Choose among points of the crease, so that it passes through the kink.
   std::vector<Vec3> positions;
   std::vector<ProjectionTree::Item> items;
   for (Index i = 0; i < points_.size(); ++i) {
@@ -311,7 +311,7 @@ void CreaseLabels::take_kinks() {
     const auto hit =
         tree.nearest_of(corner.point, corner_reach * cell_, [&](const ProjectionTree::Item& item) {
           const Index i = item.kind[0];
-          // Between points of one patch and of the other.
+          // The point must lie between points of one patch and points of the other.
           return labels_[i].kind == Kind::crease &&
                  std::all_of(corner.patches.begin(), corner.patches.end(), [&](FeatureSurface::Patch p) {
                    if (!labels_[i].patches.contains(p)) return false;
@@ -334,7 +334,7 @@ void CreaseLabels::dissolve_islands() {
     bool first = true, alone = true;
     for_neighbours(i, [&](Index p) {
       const FeatureLabel& other = labels_[number_[p]];
-      // Beside a corner a patch may have no other point.
+      // Next to a corner a patch may have no other point.
       alone &= other.kind == Kind::crease;
       shared = first ? other.patches : shared.common(other.patches);
       first = false;
@@ -350,7 +350,8 @@ void CreaseLabels::dissolve_islands() {
 }
 
 void CreaseLabels::track(const std::vector<std::array<Index, 2>>& edges) {
-  // Points may be moved to creases, so that other edges at them cross one: of these the other ends.
+  // Include the neighbours of crossing edges: once a point has moved onto a crease, other edges at it may
+  // cross one.
   std::vector<std::uint8_t> tracked(points_.size(), 0);
   for (const auto& edge : edges)
     for (const Index p : edge) {
@@ -372,7 +373,7 @@ void CreaseLabels::track(const std::vector<std::array<Index, 2>>& edges) {
 
 void CreaseLabels::split(const Crossing& crossing) {
   const Index u = crossing.u, v = crossing.v;
-  // Tracked are all points near creases, so at least one end is.
+  // All points near creases are tracked, so at least one end is.
   const Index known = tets_at_[number_[u]].empty() ? v : u;
   std::vector<Index> tets, triangles;
   for (const Index t : tets_at_[number_[known]])
@@ -392,7 +393,7 @@ void CreaseLabels::split(const Crossing& crossing) {
   labels_.push_back(crossing.label());
   triangles_at_.emplace_back();
   tets_at_.emplace_back();
-  // Each one keeps u and leaves v to a new one.
+  // Each keeps u and cedes v to a new one.
   for (const Index t : tets) {
     const auto added = static_cast<Index>(mesh_.tets.size());
     Tet second = mesh_.tets[t];

@@ -11,7 +11,8 @@
 
 namespace tetwright {
 
-/// Patches that a boundary point belongs to, ascending; of a corner with more of them the first few.
+/// The patches that a boundary point belongs to, ascending. A corner of more than `capacity` patches keeps
+/// the first ones inserted.
 class PatchSet {
  public:
   static constexpr std::size_t capacity = 7;
@@ -44,36 +45,37 @@ class PatchSet {
   std::array<FeatureSurface::Patch, capacity> items_{};
 };
 
-/// What a point of the boundary stands for.
+/// The feature that a boundary point represents.
 struct FeatureLabel {
   enum class Kind : std::uint8_t {
-    none,    ///< where more than two regions meet, or nothing of the surface is near
+    none,    ///< more than two regions meet here, or the surface is not near
     patch,   ///< one patch
     crease,  ///< two patches
     corner
   };
   Kind kind = Kind::none;
   PatchSet patches;
-  Index corner = no_index;  ///< of FeatureSurface::corners()
-  /// Of a crease: of two that are so near to each other that one point stands for both, the nearer one.
+  Index corner = no_index;  ///< index into FeatureSurface::corners()
+  /// For a crease. Where one point represents two creases close to each other, the nearer one.
   FeatureSurface::PatchPair crease{};
 };
 
-/// The labels of the points of a dense mesh's boundary, such that, as far as can be, the three points of each
-/// face have a patch in common: then edges between faces of different patches follow creases.
+/// Labels the boundary points of a dense mesh such that, as far as possible, the three points of each face
+/// have a patch in common. Edges between faces of different patches then follow creases.
 class CreaseLabels {
  public:
-  /// Labels the points of `mesh.interfaces`; edges that cross a crease far from both ends get a point, so
-  /// that tets, points and interfaces are added. `cell`: see fit_creases().
+  /// Labels the points of `mesh.interfaces`. An edge that crosses a crease far from both ends is split, which
+  /// adds tets, points and interfaces.
+  /// \param cell as for fit_creases()
   CreaseLabels(TetMesh& mesh, const FeatureSurface& surface, double cell);
 
-  /// Kind none for points that are not on the boundary.
+  /// Kind::none for points that are not on the boundary.
   const FeatureLabel& of(Index point) const {
     static const FeatureLabel none;
     return number_[point] == no_index ? none : labels_[number_[point]];
   }
   bool on_boundary(Index point) const { return number_[point] != no_index; }
-  /// Points of the boundary, by number.
+  /// The boundary points, by number.
   const std::vector<Index>& points() const { return points_; }
 
  private:
@@ -101,11 +103,11 @@ class CreaseLabels {
   TetMesh& mesh_;
   const FeatureSurface& surface_;
   double cell_;
-  std::vector<Index> number_;                     ///< of each point among points_; no_index: inside
-  std::vector<Index> points_;                     ///< of the boundary
+  std::vector<Index> number_;                     ///< index of each point in points_; no_index: interior
+  std::vector<Index> points_;                     ///< boundary points
   std::vector<FeatureLabel> labels_;              ///< by number
-  std::vector<std::vector<Index>> triangles_at_;  ///< by number: of mesh_.interfaces
-  std::vector<std::vector<Index>> tets_at_;       ///< by number: tets, where they are tracked
+  std::vector<std::vector<Index>> triangles_at_;  ///< by number: indices into mesh_.interfaces
+  std::vector<std::vector<Index>> tets_at_;       ///< by number: incident tets, for tracked points only
 };
 
 }  // namespace tetwright

@@ -11,7 +11,8 @@ namespace {
 
 using EdgeKey = std::uint64_t;
 
-/// The edges around the faces of the box, by the pair of materials that they separate, ascending.
+/// The boundary edges of the parts into which materials divide the faces of the box, ascending: edges with
+/// exactly one triangle of a pair of materials on a face of the box.
 std::vector<EdgeKey> find_crease_edges(const TetMesh& mesh) {
   using Sheet = std::pair<std::pair<MaterialTag, MaterialOrOutside>, std::uint16_t>;
   std::vector<std::pair<EdgeKey, Sheet>> sides;
@@ -94,7 +95,7 @@ std::optional<Vec3> CutOffSurface::onto_patch(const Vec3& point, MaterialOrOutsi
   const Vec3& normal = normals_[axis];
   const double off = normal.dot(point - frame.origin - frame.cell_size * side * frame.axes.col(axis));
   if (std::abs(off) > max_distance) return {};
-  // Without the rounding: the mesh has its points exactly there.
+  // Removes the rounding: the mesh has its points exactly there.
   Vec3 place = frame.to_grid(point - off * normal);
   place[axis] = side;
   return frame.to_input(place);

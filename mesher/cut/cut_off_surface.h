@@ -11,12 +11,13 @@
 
 namespace tetwright {
 
-/// The interfaces of a field that ends at its box: patch 0 is where the field's regions meet, 1 to 6 are the
-/// faces of the box, 1 + 2 * axis for the lower one and 2 + 2 * axis for the upper one. Faces of the box are
-/// known exactly, as are its edges; where an interface meets the box, the points of the dense mesh say.
+/// The interfaces of a field that ends at its box, for a mesh that is cut off there. Patch 0 holds the
+/// interfaces between the field's regions. Patches 1 to 6 are the faces of the box: 1 + 2 * axis for the
+/// lower one, 2 + 2 * axis for the upper one. Faces and edges of the box are exact; the curves in which
+/// interfaces meet the box are taken from the dense mesh.
 class CutOffSurface final : public ReferenceSurface {
  public:
-  /// `mesh` was cut from the field, its interfaces with their patches; it is not kept.
+  /// \param mesh cut from the field, its interfaces with their patches; not kept
   CutOffSurface(const TetMesh& mesh, std::shared_ptr<const MaterialField> field);
 
   double signed_distance(const Vec3& point, MaterialTag material) const override;
@@ -30,7 +31,7 @@ class CutOffSurface final : public ReferenceSurface {
 
  private:
   std::shared_ptr<const MaterialField> field_;
-  std::array<Vec3, 3> normals_;  ///< of the faces of the box, along each axis
+  std::array<Vec3, 3> normals_;  ///< of the faces of the box normal to each axis
   ProjectionTree creases_, corners_;
 };
 

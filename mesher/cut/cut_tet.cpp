@@ -9,14 +9,14 @@ namespace {
 
 constexpr PieceVertex corner(int k) { return static_cast<PieceVertex>(1 << k); }
 
-/// Cuts one region's part out of a tet of two.
+/// Cuts the part of one region out of a tet of two regions.
 class TwoRegions {
  public:
-  /// `region` is cut out.
+  /// \param region the region that is cut out
   TwoRegions(const CutCase& cut, RegionIndex region, Pieces& pieces, int& count)
       : region_(region), pieces_(pieces), count_(count) {
-    // The corners in the order of this region (by rank), on the interface, of the other one (by rank), and
-    // whether that turned the tet over.
+    // Sort the corners: this region (by rank), on the interface, other region (by rank). Record whether that
+    // inverted the tet.
     const auto place = [&](int k) {
       return cut.regions[k] == region ? 0 : cut.regions[k] == on_interface ? 1 : 2;
     };
@@ -63,7 +63,7 @@ class TwoRegions {
  private:
   PieceVertex at(int k) const { return corner(v_[k]); }
   PieceVertex between(int k, int l) const { return static_cast<PieceVertex>(at(k) | at(l)); }
-  /// The pieces list their vertices in the places of the corners they come from or are cut towards: each is
+  /// Each piece lists its vertices at the positions of the corners they come from or are cut towards. It is
   /// positive because its matrix of barycentric coordinates is triangular up to a positive minor.
   void emit(PieceVertex a, PieceVertex b, PieceVertex c, PieceVertex d) {
     if (turned_) std::swap(c, d);
@@ -84,7 +84,7 @@ class ManyRegions {
   ManyRegions(const CutCase& cut, PieceVertex apex, Pieces& pieces, int& count)
       : cut_(cut), apex_(apex), pieces_(pieces), count_(count) {}
 
-  /// The face of corners x, y, z, listed so that its normal points out of the tet.
+  /// Adds the face of corners x, y, z, listed so that its normal points out of the tet.
   void face(int x, int y, int z) {
     const RegionIndex a = cut_.regions[x], b = cut_.regions[y], c = cut_.regions[z];
     const PieceVertex vx = corner(x), vy = corner(y), vz = corner(z);
@@ -109,7 +109,7 @@ class ManyRegions {
   }
 
  private:
-  /// x and y are of one region, z of another.
+  /// Adds a face with x and y in one region, z in another.
   void pair_and_tip(int x, int y, int z) {
     const PieceVertex vx = corner(x), vy = corner(y), vz = corner(z);
     const PieceVertex xz = join(vx, vz), yz = join(vy, vz);

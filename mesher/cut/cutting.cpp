@@ -18,10 +18,10 @@ namespace {
 
 constexpr std::size_t grain = 1 << 13;  // tets per parallel chunk; each takes some ten nanoseconds
 
-/// Cuts keep at least this share of the edge away from its ends, so that the pieces are well shaped. Only
-/// edges of points that could not be moved would be cut nearer.
+/// Cuts keep at least this fraction of the edge from its ends, so that the pieces are well shaped. Only edges
+/// of points that could not be moved would be cut closer.
 constexpr double smallest_share = 0.25;
-/// The same for the point of a face and of a tet, as barycentric coordinates.
+/// Minimum barycentric coordinates of the point in a face and in a tet.
 constexpr double min_face_share = 0.15;
 constexpr double min_tet_share = 0.2;
 
@@ -74,13 +74,13 @@ Vec3 edge_cut(const LabelledLattice& lattice, Index a, Index b) {
   return lattice.positions[a] + share * (lattice.positions[b] - lattice.positions[a]);
 }
 
-/// Coordinates that are all at least `smallest` are returned unchanged; otherwise the smaller ones are raised
-/// to it and the others lowered, so that the sum stays 1.
+/// Raises the coordinates below `smallest` to it and lowers the others, so that the sum stays 1. Unchanged if
+/// there are none.
 template <int N>
 Eigen::Matrix<double, N, 1> kept_off_the_ends(const Eigen::Matrix<double, N, 1>& shares, double smallest) {
   Eigen::Matrix<double, N, 1> excess = (shares.array() - smallest).max(0.0);
   const double sum = excess.sum();
-  // All equal if nothing is left to share out, or if they are not numbers.
+  // All equal if nothing is left to distribute, or if they are not numbers.
   if (!(sum > 0) || !std::isfinite(sum))
     excess.setConstant(1), excess /= N;
   else
@@ -88,8 +88,8 @@ Eigen::Matrix<double, N, 1> kept_off_the_ends(const Eigen::Matrix<double, N, 1>&
   return (excess.array() * (1 - N * smallest) + smallest).matrix();
 }
 
-/// The point of a simplex of N corners, each of another region, where all regions are equally near by linear
-/// interpolation.
+/// The point of a simplex of N corners of different regions where linear interpolation gives all regions
+/// equal distances.
 template <int N>
 Vec3 meeting_point(const LabelledLattice& lattice, const std::array<Index, N>& corners, double smallest) {
   Eigen::Matrix<double, N, N> equations;
@@ -111,15 +111,15 @@ Vec3 meeting_point(const LabelledLattice& lattice, const std::array<Index, N>& c
 
 Vec3 face_cut(const LabelledLattice& lattice, const FaceKey& key) {
   Vec3 point = meeting_point<3>(lattice, key, min_face_share);
-  // Shares add up to 1 but for rounding, and a face of the box is left by no point.
+  // Shares add up to 1 only up to rounding, but no point may leave a face of the box.
   const Vec3 &a = lattice.positions[key[0]], &b = lattice.positions[key[1]], &c = lattice.positions[key[2]];
   for (int k = 0; k < 3; ++k)
     if (a[k] == b[k] && a[k] == c[k]) point[k] = a[k];
   return point;
 }
 
-/// The point within a tet of three or four regions: where all four meet, or the middle of the junction curve
-/// between its two faces of three regions.
+/// The interior point of a tet of three or four regions: where all four meet, or the middle of the junction
+/// curve between its two faces of three regions.
 Vec3 tet_cut(const LabelledLattice& lattice, const Tet& t) {
   if (pure_regions(lattice, t).size() == 4) {
     Tet sorted = t;
@@ -134,7 +134,7 @@ Vec3 tet_cut(const LabelledLattice& lattice, const Tet& t) {
       faces += 1;
     }
   middle /= faces;
-  // Barycentric coordinates of the middle, kept off the faces.
+  // Barycentric coordinates of the middle, kept away from the faces.
   const Vec3 &a = lattice.positions[t[0]], &b = lattice.positions[t[1]], &c = lattice.positions[t[2]],
              &d = lattice.positions[t[3]];
   const double whole = tet_volume(a, b, c, d);
@@ -165,7 +165,7 @@ CutCase cut_case(const LabelledLattice& lattice, const Tet& t) {
 /// cut_tet() with the shorter diagonal; `cut_of(a, b)` is the cut between two corners.
 template <class CutOf>
 int cut_tet_well(const CutCase& cut, Pieces& pieces, CutOf&& cut_of) {
-  // Two corners of each of two regions, each pair in the order of its ranks.
+  // The two corners of each region, in order of rank.
   std::array<int, 2> one{-1, -1}, other{-1, -1};
   for (int rank = 0; rank < 4; ++rank)
     for (int k = 0; k < 4; ++k) {
@@ -182,11 +182,11 @@ int cut_tet_well(const CutCase& cut, Pieces& pieces, CutOf&& cut_of) {
   return cut_tet(cut, crossed < straight, pieces);
 }
 
-/// The sorted cuts of a lattice: edges first, then faces of three regions.
+/// The cuts of a lattice, sorted: edges, then faces of three regions, then tets.
 struct Cuts {
   std::vector<EdgeKey> edges;
   std::vector<FaceKey> faces;
-  std::vector<Index> tets;  ///< those with a point of their own within
+  std::vector<Index> tets;  ///< those with an interior point
 
   explicit Cuts(const LabelledLattice& lattice) {
     edges = collect<EdgeKey>(lattice, [&](const Tet& t, std::vector<EdgeKey>& out) {
@@ -232,7 +232,7 @@ struct Cuts {
   }
 
  private:
-  /// Collects what `body(tet, out)` appends for each tet that is cut; sorted, without repetitions.
+  /// Collects the keys that `body(tet, out)` appends for each tet that is cut; sorted, without repetitions.
   template <class Key, class Body>
   static std::vector<Key> collect(const LabelledLattice& lattice, Body&& body) {
     std::vector<Key> keys = parallel_collect<Key>(
@@ -253,7 +253,7 @@ struct Cuts {
   }
 };
 
-/// The corners of a piece's vertex, in ascending order; returns their number.
+/// The corners of a piece's vertex, ascending; returns their number.
 int corners_of(PieceVertex vertex, std::array<int, 4>& corners) {
   int n = 0;
   for (int k = 0; k < 4; ++k)
@@ -261,7 +261,7 @@ int corners_of(PieceVertex vertex, std::array<int, 4>& corners) {
   return n;
 }
 
-/// Numbers the points in the order of their first use and drops unused ones.
+/// Numbers the points by first use and drops unused ones.
 void compact(const LabelledLattice& lattice, const std::vector<Vec3>& cuts, CutMesh& mesh) {
   const std::vector<Vec3>& positions = lattice.positions;
   std::vector<Index> number(positions.size() + cuts.size(), no_index);
@@ -300,7 +300,7 @@ double worst_piece_tangent(const LabelledLattice& lattice, const Tet& t) {
     case Fate::cut:
       break;
   }
-  // Positions of the pieces' vertices, computed when first asked for.
+  // Positions of the pieces' vertices, computed on first use.
   std::array<Vec3, 16> places;
   unsigned known = 0;
   const auto place = [&](PieceVertex vertex) -> const Vec3& {

@@ -13,19 +13,20 @@ struct CutMesh {
   std::vector<Vec3> points;
   std::vector<Tet> tets;
   std::vector<RegionIndex> regions;
-  std::vector<std::uint8_t> on_interface;  ///< 1 for points between regions: cuts and points moved there
+  std::vector<std::uint8_t> on_interface;  ///< 1 for cuts and for points moved onto an interface
 };
 
-/// The smallest solid angle of the pieces of a tet that become part of the mesh, as the tangent of half the
-/// angle; 1, more than any tet has, if there are no such pieces. The tet must have a point near an interface.
+/// The smallest solid angle of those pieces of a tet that become part of the mesh, as the tangent of half the
+/// angle. 1, more than any tet has, if there is no such piece.
+/// \pre the tet has a point near an interface
 double worst_piece_tangent(const LabelledLattice& lattice, const Tet& tet);
 
 /// Cuts the lattice along its interfaces; tets outside are dropped unless the lattice keeps the outside.
 ///
-/// Each cut edge, face or tet gets one new point, by linear interpolation of the distances and a minimum
-/// distance from the corners. Tets keep the order of the lattice, points are numbered in the order of their
-/// first use. The lattice's tets are freed while the mesh is built, which takes 20 bytes for each of its tets
-/// beside the points of the lattice.
+/// Each cut edge, face or tet gets one new point, by linear interpolation of the distances, at a minimum
+/// distance from the corners. Tets keep the lattice's order; points are numbered by first use. The lattice's
+/// tets are freed while the mesh is built, which takes 20 bytes per lattice tet in addition to the lattice's
+/// points.
 CutMesh cut_lattice(LabelledLattice lattice);
 
 }  // namespace tetwright

@@ -9,7 +9,7 @@ namespace tetwright {
 
 namespace {
 
-/// Triangles whose normals have a smaller cosine face the other way.
+/// Cosine below which a triangle's normal faces the other way.
 constexpr double min_facing = -0.5;
 
 }  // namespace

@@ -19,8 +19,8 @@
 
 namespace tetwright {
 
-/// The surfaces of an input with their patches, creases and corners, for nearest places. Input units; all
-/// functions may be called concurrently.
+/// Closest-point queries on the surfaces of an input with their patches, creases and corners. Input units;
+/// all functions may be called concurrently.
 class FeatureSurface : public ReferenceSurface {
  public:
   using Patch = std::uint16_t;
@@ -28,7 +28,7 @@ class FeatureSurface : public ReferenceSurface {
   using PatchPair = std::array<Patch, 2>;
   struct Place {
     Vec3 point;
-    Vec3 normal;  ///< unit, out of its body
+    Vec3 normal;  ///< unit, out of the body
     Patch patch;
   };
   struct CreasePlace {
@@ -37,11 +37,12 @@ class FeatureSurface : public ReferenceSurface {
   };
   struct Corner {
     Vec3 point;
-    std::vector<Patch> patches;  ///< that meet there, ascending
+    std::vector<Patch> patches;  ///< patches that meet there, ascending
   };
 
-  /// `patches[b]` are those of body b; they are numbered from 0 on, body by body. `corner_reach` as for
-  /// find_creases(). `field` answers for what has no patches.
+  /// \param patches of each body, in the order of `input.bodies`; renumbered from 0, body by body
+  /// \param corner_reach as for find_creases()
+  /// \param field answers for faces without patches
   FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach,
                  std::shared_ptr<const MaterialField> field);
 
@@ -60,21 +61,20 @@ class FeatureSurface : public ReferenceSurface {
     return corner_points_.nearest(point, {}, max_distance);
   }
 
-  /// The body whose surface a face between materials is on: later bodies carve earlier ones, so that it is
-  /// the later one of both; nothing between layers of one body and at the box of an outside that is meshed,
-  /// too.
+  /// The body whose surface a face is on. Between two materials it is the later body, since later bodies
+  /// carve earlier ones. Nothing between layers of one body, and on the box of a meshed outside.
   std::optional<std::size_t> body_of(const InterfaceTriangle& face) const;
-  /// The nearest place of a body within `at_most`; with `facing` only on triangles whose normal is not
-  /// opposite to it.
+  /// The closest point on a body's surface within `at_most`.
+  /// \param facing if given, only triangles whose normal is not opposite to it count
   std::optional<Place> nearest(const Vec3& p, std::size_t body, double at_most,
                                const Vec3* facing = nullptr) const;
-  /// The patch of faces that are on no surface: the field answers for them.
+  /// The patch of faces that are on no surface; the field answers for them.
   Patch no_patch() const { return no_patch_; }
-  /// The same of one patch.
+  /// The closest point on one patch within `at_most`.
   std::optional<Place> nearest_of_patch(const Vec3& p, Patch patch, double at_most) const;
-  /// The nearest place of the creases between two patches.
+  /// The closest point on the creases between two patches within `at_most`.
   std::optional<Vec3> onto_crease_between(const Vec3& p, const PatchPair& pair, double at_most) const;
-  /// The nearest place of the creases for which `accepts(pair)` holds.
+  /// The closest point on the creases for which `accepts(pair)` is true, within `at_most`.
   template <class Accepts>
   std::optional<CreasePlace> nearest_crease(const Vec3& p, double at_most, const Accepts& accepts) const {
     const auto pair_of = [](const ProjectionTree::Item& item) {
@@ -86,7 +86,7 @@ class FeatureSurface : public ReferenceSurface {
     return CreasePlace{hit->point, pair_of(creases_.items()[hit->item])};
   }
   const std::vector<Corner>& corners() const { return corners_; }
-  /// The group of the input that a patch belongs to, or none.
+  /// The surface region of the input that a patch belongs to, or none.
   SurfaceRegion group_of(Patch patch) const {
     return patch < groups_.size() ? groups_[patch] : SurfaceRegion{};
   }
@@ -94,7 +94,7 @@ class FeatureSurface : public ReferenceSurface {
  private:
   std::shared_ptr<const MaterialField> field_;
   Patch no_patch_ = 0;
-  std::map<MaterialTag, std::size_t> bodies_;  ///< of each material and layer
+  std::map<MaterialTag, std::size_t> bodies_;  ///< body of each material and layer
   ProjectionTree triangles_, creases_, corner_points_;
   std::vector<Vec3> normals_;  ///< of the items of triangles_
   std::vector<Corner> corners_;

@@ -11,22 +11,23 @@
 
 namespace tetwright {
 
-/// Processes groups of lattice points in parallel with the same result as one group after another in the
-/// given order, by deterministic reservations (Blelloch et al. 2012, "Internally deterministic parallel
+/// Processes groups of lattice points in parallel, with the result of processing them one after another in
+/// the given order, by deterministic reservations (Blelloch et al. 2012, "Internally deterministic parallel
 /// algorithms can be fast").
 ///
-/// Each group reserves the closed stars of its points. Of two groups whose stars share a point the earlier
-/// one is processed first and the later one waits for a later round, so the result is the same for any number
-/// of threads. Groups of neighbouring points save most of the cost of cache misses.
+/// Each group reserves the closed stars of its points. If the stars of two groups share a point, the later
+/// group waits for a later round, so the result does not depend on the number of threads. Grouping
+/// neighbouring points saves most of the cost of cache misses.
 class IndependentRounds {
  public:
   explicit IndependentRounds(const LabelledLattice& lattice)
       : lattice_(lattice), reserved_(lattice.stars.points().size(), free_) {}
 
-  /// Group g consists of the points [starts[g], starts[g + 1]) of `points`, which are near interfaces and
-  /// listed once each. Calls `body(groups)` concurrently with lists of groups; it may write data of their
-  /// points and read data of points one edge away, and two edges away across a point near an interface. After
-  /// each round `between_rounds(done)` is called with the number of groups processed so far.
+  /// Calls `body(groups)` concurrently with lists of groups, and `between_rounds(done)` after each round with
+  /// the number of groups processed so far. `body` may write data of the groups' points, and read data of
+  /// points one edge away, or two edges away across a point near an interface.
+  /// \param points points near interfaces, without repetitions
+  /// \param starts group g consists of points [starts[g], starts[g + 1])
   template <class Body, class BetweenRounds>
   void run(std::span<const Index> points, std::span<const std::size_t> starts, Body&& body,
            BetweenRounds&& between_rounds) {
@@ -35,7 +36,7 @@ class IndependentRounds {
     const std::size_t groups = starts.size() - 1, max_round = std::max(min_round, groups / rounds_wanted);
     struct Group {
       Index number;
-      std::vector<Index> slots;  ///< of those points of its closed stars that are near interfaces
+      std::vector<Index> slots;  ///< the points near interfaces in its closed stars
     };
     std::vector<Group> waiting, losers;
     std::vector<Index> winners;
@@ -53,7 +54,7 @@ class IndependentRounds {
           group.slots = slots_around(points.subspan(
               starts[group.number], starts[group.number + std::size_t{1}] - starts[group.number]));
         for (Index slot : group.slots) {
-          // The smallest number wins in any order of arrival. Relaxed: results are read after the loop only.
+          // The smallest number wins in any order of arrival. Relaxed: results are read only after the loop.
           std::atomic_ref<std::uint32_t> holder(reserved_[slot]);
           std::uint32_t held = holder.load(std::memory_order_relaxed);
           while (group.number < held &&
@@ -102,7 +103,7 @@ class IndependentRounds {
   }
 
   const LabelledLattice& lattice_;
-  std::vector<std::uint32_t> reserved_;  ///< by slot, the group that holds the point
+  std::vector<std::uint32_t> reserved_;  ///< by slot: the group that holds the point
 };
 
 }  // namespace tetwright

@@ -15,21 +15,21 @@ using Mask = std::uint64_t;
 
 constexpr Mask bit(int i) { return Mask{1} << i; }
 
-/// Beyond the box: no lattice point is there.
+/// Stands for the space beyond the box, where there is no lattice point.
 constexpr RegionIndex beyond_box = 0xfffe;
 
-/// The link of a point as bit masks over at most 64 neighbours. Stars of the lattice have at most 17; only
-/// octrees with many hanging edges around one point come near the limit. The link of a point on the box is a
-/// disc; one more neighbour beyond the box, joined to the rim of the disc, makes it a sphere like the others.
+/// The link of a point as bit masks over at most 64 neighbours. Lattice stars have at most 17; only octrees
+/// with many hanging edges around one point come near the limit. The link of a point on the box is a disc;
+/// one more neighbour beyond the box, joined to the rim of the disc, makes it a sphere like the others.
 struct Link {
   static constexpr int capacity = 64;
-  /// As a triangulated sphere of `capacity` points has.
+  /// The number of triangles of a triangulated sphere of `capacity` points.
   static constexpr int max_triangles = 2 * capacity - 4;
   Index points[capacity];
   Mask neighbours[capacity];
   std::array<std::uint8_t, 3> triangles[max_triangles];
   int size = 0, triangle_count = 0;
-  int beyond = -1;  ///< the number of the neighbour beyond the box
+  int beyond = -1;  ///< index of the neighbour beyond the box
   bool overflow = false;
   const LabelledLattice& lattice;
   Index centre;
@@ -57,7 +57,7 @@ struct Link {
     neighbours[d] |= bit(a) | bit(b);
   }
 
-  /// Joins the edges of a triangle that lie on one of the faces of the box with the centre to what is beyond.
+  /// Joins the triangle's edges that lie on one of the centre's box faces to the neighbour beyond the box.
   void close_at_box(const std::array<int, 3>& triangle, unsigned faces) {
     for (int k = 0; k < 3 && !overflow; ++k) {
       const int a = triangle[k], b = triangle[(k + 1) % 3];
@@ -89,7 +89,7 @@ struct Link {
     return mask;
   }
 
-  /// The regions of the pure points of the link and beyond the box; nothing if they are too many.
+  /// The regions of the link's pure points and of the space beyond the box; nothing if there are too many.
   std::optional<RegionSet> pure() const {
     RegionSet set;
     for (int i = 0; i < size; ++i)
@@ -124,9 +124,9 @@ struct Link {
     return std::popcount(mask) - twice_edges / 2 + inside == 1;
   }
 
-  /// True if no region appears twice around the edge from the centre to neighbour i: the points of its link
-  /// are a cycle, in which each region must have one stretch (points on interfaces between them do not
-  /// separate it). Otherwise two regions could touch along the edge alone, with a third one on either side.
+  /// True if no region appears twice around the edge from the centre to neighbour i. The points of that
+  /// edge's link are a cycle, in which each region must have one stretch (points on interfaces do not
+  /// interrupt it). Otherwise two regions could touch along the edge alone, with a third one on either side.
   bool one_stretch_each(int i) {
     // The two neighbours of each point of the cycle.
     std::array<std::array<int, 2>, capacity> beside;
@@ -158,12 +158,12 @@ struct Link {
     return std::adjacent_find(stretches.begin(), stretches.begin() + count) == stretches.begin() + count;
   }
 
-  /// True if every region of the set appears among the points of the mask as it must around a point on an
+  /// True if the points of the mask satisfy the condition for every region of the set around a point on an
   /// interface.
   bool regular(const RegionSet& regions, Mask keep) {
     for (RegionIndex r : regions) {
       const Mask part = of_region(r) & keep;
-      // Of two regions on a sphere each is connected if and only if neither encloses anything.
+      // On a sphere of two regions each is connected if and only if neither encloses anything.
       if (regions.size() == 2 ? !one_piece(part) : !one_disc(part)) return false;
     }
     return true;
@@ -199,16 +199,16 @@ std::optional<RegionSet> regions_if_moved(const LabelledLattice& lattice, Index 
     const Mask around_edge = link.neighbours[i];
     const bool same_origin = lattice.first_region[u] == region;
     if (same_origin && !(around_edge & own)) return std::nullopt;
-    // Triangles of the point, u and w, all on interfaces then. Two tets hold each, and their tips are the
-    // common neighbours of u and w in the link (others than those two are rare and only make us more
-    // careful).
+    // After the move, the triangles of the point, u and w would lie on interfaces. Each is shared by two
+    // tets, whose tips are the common neighbours of u and w in the link. Further common neighbours are rare
+    // and only make the test stricter.
     for (Mask more = around_edge & on; more; more &= more - 1) {
       const int j = std::countr_zero(more);
       const Mask tips = around_edge & link.neighbours[j];
       if (tips & on) return std::nullopt;
       if (same_origin && lattice.first_region[link.points[j]] == region && !(tips & own)) return std::nullopt;
     }
-    // Two regions cannot alternate around an edge where both ends see each as one piece.
+    // Two regions cannot alternate around an edge if both ends see each of them as one piece.
     if (regions->size() > 2 && !link.one_stretch_each(i)) return std::nullopt;
     // The regions that meet at u are those around it now, including the point itself.
     Link around_u(lattice, u);

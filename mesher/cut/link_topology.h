@@ -8,23 +8,25 @@
 
 namespace tetwright {
 
-/// The regions that would meet at a point if it were moved onto the interface, or nothing if that would
+/// The regions that would meet at a lattice point moved onto the interface, or nothing if the move would
 /// change the topology of the regions around it.
 ///
 /// The link of a lattice point is a triangulated sphere. Around a point on an interface each region must
 /// occupy one disc of the link: its points are connected by edges of the link and, with three regions or
 /// more, enclose nothing (Euler number 1). Then exactly one interface or one junction curve passes through
-/// the point. All pure points of the link must belong to the regions that meet at the point, and keep doing
-/// so, so that the region of every incident tet is defined. Besides, no tet may have all four points on
-/// interfaces, and an edge or triangle whose points all came from one region must still belong to a tet with
-/// a pure point of that region; otherwise a thin wall would lose its inside. What is beyond the box counts as
-/// one more region around points on it.
+/// the point. Every pure point of the link must belong to one of the regions that meet at the point, and
+/// remain so, so that the region of every incident tet is defined. Moreover:
+/// - no tet may have all four points on interfaces;
+/// - an edge or triangle whose points all come from one region must still belong to a tet with a pure point
+///   of that region; otherwise a thin wall would lose its interior.
 ///
-/// Checks the point and those of its neighbours that are on interfaces already, whose links reach two edges
-/// far. Reads regions only.
+/// For points on the box, the space beyond it counts as one more region.
+///
+/// Checks the point and its neighbours that are already on interfaces, whose links reach two edges far. Reads
+/// regions only.
 std::optional<RegionSet> regions_if_moved(const LabelledLattice& lattice, Index point);
 
-/// The regions of the pure points of the closed star, or nothing if there are more than can meet at a point.
+/// The regions of the pure points of the closed star, or nothing if there are too many to meet at a point.
 std::optional<RegionSet> pure_regions(const LabelledLattice& lattice, Index point);
 
 }  // namespace tetwright

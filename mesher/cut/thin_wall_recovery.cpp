@@ -16,14 +16,14 @@ namespace tetwright {
 namespace {
 
 constexpr std::size_t wall_point_grain = 1024;
-/// A wall counts as restored within this share of its thickness.
+/// A wall counts as recovered within this fraction of its thickness.
 constexpr double restored_share = 0.1;
-/// What is left after a pass is tried again, since the neighbours have moved, too.
+/// Remaining moves are tried again in another pass, since their neighbours have moved too.
 constexpr int restoring_passes = 3;
-/// Lattice units: half of what is thickened at most, and as much for a point that was moved on from there.
+/// Lattice units: half of the largest thickening, and as much again for a point that has moved on from there.
 constexpr double max_step = 1.25;
 
-/// The moves of the points that a thickened wall has displaced.
+/// The moves that return points displaced by thickened walls.
 std::vector<PointMove> find_moves(const std::vector<Vec3>& points,
                                   const std::vector<std::uint8_t>& is_on_interface,
                                   const MaterialField& field, const MaterialField& as_is) {
@@ -38,7 +38,7 @@ std::vector<PointMove> find_moves(const std::vector<Vec3>& points,
           Vec3 gradient;
           const double off = owned->between((*both)[0], (*both)[1], points[p], gradient);
           const double slope = gradient.squaredNorm();
-          // No wall was thickened by more; a longer step comes from where distances have no slope.
+          // No wall was thickened by more; a longer step comes from distances without slope.
           if (!(std::abs(off) < max_step * std::sqrt(slope))) continue;
           out.push_back({static_cast<Index>(p), points[p], -gradient * (off / slope)});
         }

@@ -19,26 +19,26 @@ namespace tetwright {
 
 namespace {
 
-/// A cut closer to an end of its edge than this fraction of the edge is too close; long edges join two
-/// corners or two centres of cells, short ones a corner and a centre. Tuned on scans: with the classic 0.25
-/// and 0.41, points snap onto flat patches from both sides and tets would be inverted.
+/// A cut is too close to an end of its edge below this fraction of the edge. Long edges join two corners or
+/// two centres of cells, short ones a corner and a centre. Tuned on scans: with the classic 0.25 and 0.41,
+/// points snap onto flat patches from both sides and tets would be inverted.
 constexpr double near_long = 0.35;
 constexpr double near_short = 0.49;
 
 /// A move must not give a lattice tet a solid angle below 0.1 sr. This controls the smallest dihedral angle
 /// of the result: 0.06 sr gives 6 degrees, 0.1 sr gives 11, 0.14 sr gives 13, but more moves are refused.
-/// Stored as the tangent of half the angle, which is what is compared.
+/// Stored as the tangent of half the angle, which is what the code compares.
 constexpr double min_tangent = 0.05004170837553879;
 
 /// Distances are compared in steps of this fraction of an edge, because all points along a flat face have
 /// nearly the same distance.
 constexpr double distance_steps = 32;  // a byte holds it
 
-/// Number of points that one thread processes one after another.
+/// Number of points that one thread processes consecutively.
 constexpr std::size_t group_size = 16;
 
-/// A hash that spreads neighbouring points over the order, so that groups processed at the same time rarely
-/// share points.
+/// A hash that spreads neighbouring points over the order, so that groups processed concurrently rarely share
+/// points.
 std::uint32_t scattered(Index i) {
   std::uint32_t h = i * 0x9e3779b9u;
   h ^= h >> 15;
@@ -47,9 +47,10 @@ std::uint32_t scattered(Index i) {
 }
 
 /// Splits a list into groups of neighbouring items of equal priority and scatters the groups within each
-/// priority. `priority(item)` must not decrease along the list, and items of equal priority that are near
-/// each other in space should be near each other in the list. Returns the places where groups start, and the
-/// end.
+/// priority.
+/// \param priority must not decrease along the list; nearby items of equal priority should be close to each
+///   other in the list
+/// \return the indices at which groups start, and the end
 template <class Priority>
 std::vector<std::size_t> scatter_groups(std::vector<Index>& items, Priority&& priority) {
   struct Group {
@@ -80,12 +81,12 @@ std::vector<std::size_t> scatter_groups(std::vector<Index>& items, Priority&& pr
   return starts;
 }
 
-/// A point too close to a cut, and where it could be moved.
+/// A point too close to a cut, and its target.
 struct Candidate {
   Index point;
   Index other;     ///< the other end of the edge with the nearest cut
   Vec3 projected;  ///< projection onto where all regions of the star meet
-  /// The edge to `other` before any point was moved; a multiple of half lattice units, exact in a float.
+  /// Edge to `other` before any point was moved; a multiple of half a lattice unit, exact in a float.
   Eigen::Vector3f edge;
   std::uint8_t at_junction;  ///< 1 if the star has more than two regions
   std::uint8_t rank;         ///< distance from the interface or junction, in steps
@@ -110,7 +111,7 @@ class Mover {
     std::vector<Index> left = attempt(
         std::move(order), [&](Index i) { return candidate(i).priority(); },
         [&](Index i, FieldSampler&) { return move(candidate(i)); });
-    // The neighbours may have been moved in the meantime so that the move is valid now.
+    // Try again: moves of neighbours may have made the move valid.
     left = attempt(std::move(left), one_priority, [&](Index i, FieldSampler& sampler) {
       return move(candidate(i)) || project_nearer_to_middle(candidate(i), sampler);
     });
@@ -153,8 +154,7 @@ class Mover {
     return left;
   }
 
-  /// Calls `work(k, sampler)` for each index k of `points`; groups with a common star point run in their
-  /// order.
+  /// Calls `work(k, sampler)` for each index k of `points`; groups that share a star point run in order.
   template <class Work>
   void run_groups(std::span<const Index> points, std::span<const std::size_t> starts, Work&& work) {
     rounds_.run(
@@ -172,7 +172,7 @@ class Mover {
         });
   }
 
-  /// The candidate for a point, or nothing if no cut is too close to the point or it must not be moved.
+  /// The candidate for a point, or nothing if no cut is too close to it or it must not be moved.
   std::optional<Candidate> as_candidate(Index p, FieldSampler& sampler) const {
     const RegionIndex own = lattice_.first_region[p];
     if (field_.is_certain(lattice_.positions[p])) return std::nullopt;
@@ -211,8 +211,8 @@ class Mover {
     return c;
   }
 
-  /// The axes that a point cannot move along, a bit for each: points stay on the faces, edges and corners of
-  /// the box.
+  /// The axes along which a point cannot move, a bit each: points stay on the faces, edges and corners of the
+  /// box.
   unsigned held_axes(Index p) const {
     const unsigned faces = lattice_.box_faces(p);
     unsigned axes = 0;
@@ -227,13 +227,13 @@ class Mover {
     return step;
   }
 
-  /// The nearest cut; valid until the point is moved.
+  /// The closest cut; valid until the point is moved.
   Vec3 on_edge(const Candidate& c) const {
     const double share =
         lattice_.cut_share(c.point, lattice_.first_region[c.point], c.other, other_region(c));
     return lattice_.positions[c.point] + c.edge.cast<double>() * share;
   }
-  /// The region at the other end of the edge with the nearest cut.
+  /// The region at the other end of the edge with the closest cut.
   RegionIndex other_region(const Candidate& c) const { return lattice_.first_region[c.other]; }
 
   void find_candidates() {
@@ -296,8 +296,8 @@ class Mover {
     return sum / count;
   }
 
-  /// Moves the point to a projection onto the interface nearer to the middle of its star, where the incident
-  /// tets are better shaped. False if no such place is valid.
+  /// Moves the point to a projection onto the interface closer to the middle of its star, where the incident
+  /// tets are better shaped. Returns false if no such position is valid.
   bool project_nearer_to_middle(const Candidate& c, FieldSampler& sampler) {
     const Index p = c.point;
     const std::optional<RegionSet> regions = regions_if_moved(lattice_, p);
@@ -318,9 +318,9 @@ class Mover {
     return worst;
   }
 
-  /// Moves a point to whichever of `places` gives the best worst piece of its star, if that is better than
-  /// where it is. The point keeps its region, and lattice tets keep solid angles of 0.1 sr. True if it was
-  /// moved.
+  /// Moves a point to the position in `places` that gives the best worst piece of its star, if that improves
+  /// it. The point keeps its region, and lattice tets keep solid angles of 0.1 sr. Returns true if the point
+  /// was moved.
   bool take_best(Index p, std::span<const Vec3> places, FieldSampler& sampler) {
     const bool on = lattice_.is_on[p];
     const Vec3 from = lattice_.positions[p];
@@ -347,7 +347,7 @@ class Mover {
     return best_place != from;
   }
 
-  /// Moves a point away from the interface that it could not be moved onto, so that the pieces around it
+  /// Moves a point away from an interface that it could not be moved onto, so that the pieces around it
   /// become thicker.
   bool push_away(const Candidate& c, FieldSampler& sampler) {
     const Index p = c.point;
@@ -364,9 +364,9 @@ class Mover {
     return take_best(p, places, sampler);
   }
 
-  /// Of `count` tets with the numbers `tet(i)`, finds those with a piece below the limit and moves their
-  /// points near interfaces: points on an interface stay on it, the others keep their region. Returns the
-  /// tets whose pieces may have changed.
+  /// Finds the tets with a piece below the limit among `count` tets with the numbers `tet(i)`, and moves
+  /// their points near interfaces: points on an interface stay on it, the others keep their region. Returns
+  /// the tets whose pieces may have changed.
   template <class TetOf>
   std::vector<Index> improve_worst_stars(std::size_t count, TetOf&& tet) {
     std::vector<Index> points = parallel_collect<Index>(
@@ -405,7 +405,7 @@ class Mover {
       Vec3 gradient;
       const double value = sampler.between(lattice_.first_region[p], other, from, gradient);
       gradient = without_held(p, gradient);
-      // Steps are fractions of the distance, so that the point keeps its side whatever the size of the cells.
+      // Steps are fractions of the distance, so that the point keeps its side for any cell size.
       for (double share : {-0.4, -0.2, 0.3, 0.6})
         places.push_back(from + gradient * (share * value /
                                             std::max(tolerance::min_squared_slope, gradient.squaredNorm())));
@@ -414,7 +414,7 @@ class Mover {
     take_best(p, places, sampler);
   }
 
-  /// Of the other regions in the star, the one of the smallest distance; on_interface if there is none.
+  /// The region of the smallest distance among the other regions of the star; on_interface if there is none.
   RegionIndex nearest_other(Index p) const {
     RegionIndex best = on_interface;
     float smallest = HUGE_VALF;

@@ -28,7 +28,7 @@ BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool ke
         measure_local_thickness(surface, *surfaces[b], voxels,
                                 {limits.min_gap / voxels.cell_size, limits.min_thickness / voxels.cell_size},
                                 std::move(exact), progress);
-    // Smaller cells in narrow patches would tear thin walls beside them.
+    // Smaller cells in narrow patches would tear thin walls next to them.
     if (!all_measured[b].voxels.empty()) {
       narrow = {};
       all_measured[b].exact = std::move(asked.voxels);
@@ -45,7 +45,7 @@ BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool ke
     level_sets.push_back(std::move(level_set));
     return static_cast<std::uint16_t>(level_sets.size() - 1);
   };
-  // Outside is where no body is: the largest of their negatives.
+  // Outside is where no body is: the maximum of their negatives.
   std::vector<LevelSetRegion> regions{{keep_outside ? outside_name : "", outside_tag, {}}};
   for (std::size_t b = 0; b < input.bodies.size(); ++b) {
     const MesherInput::Body& body = input.bodies[b];
@@ -60,7 +60,7 @@ BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool ke
     result.filling_tets_thickened += plan.filling_tets_thickened;
     for (const ChangedWall& w : plan.changed) result.changed.emplace_back(b, w);
     regions[outside_region].terms.push_back({surface, true, number});
-    // Carves all earlier ones.
+    // The body carves all earlier ones.
     for (std::size_t r = 1; r < regions.size(); ++r) regions[r].terms.push_back({surface, true, number});
     std::uint16_t outer = surface;
     double depth = 0;

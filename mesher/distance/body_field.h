@@ -13,24 +13,28 @@
 
 namespace tetwright {
 
-/// The field of surfaces on the voxels of a frame: a level set for each body and one for the inner side of
-/// each layer. Bodies are carved by all later ones; layers are cut from the first body by depth.
+/// The field of surfaces on the voxels of a frame: a level set for each body, and one for the inner side of
+/// each layer. Later bodies carve earlier ones; layers are cut from the first body by depth.
 struct BodyField {
   std::shared_ptr<const LevelSetField> field;
-  RefinementRegions finer;  ///< where walls and gaps of one surface are thin, or patches narrow
-  /// Of each body, those that are still shown otherwise than they are.
+  RefinementRegions finer;  ///< cells to be split for thin walls and gaps of one surface, narrow patches and
+                            ///< requested regions
+  /// Body and wall, for walls and gaps that the mesh still shows changed.
   std::vector<std::pair<std::size_t, ChangedWall>> changed;
   double filling_tets = 0, filling_tets_thickened = 0;  ///< of all bodies, see ThinWallPlan
 };
 
-/// What one body asks for besides its thin walls.
+/// Refinement of one body for reasons other than thin walls.
 struct BodyCells {
-  NarrowPatches narrow;  ///< dropped where the body has thin walls, which alone choose cells then
+  NarrowPatches narrow;  ///< dropped where the body has thin walls, which then choose the cells alone
   NarrowPatches asked;   ///< MesherOptions::refinement_regions
 };
 
-/// `limits` in input units; `cells` of each body, or empty. Throws InputError for layers thicker than the
-/// body, Interrupted.
+/// \param limits input units
+/// \param cells one for each body, or empty
+/// \param progress may be null
+/// \throws InputError for a layer thicker than the body
+/// \throws Interrupted
 BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool keep_outside,
                       const ThinWalls::Limits& limits, const RefinementBudget& budget,
                       std::vector<BodyCells> cells, Progress* progress);

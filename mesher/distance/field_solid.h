@@ -8,9 +8,9 @@
 
 namespace tetwright {
 
-/// The solid of a region of a field as its voxels show it, in input units: each voxel is split into six tets
-/// (Kuhn 1960), and the surface cuts their edges where the distances say. `interface_voxels` are those of the
-/// field.
+/// The solid of a region as the field's voxels represent it, in input units: each voxel is split into six
+/// tets (Kuhn 1960), whose edges are cut according to the distances.
+/// \param interface_voxels of the field
 SolidShape field_solid(const MaterialField& field, const std::vector<MortonKey>& interface_voxels,
                        RegionIndex region);
 

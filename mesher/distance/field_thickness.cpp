@@ -10,17 +10,17 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t sheet_grain = 512;  // voxels to a task, a microsecond or more each
+constexpr std::size_t sheet_grain = 512;  // voxels per task, a microsecond or more each
 
-/// A sheet of at least so many cells never tears: wherever it runs, a lattice point is inside.
+/// A sheet of at least this many cells never tears: wherever it lies, a lattice point is inside.
 constexpr double sheet_cells = 1.5;
 
-/// A cell of 1/2^depth voxels and what became of it.
+/// A cell of 1/2^depth voxels that holds a sheet.
 struct SheetCell {
   int depth;
   MortonKey key;  ///< in cells of its own size
   RegionIndex region;
-  bool too_thin;  ///< and is not split
+  bool too_thin;  ///< and not split
   bool operator<(const SheetCell& o) const { return depth != o.depth ? depth < o.depth : key < o.key; }
 };
 
@@ -79,10 +79,10 @@ ThinSheets find_thin_sheets(const MaterialField& field, const std::vector<Morton
 
 std::vector<ThinPart> find_thin_parts(const MaterialField& field,
                                       const std::vector<MortonKey>& interface_voxels) {
-  // Two voxels from an interface there should still be the same region as next to it.
+  // A region is identified next to an interface and must extend this far from it, voxels.
   constexpr double thick_enough = 2, next_to_it = 0.25;
-  // Cosine between the normals here and there: nearer to -1 the two interfaces face each other; else it is
-  // the edge of a wedge, which is thin whatever the cells.
+  // Maximum cosine between the normals of two interfaces that face each other. Others form a wedge, which is
+  // thin at its edge in cells of any size.
   constexpr double facing = -0.5;
   struct Found {
     MortonKey voxel;
@@ -99,7 +99,7 @@ std::vector<ThinPart> find_thin_parts(const MaterialField& field,
           const std::optional<RegionSet> two = sampler.two_nearest(centre);
           Vec3 place = centre, normal;
           if (!two || !sampler.project(*two, place)) continue;
-          if ((place - centre).cwiseAbs().maxCoeff() > 0.5) continue;  // another voxel's
+          if ((place - centre).cwiseAbs().maxCoeff() > 0.5) continue;  // in another voxel
           sampler.between((*two)[0], (*two)[1], place, normal);
           if (!(normal.norm() > 0)) continue;
           normal.normalize();

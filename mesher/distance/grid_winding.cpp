@@ -18,7 +18,7 @@ struct RowCrossing {
   std::int32_t step;
 };
 
-/// The nodes of a row that a triangle's shadow may cover at one x; `low > high` for none.
+/// The nodes of a row that a triangle's projection may cover at one x; `low > high` for none.
 struct Range {
   double low = 1, high = 0;
   void add(double v) {
@@ -29,7 +29,7 @@ struct Range {
   }
 };
 
-/// The y at which the shadow's edges meet the line at `x`.
+/// The y at which the edges of the projection meet the line at `x`.
 Range shadow_at(const std::array<Vec3, 3>& p, double x) {
   Range range;
   for (int i = 0; i < 3; ++i) {
@@ -45,14 +45,14 @@ Range shadow_at(const std::array<Vec3, 3>& p, double x) {
   return range;
 }
 
-/// The lowest node of the row at (x, y) that is on or above the triangle. The plane gives a guess, exact
-/// signs the answer.
+/// The lowest node of the row at (x, y) on or above the triangle. The plane gives a guess, exact signs the
+/// answer.
 int first_node_above(const std::array<Vec3, 3>& p, int crossing, int x, int y) {
   const Vec3 normal = (p[1] - p[0]).cross(p[2] - p[0]);
   const double low = std::min({p[0].z(), p[1].z(), p[2].z()});
   const double high = std::max({p[0].z(), p[1].z(), p[2].z()});
   double guess = p[0].z() - (normal.x() * (x - p[0].x()) + normal.y() * (y - p[0].y())) / normal.z();
-  if (!(guess > low)) guess = low;  // also where the normal is level and the guess is not a number
+  if (!(guess > low)) guess = low;  // also where the normal is horizontal and the guess is not a number
   if (guess > high) guess = high;
   int z = static_cast<int>(std::ceil(guess));
   const auto above = [&](int k) { return at_or_above(p[0], p[1], p[2], crossing, Vec3(x, y, k)); };

@@ -18,17 +18,18 @@ namespace tetwright {
 /// construction; all functions may be called concurrently.
 class GridWinding {
  public:
-  /// The winding number is `winding` from the node `first` of a row up to the next entry.
+  /// The winding number is `winding` from the node `first` of a row up to the next entry's.
   struct Crossing {
     std::int32_t first;
     std::int32_t winding;
   };
 
-  /// `points` in grid coordinates; the grid has the nodes 0...cells[a] along each axis a.
+  /// \param points grid coordinates
+  /// \param cells the grid has the nodes 0...cells[a] along each axis a
   GridWinding(std::span<const Vec3> points, std::span<const Triangle> triangles,
               const std::array<int, 3>& cells);
 
-  /// The entries of the vertical row at (x, y) by ascending `first`; the winding number before the first is
+  /// The crossings of the vertical row at (x, y) by ascending `first`; the winding number below the first is
   /// 0. Empty outside the grid.
   std::span<const Crossing> row(int x, int y) const {
     if (x < 0 || y < 0 || x >= nodes_x_ || y >= nodes_y_) return {};

@@ -26,7 +26,7 @@ MortonKey corner_key(const GridPoint& cell, int k) {
   return morton_encode(cell[0] + (k & 1), cell[1] + (k >> 1 & 1), cell[2] + (k >> 2));
 }
 
-/// The cells around an edge, in order around it: counter-clockwise as seen from its upper end.
+/// The cells around an edge, counter-clockwise as seen from its upper end.
 std::array<MortonKey, 4> cells_around(const GridEdge& edge) {
   const int u = (edge.axis + 1) % 3, v = (edge.axis + 2) % 3;
   std::array<MortonKey, 4> cells;
@@ -40,7 +40,7 @@ std::array<MortonKey, 4> cells_around(const GridEdge& edge) {
   return cells;
 }
 
-/// Calls `use(lower, upper, axis)` with the numbers of the corners at the ends of a cell's twelve edges.
+/// Calls `use(lower, upper, axis)` with the corners at the ends of each of a cell's twelve edges.
 template <class Use>
 void for_each_edge(Use&& use) {
   for (int axis = 0; axis < 3; ++axis)
@@ -66,7 +66,7 @@ class CapFinder {
   }
 
  private:
-  /// The cells around the edges that were not among those of an earlier call.
+  /// The cells around the edges that no earlier call returned.
   std::vector<MortonKey> new_cells(const std::vector<GridEdge>& edges) {
     std::vector<MortonKey> cells;
     for (const GridEdge& edge : edges)
@@ -115,8 +115,8 @@ class CapFinder {
                                       });
   }
 
-  /// Where the edge from a to b is crossed, as a share of it; away from both ends, so that no triangle of a
-  /// cap is without an area.
+  /// The crossing of the edge from a to b, as a fraction of it; kept away from both ends, so that no cap
+  /// triangle has zero area.
   static double crossing(const GridReading& a, const GridReading& b) {
     constexpr double margin = 0.02;
     const double share = needs_cap(a.distance, b.distance)
@@ -170,7 +170,7 @@ class CapFinder {
 
   const std::function<GridReading(int, int, int)>& read_;
   Progress* progress_;
-  // Only looked up, never walked through in their own order.
+  // Only looked up, never iterated in their own order.
   std::unordered_map<MortonKey, GridReading> readings_;
   std::unordered_set<MortonKey> cells_;
   std::vector<GridEdge> edges_;

@@ -29,25 +29,24 @@ struct GridEdge {
   auto operator<=>(const GridEdge&) const = default;
 };
 
-/// True if one end of a grid edge is inside and the other is not although no surface crosses the edge. A
-/// surface that does has distances from both ends that add up to one voxel or less.
+/// True if exactly one end of a grid edge is inside although no surface crosses the edge. Where a surface
+/// crosses it, the distances at both ends add up to at most one voxel.
 inline bool needs_cap(double distance, double next_distance) {
-  constexpr double slack = 0.02;  // the distances' error near the surface
+  constexpr double slack = 0.02;  // error of the distances near the surface
   return (distance < 0) != (next_distance < 0) && std::abs(distance) + std::abs(next_distance) > 1 + slack;
 }
 
-/// Caps across the holes of a surface: where the winding number passes inside_winding without a surface.
-/// Starts from the grid edges in `seeds` (those within the band) and follows each cap to its end. Every edge
-/// that needs a cap is crossed by one, so the distances from surface and caps at its ends add up to one voxel
-/// or less.
+/// Caps the holes of a surface: where the winding number passes inside_winding without a surface. Starts from
+/// the grid edges in `seeds` (those within the band) and follows each cap to its end. A cap crosses every
+/// edge that needs one, so the distances from surface and caps at its ends add up to at most one voxel.
 ///
 /// Caps are surface nets (Gibson 1998) in grid coordinates: a point in each cell at the mean of the crossings
-/// of its edges, and a quadrilateral around each edge that needs a cap, oriented outwards.
-///
-/// `read` is called concurrently, about once for each grid point within a cell of the caps. Seeds, and all
-/// points that `read` reports as inside, must be two cells or more inside the grid. Memory and time are
-/// proportional to the caps. The same result for any order of `seeds` and any number of threads. Throws
-/// Interrupted.
+/// of its edges, and a quadrilateral around each edge that needs a cap, oriented outwards. Memory and time
+/// are proportional to the caps. The result depends neither on the order of `seeds` nor on the number of
+/// threads.
+/// \param read called concurrently, about once for each grid point within a cell of the caps
+/// \pre seeds, and all points that `read` reports as inside, are at least two cells inside the grid
+/// \throws Interrupted
 TriangleMesh cap_holes(const std::vector<GridEdge>& seeds,
                        const std::function<GridReading(int, int, int)>& read, Progress* progress);
 

@@ -34,7 +34,7 @@ std::shared_ptr<const LevelSet> LevelSet::with_walls(const LevelSet& level_set,
                                                      std::shared_ptr<const ThinWalls> walls) {
   DistanceGrid grid = level_set.grid_->copy();
   const std::vector<MortonKey> voxels = walls->covered();
-  // Of the voxels around a grid point the one with the smallest cells decides.
+  // At a grid point the surrounding voxel with the smallest cells decides.
   struct Corner {
     MortonKey point;
     int depth;
@@ -87,8 +87,8 @@ std::vector<MortonKey> LevelSet::interface_cells() const {
         DistanceGridReader reader(*grid_);
         for (std::size_t i = begin; i < end; ++i) {
           const auto& [ox, oy, oz] = leaves[i].origin;
-          // Bit z of a row: the grid point is inside. A leaf that does not exist lies wholly on one side,
-          // outside the band.
+          // Bit z of a row: the grid point is inside. A missing leaf lies completely on one side, outside the
+          // band.
           unsigned rows[n][n] = {};
           for (int neighbour = 0; neighbour < 8; ++neighbour) {
             const int dx = neighbour & 1, dy = neighbour >> 1 & 1, dz = neighbour >> 2;
@@ -153,7 +153,7 @@ double LevelSetSampler::at(const Vec3& point, Vec3& gradient) {
   double v[8];
   reader_.corners(cell.x(), cell.y(), cell.z(), v);
   const Vec3 f = point - cell.cast<double>();
-  // Along z, then y, then x.
+  // Interpolate along z, then y, then x.
   double z0[4], dz[4];
   for (int k = 0; k < 4; ++k) {
     dz[k] = v[2 * k + 1] - v[2 * k];

@@ -25,26 +25,29 @@ class LevelSet {
  public:
   /// The level set of a surface. Magnitudes come from OpenVDB's unsigned conversion (its signed one would
   /// fill closed cavities), signs at grid points of the band from the exact winding number; points outside
-  /// the band take the sign of the band around them. Throws Interrupted.
+  /// the band take the sign of the band around them.
+  /// \throws Interrupted
   static std::shared_ptr<const LevelSet> of_surface(const RepairedSurface& surface, const GridFrame& frame,
                                                     Progress* progress);
-  /// The level set of the surface at `depth` voxels (any number > 0) inside: values are the distance plus
-  /// `depth`, so what is deeper is inside, with a narrow band around the new zero level. Distances are exact.
-  /// Memory is proportional to the new surface. Throws Interrupted.
+  /// The level set of the offset surface `depth` voxels inside: values are the distance plus `depth`, so that
+  /// deeper points are inside, with a narrow band around the new zero level. Distances are exact. Memory is
+  /// proportional to the new surface.
+  /// \param depth voxels, above 0
+  /// \throws Interrupted
   static std::shared_ptr<const LevelSet> at_depth(const RepairedSurface& surface, double depth,
                                                   const GridFrame& frame, Progress* progress);
-  /// The same, reusing the result of of_surface().
+  /// As above, reusing the result of of_surface() as `boundary`.
   static std::shared_ptr<const LevelSet> at_depth(const RepairedSurface& surface, const LevelSet& boundary,
                                                   double depth, const GridFrame& frame, Progress* progress);
 
-  /// The same with other distances near thin walls, which are in grid coordinates.
+  /// A copy of a level set whose distances near thin walls come from `walls`, in grid coordinates.
   static std::shared_ptr<const LevelSet> with_walls(const LevelSet& level_set,
                                                     std::shared_ptr<const ThinWalls> walls);
-  /// The same with thin walls as thick as they are; gaps that were closed and walls that were left out stay
-  /// so. Grid points keep their values. Shares the grid.
+  /// The level set with thin walls at their true thickness; closed gaps and omitted walls stay changed. Grid
+  /// points keep their values. Shares the grid.
   static std::shared_ptr<const LevelSet> with_true_walls(const std::shared_ptr<const LevelSet>& level_set);
 
-  /// Null if there are none.
+  /// Null if there are no thin walls.
   const ThinWalls* walls() const { return walls_.get(); }
   const TriangleMesh& caps() const { return *caps_; }
   const DistanceGrid& grid() const { return *grid_; }
@@ -59,24 +62,23 @@ class LevelSet {
   friend class LevelSetSampler;
   LevelSet(DistanceGrid grid, TriangleMesh caps, const std::array<int, 3>& cells);
   std::shared_ptr<const DistanceGrid> grid_;
-  std::shared_ptr<const TriangleMesh> caps_;  ///< what closes the surface's holes, in grid coordinates
+  std::shared_ptr<const TriangleMesh> caps_;  ///< caps of the surface's holes, in grid coordinates
   std::array<int, 3> cells_;
   std::shared_ptr<const ThinWalls> walls_;
   bool true_walls_ = false;
 };
 
-/// Evaluates a level set, in grid coordinates and voxels. Caches the leaf read last, so evaluating nearby
-/// points one after another is fast. Not thread-safe; any number of samplers of one level set may be used
-/// concurrently.
+/// Evaluates a level set, in grid coordinates and voxels. Caches the last leaf read, so consecutive nearby
+/// points are fast. Not thread-safe; any number of samplers of one level set may be used concurrently.
 class LevelSetSampler {
  public:
   explicit LevelSetSampler(const LevelSet& level_set);
 
   /// The distance at a grid point, clamped to level_set_band.
   double at_node(int x, int y, int z);
-  /// Trilinear interpolation between grid points; near thin walls their distance.
+  /// Interpolates trilinearly between grid points; near thin walls returns their distance.
   double at(const Vec3& point);
-  /// The same with its gradient (per voxel; of length about 1 within the band).
+  /// As above, with the gradient (per voxel; of length about 1 within the band).
   double at(const Vec3& point, Vec3& gradient);
 
  private:

@@ -15,20 +15,20 @@ namespace {
 struct GridBox {
   LeafOrigin lowest;
   int side;
-  double distance;  ///< of the middle from the surface, finest cells, or more
+  double distance;  ///< of the middle from the surface, or an upper bound of it; finest cells
   Vec3 middle() const { return Vec3(lowest[0], lowest[1], lowest[2]) + Vec3::Constant(0.5 * (side - 1)); }
-  /// From the middle to the farthest of its grid points.
+  /// Distance from the middle to the farthest grid point.
   double reach() const { return 0.5 * std::sqrt(3.0) * (side - 1); }
 };
 
-/// Finds the grid points around the surface at a depth: no distance changes by more than the way that one
-/// goes, so a box whose middle is too far from the depth has none of them.
+/// Finds the grid points around the surface at a depth. Distances are 1-Lipschitz, so a box whose middle is
+/// too far from that depth has none.
 class DepthFinder {
  public:
   DepthFinder(const SurfaceTree& surface, const LevelSet& boundary, double depth)
       : surface_(surface), boundary_(boundary), depth_(depth) {}
 
-  /// The boxes of `side` grid points that may hold some of the band; memory and time grow with them.
+  /// The boxes of `side` grid points that may contain part of the band; memory and time grow with them.
   std::vector<GridBox> boxes(const std::array<int, 3>& cells, int side, Progress* progress) const {
     GridBox all{{0, 0, 0}, side, 0};
     while (all.side <= *std::max_element(cells.begin(), cells.end())) all.side *= 2;
@@ -46,7 +46,7 @@ class DepthFinder {
     return found;
   }
 
-  /// The distances of a box's grid points from the surface at the depth into a leaf.
+  /// Writes the distances of a box's grid points from the surface at the depth into a leaf.
   void fill(const GridBox& box, LevelSetSampler& sampler, const GridLeaf<float>& leaf) const {
     if (box.side > 1) {
       for_each_part(box, sampler, [&](const GridBox& part) { fill(part, sampler, leaf); });
@@ -61,7 +61,7 @@ class DepthFinder {
   }
 
  private:
-  /// Calls `use(part)` for those of a box's eight parts that may hold some of the band.
+  /// Calls `use(part)` for those of a box's eight parts that may contain part of the band.
   template <class Use>
   void for_each_part(const GridBox& box, LevelSetSampler& sampler, Use&& use) const {
     for (int k = 0; k < 8; ++k) {
@@ -73,7 +73,7 @@ class DepthFinder {
       part.distance = surface_.distance(part.middle(), std::min(farthest, known));
       if (std::abs(part.distance - depth_) >= level_set_band + part.reach()) continue;
       if (part.distance > part.reach() && depth_ + part.distance >= level_set_band + part.reach()) {
-        // Wholly on one side, and with nothing of the band if that is the outside.
+        // Completely on one side, and without any of the band if that is the outside.
         const auto& [x, y, z] = part.lowest;
         if (sampler.at_node(x, y, z) > 0) continue;
       }

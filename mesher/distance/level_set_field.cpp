@@ -10,15 +10,14 @@ namespace tetwright {
 
 namespace {
 
-/// Surfaces of two bodies that face each other (the cosine between their normals is below the second number)
-/// and are closer than the first number (voxels) count as one. Common faces of bodies are known to a few
-/// hundredths of a voxel, near sharp edges to a few tenths, and slivers of another region between them would
-/// be noise.
+/// Surfaces of two bodies that face each other (cosine between their normals below the second number) and are
+/// closer than the first number (voxels) count as one. Common faces of bodies are known to a few hundredths
+/// of a voxel, near sharp edges to a few tenths, and slivers of another region between them would be noise.
 constexpr double contact = 0.4, contact_facing = -0.7;
 /// Cosine between the normals of two surfaces below which the region between them is a sheet. Otherwise it is
 /// a wedge, which is thin at its edge for any cell size.
 constexpr double sheet_facing = -0.95;
-/// Thinner sheets (voxels) are gaps between two faces that were meant to coincide.
+/// Thinner sheets (voxels) are gaps between two faces meant to coincide.
 constexpr double noticed = 0.1;
 
 std::vector<FieldRegion> names_of(const std::vector<LevelSetRegion>& regions) {
@@ -103,8 +102,8 @@ class LevelSetField::Sampler final : public FieldSampler {
     find_carving_maxima();
   }
 
-  /// For each of the outside's terms the largest from it on, of equal ones the first. Every region shares its
-  /// last terms with the outside, see LevelSetField::own_terms().
+  /// For each of the outside's terms, finds the maximum from that term on; ties go to the first. Every region
+  /// shares its last terms with the outside, see LevelSetField::own_terms().
   void find_carving_maxima() {
     const std::vector<RegionTerm>& terms = field.terms(outside_region);
     for (std::size_t i = terms.size(); i-- > 0;) {
@@ -113,7 +112,7 @@ class LevelSetField::Sampler final : public FieldSampler {
     }
   }
 
-  /// The signed distance of a region and its largest term; the distance is increased where the region is a
+  /// The signed distance of a region and its largest term. The distance is increased where the region is a
   /// sliver between surfaces in contact. Costs O(own terms), except near the region's surface.
   double value(RegionIndex r) {
     const RegionTerm* unused;
@@ -137,7 +136,8 @@ class LevelSetField::Sampler final : public FieldSampler {
     return best + sliver_excess(terms, best);
   }
   /// The maximum, over pairs of bodies in contact that face each other, of the contact distance minus the
-  /// thickness of the region between them; 0 where the region is no sliver. `best` is the largest term.
+  /// thickness of the region between them; 0 where the region is not a sliver.
+  /// \param best the largest term
   double sliver_excess(const std::vector<RegionTerm>& terms, double best) {
     const double thinnest = contact * per_voxel;
     // The terms of a sliver add up to more than -thinnest, so none is below this. The factor allows for
@@ -196,12 +196,12 @@ class LevelSetField::Sampler final : public FieldSampler {
 
   const LevelSetField& field;
   double per_voxel;  ///< lattice units
-  Vec3 place;        ///< where was read, lattice units
+  Vec3 place;        ///< last point read, lattice units
   bool has_gradients = false;
   std::vector<std::unique_ptr<LevelSetSampler>> readers;
   std::vector<double> distances;
   std::vector<Vec3> gradients;
-  /// The largest term of the outside from one of its terms on.
+  /// The largest of the outside's terms from a given one on.
   struct Carving {
     double value;
     const RegionTerm* term;
@@ -285,7 +285,8 @@ std::vector<MortonKey> LevelSetField::interface_voxels() const {
           bool mixed = false;
           for (int k = 1; k < 8 && !mixed; ++k)
             mixed = sampler.nearest_at_voxel(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2)).region != first;
-          // A sheet between equal corners: midpoints of edges, centres of faces and of the voxel.
+          // A sheet may lie between equal corners: test midpoints of edges, centres of faces and of the
+          // voxel.
           for (int k = 0; k < 27 && !mixed; ++k) {
             const int i0 = k % 3, i1 = k / 3 % 3, i2 = k / 9;
             if (i0 != 1 && i1 != 1 && i2 != 1) continue;

@@ -28,7 +28,8 @@ struct LevelSetRegion {
 /// The field of surfaces: level sets on voxels, and regions as combinations of them.
 class LevelSetField final : public MaterialField {
  public:
-  /// `regions[0]` is outside. `voxels` is the frame of the level sets.
+  /// \param voxels frame of the level sets
+  /// \param regions the first is the outside
   LevelSetField(const GridFrame& voxels, std::vector<std::shared_ptr<const LevelSet>> level_sets,
                 std::vector<LevelSetRegion> regions, int refinement = 0);
   ~LevelSetField() override;
@@ -45,8 +46,8 @@ class LevelSetField final : public MaterialField {
 
   const std::vector<std::shared_ptr<const LevelSet>>& level_sets() const { return level_sets_; }
   const std::vector<RegionTerm>& terms(RegionIndex region) const { return level_set_regions_[region].terms; }
-  /// The number of a region's terms that come before those that it shares with the outside: later bodies
-  /// carve all earlier ones, so the last terms of a region are the last ones of the outside.
+  /// The number of a region's terms before those it shares with the outside. Later bodies carve all earlier
+  /// ones, so a region's last terms are the last ones of the outside.
   std::size_t own_terms(RegionIndex region) const { return own_terms_[region]; }
 
  private:

@@ -12,7 +12,7 @@ namespace tetwright {
 
 namespace {
 
-/// Leaves for each task.
+/// Leaves per task.
 constexpr std::size_t band_grain = 16;
 
 float signed_value(float distance, bool inside) {
@@ -66,7 +66,7 @@ std::vector<GridEdge> edges_to_cap(const DistanceGrid& grid) {
                                     });
 }
 
-/// Makes the signed distances those from surface and caps together, and the band the caps' too.
+/// Merges the caps into the signed distances, and their band into the band.
 void add_caps(DistanceGrid& grid, const TriangleMesh& caps, const NodeWinding& winding, Progress* progress) {
   const DistanceGrid cap_grid = DistanceGrid::unsigned_distances(caps.points, caps.triangles, progress);
   const std::vector<GridLeaf<const float>> sources = cap_grid.leaves();
@@ -108,7 +108,7 @@ double NodeWinding::at(int x, int y, int z) const {
   const std::array<int, 3> p{x, y, z};
   bool in_box = true;
   for (int a = 0; a < 3; ++a) in_box &= p[a] >= low_[a] && p[a] <= high_[a];
-  constexpr double outside = 0.5;  // by as little as there is
+  constexpr double outside = 0.5;  // by the smallest margin
   static_assert(outside < inside_winding);
   return in_box ? winding : std::min(winding, outside);
 }
@@ -130,7 +130,8 @@ TriangleMesh sign_band(DistanceGrid& grid, const NodeWinding& winding, Progress*
     const float far = w >= inside_winding ? -level_set_band : level_set_band;
     return GridReading{grid.active_or(x, y, z, far), w};
   };
-  // Caps are followed as far as they go; a later round meets only an inside that a cap's own band ran into.
+  // Each cap is followed to its end. Later rounds cap only where the band of a cap extends into another
+  // inside.
   constexpr int rounds = 4;
   for (int round = 0; round < rounds; ++round) {
     if (progress) progress->throw_if_stopped();

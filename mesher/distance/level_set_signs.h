@@ -17,14 +17,16 @@ namespace tetwright {
 /// for its open part. All functions may be called concurrently.
 class NodeWinding {
  public:
-  /// The surface's points in grid coordinates; its first `closed` triangles make up the closed part.
+  /// \param points grid coordinates
+  /// \param closed number of triangles of the closed part, which come first
   NodeWinding(std::span<const Vec3> points, std::span<const Triangle> triangles, std::size_t closed,
               const std::array<int, 3>& cells);
 
   /// True if there is no open part.
   bool whole_numbers() const { return !open_; }
   const GridWinding& closed() const { return closed_; }
-  /// At most 1/2 outside the surface's bounding box, where many open parts together could make an inside.
+  /// At most 1/2 outside the surface's bounding box, where many open parts together could otherwise make an
+  /// inside.
   double at(int x, int y, int z) const;
 
  private:
@@ -33,9 +35,11 @@ class NodeWinding {
   std::array<int, 3> low_, high_;  ///< the grid points of the bounding box
 };
 
-/// Adds signs to the unsigned distances of the band. Where the inside ends without a surface, caps are added
-/// and the distances become those from surface and caps, so that there is an interface wherever the sign
-/// changes. Returns the caps, in grid coordinates. Throws Interrupted.
+/// Adds signs to the unsigned distances of the band. Where the inside ends without a surface, adds caps, and
+/// the distances become those from surface and caps together, so that there is an interface wherever the sign
+/// changes.
+/// \return the caps, in grid coordinates
+/// \throws Interrupted
 TriangleMesh sign_band(DistanceGrid& grid, const NodeWinding& winding, Progress* progress);
 
 }  // namespace tetwright

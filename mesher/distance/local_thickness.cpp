@@ -20,19 +20,19 @@ constexpr std::size_t measuring_grain = 256;
 /// Distances come from the triangles where a wall or gap is thinner than this, voxels: interpolation between
 /// grid points is accurate only if each wall has two voxels of its own, in any direction.
 constexpr double exact_below = 2.5;
-/// Distances on voxels are trusted to say that nothing is thin if they are as expected within this, voxels.
+/// Tolerance, voxels, within which distances on voxels must be as expected to rule out thin walls.
 constexpr double trusted = 0.3;
 
 /// Depth to which cells are counted before any decision; deeper ones are extrapolated.
 constexpr int counted_depth = 3;
-/// A region with fewer thin voxels, or fewer cells of counted_depth that are too thin for it, is a fold or a
-/// crumb smaller than a cell, and is not refined (farther) for that.
+/// A region with fewer thin voxels, or fewer cells of counted_depth too thin for it, is a fold or a particle
+/// smaller than a cell, and is not refined (further) for that.
 constexpr std::size_t min_thin_voxels = 4, min_deep_cells = 64;
 /// Dense tets for each finest cell that holds a surface (1.7 cells for each squared cell of area): a wall has
-/// such cells on both sides and little else, a gap a thick part on both sides.
+/// such cells on both sides and little else, a gap has a thick part on both sides.
 constexpr double tets_per_wall_cell = 8, tets_per_gap_cell = 17;
-/// Tets that fill a wall, for each squared thickness of its area: a plate of 100 x 100 x 1 simplified
-/// to 7,000 tets has 0.5 % of them under 0.1 sr, to 8,000 none (areas come out 15 % too large here).
+/// Tets that fill a wall, for each squared thickness of its area: a plate of 100 x 100 x 1 simplified to
+/// 7,000 tets has 0.5 % of them under 0.1 sr, to 8,000 none (areas come out 15 % too large here).
 constexpr double filling_tets_per_area = 0.66;
 /// Cells whose middle is within half a diagonal of a plane, for each squared cell of the plane.
 constexpr double cells_per_area = 2 * half_cube_diagonal;
@@ -59,8 +59,8 @@ std::vector<MortonKey> surface_voxels(const LevelSet& level_set) {
   return keys;
 }
 
-/// False if the distances on voxels say that the surface in a voxel, if there is any, has nothing else within
-/// half of `limit` on either side.
+/// False if the distances on voxels imply that the surface in a voxel, if any, has nothing else within half
+/// of `limit` on either side.
 bool may_be_thin(LevelSetSampler& sampler, const Vec3& middle, double limit) {
   if (limit > level_set_band) return true;
   Vec3 slope;
@@ -78,20 +78,20 @@ Vec3 middle_of(const Voxel& cell, int depth) {
   return std::ldexp(1, -depth) * (Vec3(cell[0], cell[1], cell[2]) + Vec3::Constant(0.5));
 }
 
-/// What is near a cell of 1/2^depth voxels.
+/// Walls and gaps near a cell of 1/2^depth voxels.
 struct CellWalls {
   bool near = false;     ///< the surface comes near the cell
   bool thin = false;     ///< something there is below its limit
-  bool gap = false;      ///< a gap rather than a wall
+  bool gap = false;      ///< the thin part is a gap, not a wall
   double thickness = 0;  ///< of the thinnest
 };
 
-/// Up to which thickness walls and gaps count.
+/// Thickness below which walls and gaps count.
 struct SideLimits {
   double wall, gap;
 };
 
-/// At the place of the surface that is nearest to a cell's middle.
+/// Measures at the surface point closest to a cell's middle.
 CellWalls measure_nearest(const SurfaceDistance& surface, const Voxel& cell, int depth, double facing,
                           const SideLimits& limits) {
   const std::optional<SurfacePlace> place =
@@ -107,8 +107,8 @@ Voxel child(const Voxel& cell, int k) {
   return {2 * cell[0] + (k & 1), 2 * cell[1] + (k >> 1 & 1), 2 * cell[2] + (k >> 2)};
 }
 
-/// The same, and where nothing is thin there, at the eighths of the cell: near rims and corners it holds
-/// several faces.
+/// As measure_nearest(), and where nothing is thin there, also at the eighths of the cell: near rims and
+/// corners it holds several faces.
 CellWalls measure(const SurfaceDistance& surface, const Voxel& cell, int depth, double facing,
                   const SideLimits& limits) {
   CellWalls found = measure_nearest(surface, cell, depth, facing, limits);
@@ -118,8 +118,8 @@ CellWalls measure(const SurfaceDistance& surface, const Voxel& cell, int depth, 
   return found;
 }
 
-/// Calls `visit(cell, depth, walls, split)` for the cells of a voxel that hold a surface, each that is split
-/// before its parts; they are split as far as they are thin and `max_depth` allows.
+/// Calls `visit(cell, depth, walls, split)` for the cells of a voxel that hold a surface, each split cell
+/// before its parts. Cells are split as far as they are thin and `max_depth` allows.
 template <class Visit>
 void descend(const SurfaceDistance& surface, const Voxel& cell, int depth, int max_depth,
              const Visit& visit) {
@@ -132,7 +132,7 @@ void descend(const SurfaceDistance& surface, const Voxel& cell, int depth, int m
   for (int k = 0; k < 8; ++k) descend(surface, child(cell, k), depth + 1, max_depth, visit);
 }
 
-/// The voxels and all around them, so many times.
+/// The voxels dilated by one layer of neighbours, `times` times.
 std::vector<MortonKey> dilated(std::vector<MortonKey> voxels, int times, const std::array<int, 3>& cells) {
   for (int i = 0; i < times; ++i) {
     voxels =
@@ -154,14 +154,14 @@ std::vector<MortonKey> dilated(std::vector<MortonKey> voxels, int times, const s
   return voxels;
 }
 
-/// How far around a thin voxel distances come from the triangles, voxels.
+/// Voxels around a thin voxel whose distances come from the triangles.
 int covered_around(const ThinWalls::Limits& limits) {
   return std::max(1, static_cast<int>(std::ceil(0.5 * std::max(limits.min_gap, limits.min_thickness))));
 }
 
-/// Puts voxels of which the covered surroundings meet into one region.
+/// Puts thin voxels with overlapping covered neighbourhoods into one region.
 void find_regions(LocalThickness& measured) {
-  // What is closed or left out on purpose is changed far around: all at one depth, so that nothing jumps.
+  // Closing and omitting on purpose changes distances far around: all at one depth, so that there is no jump.
   if (covered_around(measured.limits) > 1) {
     measured.region.assign(measured.voxels.size(), 0);
     measured.regions.resize(1);
@@ -193,12 +193,12 @@ void find_regions(LocalThickness& measured) {
   measured.regions.resize(count);
 }
 
-/// Counts what each region takes at each depth.
+/// Predicts the tets of each region at each depth.
 void count_cells(LocalThickness& measured) {
   struct Cell {
     std::uint32_t region;
     int depth;
-    int needed;  ///< the depth that shows it
+    int needed;  ///< depth that resolves it
     bool gap;
   };
   const std::vector<Cell> cells = parallel_collect<Cell>(
@@ -209,7 +209,7 @@ void count_cells(LocalThickness& measured) {
                   [&](const Voxel& cell, int depth, const CellWalls& walls, bool thin) {
                     int needed = depth + thin;
                     if (thin && depth == counted_depth) {
-                      // Tips of wedges are thin whatever the cells: only walls that are parallel go deeper.
+                      // Tips of wedges are thin in cells of any size: only parallel walls go deeper.
                       const double side = std::ldexp(1, -depth);
                       const CellWalls parallel =
                           measure_nearest(*measured.surface, cell, depth, facing_to_report,
@@ -224,7 +224,7 @@ void count_cells(LocalThickness& measured) {
                     out.push_back({measured.region[v], depth, needed, walls.gap});
                   });
       });
-  // Of each region, the cells that ask for each depth or more.
+  // For each region, the number of cells that ask for each depth or more.
   std::vector<std::array<std::size_t, max_wall_refinement + 1>> asking(measured.regions.size());
   for (const Cell& c : cells)
     for (int d = c.depth + 1; d <= c.needed; ++d) ++asking[c.region][d];
@@ -237,7 +237,7 @@ void count_cells(LocalThickness& measured) {
   };
   for (Cell c : cells) {
     c.needed = worth(c);
-    if (c.depth > c.needed) continue;  // beneath a cell that is not split
+    if (c.depth > c.needed) continue;  // below a cell that is not split
     LocalThickness::Region& region = measured.regions[c.region];
     const double tets = c.gap ? tets_per_gap_cell : tets_per_wall_cell;
     region.needed = std::max(region.needed, c.needed);
@@ -311,7 +311,7 @@ void choose_depths(const std::vector<LocalThickness*>& all_measured, const Refin
   std::vector<LocalThickness::Region*> regions;
   for (LocalThickness* measured : all_measured)
     for (LocalThickness::Region& region : measured->regions) regions.push_back(&region);
-  // What a region adds at a depth that is enough for it, or as deep as it may go.
+  // Tets that a region adds at a depth.
   const auto added = [](const LocalThickness::Region& r, int depth) { return r.tets[depth] - r.tets[0]; };
   for (LocalThickness::Region* r : regions) {
     const int needed = std::min(r->needed, budget.max_possible);
@@ -379,11 +379,11 @@ ThinWallPlan plan_thin_walls(const LocalThickness& measured) {
                     if (thin && depth < max_depth) found[task].cells.push_back({depth, morton_encode(cell)});
                     if (thin && depth < max_depth) return;
                     const double side = std::ldexp(1, -depth);
-                    // Of one side: both are in one cell where it is thinner than that.
+                    // Area of one side: where the wall is thinner than a cell, both sides are in it.
                     const auto area_of = [&](double thickness) {
                       return side * side / cells_per_area / (1 + std::min(1.0, thickness / side));
                     };
-                    // A wall that is thickened reaches into the cells around.
+                    // A thickened wall extends into the cells around it.
                     if (thin && depth > 0)
                       for (int k = 0; k < 27; ++k) {
                         const Voxel next = sum(cell, k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
@@ -398,7 +398,7 @@ ThinWallPlan plan_thin_walls(const LocalThickness& measured) {
                     if (wall < exact_below) {
                       const double kept = std::max(wall, measured.limits.min_thickness),
                                    shown = std::max(kept, min_shown);
-                      // At most those that the dense mesh has there: a fold may have no thickness at all.
+                      // At most as many as the dense mesh has there: a fold may have no thickness at all.
                       const auto filling = [&](double thickness) {
                         return std::min(filling_tets_per_area * area_of(wall) / (thickness * thickness),
                                         tets_per_wall_cell);
@@ -428,8 +428,8 @@ ThinWallPlan plan_thin_walls(const LocalThickness& measured) {
     }
   }
   parallel_sort_unique(cells);
-  // At the rim of a wall or gap the nearest place may be on a face beside it: cells of the surface beside
-  // cells that are split are split, too.
+  // At the rim of a wall or gap the closest point may be on an adjacent face: surface cells next to split
+  // cells are split too.
   const std::vector<Cell> beside = parallel_collect<Cell>(
       0, cells.size(), measuring_grain, [&](std::size_t begin, std::size_t end, std::vector<Cell>& out) {
         for (std::size_t i = begin; i < end; ++i)
@@ -445,7 +445,7 @@ ThinWallPlan plan_thin_walls(const LocalThickness& measured) {
   cells.insert(cells.end(), beside.begin(), beside.end());
   parallel_sort_unique(cells);
   for (const Cell& c : cells) plan.finer.refinement = std::max(plan.finer.refinement, c.depth + 1);
-  // Nothing thin is left to cells larger than voxels: the last list.
+  // Nothing thin may remain in cells larger than voxels: the last list splits cells of two voxels.
   plan.finer.cells.resize(static_cast<std::size_t>(plan.finer.refinement) + 2);
   for (const MortonKey voxel : measured.voxels)
     if (std::vector<MortonKey>& larger = plan.finer.cells.back();
@@ -468,7 +468,7 @@ ThinWallPlan plan_thin_walls(const LocalThickness& measured) {
     w.area += c.area;
     if (c.thickness < w.thickness) w.thickness = c.thickness, w.place = c.place;
   }
-  // What is smaller than a finest cell is noise of what merely comes near.
+  // Areas smaller than a finest cell are noise from surfaces that merely come close.
   std::erase_if(plan.changed, [](const ChangedWall& w) { return w.area < w.min_shown * w.min_shown; });
   plan.walls = walls;
   return plan;

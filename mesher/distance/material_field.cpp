@@ -31,12 +31,12 @@ double FieldSampler::between(RegionIndex a, RegionIndex b, const Vec3& point, Ve
 
 bool FieldSampler::project(const RegionSet& regions, Vec3& point, unsigned held_axes) {
   constexpr int steps = 8;
-  // Of the squared slope; below this the point is near a ridge of the distance.
+  // For the squared slope; below this the point is near a ridge of the distance.
   const double smallest_slope = 0.1 * min_slope_ * min_slope_;
   // Damping (Levenberg 1944): on one side of a junction curve two of the distances may be the same function,
   // so their difference has no slope there and must not contribute to the step.
   const double damping = 0.01 * min_slope_ * min_slope_;
-  // The accuracy of distances, which is that of voxels; small cells need a small share of their own size.
+  // The accuracy of distances is that of voxels; small cells need a small fraction of their own size.
   const double enough = std::min(tolerance::on_interface * per_voxel_, tolerance::on_interface_of_cell);
   const int equations = regions.size() - 1;
   if (equations < 1) return false;

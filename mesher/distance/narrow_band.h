@@ -10,12 +10,12 @@ namespace tetwright {
 /// most 2.6 cells long, so the distances at both of their ends are true.
 inline constexpr int level_set_band = 3;
 
-/// Distances are stored in leaves of 8 x 8 x 8 grid points, OpenVDB's; a leaf is named by its lowest point.
+/// Lowest grid point of a leaf. Distances are stored in OpenVDB's leaves of 8 x 8 x 8 grid points.
 using LeafOrigin = std::array<int, 3>;
 inline constexpr int leaf_side = 8;
 inline constexpr int leaf_points = leaf_side * leaf_side * leaf_side;
 
-/// True for a distance (voxels) that was cut off at the band.
+/// True for a distance (voxels) that was clamped to the band.
 inline bool outside_band(double distance) { return std::abs(distance) >= level_set_band; }
 
 }  // namespace tetwright

@@ -14,14 +14,13 @@ namespace tetwright {
 namespace {
 
 constexpr std::size_t segment_grain = 256;
-/// Cells that the width of a patch should have.
+/// Cells that should span the width of a patch.
 constexpr double cells_to_width = 2;
-/// Creases that are nearer to each other than this share of their distance from a corner do not just meet in
-/// it.
+/// Creases closer to each other than this fraction of their distance from a corner do more than meet in it.
 constexpr double corner_share = 0.4;
-/// Distance of places that are looked at along a crease, voxels.
+/// Spacing of the points tested along a crease, voxels.
 constexpr double place_distance = 0.5;
-/// Dense tets for each cell that is split, about: half of its eight parts are inside.
+/// Approximate number of dense tets for each split cell: half of its eight parts are inside.
 constexpr double tets_of_split = 42;
 
 struct Split {
@@ -31,7 +30,7 @@ struct Split {
   bool operator<(const Split& o) const { return depth != o.depth ? depth < o.depth : key < o.key; }
 };
 
-/// In voxels.
+/// Points on creases where patches are narrow, in voxels.
 std::vector<RefinementRegion> narrow_places(const RepairedSurface& surface, const SurfacePatches& patches,
                                             const GridFrame& frame, int max_depth) {
   const SurfaceCreases creases = find_creases(surface.points, surface.triangles, patches.patches);
@@ -62,7 +61,7 @@ std::vector<RefinementRegion> narrow_places(const RepairedSurface& surface, cons
             if (!other) continue;
             const double width = (other->point - at).norm();
             if (corner_tree.nearest_of(at, width / corner_share, [](const auto&) { return true; })) continue;
-            // Creases that touch there are a corner, too.
+            // Creases that touch there form a corner, too.
             if (!(width > 0)) continue;
             out.push_back(
                 {at, std::min(max_depth, static_cast<int>(std::ceil(std::log2(cells_to_width / width))))});
@@ -71,7 +70,8 @@ std::vector<RefinementRegion> narrow_places(const RepairedSurface& surface, cons
       });
 }
 
-/// Halves cells at places in voxels and around them, at most so often that `max_tets` hold.
+/// Halves the cells at the given points (voxels) and around them, reducing the depth until `max_tets`
+/// suffice.
 NarrowPatches halve_cells(const std::vector<RefinementRegion>& places, int max_depth, double max_tets) {
   for (; max_depth > 0; --max_depth) {
     std::vector<Split> splits;
@@ -95,7 +95,7 @@ NarrowPatches halve_cells(const std::vector<RefinementRegion>& places, int max_d
     finer.cells.resize(static_cast<std::size_t>(finer.refinement) + 2);
     for (const Split& s : splits) {
       finer.cells[static_cast<std::size_t>(finer.refinement - s.depth)].push_back(s.key);
-      // Cells of two voxels must be split for that.
+      // That requires cells of two voxels to be split.
       if (s.depth > 0) continue;
       finer.cells.back().push_back(s.key >> 3);
       narrow.voxels.push_back(s.key);

@@ -11,19 +11,21 @@
 
 namespace tetwright {
 
-/// Where patches are narrow, or cells smaller for other reasons.
+/// Cells to be split where patches are narrow or a region is requested.
 struct NarrowPatches {
   RefinementRegions finer;
-  std::vector<MortonKey> voxels;  ///< of which cells are smaller, ascending: their distances must be exact
+  std::vector<MortonKey> voxels;  ///< voxels with smaller cells, ascending: their distances must be exact
 };
 
-/// Where a patch is so narrow that cells would not show both its creases: cells there are halved until its
-/// width has two of them, at most `max_depth` times and as long as that adds no more than about `max_tets`
-/// dense tets (else nowhere so deep). Near a corner, where creases meet, a patch ends and is not narrow.
+/// Finds where a patch is too narrow for the cells to resolve both its creases, and halves cells there until
+/// two span its width. Near a corner, where creases meet, a patch ends and is not narrow.
+/// \param max_depth halvings at most
+/// \param max_tets dense tets that this may add, approximately; if it adds more, the depth is reduced
+///   everywhere
 NarrowPatches find_narrow_patches(const RepairedSurface& surface, const SurfacePatches& patches,
                                   const GridFrame& frame, int max_depth, double max_tets);
 
-/// The same around places that are asked for, input units.
+/// Halves cells around requested points, input units; otherwise as find_narrow_patches().
 NarrowPatches cells_around(const std::vector<RefinementRegion>& asked, const GridFrame& frame, int max_depth,
                            double max_tets);
 

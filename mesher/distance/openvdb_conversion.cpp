@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// OpenVDB's conversions from and to meshes, whose templates take by far the longest of all to compile.
+// OpenVDB's conversions from and to meshes. Their templates take by far the longest to compile.
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/SignedFloodFill.h>
 #include <openvdb/tools/VolumeToMesh.h>
@@ -14,7 +14,7 @@ namespace tetwright {
 
 namespace {
 
-/// The triangles as OpenVDB wants them: the points in doubles, where its own adapter takes floats.
+/// Presents triangles to OpenVDB with points in doubles, where its own adapter takes floats.
 struct MeshAdapter {
   std::span<const Vec3> points;
   std::span<const Triangle> triangles;
@@ -34,7 +34,7 @@ struct Interrupter {
   bool wasInterrupted(int = -1) { return progress && progress->stopped(); }
 };
 
-/// The positions of a grid's index coordinates in the world, in doubles throughout.
+/// Maps a grid's index coordinates to the world, in doubles throughout.
 class IndexToWorld {
  public:
   explicit IndexToWorld(const openvdb::FloatGrid& grid) : transform_(grid.transform()) {
@@ -82,7 +82,7 @@ DistanceGrid DistanceGrid::unsigned_distances(std::span<const Vec3> points,
       interrupter, MeshAdapter{points, triangles}, *openvdb::math::Transform::createLinearTransform(1.0),
       static_cast<float>(level_set_band), static_cast<float>(level_set_band),
       openvdb::tools::UNSIGNED_DISTANCE_FIELD);
-  // An interrupted conversion hands back whatever it has so far.
+  // An interrupted conversion returns whatever it has so far.
   if (progress) progress->throw_if_stopped();
   return DistanceGrid(std::make_unique<Impl>(std::move(grid)));
 }

@@ -22,8 +22,7 @@ namespace {
 
 using Tree = openvdb::FloatTree;
 using Leaf = Tree::LeafNodeType;
-/// An accessor that is not registered with its tree: cheap to construct, for trees that do not change any
-/// more.
+/// An accessor that is not registered with its tree: cheap to construct, for trees that no longer change.
 using Accessor = openvdb::tree::ValueAccessor<const Tree, false>;
 
 static_assert(leaf_side == Leaf::DIM && leaf_points == Leaf::SIZE && leaf_points % 64 == 0);
@@ -33,26 +32,26 @@ GridLeaf<float> view_of(Leaf& leaf) {
   return {{o.x(), o.y(), o.z()}, leaf.buffer().data(), &leaf.getValueMask().getWord<std::uint64_t>(0)};
 }
 
-/// Reads a stored grid; its bytes are gone then.
+/// Reads a stored grid and consumes its bytes.
 template <class Grid>
 typename Grid::Ptr read_grid(VdbGrid& stored, const std::string& file) {
   initialise_openvdb();
   typename Grid::Ptr grid;
   try {
     std::istringstream stream(std::exchange(stored.alone, {}));
-    // OpenVDB itself does not look whether its reading worked.
+    // OpenVDB does not check whether its reads succeeded.
     stream.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
     const auto grids = openvdb::io::Stream(stream, false).getGrids();
     grid = openvdb::gridPtrCast<Grid>(grids->at(0));
   } catch (const std::bad_alloc&) {
     throw;
-  } catch (const std::exception&) {  // of OpenVDB or the stream
+  } catch (const std::exception&) {  // from OpenVDB or the stream
   }
   if (!grid) throw InputError(file, 0, "the grid '" + stored.name + "' is damaged; write it again");
   return grid;
 }
 
-/// Where a linear transform puts grid points.
+/// Position of the grid points under a linear transform.
 GridPlacement placement_of(const openvdb::math::Transform& transform) {
   // OpenVDB multiplies row vectors from the left: steps along the axes are rows.
   const openvdb::math::Mat4d to_world = transform.baseMap()->getAffineMap()->getMat4();
@@ -64,7 +63,7 @@ GridPlacement placement_of(const openvdb::math::Transform& transform) {
   return placement;
 }
 
-/// Throws InputError at a number that is no label.
+/// Throws InputError for a value that is not a label.
 template <class Grid>
 void check_labels(const Grid& grid, const std::string& file, const std::string& name) {
   const auto check = [&](std::int64_t value) {
@@ -174,7 +173,7 @@ std::vector<GridLeaf<float>> DistanceGrid::leaves() {
 }
 
 std::vector<GridLeaf<const float>> DistanceGrid::leaves() const {
-  // OpenVDB hands out no pointer to the mask of a const leaf.
+  // OpenVDB offers no pointer to the mask of a const leaf.
   std::vector<Leaf*> nodes;
   impl_->grid->tree().getNodes(nodes);
   std::vector<GridLeaf<const float>> views;

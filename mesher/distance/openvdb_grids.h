@@ -22,16 +22,16 @@ namespace tetwright {
 
 struct VdbGrid;
 
-/// Where the grid points of a stored grid lie: (x, y, z) at origin + directions * (x, y, z), input units.
+/// Position of a stored grid: grid point (x, y, z) lies at origin + directions * (x, y, z), input units.
 struct GridPlacement {
   Vec3 origin;
   Eigen::Matrix3d directions;
 };
 
-// All that the project uses of OpenVDB, without its headers.
+// Everything the project uses of OpenVDB, without its headers.
 
-/// The 8 x 8 x 8 grid points of a leaf of a DistanceGrid, in place: `Value` is float or const float. Grid
-/// point (x, y, z) from the origin has the number (x * leaf_side + y) * leaf_side + z.
+/// View of the 8 x 8 x 8 grid points of a leaf of a DistanceGrid. `Value` is float or const float. The grid
+/// point at (x, y, z) from the origin has the number (x * leaf_side + y) * leaf_side + z.
 template <class Value>
 struct GridLeaf {
   using Word = std::conditional_t<std::is_const_v<Value>, const std::uint64_t, std::uint64_t>;
@@ -56,21 +56,23 @@ struct GridLeaf {
 /// Distances at grid points, stored as an OpenVDB grid of floats: leaves where there is something to store,
 /// one value for whole tiles elsewhere. Active grid points are those of the narrow band.
 ///
-/// Const functions may be called concurrently; so may writes to different leaves.
+/// Const functions may be called concurrently, and so may writes to different leaves.
 class DistanceGrid {
  public:
-  /// All grid points inactive, with the value `background` (> 0).
+  /// All grid points are inactive, with the value `background` (> 0).
   explicit DistanceGrid(double background);
   ~DistanceGrid();
   DistanceGrid(DistanceGrid&&) noexcept;
   DistanceGrid& operator=(DistanceGrid&&) noexcept;
 
   /// Unsigned distances of grid points from triangles in grid coordinates: active within level_set_band, that
-  /// value elsewhere. Throws Interrupted.
+  /// value elsewhere.
+  /// \throws Interrupted
   static DistanceGrid unsigned_distances(std::span<const Vec3> points, std::span<const Triangle> triangles,
                                          Progress* progress);
-  /// The stored grid, which must be of floats, or of doubles, which are rounded, and have its bytes; they are
-  /// gone afterwards. Throws InputError that begins with `file` if OpenVDB can't read it.
+  /// Reads a stored grid of floats or doubles; doubles are rounded to floats.
+  /// \param stored must hold its bytes, which are consumed
+  /// \throws InputError beginning with `file` if OpenVDB cannot read it
   static DistanceGrid from_vdb(VdbGrid& stored, const std::string& file);
 
   DistanceGrid copy() const;
@@ -80,29 +82,29 @@ class DistanceGrid {
   bool has_both_signs() const;
   /// The active value of a grid point, or `otherwise`.
   float active_or(int x, int y, int z, float otherwise) const;
-  /// Calls f(first, last, value) for each active grid point (first is last) and each active tile, which has
-  /// the same value from its first grid point to its last; in OpenVDB's order.
+  /// Calls f(first, last, value), in OpenVDB's order, for each active grid point (first == last) and each
+  /// active tile, which has one value from its first grid point to its last.
   using IndexPlace = std::array<int, 3>;
   void for_each_active(
       const std::function<void(const IndexPlace& first, const IndexPlace& last, float value)>& f) const;
-  /// Where the grid's own transform, which must be linear, puts its grid points.
+  /// Position of the grid points by the grid's own transform, which must be linear.
   GridPlacement placement() const;
   /// All leaves, in OpenVDB's order.
   std::vector<GridLeaf<const float>> leaves() const;
   std::vector<GridLeaf<float>> leaves();
-  /// The leaf at `origin` (multiples of leaf_side), made if it isn't there.
+  /// The leaf at `origin` (multiples of leaf_side), created if missing.
   GridLeaf<float> touch_leaf(const LeafOrigin& origin);
 
-  /// Takes out leaves without active grid points.
+  /// Removes leaves without active grid points.
   void prune_inactive();
   /// Sets all inactive grid points and tiles to level_set_band, with the sign of the adjacent active points.
   void fill_outside_band();
-  /// Sets tiles only to `band`, with the sign of the adjacent grid points, active or not.
+  /// Sets only tiles to `band`, with the sign of the adjacent grid points, active or not.
   void fill_tiles_outside_band(double band);
 
-  /// The zero level in world coordinates, where the grid's own transform puts it, with the negative side
-  /// inside; without triangles if the values do not pass 0. Throws std::domain_error if OpenVDB can't
-  /// place it.
+  /// The zero level in world coordinates, by the grid's own transform, with the negative side inside. Has no
+  /// triangles if the values do not cross 0.
+  /// \throws std::domain_error if OpenVDB cannot transform it
   TriangleMesh zero_surface() const;
 
   /// The OpenVDB grid; defined in openvdb_types.h.
@@ -114,8 +116,8 @@ class DistanceGrid {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Reads a DistanceGrid that does not change meanwhile. Caches the leaf read last, so reading nearby points
-/// one after another is fast. Not thread-safe; any number of readers of one grid may be used concurrently.
+/// Reads a DistanceGrid that does not change meanwhile. Caches the last leaf read, so consecutive nearby
+/// points are fast. Not thread-safe; any number of readers of one grid may be used concurrently.
 class DistanceGridReader {
  public:
   explicit DistanceGridReader(const DistanceGrid& grid);
@@ -123,11 +125,11 @@ class DistanceGridReader {
   DistanceGridReader(DistanceGridReader&&) noexcept;
 
   float value(int x, int y, int z);
-  /// True if the grid point is active, with its value.
+  /// True if the grid point is active; `value` receives its value either way.
   bool active(int x, int y, int z, float& value);
-  /// The values of the leaf around a grid point, or null where there is a tile.
+  /// The values of the leaf around a grid point, or null inside a tile.
   const float* leaf_values(int x, int y, int z);
-  /// The values at the corners of the voxel whose lowest corner is given, z fastest.
+  /// The values at the corners of the voxel with the lowest corner (x, y, z), z fastest.
   void corners(int x, int y, int z, double values[8]);
 
  private:
@@ -140,12 +142,14 @@ struct NamedGrid {
   DistanceGrid grid;
 };
 
-/// A .vdb file of level sets whose grid points lie as `frame` says. The file's identifier is random. Throws
-/// std::domain_error if the frame's cells are smaller than OpenVDB's transforms allow.
+/// The bytes of a .vdb file of level sets whose grid points lie as `frame` says. OpenVDB gives it a random
+/// identifier.
+/// \throws std::domain_error if the frame's cells are smaller than OpenVDB's transforms allow
 std::string level_sets_to_vdb(std::span<const NamedGrid> grids, const GridFrame& frame);
 
-/// The labels of a stored grid, which must be of int32 or int64 and have its bytes; they are gone afterwards.
-/// Throws as read_label_grid() of vdb_files.h does.
+/// The labels of a stored grid of int32 or int64.
+/// \param stored must hold its bytes, which are consumed
+/// \throws InputError as read_label_grid() of vdb_files.h
 LabelVolume labels_from_vdb(VdbGrid& stored, std::size_t max_voxels, const std::string& file);
 
 }  // namespace tetwright

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// OpenVDB's own types behind openvdb_grids.h. Included by openvdb_conversion.cpp and openvdb_grids.cpp alone:
-// whatever includes OpenVDB's headers takes long to compile.
+// OpenVDB's own types behind openvdb_grids.h. Included only by openvdb_conversion.cpp and openvdb_grids.cpp,
+// because OpenVDB's headers take long to compile.
 #include <openvdb/openvdb.h>
 
 #include <utility>

@@ -15,14 +15,14 @@ namespace tetwright {
 namespace {
 
 constexpr std::size_t leaf_size = 4;
-/// Shrinking converges quadratically where walls are flat, as a rule within three steps.
+/// Shrinking converges quadratically where walls are flat, usually within three steps.
 constexpr int max_shrinks = 16;
-/// Squared distances count as equal within this share of them: rounding of coordinates leaves less down to a
+/// Squared distances count as equal within this fraction: rounding of coordinates leaves less, down to a
 /// thousandth of a voxel.
 constexpr double tie = 1e-9;
-/// How far in front of and behind a place its sides are looked up, voxels.
+/// Distance in front of and behind a surface point at which its sides are tested, voxels.
 constexpr double beside = 1e-4;
-/// The ball has stopped shrinking when its radius changes by less than this share.
+/// The ball has stopped shrinking when its radius changes by less than this fraction.
 constexpr double still = 1e-6;
 
 }  // namespace
@@ -72,8 +72,8 @@ std::optional<SurfacePlace> SurfaceDistance::nearest(const Vec3& point, double a
     if (squared > squared_distance * (1 + tie)) return best;
     const double aligned = std::abs(normals_[t].dot(p - point));
     if (nearest < triangles_.size() && squared >= squared_distance * (1 - tie)) {
-      // Of equally near triangles the one that faces the point most, and of these the first, whatever way the
-      // tree is searched.
+      // Among equally close triangles choose the one that faces the point most, then the first, so that the
+      // result does not depend on the order of the search.
       if (aligned < alignment || (aligned == alignment && t > nearest)) return best;
     }
     nearest = t;

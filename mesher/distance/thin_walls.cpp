@@ -11,13 +11,13 @@ namespace tetwright {
 
 namespace {
 
-/// Cosine between the direction to the nearest place and its normal below which that place is the rim of a
+/// Cosine between the direction to the closest point and its normal below which that point is on the rim of a
 /// gap.
 constexpr double min_alignment = 0.7;
-/// Minus the cosine between the directions to two walls from a point between them: in front of the mouth of a
-/// wide gap it falls.
+/// Minus the cosine between the directions from a point to two walls around it. It falls in front of the
+/// mouth of a wide gap.
 constexpr double min_opposition = 0.95;
-/// The narrow face at a corner of a rim is beside another narrow face.
+/// The narrow face at a corner of a rim is next to another narrow face.
 constexpr int max_steps_beside = 2;
 
 }  // namespace
@@ -92,11 +92,11 @@ double ThinWalls::distance(const Vec3& point, int depth, bool thicken, Vec3& gra
   if (!place) return inside ? -level_set_band : level_set_band;
   const Vec3 away = point - place->point;
   const double size = away.norm();
-  // In front of a gap's mouth the nearest place is on its rim, and nothing is closed.
-  // On the surface there is no direction to it but rounding.
+  // In front of a gap's mouth the closest point is on its rim, and nothing is closed. On the surface the
+  // direction to it is only rounding.
   const bool beside =
       size > tolerance::smallest_distance && std::abs(place->normal.dot(away)) < min_alignment * size;
-  // Within a gap no place is farther from the nearest wall than half its width.
+  // Within a gap no point is farther from the nearest wall than half its width.
   if (!inside && !beside && size <= 0.5 * close_below) {
     SurfacePlace side = *place;
     const double gap = thickness_around(side, SurfaceDistance::Side::gap, close_below);

@@ -17,18 +17,19 @@ namespace tetwright {
 
 /// Distances near the thin walls and gaps of one surface, in voxels.
 ///
-/// Near them the distances come from the triangles, and the surface is changed so that nothing is thinner
-/// than a lattice can show: with c the nearest place of the surface, T the thickness of the wall behind it, G
-/// the width of the gap in front of it and `min_shown` the thinnest that the lattice shows,
+/// They come from the triangles, and the surface is changed so that nothing is thinner than a lattice can
+/// resolve. With f the signed distance, T the thickness of the wall behind the closest surface point, G the
+/// width of the gap in front of it and `min_shown` the thinnest that the lattice resolves, the distance
+/// becomes
 ///
 ///     outside, G < min_shown:  -(min_shown - G) / 2           the gap is closed
-///     else                 f - max(0, min_shown - T) / 2  the wall is thickened
+///     else:                    f - max(0, min_shown - T) / 2  the wall is thickened
 ///
-/// Both change continuously along a wall, so a wall or a gap is kept or closed whole and does not tear.
-/// Gaps below `min_gap` are closed and walls below `min_thickness` left out in the same way, whatever the
-/// lattice could show.
+/// Both vary continuously along a wall, so that a wall or gap is kept or closed as a whole and does not tear.
+/// Gaps below `min_gap` are closed and walls below `min_thickness` omitted in the same way, regardless of the
+/// lattice.
 ///
-/// Immutable once made; all functions may be called concurrently.
+/// Immutable once constructed; all functions may be called concurrently.
 class ThinWalls {
  public:
   struct Limits {
@@ -41,25 +42,25 @@ class ThinWalls {
   const SurfaceDistance& surface() const { return *surface_; }
   const Limits& limits() const { return limits_; }
 
-  /// The voxels where distances come from here, and how many times cells are halved there.
+  /// Takes the distances in a voxel from here, and records how many times its cells are halved.
   void cover(const std::array<int, 3>& voxel, int depth);
-  /// How many times cells are halved at a voxel, or -1 where distances are not from here.
+  /// How many times cells are halved at a voxel, or -1 where distances do not come from here.
   int depth(const std::array<int, 3>& voxel) const {
     const auto block = blocks_.find(block_key(voxel));
     return block == blocks_.end() ? -1 : block->second[place_in_block(voxel)] - 1;
   }
-  /// The voxels that are covered, ascending Morton keys.
+  /// The covered voxels, ascending Morton keys.
   std::vector<MortonKey> covered() const;
   /// Covered voxels that contain a thin wall or gap, ascending.
   const std::vector<MortonKey>& core() const { return core_; }
   void set_core(std::vector<MortonKey> core) { core_ = std::move(core); }
 
-  /// The signed distance at a point of a voxel that is covered, cut off at the band.
+  /// The signed distance at a point of a covered voxel, clamped to the band.
   double changed_distance(const Vec3& point, int depth, Vec3& gradient) const;
-  /// The same of the surface as it is, except in gaps that were closed and walls that were left out.
+  /// As above for the true surface, except in closed gaps and omitted walls.
   double true_distance(const Vec3& point, int depth, Vec3& gradient) const;
-  /// The thickness of a wall with parallel sides that cells of this depth cannot show, of which a side is
-  /// within a voxel; else infinity.
+  /// The thickness of a wall with parallel sides that has a side within a voxel of the point and that cells
+  /// of this depth cannot resolve; else infinity.
   double parallel_thickness(const Vec3& point, int depth) const;
 
  private:
@@ -71,10 +72,10 @@ class ThinWalls {
     const int place = (v[0] % leaf_side * leaf_side + v[1] % leaf_side) * leaf_side + v[2] % leaf_side;
     return static_cast<std::size_t>(place);
   }
-  /// The thickness at a place, also where it is on the narrow face at the rim of a wall or the end of a gap.
-  /// `place` becomes the one that it was measured at.
+  /// The thickness at a surface point, also on the narrow face at the rim of a wall or the end of a gap.
+  /// \param place is replaced by the point where the thickness was measured
   double thickness_around(SurfacePlace& place, SurfaceDistance::Side side, double at_most) const;
-  /// Whether a point lies between a wall of this normal and one that faces it, both nearer than `width`.
+  /// True if a point lies between a wall of this normal and one that faces it, both nearer than `width`.
   bool is_between(const Vec3& point, const Vec3& normal, double width) const;
   double distance(const Vec3& point, int depth, bool thicken, Vec3& gradient) const;
 
@@ -84,10 +85,10 @@ class ThinWalls {
   std::vector<MortonKey> core_;
 };
 
-/// Thinnest walls and gaps that a lattice shows, in its cells: wherever they run, a lattice point is inside.
+/// Thinnest walls and gaps that a lattice resolves, in cells: wherever they lie, a lattice point is inside.
 inline constexpr double min_shown_cells = 1.25;
-/// Cosine of the angle to facing walls that counts for changing distances, for choosing cells, and for what
-/// the user is told: tips of wedges are thin whatever the cells.
+/// Cosines to facing walls that count for changing distances, for choosing cells, and for reports: tips of
+/// wedges are thin in cells of any size.
 inline constexpr double facing_to_change = 0.3, facing_to_refine = 0.9, facing_to_report = 0.99;
 
 }  // namespace tetwright

@@ -22,7 +22,7 @@ std::vector<VdbGrid> take_apart(const std::string& file) {
   }
 }
 
-/// The grid itself if it is a level set, else nothing.
+/// The distances of a grid that is a level set, else nothing.
 std::optional<DistanceGrid> level_set_of(VdbGrid& grid, const std::string& file) {
   const bool without_kind = grid.kind == "unknown";
   if (grid.type != "float" || grid.alone.empty() || !(without_kind || grid.kind == "level set"))
@@ -34,7 +34,7 @@ std::optional<DistanceGrid> level_set_of(VdbGrid& grid, const std::string& file)
 
 bool has_whole_numbers(const VdbGrid& grid) { return grid.type == "int32" || grid.type == "int64"; }
 
-/// As in "density (fog volume, float)".
+/// For example "density (fog volume, float)".
 std::string described(const VdbGrid& grid) {
   return grid.name + " (" + (grid.kind == "unknown" ? "no class" : grid.kind) + ", " + grid.type + ")";
 }

@@ -22,13 +22,13 @@ namespace {
 
 using IndexPlace = DistanceGrid::IndexPlace;
 
-/// The voxels around a place along one axis, and the share of the second, 0 where it isn't needed.
+/// Two neighbouring voxels along one axis, and the weight of the second, 0 where it is not needed.
 struct Between {
   int voxel;
   double share;
 };
 
-/// Nothing beyond what OpenVDB's coordinates may be, or for nan.
+/// Nothing for nan or beyond the range of OpenVDB's coordinates.
 std::optional<Between> between(double index) {
   constexpr double farthest = 1 << 30;
   if (!(std::abs(index) < farthest)) return {};
@@ -80,7 +80,7 @@ class VdbSizes : public SizeSource {
     });
   }
 
-  /// Throws InputError for a value that is no edge length, and if there is none.
+  /// Throws InputError for a value that is not an edge length, and if there is none.
   void check(const std::string& file) const {
     bool any = false;
     grid_.for_each_active([&](const IndexPlace& first, const IndexPlace&, float value) {

@@ -8,19 +8,19 @@
 
 namespace tetwright {
 
-/// Reads edge lengths from a grid of floats or doubles in a .vdb file: the first of the names size_names
-/// (common/sizes/size_source.h) that a grid has, else the only such grid that is not of the class "level
-/// set".
+/// Reads edge lengths from a grid of floats or doubles in a .vdb file: the first name of size_names
+/// (common/sizes/size_source.h) that a grid has, else the only such grid not of the class "level set". Memory
+/// grows with the file.
 ///
-/// Lengths are at active voxels' centres, where the grid's transform puts them, and trilinear between. at()
-/// gives nothing where one of the voxels that it would need is inactive, also beyond the outermost centres;
-/// places within tolerance::coinciding_cells of a centre's plane need the voxels on it alone. Active tiles
-/// count as their voxels. for_each_value() gives each active voxel, and of an active tile the first and last
-/// voxels along each axis, its corners.
+/// Lengths are given at the centres of active voxels, positioned by the grid's transform, and trilinear
+/// between. at() returns nothing where a voxel that it needs is inactive, as it is beyond the outermost
+/// centres; a point within tolerance::coinciding_cells of a plane of centres needs only the voxels on that
+/// plane. Active tiles count as their voxels. for_each_value() visits each active voxel, and of an active
+/// tile its corners: the first and last voxels along each axis.
 ///
-/// Throws InputError that begins with `file`: not a .vdb file, damaged or cut short, no such grid or several
-/// (with what there is), no active voxel, a value of an active voxel that is not finite or not above 0 (with
-/// its place), a transform that isn't linear or can't be inverted. Memory grows with the file.
+/// \throws InputError beginning with `file`: not a .vdb file, damaged or cut short, no such grid or several
+///   (with a list), no active voxel, an active value that is not finite or not above 0 (with its position), a
+///   transform that is not linear or not invertible
 std::unique_ptr<const SizeSource> read_vdb_sizes(const std::string& file);
 
 }  // namespace tetwright

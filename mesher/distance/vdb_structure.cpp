@@ -20,7 +20,7 @@ constexpr std::uint32_t oldest_format = 222, newest_format = 224;
 constexpr std::string_view no_identifier = "00000000-0000-0000-0000-000000000000";
 /// Bits of a grid's compression.
 constexpr std::uint32_t zipped = 1, mask_compressed = 2, blosc = 4;
-/// Logarithms of the children of a node along each axis: below the root, below that, and of leaves.
+/// Logarithms of the number of children of a node along each axis: below the root, one level further, leaves.
 constexpr std::array<int, 3> node_levels{5, 4, 3};
 constexpr std::string_view half_suffix = "_HalfFloat", usual_tree = "_5_4_3";
 
@@ -32,7 +32,7 @@ void require(bool condition) {
   if (!condition) damaged();
 }
 
-/// Reads on and on from the start; throws where there is not enough left.
+/// Reads sequentially from the start; throws where too little is left.
 class Cursor {
  public:
   explicit Cursor(std::string_view bytes) : bytes_(bytes) {}
@@ -60,7 +60,7 @@ class Cursor {
   std::size_t position_ = 0;
 };
 
-/// A mask of as many bits as a node has values.
+/// A mask with one bit for each value of a node.
 struct VoxelMask {
   std::string_view bits;
   bool operator[](std::size_t i) const { return static_cast<unsigned char>(bits[i / 8]) >> i % 8 & 1; }
@@ -71,10 +71,11 @@ struct VoxelMask {
   }
 };
 
-/// Walks over one grid's tree of numbers.
+/// Walks over the tree of one grid of numbers.
 class TreeWalk {
  public:
-  /// Values of `bytes` each; `as_half` if those of nodes are written as half floats.
+  /// \param bytes size of a value
+  /// \param as_half values of nodes are stored as half floats
   TreeWalk(Cursor& cursor, std::uint32_t compression, std::size_t bytes, bool as_half)
       : cursor_(cursor), compression_(compression), bytes_(bytes), half_(as_half) {}
 
@@ -95,7 +96,7 @@ class TreeWalk {
   }
 
  private:
-  /// Of a child of the root: none twice, and neither between others nor where coordinates overflow.
+  /// Reads the origin of a child of the root: none may repeat, be unaligned or make coordinates overflow.
   void origin() {
     constexpr std::int32_t side = 1 << (node_levels[0] + node_levels[1] + node_levels[2]);
     constexpr std::int32_t farthest = 1 << 30;
@@ -124,10 +125,10 @@ class TreeWalk {
     }
   }
 
-  /// The values of a node of which so many are active.
+  /// Reads the values of a node of which `active` are active.
   void values(int level, std::size_t active) {
-    // What is written: 0 to 2: active values, the others being one of the background, its negative, a value
-    // that is written; 3 to 5: two values, with a mask of who has which; 6: all.
+    // 0 to 2: only active values; the others are the background, its negative, or one value that is stored.
+    // 3 to 5: likewise, but each of the others is one of two values, selected by a mask. 6: all values.
     const auto layout = cursor_.number<std::int8_t>();
     require(layout >= 0 && layout <= 6);
     if (layout == 2 || layout == 4 || layout == 5) cursor_.take(bytes_);
@@ -153,8 +154,8 @@ class TreeWalk {
     }
   }
 
-  /// The 16 bytes that Blosc puts first: version, version, flags, size of a value, then sizes unpacked, of a
-  /// block and packed.
+  /// Validates Blosc's header of 16 bytes: version, version, flags, size of a value, then the sizes unpacked,
+  /// of a block, and packed.
   static void check_blosc(std::string_view packed, std::size_t size) {
     Cursor header(packed);
     header.take(4);
@@ -185,7 +186,7 @@ Metadata metadata(Cursor& cursor) {
   return entries;
 }
 
-/// Steps over a transform: a kind of map, and its numbers.
+/// Skips a transform: the kind of map, and its numbers.
 void transform(Cursor& cursor) {
   static const std::map<std::string_view, int> numbers{
       {"AffineMap", 16},       {"UnitaryMap", 16},        {"TranslationMap", 3},           {"ScaleMap", 15},
@@ -196,7 +197,7 @@ void transform(Cursor& cursor) {
   cursor.take(static_cast<std::size_t>(kind->second) * sizeof(double));
 }
 
-/// The bytes of a value of the types that are walked over; 0 for others.
+/// The size in bytes of a value of a supported type; 0 for others.
 std::size_t value_bytes(std::string_view type) {
   return type == "float" || type == "int32" ? 4 : type == "double" || type == "int64" ? 8 : 0;
 }
@@ -211,7 +212,7 @@ void put_text(std::string& bytes, std::string_view text) {
   bytes += text;
 }
 
-/// A file of one grid, without grids before it and without offsets to jump to.
+/// A file of one grid alone, without offsets to jump to.
 std::string file_of_one(std::string_view header, std::string_view type, std::uint32_t compression,
                         bool as_half, std::string_view transform_bytes, std::string_view tree_bytes) {
   std::string bytes(header);
@@ -221,7 +222,7 @@ std::string file_of_one(std::string_view header, std::string_view type, std::uin
   put(bytes, std::int32_t{1});   // grids
   put_text(bytes, "");           // name
   put_text(bytes, type);
-  put_text(bytes, "");                           // whose tree it shares
+  put_text(bytes, "");                           // grid whose tree it shares
   bytes.append(3 * sizeof(std::int64_t), '\0');  // offsets
   put(bytes, compression);
   put(bytes, std::uint32_t{as_half});  // metadata
@@ -259,7 +260,7 @@ std::vector<VdbGrid> take_apart_vdb(std::string_view bytes) {
     const bool as_half = full_type.ends_with(half_suffix);
     const std::string_view type = full_type.substr(0, full_type.size() - (as_half ? half_suffix.size() : 0));
     const bool shares_tree = !cursor.text().empty();
-    cursor.take(2 * sizeof(std::int64_t));  // where the grid and its values begin
+    cursor.take(2 * sizeof(std::int64_t));  // offsets of the grid and its values
     const auto end = cursor.number<std::uint64_t>();
 
     const auto compression = cursor.number<std::uint32_t>();
@@ -284,14 +285,14 @@ std::vector<VdbGrid> take_apart_vdb(std::string_view bytes) {
         transform(ahead);
         const std::string_view transform_bytes = ahead.since(transform_start);
         const std::size_t tree_start = ahead.position();
-        // Whole numbers are whole whatever is said of them.
+        // Integers are never stored as half floats, whatever the file says.
         TreeWalk(ahead, compression, bytes_each, halves).tree();
         grid.alone = file_of_one(header, halves ? full_type : type, compression, halves, transform_bytes,
                                  ahead.since(tree_start));
         cursor = ahead;
         continue;
       } catch (const std::runtime_error& e) {
-        // A level set is wanted of the file, or else this one: then it is told.
+        // Grids of floats may be the level sets wanted. The fault of another grid is kept for its reader.
         if (is_float || !has_offsets) throw;
         grid.fault = e.what();
       }

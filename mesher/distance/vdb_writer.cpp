@@ -18,7 +18,8 @@ namespace tetwright {
 
 namespace {
 
-/// Where OpenVDB puts a random identifier of 36 characters, after magic, three numbers of 32 bits and a flag.
+/// Position of OpenVDB's random identifier of 36 characters: after magic, three numbers of 32 bits and a
+/// flag.
 constexpr std::size_t identifier_start = 21, identifier_length = 36;
 
 DistanceGrid make_grid(const GridFrame& frame, double band_cells, const LevelSetSource& source) {
@@ -44,7 +45,7 @@ DistanceGrid make_grid(const GridFrame& frame, double band_cells, const LevelSet
   return grid;
 }
 
-/// In place of the random identifier one that depends on the rest of the file alone (FNV-1a).
+/// Replaces the random identifier by one that depends only on the rest of the file (FNV-1a).
 void settle_identifier(std::string& bytes) {
   std::uint64_t hash = 0xcbf29ce484222325;
   for (std::size_t i = 0; i < bytes.size(); ++i)
@@ -54,7 +55,7 @@ void settle_identifier(std::string& bytes) {
   std::array<char, 16> text;
   const auto end = std::to_chars(text.data(), text.data() + text.size(), hash, 16).ptr;
   std::copy_backward(text.data(), end, digits + 16);
-  // As random identifiers are written: 8-4-4-4-12 hexadecimal digits.
+  // Random identifiers are written as 8-4-4-4-12 hexadecimal digits.
   std::string identifier = "00000000-0000-0000-0000-000000000000";
   identifier.replace(0, 8, digits, 8);
   identifier.replace(24, 8, digits + 8, 8);

@@ -18,10 +18,10 @@ struct GridFrame {
   Vec3 origin = Vec3::Zero();         ///< position of grid point (0, 0, 0), input units
   double cell_size = 1;               ///< edge of a finest cell, input units
   std::array<int, 3> cells{1, 1, 1};  ///< finest cells along each side of the box, a multiple of 2^root_level
-  /// Of these the ones that the lattice fills: all, or for a volume as many as end at its border.
+  /// The part of `cells` that the lattice fills: all of it for surfaces, up to the border for a volume.
   std::array<int, 3> box{1, 1, 1};
   int root_level = 0;  ///< the octree's largest cells have 2^root_level finest cells to an edge
-  /// Edges of a finest cell as shares of cell_size, input space, right-handed. For surfaces they are
+  /// Edges of a finest cell in multiples of cell_size, input space, right-handed. For surfaces they are
   /// perpendicular and of length 1.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
 
@@ -29,8 +29,8 @@ struct GridFrame {
   Vec3 to_input(const Vec3& grid) const { return origin + cell_size * (axes * grid); }
 };
 
-/// The faces of the box [0, box] that a place is on, grid coordinates, a bit for each: 2 * axis for the lower
-/// one, 2 * axis + 1 for the upper one. Exact: lattice points on the box never leave its faces.
+/// The faces of the box [0, box] that a point is on, grid coordinates: bit 2 * axis for the lower one, 2 *
+/// axis + 1 for the upper one. Exact, since lattice points on the box never leave its faces.
 inline unsigned box_faces(const Vec3& place, const std::array<int, 3>& box) {
   unsigned faces = 0;
   for (int a = 0; a < 3; ++a) {
@@ -45,18 +45,20 @@ inline unsigned box_faces(const Vec3& place, const std::array<int, 3>& box) {
 /// them.
 inline constexpr int frame_margin = 3;
 
-/// A frame whose box contains [low, high] (input units) and a margin of frame_margin cells. With `uniform`
-/// the root cells are finest cells; otherwise the longest side has about four to eight root cells. The box is
-/// rounded up to whole root cells: the excess is above `high`, or evenly on both sides if `centred`. Requires
-/// `cell_size` > 0 and at most 2^18 cells along each side.
+/// A frame whose box contains [low, high] (input units) and a margin of frame_margin cells, rounded up to
+/// whole root cells.
+/// \param uniform root cells are finest cells; otherwise the longest side has about four to eight root cells
+/// \param centred the excess of rounding up is even on both sides; otherwise it is above `high`
+/// \pre `cell_size` > 0, and at most 2^18 cells along each side
 GridFrame make_grid_frame(const Vec3& low, const Vec3& high, double cell_size, bool uniform,
                           bool centred = false);
 
-/// A frame that fills a parallelepiped with whole cells: its edges, input units, are the columns of `edges`,
-/// right-handed. Cells are as near to `cell_size` as that permits along each axis.
+/// A frame that fills a parallelepiped with whole cells, as close to `cell_size` along each axis as that
+/// permits.
+/// \param edges of the parallelepiped, as columns, right-handed; input units
 GridFrame make_box_frame(const Vec3& corner, const Eigen::Matrix3d& edges, double cell_size, bool uniform);
 
-/// The same box with cells of 1/2^levels the size; the root cells keep their size.
+/// A frame of the same box, refined: cells of 1/2^levels the size, root cells of the same size.
 GridFrame refined_frame(GridFrame frame, int levels);
 
 }  // namespace tetwright

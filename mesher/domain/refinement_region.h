@@ -5,7 +5,7 @@
 
 namespace tetwright {
 
-/// A place around which cells are to be halved so many times.
+/// Request to halve the cells around a point.
 struct RefinementRegion {
   Vec3 place;
   int halvings;

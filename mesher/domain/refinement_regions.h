@@ -10,23 +10,23 @@
 
 namespace tetwright {
 
-/// Cells are at most this many levels smaller than a voxel for sheets between surfaces and thin labels.
+/// Levels below a voxel that cells may reach for sheets between surfaces and for thin labels.
 inline constexpr int max_refinement = 3;
 
-/// Where the octree must have smaller cells than the interface alone asks for.
+/// Cells that the octree must split beyond what the interface alone requires.
 struct RefinementRegions {
   int refinement = 0;  ///< levels below a voxel
-  /// The cells to be split: one ascending list for each level of a lattice refined that far, and possibly
-  /// one for cells of two voxels.
+  /// The cells to be split: one ascending list for each level of a lattice refined that far, and possibly one
+  /// for cells of two voxels.
   std::vector<std::vector<MortonKey>> cells;
   int coarsest_interface_level = 2;  ///< see OctreeOptions
 };
 
-/// A region that is too thin for its cells in some places.
+/// A region that is somewhere too thin for its cells.
 struct ThinPart {
   RegionIndex region;
   std::size_t places;  ///< number of voxels, or of finest cells for a sheet between two level sets
-  Vec3 first;          ///< one of these places, in voxels
+  Vec3 first;          ///< position of one of them, voxels
 };
 
 }  // namespace tetwright

@@ -9,13 +9,13 @@
 
 namespace tetwright {
 
-/// Number of a region of space: 0 is the outside, the materials follow.
+/// Index of a region of space: 0 is the outside, the materials follow.
 using RegionIndex = std::uint16_t;
 inline constexpr RegionIndex outside_region = 0;
 /// Tag and name of the outside as a material of a mesh that keeps it.
 inline constexpr MaterialTag outside_tag = 0;
 inline constexpr const char* outside_name = "outside";
-/// Stands for the region of a point that is on an interface.
+/// Marks a point on an interface, in place of its region.
 inline constexpr RegionIndex on_interface = 0xffff;
 
 /// How many times cells are halved where walls and gaps of a surface are thin: by default, and at most.

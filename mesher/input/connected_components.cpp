@@ -14,8 +14,8 @@ namespace tetwright {
 
 namespace {
 
-/// The islands of a volume, made of runs: equal voxels side by side along the first axis. Runs are numbered
-/// in the order of their voxels, so that the smallest run of an island has its lowest voxel.
+/// The islands of a volume, made of runs: consecutive equal voxels along the first axis. Runs are numbered in
+/// the order of their voxels, so that the smallest run of an island has its lowest voxel.
 class Islands {
  public:
   Islands(std::vector<RegionIndex>& regions, const std::array<int, 3>& size, const Progress* progress)
@@ -32,9 +32,9 @@ class Islands {
   std::size_t islands() const { return islands_; }
   Index largest() const { return largest_; }
   std::vector<MergedIsland> merge(Index min_voxels);
-  /// By region, those of the outside that reach the border left out.
+  /// The number of islands of each region, without those of the outside that reach the border.
   std::vector<std::size_t> parts(std::size_t regions, std::vector<Index>* smallest = nullptr);
-  /// From then on what touches in an edge or a corner is one island, too.
+  /// Unites islands of one region that touch in an edge or a corner.
   void unite_touching();
 
  private:
@@ -62,7 +62,7 @@ class Islands {
   RegionIndex& region_of(Index run) const { return regions_[starts_[run]]; }
 
   /// Calls `body(begin, end)` for the voxels that share a face with the run: one beyond each end, then as
-  /// many as the run has beside it.
+  /// many as the run has next to it in each neighbouring row.
   template <class Body>
   void for_each_contact(Index run, Body&& body) const {
     const std::size_t begin = starts_[run], end = starts_[run + 1];
@@ -83,7 +83,7 @@ class Islands {
   std::vector<Index> voxels_;  ///< at the root of each island
   std::size_t islands_ = 0;
   Index largest_ = 0;
-  std::vector<Index> next_;              ///< run of the same small island, in a ring
+  std::vector<Index> next_;              ///< another run of the same small island, in a ring
   std::vector<Index> small_;             ///< roots of small islands, ascending
   std::vector<Index> island_runs_;       ///< of the island being merged
   std::vector<std::size_t> faces_;       ///< by region, 0 between uses
@@ -124,7 +124,7 @@ void Islands::unite_neighbours() {
   const std::size_t planes = regions_.size() / plane_;
   const std::size_t slabs = std::min<std::size_t>(planes, 4 * thread_count());
   const auto slab_begin = [&](std::size_t slab) { return slab * planes / slabs; };
-  // The smaller root wins, so that what a slab does stays within it until slabs are joined.
+  // The smaller root wins, so slabs are independent until they are joined.
   parallel_for(0, slabs, 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t slab = first; slab < last; ++slab)
       for (std::size_t z = slab_begin(slab); z < slab_begin(slab + 1); ++z) {
@@ -147,7 +147,7 @@ void Islands::count_voxels() {
   }
 }
 
-/// Finds the small islands and strings together the runs of each.
+/// Finds the small islands and links the runs of each.
 void Islands::list_small(Index min_voxels) {
   next_.resize(runs());
   for (Index run = 0; run < runs(); ++run) {
@@ -169,7 +169,7 @@ void Islands::collect_runs(Index island) {
   while ((run = next_[run]) != island);
 }
 
-/// The region, other than its own, with most faces of the island whose runs were collected.
+/// The region, other than its own, that shares most faces with the island whose runs were collected.
 RegionIndex Islands::max_shared() {
   const RegionIndex own = region_of(island_runs_[0]);
   neighbours_.clear();
@@ -178,7 +178,8 @@ RegionIndex Islands::max_shared() {
       for (std::size_t v = begin; v < end; ++v)
         if (const RegionIndex r = regions_[v]; r != own && faces_[r]++ == 0) neighbours_.push_back(r);
     });
-  // All around is of other regions, and the island is not the whole volume, since another one is larger.
+  // All voxels around it are in other regions, and it is not the whole volume, since another island is
+  // larger.
   TETWRIGHT_CHECK(!neighbours_.empty());
   RegionIndex best = neighbours_[0];
   for (RegionIndex r : neighbours_)
@@ -193,13 +194,13 @@ void Islands::join(Index a, Index b, Index min_voxels) {
   if (a == b) return;
   const auto total = static_cast<Index>(
       std::min<std::uint64_t>(std::uint64_t{voxels_[a]} + voxels_[b], std::numeric_limits<Index>::max()));
-  // Two rings become one when they swap what comes next. Large islands need none any more.
+  // Swapping successors joins two rings. Large islands no longer need one.
   if (total < min_voxels) std::swap(next_[a], next_[b]);
   sets_.unite(a, b);
   voxels_[sets_.root(a)] = total;
 }
 
-/// Along axes of a single voxel there is no border: a slice is an image.
+/// Axes of a single voxel have no border: a slice is an image.
 bool Islands::at_border(Index run) const {
   const std::size_t begin = starts_[run], end = starts_[run + 1], voxels = regions_.size();
   const std::size_t in_plane = begin % plane_;
@@ -208,7 +209,7 @@ bool Islands::at_border(Index run) const {
          (voxels > plane_ && (begin < plane_ || begin + plane_ >= voxels));
 }
 
-/// Counts islands of the outside that touch the border as large ones: they go on beyond it.
+/// Counts islands of the outside that touch the border as large: they continue beyond it.
 void Islands::enlarge_outside(Index min_voxels) {
   for (Index run = 0; run < runs(); ++run) {
     if (region_of(run) != outside_region || !at_border(run)) continue;
@@ -228,7 +229,7 @@ std::vector<MergedIsland> Islands::merge(Index min_voxels) {
   }
   faces_.assign(on_interface + std::size_t{1}, 0);
 
-  // The smallest island is on top, of equal ones that with the lowest voxel.
+  // The smallest island is on top, among equal ones that with the lowest voxel.
   using Entry = std::pair<Index, Index>;  // voxels, island
   std::vector<Entry> entries;
   entries.reserve(small_.size());
@@ -238,14 +239,14 @@ std::vector<MergedIsland> Islands::merge(Index min_voxels) {
     if (step % 4096 == 0) throw_if_stopped();
     const auto [count, island] = queue.top();
     queue.pop();
-    // It may have grown since it was put there, or gone up in another one.
+    // It may have grown since it was queued, or been merged into another one.
     if (!sets_.is_root(island) || voxels_[island] != count) continue;
     collect_runs(island);
     const RegionIndex region = max_shared();
     for (Index run : island_runs_)
       std::fill(regions_.begin() + starts_[run], regions_.begin() + starts_[run + 1], region);
-    // An island never joins a smaller one, as the smallest comes first; so it doubles at least, and no voxel
-    // is looked at more often than min_voxels can be halved.
+    // An island never joins a smaller one, as the smallest comes first. So its size at least doubles, and a
+    // voxel is visited at most as often as min_voxels can be halved.
     for (Index run : island_runs_)
       for_each_contact(run, [&](std::size_t begin, std::size_t end) {
         for (Index other = run_of(begin); starts_[other] < end; ++other)
@@ -263,7 +264,7 @@ std::vector<MergedIsland> Islands::merge(Index min_voxels) {
 }
 
 std::vector<std::size_t> Islands::parts(std::size_t regions, std::vector<Index>* smallest) {
-  // The mesh of a slice ends above and below it, and so does what is outside.
+  // The mesh of a slice ends above and below it, and so does the outside.
   const bool slice = width_ == 1 || plane_ == width_ || regions_.size() == plane_;
   std::vector<std::uint8_t> reaches_border(runs(), 0);
   for (Index run = 0; run < runs(); ++run)
@@ -281,8 +282,8 @@ std::vector<std::size_t> Islands::parts(std::size_t regions, std::vector<Index>*
   return parts;
 }
 
-/// Unites the runs of two rows, given by their first voxels, that overlap or that a step along the row would
-/// make overlap.
+/// Unites the runs of two rows, given by their first voxels, that overlap, or would after a step of one voxel
+/// along the row.
 void Islands::unite_rows(std::size_t here, std::size_t there) {
   const std::size_t here_end = here + width_, there_end = there + width_;
   Index a = run_of(here), b = run_of(there);
@@ -290,7 +291,7 @@ void Islands::unite_rows(std::size_t here, std::size_t there) {
     const std::size_t a_from = starts_[a] - here, a_to = starts_[a + 1] - here;
     const std::size_t b_from = starts_[b] - there, b_to = starts_[b + 1] - there;
     if (a_from <= b_to && b_from <= a_to && region_of(a) == region_of(b)) sets_.unite(a, b);
-    // Where both end together, the next one of each touches this one of the other.
+    // Where both end together, the next run of each touches the current run of the other.
     if (a_to == b_to) {
       if (a_to < width_ && region_of(a + 1) == region_of(b)) sets_.unite(a + 1, b);
       if (a_to < width_ && region_of(a) == region_of(b + 1)) sets_.unite(a, b + 1);

@@ -10,7 +10,7 @@ namespace tetwright {
 
 namespace {
 
-/// Queries of a surface above which a tree pays: each of the others takes a look at every triangle.
+/// Number of queries of a surface above which a tree pays; each query without one visits every triangle.
 constexpr std::size_t max_plain_queries = 16;
 
 bool boxes_meet(const RepairedSurface& a, const RepairedSurface& b) {
@@ -44,8 +44,8 @@ bool meet(const RepairedSurface& body, const std::vector<const RepairedSurface*>
   return !self_intersections(points, triangles).empty();
 }
 
-/// The solid of a body without `later` ones, whose surfaces do not meet: what of its shells is in none of
-/// them, and their shells inside it, wound the other way, that are in no other one.
+/// The solid of a body without `later` ones, whose surfaces do not meet. Consists of the body's shells that
+/// are in none of them, and of their shells inside the body, reversed, that are in no other one.
 SolidShape carved_solid(const RepairedSurface& body, const SolidShape& solid,
                         const std::vector<const RepairedSurface*>& later,
                         const std::vector<SolidShape>& later_solids) {

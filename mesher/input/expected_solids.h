@@ -10,9 +10,11 @@
 namespace tetwright {
 
 /// The solid of each body's material, in input units: the body without all later ones. Nothing where the
-/// surfaces alone do not say it: where the body or one that may carve it is open or intersects itself, where
-/// their surfaces meet, where edges have not just two triangles or points more than one fan of them, and of
-/// the first body where layers are cut from it.
+/// surfaces alone do not determine it:
+/// - the body, or one that may carve it, is open or intersects itself;
+/// - their surfaces meet;
+/// - an edge does not have exactly two triangles, or a point has more than one fan of them;
+/// - layers are cut from it (the first body).
 std::vector<std::optional<SolidShape>> expected_solids(const MesherInput& input);
 
 }  // namespace tetwright

@@ -15,9 +15,9 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t max_labels = 60'000;  // regions have numbers of 16 bits, of which few mean other things
-constexpr std::size_t max_listed = 30;      // labels in a message
-constexpr std::size_t max_named = 20;       // labels with a finding of their own
+constexpr std::size_t max_labels = 60'000;          // regions have numbers of 16 bits, a few of them reserved
+constexpr std::size_t max_listed = 30;              // labels in a message
+constexpr std::size_t max_named = 20;               // labels with a finding of their own
 constexpr std::size_t label_voxel_grain = 1 << 18;  // voxels
 
 using LabelRange = std::pair<MaterialTag, MaterialTag>;
@@ -32,7 +32,7 @@ std::string range_text(const LabelRange& range) {
          (range.first == range.second ? "" : " to " + std::to_string(range.second));
 }
 
-/// Says of a label whether it is to be meshed.
+/// Tells which labels are meshed.
 class Chosen {
  public:
   explicit Chosen(const LabelChoice& choice) : outside_(choice.outside_label), all_(choice.labels.empty()) {
@@ -45,7 +45,7 @@ class Chosen {
         throw UsageError("label " + std::to_string(outside_) +
                          " of --labels is the outside label, which is " +
                          "not meshed; leave it out, or name another one with --outside-label");
-      // Disjoint ones, so that the last that begins in time decides.
+      // Merge ranges, so that the last one that starts at or before a label decides.
       if (!ranges_.empty() && range.first <= ranges_.back().second)
         ranges_.back().second = std::max(ranges_.back().second, range.second);
       else
@@ -74,7 +74,7 @@ void for_each_run(const std::vector<MaterialTag>& labels, std::size_t begin, std
   }
 }
 
-/// The chosen labels that are there, ascending, with their numbers of voxels.
+/// The chosen labels that occur, ascending, with their numbers of voxels.
 std::vector<LabelCount> count_labels(const std::vector<MaterialTag>& labels, const Chosen& chosen,
                                      const std::string& file) {
   const auto check = [&](std::size_t n) {
@@ -103,7 +103,7 @@ std::vector<LabelCount> count_labels(const std::vector<MaterialTag>& labels, con
   return sums;
 }
 
-/// "1, 2, 3" for messages: the labels that are there, without the outside label.
+/// "1, 2, 3" for messages: the labels that occur, without the outside label.
 std::string labels_text(const std::vector<MaterialTag>& labels, MaterialTag outside) {
   std::vector<MaterialTag> found = parallel_collect<MaterialTag>(
       0, labels.size(), label_voxel_grain, [&](std::size_t begin, std::size_t end, auto& out) {
@@ -122,7 +122,7 @@ std::string labels_text(const std::vector<MaterialTag>& labels, MaterialTag outs
   return text + (found.size() > max_listed ? ", ..." : "");
 }
 
-/// Throws if all of the volume is outside, or a range of chosen labels is not there at all.
+/// Throws if all of the volume is outside, or no label of a chosen range occurs.
 void check_choice(const LabelVolume& volume, const std::string& file, const LabelChoice& choice,
                   const std::vector<LabelCount>& counts) {
   for (const LabelRange& range : choice.labels) {
@@ -140,7 +140,7 @@ void check_choice(const LabelVolume& volume, const std::string& file, const Labe
                              "; is another one outside? see --outside-label");
 }
 
-/// Refuses a name of the label `tag`: at its line of the file with names if it comes from one.
+/// Refuses the name of label `tag`, citing its line if it comes from a file.
 [[noreturn]] void refuse_name(const LabelChoice& choice, MaterialTag tag, const std::string& message) {
   const auto line = choice.name_lines.find(tag);
   if (line == choice.name_lines.end()) throw UsageError(message + " with --label-names");
@@ -164,7 +164,7 @@ std::vector<LabelMaterial> name_materials(const LabelChoice& choice, const std::
   const auto twice = std::adjacent_find(by_name.begin(), by_name.end(),
                                         [](const auto* a, const auto* b) { return a->name == b->name; });
   if (twice != by_name.end()) {
-    // At the later line: the earlier one is sound by itself.
+    // Cite the later line: the earlier one is valid by itself.
     const auto line = [&](MaterialTag tag) {
       const auto found = choice.name_lines.find(tag);
       return found == choice.name_lines.end() ? std::size_t{0} : found->second;
@@ -184,10 +184,10 @@ std::vector<LabelMaterial> name_materials(const LabelChoice& choice, const std::
   return materials;
 }
 
-/// The region of each voxel: its place among the materials, from 1; 0 for labels that are none.
+/// The region of each voxel: the index of its material, from 1; 0 for labels that are not materials.
 std::vector<RegionIndex> number_regions(const std::vector<MaterialTag>& labels,
                                         const std::vector<LabelMaterial>& materials) {
-  // A table where labels are close together, as nearly always.
+  // A table suffices where labels are close together, as nearly always.
   const std::int64_t low = materials.front().tag, high = materials.back().tag;
   std::vector<RegionIndex> table;
   if (high - low < 1 << 20) table.resize(static_cast<std::size_t>(high - low) + 1, outside_region);
@@ -210,7 +210,7 @@ std::vector<RegionIndex> number_regions(const std::vector<MaterialTag>& labels,
   return regions;
 }
 
-/// Islands of a region that were merged into others.
+/// Islands of one region that were merged into others.
 struct Loss {
   std::size_t islands = 0, voxels = 0;
   std::size_t first_voxel = 0;
@@ -220,9 +220,9 @@ class Preparation {
  public:
   Preparation(LabelInput& result, const LabelChoice& choice) : result_(result), choice_(choice) {}
 
-  /// `outside`: voxels at first
+  /// \param outside number of voxels outside before merging
   void merge(std::size_t outside, const Progress* progress);
-  /// The parts of all regions.
+  /// Counts the parts of all regions.
   void count(const Progress* progress);
 
  private:
@@ -306,7 +306,7 @@ void Preparation::report(const std::vector<Loss>& losses) {
       rest.islands, place(rest.first_voxel), done);
 }
 
-/// Labels without voxels leave the materials, and the others move up.
+/// Removes labels without voxels from the materials and renumbers the others.
 void Preparation::drop_lost(const std::vector<Loss>& losses) {
   std::vector<LabelMaterial> kept;
   std::vector<RegionIndex> renumbered(result_.materials.size() + 1, outside_region);

@@ -16,22 +16,22 @@
 
 namespace tetwright {
 
-/// Which labels of a segmented volume are meshed, and their names.
+/// Selects the labels of a segmented volume that are meshed, and names them.
 struct LabelChoice {
-  /// Labels that become materials, as ranges that include both ends; empty: all but the outside label. All
-  /// other labels are outside.
+  /// Labels that become materials, as inclusive ranges; all others are outside. Empty: all but the outside
+  /// label.
   std::vector<std::pair<MaterialTag, MaterialTag>> labels;
   std::map<MaterialTag, std::string> names;  ///< labels without a name are called label_N
   /// The file that `names` were read from, and the line of each, for messages; may be empty.
   std::string names_file;
   std::map<MaterialTag, std::size_t> name_lines;
   MaterialTag outside_label = 0;
-  /// Face-connected islands of fewer voxels are merged into what they touch most; 0 or 1: none.
+  /// Face-connected islands of fewer voxels are merged into the region they touch most; 0 or 1: none.
   std::size_t min_voxels = 8;
 };
 
-/// How many parts a region of voxels may have: at least those that touch in a corner or more, at most those
-/// connected by faces. Any number, if not counted.
+/// Range of the number of parts that a region of voxels may have: at least those that touch at a corner or
+/// more, at most those connected by faces. Unlimited if not counted.
 struct LabelParts {
   std::size_t touching = 0, by_faces = std::numeric_limits<std::size_t>::max();
   std::optional<Vec3> smallest_place;  ///< centre of a voxel of the smallest part by faces, input units
@@ -46,7 +46,7 @@ struct LabelMaterial {
   LabelParts parts = {};           ///< after merging
 };
 
-/// A label that is not meshed although it was chosen, because all of it was in small islands.
+/// A chosen label that is not meshed because all of it was in small islands.
 struct LostLabel {
   MaterialTag tag = 0;
   std::string name;
@@ -61,14 +61,14 @@ struct LabelInput {
   Vec3 origin = Vec3::Zero();
   Eigen::Matrix3d directions = Eigen::Matrix3d::Identity();
   std::string space;  ///< see LabelVolume
-  /// Region of each voxel, the first axis fastest: 0 is outside, i + 1 is materials[i].
+  /// Region of each voxel, first axis fastest: 0 is outside, i + 1 is materials[i].
   std::vector<RegionIndex> regions;
   std::vector<LabelMaterial> materials;  ///< by ascending tag
   std::vector<LostLabel> lost;           ///< by ascending tag
   std::size_t merged_islands = 0;        ///< including those of the outside
   std::size_t merged_voxels = 0;
-  /// Of the outside, those that do not reach the border of the volume. No parts are counted of 2^32 voxels
-  /// and more.
+  /// Parts of the outside that do not reach the border of the volume. Parts are not counted in volumes of
+  /// 2^32 voxels or more.
   LabelParts outside_parts;
   std::vector<InputFinding> findings;  ///< changes to the input, for the user
 
@@ -77,12 +77,15 @@ struct LabelInput {
 
 /// Chooses the labels and merges islands of fewer than `min_voxels` voxels into their neighbours, see
 /// merge_small_islands(). If no island has that many voxels, nothing is merged and a finding says so. The
-/// same result for any number of threads.
+/// result does not depend on the number of threads.
 ///
-/// Throws UsageError (impossible ranges and names: the outside label is chosen, two labels have one name, a
-/// label is called "outside"), InputError (impossible names that come from a file; a chosen label does not
-/// exist, with a list of those that do; more than 60,000 labels), NothingToMeshError (all voxels are
-/// outside), Interrupted.
+/// \param progress may be null
+/// \throws UsageError for impossible ranges and names: the outside label is chosen, two labels share a name,
+///   a label is called "outside"
+/// \throws InputError for impossible names that come from a file, a chosen label that does not exist (with a
+///   list of those that do), or more than 60,000 labels
+/// \throws NothingToMeshError if all voxels are outside
+/// \throws Interrupted
 LabelInput make_label_input(LabelVolume volume, const std::string& file, const LabelChoice& choice,
                             Progress* progress);
 

@@ -15,10 +15,10 @@ namespace tetwright {
 
 namespace {
 
-/// A region's number has 16 bits, and a few are reserved.
+/// Regions have numbers of 16 bits, a few of them reserved.
 constexpr std::size_t max_materials = 60000;
 
-/// The tags that the caller gave out. Throws UsageError for a layer without a thickness.
+/// The tags assigned by the caller. Throws UsageError for a layer without a thickness.
 std::set<MaterialTag> tags_in_use(const std::vector<MaterialSurface>& surfaces,
                                   const std::vector<MaterialLayer>& layers) {
   std::set<MaterialTag> tags;
@@ -32,8 +32,8 @@ std::set<MaterialTag> tags_in_use(const std::vector<MaterialSurface>& surfaces,
   return tags;
 }
 
-/// Makes the names of groups differ from surface to surface. Throws InputError where the files give the same,
-/// and where a name made of a number is that of another group.
+/// Makes the names of groups differ between surfaces. Throws InputError where files share a name, and where a
+/// name made from a number is that of another group.
 void name_groups(std::vector<MaterialSurface>& surfaces) {
   const auto with_groups = std::count_if(surfaces.begin(), surfaces.end(),
                                          [](const MaterialSurface& s) { return !s.surface.groups.empty(); });
@@ -57,7 +57,7 @@ void name_groups(std::vector<MaterialSurface>& surfaces) {
     }
 }
 
-/// The groups that have triangles of which the points are there.
+/// The area and centre of each group with triangles, ignoring triangles with missing points.
 std::vector<MesherInput::Group> measure_groups(const std::vector<MaterialSurface>& surfaces) {
   std::map<SurfaceRegion, MesherInput::Group> measured;
   std::map<SurfaceRegion, double> largest;

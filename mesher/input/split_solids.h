@@ -8,9 +8,9 @@
 
 namespace tetwright {
 
-/// A surface for each group of triangles, in the order of their first triangles and without groups of their
-/// own; the surface itself, called `name`, where it has none. A group without a name is called after `name`
-/// and its number, and what is in no group `name`.
+/// Splits a surface into one for each group of triangles, in the order of their first triangles and without
+/// groups of their own. A surface without groups is returned as it is, called `name`. A group without a name
+/// is called after `name` and its number; triangles in no group form a surface called `name`.
 std::vector<NamedSurface> split_solids(TriangleMesh surface, const std::string& name);
 
 }  // namespace tetwright

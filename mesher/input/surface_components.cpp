@@ -16,11 +16,11 @@ namespace tetwright {
 
 namespace {
 
-/// One side of a triangle; sides that join the same two points stand together when sorted.
+/// One side of a triangle; sides that join the same two points are adjacent when sorted.
 struct EdgeSide {
   std::uint64_t edge;  ///< smaller point << 32 | larger point
   std::uint32_t triangle;
-  std::uint32_t forward;  ///< 1 when the triangle runs from the smaller to the larger point
+  std::uint32_t forward;  ///< 1 if the triangle runs from the smaller to the larger point
   auto operator<=>(const EdgeSide&) const = default;
 };
 
@@ -46,7 +46,7 @@ void for_each_edge(const std::vector<EdgeSide>& sides, Body&& body) {
   }
 }
 
-/// Where the parts of `of[i]` begin when items are sorted by it; one more entry than `parts`.
+/// The starts of the parts `of(i)` when items are sorted by part; `parts` + 1 entries.
 template <class Of>
 std::vector<std::size_t> starts(std::size_t items, std::size_t parts, Of&& of) {
   std::vector<std::size_t> start(parts + 1, 0);
@@ -57,9 +57,9 @@ std::vector<std::size_t> starts(std::size_t items, std::size_t parts, Of&& of) {
 
 /// The part of a patch that lies on a seam edge.
 struct Seam {
-  Index edge;  ///< number of the seam edge
+  Index edge;  ///< index of the seam edge
   Index patch;
-  int net;  ///< its sides that run forward less those that run back
+  int net;  ///< sides that run forward minus sides that run back
   int sides;
 };
 
@@ -80,7 +80,7 @@ class Patches {
     peel();
     drop_fins(two_sided);
     drop_walls_of_core();
-    // What hangs on the core must not sway it.
+    // Core first: patches that hang on it must not affect it.
     balance(PatchKind::core);
     balance(PatchKind::open);
   }
@@ -102,7 +102,7 @@ class Patches {
   std::span<const Seam> at_edge(Index edge) const {
     return std::span(seams_).subspan(edge_start_[edge], edge_start_[edge + 1] - edge_start_[edge]);
   }
-  /// Numbers in seams_ of those of a patch.
+  /// Indices into seams_ of a patch's seams.
   std::span<const Index> of_patch(Index patch) const {
     return std::span(patch_seams_)
         .subspan(patch_start_[patch], patch_start_[patch + 1] - patch_start_[patch]);
@@ -116,8 +116,8 @@ class Patches {
   const std::vector<Vec3>& points_;
   const std::vector<Triangle>& triangles_;
   std::vector<Index> patch_;     ///< of each triangle
-  std::vector<char> turned_;     ///< of each triangle, against the file and for winding its patch alike
-  std::vector<PatchKind> kind_;  ///< from here on of each patch
+  std::vector<char> turned_;     ///< of each triangle: reversed so that its patch is consistent
+  std::vector<PatchKind> kind_;  ///< this and the following: of each patch
   std::vector<char> patch_turned_;
   std::vector<Index> patch_size_;  ///< in triangles
   std::vector<double> area_;
@@ -145,7 +145,7 @@ void Patches::flood(const std::vector<EdgeSide>& sides, const std::string& file)
       starts(neighbours.size(), triangles_.size(), [&](std::size_t i) { return neighbours[i].triangle; });
   patch_.assign(triangles_.size(), no_index);
   turned_.assign(triangles_.size(), 0);
-  std::vector<Index> queue;  // and at last all of the patch
+  std::vector<Index> queue;  // finally holds the whole patch
   for (Index seed = 0; seed < triangles_.size(); ++seed) {
     if (patch_[seed] != no_index) continue;
     const auto patch = static_cast<Index>(kind_.size());
@@ -208,7 +208,7 @@ void Patches::find_seams(const std::vector<EdgeSide>& sides) {
   for (Index i = 0; i < seams_.size(); ++i) patch_seams_[next[seams_[i].patch]++] = i;
 }
 
-/// Patches that end only where other ones go on without them.
+/// Drops patches that end only where other patches continue without them.
 void Patches::drop_flaps() {
   for (Index p = 0; p < kind_.size(); ++p) {
     bool ends = false, needed = false;
@@ -227,7 +227,7 @@ void Patches::drop_flaps() {
   }
 }
 
-/// Sets aside what has a free edge, and what has one after that.
+/// Sets aside patches with a free edge, and those that then have one.
 void Patches::peel() {
   std::vector<Index> queue;
   const auto look_at = [&](Index edge) {
@@ -243,7 +243,7 @@ void Patches::peel() {
     for (Index i : of_patch(queue[k])) look_at(seams_[i].edge);
 }
 
-/// Patches listed from both sides that hang on other ones: both sides together enclose nothing.
+/// Drops patches listed from both sides that are attached to others: their two sides enclose nothing.
 void Patches::drop_fins(const std::vector<char>& two_sided) {
   std::vector<char> fin(kind_.size(), 1);
   for (Index t = 0; t < triangles_.size(); ++t) fin[patch_[t]] &= two_sided[t];
@@ -256,7 +256,8 @@ void Patches::drop_fins(const std::vector<char>& two_sided) {
     if (fin[p] && kind_[p] == PatchKind::open && hangs[sets.root(p)]) kind_[p] = PatchKind::wall;
 }
 
-/// Smallest first: of three patches between the same seams the wall is most likely the flat one.
+/// Drops inner walls, smallest first: of three patches between the same seams the wall is most likely the
+/// flat one.
 void Patches::drop_walls_of_core() {
   std::vector<Index> order;
   for (Index p = 0; p < kind_.size(); ++p)
@@ -275,8 +276,8 @@ void Patches::drop_walls_of_core() {
   }
 }
 
-/// Turns patches of a kind over as long as that makes seams balance better. Ends, as each turn takes at least
-/// one from the sum of all imbalances.
+/// Reverses patches of a kind as long as that improves the balance of seams. Terminates because each reversal
+/// reduces the sum of all imbalances by at least one.
 void Patches::balance(PatchKind kind) {
   std::vector<Index> queue;
   for (Index p = 0; p < kind_.size(); ++p)

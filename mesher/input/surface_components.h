@@ -20,25 +20,22 @@ void add_finding(std::vector<SurfaceFinding>& findings, const std::string& what,
                  const std::optional<Vec3>& place, const std::string& done);
 
 /// Orients neighbouring triangles consistently, by the majority of each patch, and returns the components in
-/// the order of their first triangles. Inner walls and fins belong to no component. Requires triangles with
-/// three different corners and no repeated triangles.
+/// the order of their first triangles. Inner walls and fins belong to no component.
 ///
 /// A *patch* is connected across edges of exactly two triangles. Edges of one, three or more triangles are
 /// *seams*:
-/// - a patch that balances at each of its seams by itself (as each of two cubes that share an edge) is a
-/// closed
-///   component;
+/// - a patch that balances at each of its seams by itself (like each of two cubes that share an edge) is a
+///   closed component;
 /// - so is a group of patches that balance together, after patches with free edges are set aside; patches are
 ///   reversed, small ones first, as long as that makes more edges balance;
-/// - a patch all of whose boundary is at seams of triangles that are closed without it is an inner wall; of
-/// three
-///   patches with common seams the smallest one is;
-/// - a patch that the file lists from both sides (`two_sided`, by triangle) and that has free edges and seams
-/// is a
-///   fin;
+/// - a patch with all of its boundary at seams of triangles that are closed without it is an inner wall;
+///   among three patches with common seams the smallest one is;
+/// - a patch that the file lists from both sides and that has free edges and seams is a fin;
 /// - all others are open components, merged with those that continue them.
 ///
-/// Throws InputError if a patch is one-sided.
+/// \param two_sided by triangle
+/// \pre triangles have three different corners, and none is repeated
+/// \throws InputError if a patch is one-sided
 std::vector<SurfaceComponent> split_into_components(const std::vector<Vec3>& points,
                                                     std::vector<Triangle>& triangles,
                                                     const std::vector<char>& two_sided,

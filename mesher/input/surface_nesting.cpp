@@ -56,7 +56,7 @@ std::vector<Shape> shapes(const std::vector<Vec3>& points, const std::vector<Tri
         volume += a.dot(b.cross(d)) / 6;
         area += (b - a).cross(d - a) / 2;
       }
-      // From apex + x the volume is less by area . x / 3.
+      // From apex + x the volume is smaller by area . x / 3.
       const double range = components[c].closed ? 0 : area.cwiseAbs().dot(shape.high - apex) / 3;
       shape.volume = std::fabs(volume);
       if (shape.volume > range) shape.sign = volume > 0 ? 1 : -1;
@@ -65,7 +65,7 @@ std::vector<Shape> shapes(const std::vector<Vec3>& points, const std::vector<Tri
   return all;
 }
 
-/// The queries' places in the xy plane, sorted into square buckets.
+/// The probes of all shapes, sorted into square buckets of the xy plane.
 class ProbeGrid {
  public:
   explicit ProbeGrid(const std::vector<Shape>& shapes) {
@@ -81,7 +81,7 @@ class ProbeGrid {
     for (Index i = 0; i < shapes.size(); ++i) items_[next[bucket(shapes[i])]++] = i;
   }
 
-  /// Calls `body` for each query that may be in the rectangle.
+  /// Calls `body` for each probe that may be in the rectangle.
   template <class Body>
   void for_each(const Vec3& low, const Vec3& high, Body&& body) const {
     if (low.x() > high_.x() || low.y() > high_.y() || high.x() < low_.x() || high.y() < low_.y()) return;
@@ -190,7 +190,7 @@ ArrangedComponents arrange_components(const std::vector<Vec3>& points, const std
         enclosers[inner].push_back(encloser);
   }
 
-  // Enclosers first. The nearest encloser is the one that is deepest itself, the smallest where several are.
+  // Enclosers first. The nearest encloser is the one nested deepest itself, the smallest among several.
   std::vector<Index> order(n);
   std::iota(order.begin(), order.end(), Index{0});
   const auto before = [&](Index a, Index b) {

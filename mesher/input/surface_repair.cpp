@@ -16,13 +16,13 @@ namespace tetwright {
 
 namespace {
 
-/// For each point the number of the first one with equal coordinates.
+/// For each point the index of the first one with equal coordinates.
 std::vector<Index> first_equal_point(const std::vector<Vec3>& points) {
   const std::size_t slots = std::bit_ceil(2 * points.size() + 1);
   std::vector<Index> table(slots, no_index), first(points.size());
   for (Index i = 0; i < points.size(); ++i) {
     std::uint64_t hash = 0;
-    // Adding 0 makes +0 of -0, which compare equal.
+    // Adding 0 turns -0 into +0; the two compare equal.
     for (int a = 0; a < 3; ++a)
       hash = (hash ^ std::bit_cast<std::uint64_t>(points[i][a] + 0.0)) * 0x9e3779b97f4a7c15u,
       hash ^= hash >> 29;
@@ -34,7 +34,7 @@ std::vector<Index> first_equal_point(const std::vector<Vec3>& points) {
   return first;
 }
 
-/// A triangle turned so that its smallest vertex comes first.
+/// Rotates a triangle so that its smallest vertex comes first.
 Triangle canonical(Triangle t) {
   std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   return t;
@@ -48,7 +48,7 @@ bool flat(const Vec3& a, const Vec3& b, const Vec3& c) {
   return orient2d(a, b, c, 0, 1) == 0 && orient2d(a, b, c, 1, 2) == 0 && orient2d(a, b, c, 2, 0) == 0;
 }
 
-/// The points that triangles use, in their order; renumbers the triangles accordingly.
+/// The points that triangles use, in order; renumbers the triangles accordingly.
 std::vector<Vec3> keep_used(const std::vector<Vec3>& points, std::vector<Triangle>& triangles) {
   std::vector<Index> renumbered(points.size(), no_index);
   for (const Triangle& t : triangles)
@@ -68,11 +68,11 @@ struct Cleaned {
   std::vector<Vec3> points;
   std::vector<Triangle> triangles;    ///< canonical
   std::vector<std::uint32_t> groups;  ///< as RepairedSurface::groups
-  std::vector<char> two_sided;        ///< of each triangle: wound both ways in the file
+  std::vector<char> two_sided;        ///< by triangle: wound both ways in the file
 };
 
-/// Merges equal points, drops unused ones, triangles with equal corners and all but one of each set of
-/// triangles with the same corners: wound as most of them are, in the group of the first one of the file.
+/// Merges equal points, drops unused ones and triangles with equal corners, and keeps one of each set of
+/// triangles with the same corners: wound like the majority, in the group of the first one in the file.
 Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<SurfaceFinding>& findings) {
   if (surface.triangles.empty()) throw InputError(file, 0, "there are no triangles");
   for (const Vec3& p : surface.points)
@@ -81,7 +81,7 @@ Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<
 
   struct Entry {
     Index low, middle, high;
-    Index turned;  ///< 1 when wound low, high, middle
+    Index turned;  ///< 1 if wound low, high, middle
     Index number;  ///< in the file
     auto operator<=>(const Entry&) const = default;
     bool same_corners(const Entry& e) const { return low == e.low && middle == e.middle && high == e.high; }
@@ -118,7 +118,7 @@ Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<
     if (j - i > 1 && repeated == 0) repeated_place = surface.points[entries[i].low];
     repeated += j - i - 1;
     result.two_sided.push_back(entries[i].turned != entries[j - 1].turned);
-    // Both ways of winding stand together; the middle one belongs to the majority.
+    // Both windings are adjacent; the middle entry has that of the majority.
     const Entry& e = entries[i + (j - i - 1) / 2];
     result.triangles.push_back(e.turned ? Triangle{e.low, e.high, e.middle}
                                         : Triangle{e.low, e.middle, e.high});
@@ -130,7 +130,7 @@ Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<
     result.groups.push_back(surface.triangle_groups[in_file]);
   }
 
-  // Points keep their order, so that what is found first is first in the file.
+  // Points keep their order, so that the first finding is the first in the file.
   std::size_t merged = 0, unused = 0;
   for (Index i = 0; i < used.size(); ++i) {
     if (!used[i] && unused++ == 0) unused_place = surface.points[i];
@@ -152,8 +152,8 @@ Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<
   return result;
 }
 
-/// A surface of some of the components, closed ones first. `crossing`: by triangle, whether it meets another
-/// one.
+/// Assembles a surface from the chosen components, closed ones first.
+/// \param crossing by triangle, 1 if it intersects another one
 RepairedSurface assemble(const Cleaned& from, const std::vector<SurfaceComponent>& components,
                          const std::vector<char>& crossing, const std::vector<Index>& chosen) {
   RepairedSurface s;

@@ -6,8 +6,8 @@
 
 namespace tetwright {
 
-/// The edges of the volume's box along which two cuts of a label meet, up to a voxel from where it ends, and
-/// the corners that a label fills; input units.
+/// The edges of the volume's box along which two cuts of a label meet, except for the last voxel at each end,
+/// and the corners of the box that a label fills; input units.
 CreaseCurves border_creases(const LabelInput& labels);
 
 }  // namespace tetwright

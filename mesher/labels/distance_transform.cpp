@@ -12,7 +12,7 @@ constexpr int max_steps = 255;
 /// From a voxel's centre to its face, rounded.
 constexpr int half_voxel = 1;
 
-/// The neighbours of a voxel that come before it in the order of voxels, and how far they are.
+/// A neighbour of a voxel that precedes it in voxel order, and its distance in steps.
 struct Neighbour {
   std::array<int, 3> by;
   int steps;

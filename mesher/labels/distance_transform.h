@@ -15,13 +15,14 @@ struct DistanceTransform {
   std::array<int, 3> size{};
   std::vector<std::uint8_t> steps;  ///< first axis fastest
 
-  /// Trilinear interpolation between voxel centres, in voxels; `index` in index space, clamped to the volume.
+  /// Interpolates trilinearly between voxel centres; result and gradient in voxels.
+  /// \param index index space, clamped to the volume
   double at(const Vec3& index, Vec3& gradient) const;
 };
 
 /// Chamfer distances (Borgefors 1986: weights 3, 4, 5 for neighbours across faces, edges, corners; within 8 %
-/// of the Euclidean ones) less half a voxel, at most 85 voxels. They are needed for cells so coarse that
-/// distances clamped to two voxels do not locate the interface. Regions continue beyond the volume.
+/// of the Euclidean ones) minus half a voxel, at most 85 voxels. Regions continue beyond the volume. Needed
+/// for cells so coarse that distances clamped to two voxels do not locate the interface.
 DistanceTransform distance_transform(const LabelInput& labels);
 
 }  // namespace tetwright

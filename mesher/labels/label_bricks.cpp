@@ -27,12 +27,12 @@ struct TileBricks {
   std::vector<Made> bricks;
   std::vector<RegionIndex> channels;
   std::vector<std::int16_t> values;
-  /// Volumes of labels, voxels, in the parts of the tile, x fastest.
+  /// Volumes of labels in each part of the tile, voxels; parts x fastest.
   std::array<std::vector<std::pair<RegionIndex, double>>, tile_parts * tile_parts * tile_parts> shares;
   std::vector<LabelSmoother::Contact> contacts;
 };
 
-/// Copies the voxels of a tile and around it; beyond the volume the nearest voxel is repeated. Returns false
+/// Copies the voxels of a tile and around it; beyond the volume the closest voxel is repeated. Returns false
 /// if all of them are of one region.
 bool copy_voxels(const LabelInput& labels, const std::array<int, 3>& tile, std::span<RegionIndex> out) {
   constexpr int side = LabelSmoother::side;
@@ -92,8 +92,8 @@ void add_brick(const LabelSmoother& smoother, const std::array<int, 3>& in_tile,
   out.bricks.push_back(made);
 }
 
-/// Computes tile number `t`; `tiles` and `bricks` are numbers of tiles and bricks along each axis. Contacts
-/// depend on voxels only, so they are needed once.
+/// Computes tile `t`. Contacts depend only on voxels, so they are computed once.
+/// \param tiles, bricks numbers of tiles and bricks along each axis
 void make_tile(const LabelInput& labels, int t, const std::array<int, 3>& tiles,
                const std::array<int, 3>& bricks, std::span<const float> growth, LabelSmoother& smoother,
                bool with_contacts, TileBricks& out) {
@@ -143,7 +143,7 @@ void make_tile(const LabelInput& labels, int t, const std::array<int, 3>& tiles,
   }
 }
 
-/// Number of rounds of growth: growing a label changes its neighbours.
+/// Maximum number of rounds of growth; growing a label changes its neighbours.
 constexpr int max_brick_rounds = 4;
 
 /// Determines how far each label is grown so that it keeps its volume.
@@ -158,11 +158,12 @@ class Growth {
       : growth_(regions, 0), step_(regions, 0), volumes_(regions, 0), give_(regions, 1) {}
 
   const std::vector<float>& growth() const { return growth_; }  ///< by region, voxels
-  /// Whether it was changed by the last adjust().
+  /// True if the last adjust() changed it.
   bool changed(RegionIndex region) const { return step_[region] != 0; }
 
-  /// Takes the volumes of the tiles, the first time their contacts too; false if no label's growth changes
-  /// any more. There are tile_counts tiles along each axis, x fastest.
+  /// Reads the volumes of the tiles, and the first time their contacts. Returns false if no label's growth
+  /// changes any more.
+  /// \param tile_counts tiles along each axis, x fastest
   bool adjust(const LabelInput& labels, const std::vector<TileBricks>& tiles,
               const std::array<int, 3>& tile_counts) {
     if (!begun_) list_contacts(tiles);
@@ -208,7 +209,7 @@ class Growth {
     std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
   }
 
-  /// Compares what the last steps did with what they should have done.
+  /// Compares the effect of the last steps with the expected one.
   void learn(const std::vector<double>& now) {
     // The faces of voxels have a larger area than the interface, and enforced nodes do not move.
     constexpr double min_give = 0.25, max_give = 1.25;
@@ -232,8 +233,8 @@ class Growth {
   bool solve(const LabelInput& labels) {
     // Relative to the label's voxels; meshing adds a few tenths of a percent. Small labels are promised less.
     constexpr double tolerance = 0.004, tolerance_small = 0.02;
-    // Slanted sheets of a voxel come out too thick, and tear if they shrink by more against what is beside
-    // them; voxels.
+    // Slanted sheets of a voxel come out too thick, and tear if they shrink further relative to their
+    // neighbours; voxels.
     constexpr double max_small_shrinking = 0.15;
     constexpr int sweeps = 30;  // of Gauss-Seidel; the outside and labels of correct volume are not changed
     std::vector<RegionIndex> off;
@@ -301,7 +302,7 @@ LabelBricks make_label_bricks(const LabelInput& labels, const Progress* progress
   // Only tiles with labels whose growth changed are computed again.
   Growth growth(labels.materials.size() + 1);
   for (int round = 0;; ++round) {
-    constexpr std::size_t grain = 2;  // tiles to a task, several milliseconds each where labels meet
+    constexpr std::size_t grain = 2;  // tiles per task, several milliseconds each where labels meet
     parallel_for(0, tile_count, grain, [&](std::size_t begin, std::size_t end) {
       if (progress) progress->throw_if_stopped();
       LabelSmoother smoother;

@@ -12,9 +12,9 @@
 namespace tetwright {
 
 /// The distances of LabelSmoother for a whole volume, stored in bricks of 8 x 8 x 8 cells between nodes. Node
-/// (0, 0, 0) is `padding` voxels before the first voxel along each axis, so that they reach half a voxel
-/// beyond the outermost centres, to the border of the volume. Labels continue there as they are in the
-/// outermost voxels, so surfaces pass the border as if it were not there.
+/// (0, 0, 0) is `padding` voxels before the first voxel along each axis, so that bricks reach half a voxel
+/// beyond the outermost centres, to the border of the volume. Labels continue there as in the outermost
+/// voxels, so that the border does not affect surfaces that cross it.
 struct LabelBricks {
   static constexpr int padding = 1;
   static constexpr int cells = 8, nodes = cells + 1, volume = nodes * nodes * nodes;
@@ -43,8 +43,9 @@ struct LabelBricks {
 };
 
 /// Smooths all labels, then grows or shrinks those whose volume changed, in a few rounds. Parallel over
-/// tiles, with the same result for any number of threads. Throws InputError (too many labels in one place,
-/// like an image of gray values) and Interrupted.
+/// tiles; the result does not depend on the number of threads.
+/// \throws InputError for too many labels close together, as in an image of gray values
+/// \throws Interrupted
 LabelBricks make_label_bricks(const LabelInput& labels, const Progress* progress);
 
 }  // namespace tetwright

@@ -19,7 +19,7 @@ constexpr int brick_volume = LabelBricks::volume;
 constexpr float units_per_voxel = LabelBricks::units_per_voxel;
 constexpr std::int16_t band_units = LabelBricks::band_units;
 
-/// Of each node of a brick the channel of the smallest distance, of equal ones the first.
+/// For each node of a brick, finds the channel of the smallest distance; ties go to the first.
 void find_own_channels(const LabelBricks& all, const LabelBricks::Brick& brick,
                        std::array<std::uint16_t, brick_volume>& own) {
   std::array<std::int16_t, brick_volume> smallest;
@@ -46,7 +46,7 @@ void for_each_mixed_cube(const std::array<std::uint16_t, brick_volume>& own, Use
   }
 }
 
-/// Such a volume's last axis is taken the other way round.
+/// The last axis of such a volume is reversed.
 bool is_mirrored(const LabelInput& labels) { return labels.directions.determinant() < 0; }
 
 }  // namespace
@@ -69,9 +69,9 @@ struct LabelField::Shared {
   LabelBricks bricks;
   double voxel;      ///< smallest spacing, input units
   double min_slope;  ///< smallest spacing by largest
-  Vec3
-      voxels_per_cell;  ///< of the frame, along each axis; below 0 where an axis is taken the other way round
-  Vec3 first_node;      ///< the frame's origin, in nodes
+  /// Voxels per cell of the frame, along each axis; negative along a reversed axis.
+  Vec3 voxels_per_cell;
+  Vec3 first_node;  ///< the frame's origin, in nodes
   /// For cells larger than a voxel, whose corners may be farther than the band from an interface; else empty.
   DistanceTransform depths;
 };
@@ -96,7 +96,7 @@ std::shared_ptr<const LabelField> LabelField::make(const LabelInput& labels, con
 }
 
 double LabelField::band_in_cells(const Shared& shared, const GridFrame& voxels) {
-  // With depths the band is as wide as that of level sets, which is what lattice edges need.
+  // With depths the band is as wide as that of level sets, which lattice edges need.
   return shared.depths.steps.empty() ? LabelSmoother::band * shared.voxel / voxels.cell_size : level_set_band;
 }
 
@@ -169,7 +169,7 @@ class LabelField::Sampler final : public FieldSampler {
     Place p{};
     std::array<int, 3> brick, cell;
     for (int a = 0; a < 3; ++a) {
-      // Beyond the border everything continues as it is there. NaN becomes 0.
+      // Beyond the border everything continues unchanged. NaN becomes 0.
       const int nodes = bricks_.counts[a] * brick_cells;
       const double along = std::min(std::max(0.0, at[a]), static_cast<double>(nodes));
       const int whole = std::min(static_cast<int>(along), nodes - 1);
@@ -194,7 +194,7 @@ class LabelField::Sampler final : public FieldSampler {
     return mix(low, high, p.share[2]);
   }
 
-  /// `gradient` per node.
+  /// \param gradient receives the derivative per node
   double channel_value(const Place& p, std::uint32_t channel, Vec3& gradient) const {
     const std::int16_t* v = bricks_.channel(channel) + p.node;
     double along_x[2][2], slope_x[2][2];
@@ -225,8 +225,8 @@ class LabelField::Sampler final : public FieldSampler {
     return channel ? channel_value(p, *channel) : far_value(p, region);
   }
 
-  /// Where all distances are clamped: the region, the depth of the point in it (lattice units) and its
-  /// gradient.
+  /// Region, depth in it (lattice units) and gradient of the depth at a point where all distances are
+  /// clamped.
   struct Far {
     RegionIndex region;
     double depth;
@@ -296,17 +296,17 @@ bool LabelField::is_certain(const Vec3& point) const {
   constexpr double cells_per_voxel = 2;
   if (cells_per_voxel * voxels().cell_size > (1 + tolerance::coinciding_cells) * shared_->voxel) return false;
   const Vec3 at = to_nodes(point);
-  // Only rounding separates a point from the voxel centre that it is meant to be at; in voxels.
+  // A point at a voxel centre is off by rounding only; voxels.
   return (at - at.array().round().matrix()).cwiseAbs().maxCoeff() < tolerance::coinciding_cells;
 }
 
 std::unique_ptr<FieldSampler> LabelField::sampler() const { return std::make_unique<Sampler>(*this); }
 
-/// Finds the cells that an interface passes within one cube of eight nodes after another.
+/// Finds the cells that an interface crosses within cubes of eight nodes, one cube at a time.
 class LabelField::InterfaceFinder {
  public:
-  /// Where cells are as large as voxels or larger, all that overlap the cube count. Of smaller ones a cell
-  /// counts whose corners, middles of edges, faces or centre are of more than one region.
+  /// Cells as large as voxels or larger count if they overlap the cube. Smaller ones count if their corners
+  /// and the middles of their edges, faces and interior belong to more than one region.
   explicit InterfaceFinder(const LabelField& field)
       : cells_(field.voxels().box),
         smaller_(field.voxels().cell_size < (1 - tolerance::coinciding_cells) * field.shared_->voxel),
@@ -315,7 +315,7 @@ class LabelField::InterfaceFinder {
         max_slope_(std::sqrt(3.0) * 2 * LabelSmoother::band * field.shared_->voxels_per_cell.norm()),
         band_(LabelSmoother::band) {}
 
-  /// `low`, `high`: the bounding box of the cube, in cells.
+  /// \param low, high bounding box of the cube, cells
   void append_cells(const Vec3& low, const Vec3& high, std::vector<MortonKey>& out) {
     std::array<int, 3> from, to;
     for (int a = 0; a < 3; ++a) {
@@ -328,8 +328,7 @@ class LabelField::InterfaceFinder {
  private:
   void append_range(const std::array<int, 3>& from, const std::array<int, 3>& to,
                     std::vector<MortonKey>& out) {
-    constexpr int small_range =
-        8;  // cells along a side; nothing is gained by looking at smaller ranges first
+    constexpr int small_range = 8;  // cells along a side; testing smaller ranges first does not pay
     int longest = 0;
     for (int a = 1; a < 3; ++a)
       if (to[a] - from[a] > to[longest] - from[longest]) longest = a;
@@ -347,8 +346,8 @@ class LabelField::InterfaceFinder {
           if (!smaller_ || is_mixed(x, y, z)) out.push_back(morton_encode(x, y, z));
   }
 
-  /// True if the region at the middle of a range of cells leads by more than any distances can change on the
-  /// way to its corners.
+  /// True if the region at the middle of a range of cells leads by more than distances can change on the way
+  /// to its corners.
   bool is_far_from_interfaces(const std::array<int, 3>& from, const std::array<int, 3>& to) {
     Vec3 middle, half;
     for (int a = 0; a < 3; ++a) {
@@ -373,8 +372,8 @@ class LabelField::InterfaceFinder {
   const bool smaller_;
   const std::shared_ptr<const MaterialField> on_voxels_;
   const std::unique_ptr<FieldSampler> sampler_;
-  /// The most that a distance (smallest spacings) changes over a cell: trilinear between nodes, each of them
-  /// within the band.
+  /// Maximum change of a distance (smallest spacings) over a cell: trilinear between nodes that are within
+  /// the band.
   const double max_slope_;
   const double band_;
 };

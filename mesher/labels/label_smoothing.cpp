@@ -14,33 +14,33 @@ constexpr int kernel_reach = 2;
 constexpr int back_projections = 2;
 /// Fraction of the missing share that one back projection adds: with all of it thin sheets overshoot.
 constexpr float given_back = 0.7F;
-/// Lead of the largest share over the second from which on a sample point counts entirely as its label's.
+/// Lead of the largest share over the second above which a sample point counts entirely for its label.
 constexpr float sure_lead = 0.4F;
-/// Minimum lead of the own share at the centre of a voxel: keeps interfaces an eighth of a voxel away from
-/// it.
+/// Minimum lead of a voxel's own share at its centre: keeps interfaces an eighth of a voxel away from it.
 constexpr float min_lead = 0.1F;
-/// The same lead as a distance, voxels.
+/// Minimum lead as a distance, voxels.
 constexpr float min_distance = 0.125F;
-/// The same at the middle of an edge across which two voxels of a label are connected, voxels.
+/// Minimum lead at the middle of an edge across which two voxels of a label are connected, voxels.
 constexpr float min_connection = 0.0625F;
-/// Where two labels share a face of voxels, third labels keep this distance from its middle, voxels.
-/// Otherwise the contact could shrink so far that no tet fits around it.
+/// Minimum distance of third labels from the middle of a voxel face shared by two labels, voxels. Otherwise
+/// the contact could shrink so far that no tet fits around it.
 constexpr float min_contact = 0.25F;
-/// Standard deviation of the smoothing kernel, and the derivative of probit(u) by t = 2u - 1 at 0.
+/// Standard deviation of the smoothing kernel, and the derivative of probit(u) with respect to t = 2u - 1 at
+/// 0.
 constexpr float deviation = 1.0F, probit_slope = 1.2533141F;
 /// Change of the lead of one share over the other along one voxel across a flat interface.
 constexpr float share_per_voxel = 0.8F;
 /// |2u - 1| is clamped to this, where the distance is LabelSmoother::band.
 constexpr float max_excess = 0.95F;
 
-/// Approximates -probit(u) by + - * / and sqrt only, which round alike everywhere: within 0.05 up to 1.6
-/// voxels from a flat interface, 0.17 too large at the band.
+/// Approximates -probit(u) using only + - * / and sqrt, which round identically everywhere: within 0.05 up to
+/// 1.6 voxels from a flat interface, 0.17 too large at the band.
 float distance_from_share(float u) {
   const float t = std::clamp(2 * u - 1, -max_excess, max_excess);
   return -deviation * probit_slope * t / std::sqrt(std::sqrt(1 - t * t));
 }
 
-/// The depth for the centre of a voxel most of which its label still lacks. Such a label is a rod or a single
+/// The depth of the centre of a voxel most of which its label still lacks. Such a label is a rod or a single
 /// voxel, too narrow for back projection; the depth is nearly that in a voxel of its own.
 float distance_from_lack(float lack) {
   constexpr float from = 0.3F, to = 0.8F, deepest = 0.8F;
@@ -251,7 +251,7 @@ void LabelSmoother::enforce_own_labels() {
 }
 
 void LabelSmoother::distances_from_shares(int margin, std::span<const float> growth) {
-  // Shares are 0 farther from a label than one node, where it may lack some of a voxel, and the kernel's
+  // Shares are 0 farther from a label than one node, where it may lack some of a voxel, plus the kernel's
   // reach.
   constexpr int reach_of_shares = 1 + kernel_reach;
   const float none = std::clamp(distance_from_share(0), -band, band);

@@ -21,36 +21,30 @@ namespace tetwright {
 /// Distances are computed at the centres of voxels ("nodes") in index space, where a voxel is 1 along each
 /// axis:
 ///  1. The indicator function of each label is smoothed with a binomial kernel of variance 1. A point belongs
-///  to the
-///     label of the largest value, so labels share their interfaces by construction.
-///  2. Smoothing moves curved interfaces inwards and removes thin parts. The part of each voxel that every
-///  label
-///     occupies (by eight sample points) is compared with what it should occupy; the difference is smoothed
-///     likewise and added: back projection, as in superresolution (Irani & Peleg 1991, section 3). Done
-///     twice.
+///     to the label of the largest value, so labels share their interfaces by construction.
+///  2. Smoothing moves curved interfaces inwards and removes thin parts. Back projection restores them, as in
+///     superresolution (Irani & Peleg 1991, section 3): the fraction of each voxel that a label occupies (by
+///     eight sample points) is compared with the fraction it should occupy, and the difference is smoothed
+///     likewise and added. Done twice.
 ///  3. After each back projection, and after step 4, the value of each node's own label is raised above the
-///  others
-///     by a margin (a constraint as in Whitaker 2000, "Reducing aliasing artifacts in iso-surfaces of binary
-///     volumes"). Labels that still lack most of a voxel of theirs, rods and single voxels, get a fixed depth
-///     there.
+///     others by a margin (a constraint as in Whitaker 2000, "Reducing aliasing artifacts in iso-surfaces of
+///     binary volumes"). Labels that still lack most of one of their voxels, rods and single voxels, get a
+///     fixed depth there.
 ///  4. The remaining error of each label's total volume is removed by growing or shrinking the label
-///  uniformly. The
-///     caller, who sees all tiles, determines by how much, from shares() and contacts().
+///     uniformly. The caller, who sees all tiles, determines by how much, from shares() and contacts().
 ///  5. Values u become distances -probit(u), which are correct for a flat interface.
-///  6. Where labels alternate in the four voxels around an edge, the two voxels of one label are connected;
-///  of two
-///     such pairs, those of the label that is rarer nearby. Slanted sheets one voxel thick are connected by
-///     such edges only, and labels that touch in just an edge are kept apart.
-///  7. Labels that share a face of voxels get a contact of a minimum size, as far as step 6 and the band
-///  permit.
+///  6. Where labels alternate in the four voxels around an edge, the two voxels of one label are connected,
+///     those of the label that is rarer nearby if both form such a pair. Slanted sheets one voxel thick are
+///     connected by such edges only, and labels that touch only along an edge are kept apart.
+///  7. Labels that share a voxel face get a contact of a minimum size, as far as step 6 and the band permit.
 ///
-/// Nodes that neighbouring tiles have in common get the same bits in both.
+/// Nodes that neighbouring tiles have in common get identical bits in both.
 class LabelSmoother {
  public:
-  /// Cells of a tile along each side. Nodes around the tile are computed with it and thrown away: of side^3
+  /// Cells of a tile along each side. Nodes around the tile are computed with it and discarded: of side^3
   /// nodes cells^3 are kept, a quarter. Larger tiles would hold more labels at a time than fit in the cache.
   static constexpr int cells = 32;
-  /// Volumes are summed in parts of a tile of so many cells along each side.
+  /// Volumes are summed in parts of a tile with this many cells along each side.
   static constexpr int part_cells = 16, parts = cells / part_cells;
   static constexpr int nodes = cells + 1;  ///< of a tile
   static constexpr int reach = 9;          ///< width of the layer of nodes around the tile that affect it
@@ -63,36 +57,41 @@ class LabelSmoother {
   /// The labels of side^3 voxels with the tile in their middle, x fastest; to be filled with two or more
   /// labels.
   std::span<RegionIndex> voxels() { return raw_; }
-  /// The voxels of the volume, as nodes of the tile from `low` to `high` (exclusive); at first all. Volumes
-  /// and contacts are those within it, up to half a voxel beyond the outermost centres.
+  /// Restricts volumes and contacts to the volume: nodes `low` to `high` (exclusive) of the tile, and half a
+  /// voxel beyond the outermost centres. Initially unrestricted.
   void set_volume(const std::array<int, 3>& low, const std::array<int, 3>& high) {
     low_ = low;
     high_ = high;
   }
-  /// How much of the volume is in a part of the tile, voxels.
+  /// The number of voxels of the volume in a part of the tile.
   double volume_of(const std::array<int, 3>& part) const;
   /// Finds the labels and returns their number, which must not exceed max_labels: each takes a megabyte.
   std::size_t number_labels();
   static constexpr std::size_t max_labels = 1024;
-  /// Computes the distances; to be called after number_labels(). `growth`, by region: how far each label is
-  /// to be grown (or, if negative, shrunk) in all directions, voxels; at most max_growth in size.
+  /// Computes the distances.
+  /// \param growth by region: how far each label is grown (or, if negative, shrunk) in all directions,
+  ///   voxels; at most max_growth in absolute value
+  /// \pre number_labels() was called
   void smooth(std::span<const float> growth);
   static constexpr float max_growth = 0.7F;
 
   /// The labels of the voxels, ascending.
   std::span<const RegionIndex> labels() const { return labels_; }
-  /// The signed distance of a label (an index into labels()) at a node of the tile, voxels, negative inside.
+  /// The signed distance of a label at a node of the tile, voxels, negative inside.
+  /// \param label index into labels()
   float distance(std::size_t label, int x, int y, int z) const {
     return fields_[label][place(x + reach, y + reach, z + reach)];
   }
-  /// The volume of each of labels() in a part of the tile (its place along x, y, z, each below `parts`),
-  /// voxels: within 2 %, except for rods much narrower than a voxel.
+  /// The volume of each of labels() in a part of the tile, voxels: within 2 %, except for rods much narrower
+  /// than a voxel.
+  /// \param part indices along x, y, z, each below `parts`
   std::vector<double> shares(const std::array<int, 3>& part) const;
-  /// The number of faces between voxels of two labels in the tile; each pair once, ascending.
+  /// Labels of two regions and the number of voxel faces between them in the tile.
   struct Contact {
     RegionIndex first, second;  ///< first < second
     std::uint32_t faces;
   };
+  /// Each pair once, ascending.
   std::vector<Contact> contacts() const;
 
  private:
@@ -106,7 +105,7 @@ class LabelSmoother {
     int place;
     std::uint16_t own, label_count;
     std::uint32_t first_label;
-    float lack;  ///< the part of its voxel that its own label did not occupy at the last back projection
+    float lack;  ///< the fraction of its voxel that its own label did not occupy at the last back projection
   };
 
   static constexpr int place(int x, int y, int z) { return (z * side + y) * side + x; }
@@ -142,7 +141,7 @@ class LabelSmoother {
 
   /// Samples of shares() along each side of a cell.
   static constexpr int samples_along = 4;
-  /// Of these the ones within the volume, of the cell above node i (of the tile) along an axis.
+  /// The range of samples within the volume in the cell above node i (of the tile) along an axis.
   std::pair<int, int> samples_within(int axis, int i) const {
     return {i >= low_[axis]       ? 0
             : i == low_[axis] - 1 ? samples_along / 2
@@ -155,14 +154,14 @@ class LabelSmoother {
   static constexpr int far = std::numeric_limits<int>::max() / 2;
   std::array<int, 3> low_{-far, -far, -far}, high_{far, far, far};  ///< see set_volume()
   std::vector<RegionIndex> raw_;
-  std::vector<std::uint16_t> own_;      ///< place in labels_ of each node's label
-  std::vector<std::uint16_t> numbers_;  ///< by region: place in labels_ plus 1 while labels are numbered
+  std::vector<std::uint16_t> own_;      ///< index in labels_ of each node's label
+  std::vector<std::uint16_t> numbers_;  ///< by region: index in labels_ plus 1 while labels are numbered
   std::vector<RegionIndex> labels_;
   std::vector<Box> boxes_;               ///< of each label's voxels
   std::vector<Field> fields_, missing_;  ///< missing_ is 0 between uses
   std::vector<Box> missing_boxes_;
   std::vector<MixedNode> mixed_;
-  std::vector<std::int32_t> mixed_at_;  ///< by place: number in mixed_, or -1
+  std::vector<std::int32_t> mixed_at_;  ///< by place: index in mixed_, or -1
   std::vector<std::uint16_t> near_;
   Field rows_, slices_;
 };

@@ -25,8 +25,8 @@ class Opening {
         runs_(labels.regions.size()) {}
 
   std::vector<std::size_t> thin_voxels() {
-    // A box starts at a voxel if, along each axis in turn, enough voxels in a row pass the test of the axes
-    // before. Then every voxel of such a box is thick.
+    // A box starts at a voxel if, for one axis after another, enough consecutive voxels pass the test of the
+    // previous axes. Then every voxel of such a box is thick.
     for (int axis = 0; axis < 3; ++axis) sweep(axis, [&](int a, auto&&... p) { start_boxes(a, p...); });
     for (int axis = 0; axis < 3; ++axis) sweep(axis, [&](int a, auto&&... p) { fill_boxes(a, p...); });
     constexpr std::size_t voxels_at_once = 1 << 18;
@@ -42,7 +42,7 @@ class Opening {
 
  private:
   /// Calls `work(axis, first, step, lines)` for lines of voxels along an axis: the first voxel, the step
-  /// between voxels of a line, and the number of lines side by side.
+  /// between voxels of a line, and the number of adjacent lines.
   template <class Work>
   void sweep(int axis, Work&& work) {
     if (progress_) progress_->throw_if_stopped();
@@ -99,8 +99,8 @@ class Opening {
       }
   }
 
-  /// True for a voxel of the outside in a box that starts before the volume. sweep() does not find those, so
-  /// all are tried.
+  /// True for a voxel of the outside in a box that starts before the volume. sweep() does not find those
+  /// boxes, so all are tried.
   bool in_box_from_outside_volume(std::size_t i) const {
     std::array<int, 3> at, low;
     std::size_t rest = i;
@@ -197,15 +197,15 @@ class ThinLabelFinder {
     return coarsest;
   }
 
-  /// Finds the voxels that are too thin for cells halved `depth` times, to be called for depth 0, 1, ...
-  /// False if there are none, or if smaller cells are not worth trying.
+  /// Finds the voxels too thin for cells halved `depth` times; call for depth 0, 1, ... Returns false if
+  /// there are none, or if smaller cells are not worth trying.
   bool find_voxels(int depth) {
     const Sides sides = sides_at(depth);
     if (sides != Sides{1, 1, 1}) {
       voxels_ = Opening(labels_, sides, progress_).thin_voxels();
       return !voxels_.empty();
     }
-    // Two cells to every voxel, too few for what is hardly larger than one; eight or more are enough.
+    // Two cells per voxel are too few for islands hardly larger than a voxel; eight or more are enough.
     constexpr double cells_per_island_voxel = 8;
     if (island_levels_ == 2 || cells_per_island_voxel * frame_.cell_size <= spacing_.minCoeff()) return false;
     ++island_levels_;
@@ -220,7 +220,7 @@ class ThinLabelFinder {
     return !voxels_.empty() && voxels_.size() <= max_island_voxels;
   }
 
-  /// The voxels found, as parts of the regions that are thinner than even the smallest cells resolve.
+  /// The voxels found, as parts of their regions that even the smallest cells do not resolve.
   std::vector<ThinPart> too_thin() const {
     std::vector<ThinPart> parts;
     for (std::size_t r = 0; r <= labels_.materials.size(); ++r)
@@ -273,7 +273,7 @@ class ThinLabelFinder {
     return sides;
   }
 
-  /// Of a voxel, in grid coordinates.
+  /// The centre of a voxel, grid coordinates.
   Vec3 centre(std::size_t voxel) const {
     const auto nx = static_cast<std::size_t>(labels_.size[0]), ny = static_cast<std::size_t>(labels_.size[1]);
     const std::size_t x = voxel % nx, y = voxel / nx % ny, z = voxel / (nx * ny);
@@ -284,10 +284,10 @@ class ThinLabelFinder {
   const GridFrame& frame_;
   const Progress* progress_;
   Vec3 spacing_;             ///< of the voxels, input units
-  Eigen::Matrix3d to_grid_;  ///< of steps between voxels
+  Eigen::Matrix3d to_grid_;  ///< maps steps between voxels
   Vec3 first_;               ///< the first voxel's centre, grid coordinates
   std::vector<std::size_t> voxels_;
-  int island_levels_ = 0;  ///< levels that were made for small islands
+  int island_levels_ = 0;  ///< levels created for small islands
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// What LabelSmoother measures: volumes of labels, and the faces between their voxels.
+// Measurements of LabelSmoother: volumes of labels, and faces between their voxels.
 
 #include <algorithm>
 #include <cmath>
@@ -106,7 +106,7 @@ std::vector<double> LabelSmoother::shares(const std::array<int, 3>& part) const 
         corners.resize(candidates.size());
         for (std::size_t l = 0; l < candidates.size(); ++l)
           for (int k = 0; k < 8; ++k) corners[l][k] = fields_[candidates[l]][places[k]];
-        // Each sample stands for the box around it, which is divided where an interface crosses it.
+        // Each sample represents the box around it, which is divided where an interface crosses it.
         for (int i = 0; i < samples_along * samples_along * samples_along; ++i) {
           const std::array<int, 3> step{i % samples_along, i / samples_along % samples_along,
                                         i / (samples_along * samples_along)};

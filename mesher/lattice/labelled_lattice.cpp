@@ -21,7 +21,7 @@ bool mixed(const std::vector<RegionIndex>& regions, const Tet& t) {
   return regions[t[1]] != r || regions[t[2]] != r || regions[t[3]] != r;
 }
 
-/// Relaxed, since all writers write 1 and flags are read after the loop only.
+/// Relaxed, since all writers write 1 and flags are read only after the loop.
 void mark(std::uint8_t& flag) { std::atomic_ref<std::uint8_t>(flag).store(1, std::memory_order_relaxed); }
 
 /// A flag for each point: 1 for points of tets with more than one region.
@@ -117,7 +117,7 @@ void LabelledLattice::list_star_regions(std::size_t region_count) {
     }
     return;
   }
-  // Two passes over the stars: sizes, then places.
+  // Two passes over the stars: sizes, then regions.
   const auto regions_of = [&](Index p, std::vector<RegionIndex>& out) {
     out.clear();
     for (Index t : stars.tets(p))

@@ -15,7 +15,7 @@
 
 namespace tetwright {
 
-/// The lattice whose points are moved and whose tets are cut: those tets that can contribute to the mesh, and
+/// The lattice whose points are moved and whose tets are cut: the tets that can contribute to the mesh, and
 /// the region of every point.
 ///
 /// For each point near an interface the signed distances of the regions in its closed star are stored; the
@@ -38,8 +38,8 @@ class LabelledLattice {
   /// The current region of a point, or on_interface.
   RegionIndex region(Index p) const { return is_on[p] ? on_interface : first_region[p]; }
 
-  /// The regions that the closed star of a point near an interface had before any point was moved, ascending,
-  /// and their signed distances at the point, in the same order.
+  /// The regions that the closed star of a point near an interface had before any point was moved, ascending.
+  /// star_values() are their signed distances at the point, in this order.
   std::span<const RegionIndex> star_regions(Index p) const {
     const Index s = stars.slot(p);
     return {regions_.data() + starts_[s], regions_.data() + starts_[s + 1]};
@@ -52,20 +52,20 @@ class LabelledLattice {
     const Index s = stars.slot(p);
     return {values_.data() + starts_[s], values_.data() + starts_[s + 1]};
   }
-  /// The signed distance of region b minus that of region a at a point near an interface; both must be in its
-  /// star.
+  /// The signed distance of region b minus that of region a at a point near an interface.
+  /// \pre both regions are in the point's star
   float gap(Index p, RegionIndex a, RegionIndex b) const;
-  /// Where the edge from p (region a) to q (region b) is cut, as a fraction of the edge.
+  /// Position of the cut on the edge from p (region a) to q (region b), as a fraction of the edge.
   double cut_share(Index p, RegionIndex a, Index q, RegionIndex b) const {
     const double at_p = gap(p, a, b), at_q = gap(q, b, a);
     return at_p + at_q > 0 ? at_p / (at_p + at_q) : 0.5;
   }
-  /// The smallest signed distance of the other regions in the star minus that of the point's own.
+  /// The smallest signed distance of the other regions in the star minus that of the point's own region.
   float margin(Index p) const;
 
   /// Finds the regions of all stars and sets their values to 0.
   void list_star_regions(std::size_t region_count);
-  /// Frees the stars, their regions and values, which must not be used any more.
+  /// Frees the stars, their regions and values, which must not be used afterwards.
   void forget_stars();
 
  private:
@@ -74,12 +74,15 @@ class LabelledLattice {
   std::vector<float> values_;
 };
 
-/// Makes a labelled lattice of points, their regions (`nearest`, of `region_count` regions) and tets.
+/// Makes a labelled lattice.
 ///
 /// Tets outside without a point next to an interface are dropped, unless `keep_outside`. Isolated vertices,
 /// points without a neighbour of their own region, get the region that most of their neighbours have, those
-/// outside first; `isolated_vertices` (may be null) receives their number. They come from cracks and
-/// self-intersections smaller than a cell, and each would become a component or a cavity.
+/// outside first. They come from cracks and self-intersections smaller than a cell, and each would become a
+/// component or a cavity.
+/// \param nearest region of each point
+/// \param region_count number of regions
+/// \param isolated_vertices receives their number; may be null
 LabelledLattice label_lattice(LatticePoints points, std::vector<NearestRegion> nearest, TetList tets,
                               std::size_t region_count, bool keep_outside, std::size_t* isolated_vertices);
 

@@ -33,7 +33,7 @@ LeafBox leaf_box(const Octree& octree, std::size_t i) {
   return {low, 2 << leaf.level, leaf.level};
 }
 
-/// Corner numbers (bits x, y, z) of the face of `axis` at `upper`, going round.
+/// Corner numbers (bits x, y, z) of the face of `axis` at `upper`, in cyclic order.
 std::array<int, 4> face_ring(int axis, bool upper) {
   const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3, base = upper ? 1 << axis : 0;
   return {base, base | u, base | u | v, base | v};
@@ -55,7 +55,7 @@ HalfCells middle(const HalfCells& a, const HalfCells& b) {
   return {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
 }
 
-/// Emits the tets that belong to one leaf after another.
+/// Emits the tets that belong to each leaf.
 class TetEmitter {
  public:
   TetEmitter(const Octree& octree, const LatticePoints& points, const std::vector<std::uint8_t>* unwanted,
@@ -125,7 +125,7 @@ class TetEmitter {
       const std::vector<std::uint8_t>& u = *unwanted_;
       if (u[a] && u[b] && u[c] && u[d]) return;
     }
-    // The coordinates are small halves of whole numbers: the value has no rounding error.
+    // Coordinates are small multiples of 1/2: the value has no rounding error.
     const auto& p = points_.positions;
     if (orient3d_value(p[a], p[b], p[c], p[d]) < 0) std::swap(c, d);
     out_.push_back({a, b, c, d});
@@ -151,7 +151,7 @@ Index LatticePoints::find(MortonKey key, Index hint) const {
 
 LatticePoints lattice_points(const Octree& octree) {
   LatticePoints points;
-  // The lowest bit below the key tells centres from the rest; corners come from up to eight leaves.
+  // The lowest bit below the key marks centres; corners come from up to eight leaves.
   std::vector<std::uint64_t> marked = parallel_collect<std::uint64_t>(
       0, octree.size(), leaf_grain, [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& out) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -163,7 +163,7 @@ LatticePoints lattice_points(const Octree& octree) {
               if (on_box(octree, box, axis, upper))
                 out.push_back(morton_encode(face_centre(box, axis, upper)) << 1);
         }
-        // Most repetitions are within a chunk: a quarter of the keys is left.
+        // Most repetitions are within a chunk; a quarter of the keys remains.
         std::sort(out.begin(), out.end());
         out.erase(std::unique(out.begin(), out.end()), out.end());
       });
@@ -180,7 +180,7 @@ LatticePoints lattice_points(const Octree& octree) {
       points.positions[i] = 0.5 * Vec3(p[0], p[1], p[2]);
     }
   });
-  // Leaves and their centres come in the same order.
+  // Leaves and their centres have the same order.
   points.leaf_centres.reserve(octree.size());
   for (Index i = 0; i < points.size(); ++i)
     if (points.is_centre[i]) points.leaf_centres.push_back(i);

@@ -13,19 +13,20 @@
 namespace tetwright {
 
 /// The points of the body-centred lattice over an octree: the corners and the centre of every leaf, and the
-/// centre of every leaf face on the box. Sorted by Morton key, so that points close in space have close
+/// centre of every leaf face on the box. Sorted by Morton key, so that neighbouring points have close
 /// numbers.
 struct LatticePoints {
-  /// Morton keys of the points in half finest cells (centres of finest cells are at odd numbers), ascending.
+  /// Morton keys of the points in half finest cells (centres of finest cells have odd coordinates),
+  /// ascending.
   std::vector<MortonKey> keys;
   std::vector<Vec3> positions;          ///< lattice units
   std::vector<std::uint8_t> is_centre;  ///< 1 for centres of leaves
 
   std::size_t size() const { return keys.size(); }
-  std::vector<Index> leaf_centres;  ///< by leaf: the number of its centre
-  std::array<int, 3> box{};         ///< the octree's, lattice units
+  std::vector<Index> leaf_centres;  ///< by leaf: index of its centre
+  std::array<int, 3> box{};         ///< of the octree, lattice units
 
-  /// The number of the point with this key, or no_index. Fast if it is close to the number `hint`.
+  /// The index of the point with this key, or no_index. Fast if it is close to `hint`.
   Index find(MortonKey key, Index hint = 0) const;
 };
 
@@ -34,7 +35,7 @@ LatticePoints lattice_points(const Octree& octree);
 /// The region of each lattice point.
 std::vector<NearestRegion> lattice_regions(const LatticePoints& points, const MaterialField& field);
 
-/// For each lattice point 1 if it is outside and no interface is within the field's band.
+/// 1 for each lattice point that is outside with no interface within the field's band.
 std::vector<std::uint8_t> far_outside(const std::vector<NearestRegion>& regions, const MaterialField& field);
 
 /// The tets of the body-centred lattice: positive, conforming without T-junctions, filling the box.
@@ -42,13 +43,13 @@ std::vector<std::uint8_t> far_outside(const std::vector<NearestRegion>& regions,
 /// Two leaves of equal size that share a face give four tets around the segment between their centres, one
 /// for each edge of the face. Where a leaf is next to four smaller ones, each of the four small faces is cut
 /// along the diagonal through the centre of the large face, and its triangles are joined to both centres. On
-/// the box the centre of the face takes the place of the neighbour's centre. An edge with a hanging midpoint
-/// is split there. Every face between two pyramids is a triangle of a centre and an edge, and every diagonal
-/// depends on its quadrilateral only, so neighbours agree. Dihedral angles are 60 and 90 degrees between
-/// equal leaves and 45 to 120 elsewhere.
+/// the box the centre of the face replaces the neighbour's centre. An edge with a hanging midpoint is split
+/// there. Every face between two pyramids is a triangle of a centre and an edge, and every diagonal depends
+/// only on its quadrilateral, so neighbours agree. Dihedral angles are 60 and 90 degrees between equal leaves
+/// and 45 to 120 elsewhere.
 ///
-/// If `unwanted` is given, tets of leaves up to the level `unwanted_level` are left out if all their points
-/// are unwanted.
+/// \param unwanted by point, may be null: tets of leaves up to `unwanted_level` are omitted if all their
+///   points are unwanted
 TetList lattice_tets(const Octree& octree, const LatticePoints& points,
                      const std::vector<std::uint8_t>* unwanted = nullptr, int unwanted_level = 0);
 

@@ -40,8 +40,8 @@ bool contains(const std::vector<MortonKey>& ascending, MortonKey key) {
   return std::binary_search(ascending.begin(), ascending.end(), key);
 }
 
-/// True if one of the cells across the faces of a cell is among `split`. All keys are of one level, whose
-/// grid has `size` cells.
+/// True if a cell across a face of the given one is among `split`. All keys are of one level, whose grid has
+/// `size` cells.
 bool has_split_neighbour(MortonKey key, const std::array<int, 3>& size, const std::vector<MortonKey>& split) {
   const std::array<int, 3> p = morton_decode(key);
   for (std::size_t a = 0; a < 3; ++a)
@@ -106,7 +106,7 @@ bool interpolates(FieldSampler& sampler, MortonKey key, int level, double tolera
         const auto mix = [](double a, double b, double f) { return a + f * (b - a); };
         const double coarse = mix(mix(mix(corner[0], corner[1], fx), mix(corner[2], corner[3], fx), fy),
                                   mix(mix(corner[4], corner[5], fx), mix(corner[6], corner[7], fx), fy), fz);
-        // A distance has slope 1, so near the interface the difference of values is the misplacement.
+        // A distance has slope 1, so near the interface the difference of values is the displacement.
         if (std::min(std::abs(value), std::abs(coarse)) >= voxel && (value < 0) == (coarse < 0)) continue;
         if (std::abs(coarse - value) > tolerance * voxel) return false;
       }
@@ -208,8 +208,8 @@ Octree build_octree(const MaterialField& field, const OctreeOptions& options,
               out.push_back(holding[i]);
         });
     const std::array<int, 3> size{frame.cells[0] >> level, frame.cells[1] >> level, frame.cells[2] >> level};
-    // Cut tets are worse where cells of two sizes meet at the interface, so coarse cells are used only inside
-    // patches of them, never singly.
+    // Cut tets are worse where cells of two sizes meet at the interface, so coarse cells are used only in
+    // groups, never singly.
     std::vector<MortonKey> chosen = parallel_collect<MortonKey>(
         0, holding.size(), cell_grain, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
           for (std::size_t i = begin; i < end; ++i)

@@ -27,17 +27,17 @@ struct Octree {
 
   std::size_t size() const { return packed.size(); }
   Leaf leaf(std::size_t i) const { return {packed[i] >> 5, static_cast<int>(packed[i] & 31)}; }
-  /// The number of the leaf that contains the finest cell with this lower corner, which must be in the box.
-  /// Fast if it is close to the number `hint`.
+  /// The index of the leaf that contains the finest cell with this lower corner, which must be in the box.
+  /// Fast if it is close to `hint`.
   std::size_t find(MortonKey finest_cell, std::size_t hint = 0) const;
 };
 
 /// Returns the cells of a level (keys >> 3 * level) that must be split, given the ascending list of those
-/// that already are. Called for levels 1 and up, in that order. The result need be neither sorted nor unique.
+/// already split. Called for levels 1 and up, in that order. The result need be neither sorted nor unique.
 using SplitCells = std::function<std::vector<MortonKey>(int level, const std::vector<MortonKey>& already)>;
 
 /// The coarsest octree in which all cells returned by `split` are split and that is balanced across faces and
-/// edges, by one sweep from the finest level up.
+/// edges, built in one sweep from the finest level up.
 Octree build_octree(const std::array<int, 3>& cells, int root_level, const SplitCells& split);
 
 struct OctreeOptions {
@@ -49,10 +49,13 @@ struct OctreeOptions {
   int coarsest_interface_level = 2;
 };
 
-/// The octree for a field, of the leaves within the frame's box: cells of one voxel at interfaces, except
-/// where trilinear interpolation over a coarser cell is accurate enough, and larger cells away from them.
-/// `interface_voxels` are the field's. The cells listed in `thin`, by level, are split further. Throws
-/// Interrupted.
+/// The octree for a field, restricted to leaves within the frame's box: cells of one voxel at interfaces,
+/// except where trilinear interpolation over a coarser cell is accurate enough, and larger cells away from
+/// them.
+/// \param interface_voxels of the field
+/// \param thin by level: cells that are split further
+/// \param progress may be null
+/// \throws Interrupted
 Octree build_octree(const MaterialField& field, const OctreeOptions& options,
                     std::vector<MortonKey> interface_voxels, const std::vector<std::vector<MortonKey>>& thin,
                     Progress* progress);

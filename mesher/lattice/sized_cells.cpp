@@ -31,7 +31,7 @@ std::vector<MortonKey> root_cells(const GridFrame& frame) {
 RefinementRegions find_sized_cells(const MaterialField& field, const MaxCell& max_cell, bool outside,
                                    Progress* progress) {
   const GridFrame& frame = field.frame();
-  // At the centre and the corners: lengths that grow slowly are not much smaller anywhere between.
+  // Tested at the centre and the corners: lengths that grow slowly are not much smaller anywhere between.
   const auto too_large = [&](const Vec3& centre, double side) {
     const auto asks = [&](const Vec3& at) { return side * frame.cell_size > max_cell(frame.to_input(at)); };
     if (asks(centre)) return true;
@@ -39,7 +39,7 @@ RefinementRegions find_sized_cells(const MaterialField& field, const MaxCell& ma
       if (asks(centre + side * (Vec3(k & 1, k >> 1 & 1, k >> 2) - Vec3::Constant(0.5)))) return true;
     return false;
   };
-  std::vector<std::vector<MortonKey>> split_by_step;  // from the root cells on
+  std::vector<std::vector<MortonKey>> split_by_step;  // starting at the root cells
   std::vector<MortonKey> cells = root_cells(frame);
   double total = 0;
   for (int level = frame.root_level; level > -max_refinement && !cells.empty(); --level) {

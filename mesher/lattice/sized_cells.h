@@ -9,13 +9,15 @@
 
 namespace tetwright {
 
-/// The largest cell that is wanted at a place; both in input units. May be called concurrently.
+/// The largest cell wanted at a point; both in input units. May be called concurrently.
 using MaxCell = std::function<double(const Vec3&)>;
 
-/// The cells of a field's octree that must be split so that none is larger than `max_cell` asks for: inside,
-/// by up to max_refinement levels below a voxel; at interfaces down to a voxel, which their distances show.
-/// With `outside` there as well. The field must not be refined. Throws OutputError where these are more cells
-/// than memory is there for, Interrupted.
+/// The cells of a field's octree that must be split so that none is larger than `max_cell`: inside, by up to
+/// max_refinement levels below a voxel; at interfaces down to a voxel, which their distances resolve.
+/// \param outside splits cells outside, too
+/// \pre the field is not refined
+/// \throws OutputError if the memory does not suffice for these cells
+/// \throws Interrupted
 RefinementRegions find_sized_cells(const MaterialField& field, const MaxCell& max_cell, bool outside,
                                    Progress* progress);
 

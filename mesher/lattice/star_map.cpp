@@ -11,10 +11,10 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t star_grain = 1 << 14;  // tets to a task, some nanoseconds each
+constexpr std::size_t star_grain = 1 << 14;  // tets per task, some nanoseconds each
 
-/// The list of tets is gone through once for each of so many parts of the points: their rows are not all
-/// there as plain numbers at a time.
+/// Number of passes over the tets, each for one part of the points: not all rows exist as plain numbers at a
+/// time.
 constexpr std::size_t row_passes = 4;
 
 void append_steps(std::span<const Index> ascending, std::vector<std::uint8_t>& out) {
@@ -33,7 +33,8 @@ StarMap::StarMap(std::vector<Index> points, std::size_t point_count, const TetLi
     : points_(std::move(points)) {
   slots_.assign(point_count, no_index);
   for (Index i = 0; i < points_.size(); ++i) slots_[points_[i]] = i;
-  // Counted, filled in whatever order the threads come, then each row sorted: the same rows in the end.
+  // Rows are counted, filled in any order of threads, then sorted, so the result does not depend on that
+  // order.
   std::vector<Index> counts(points_.size(), 0);
   const auto for_each_corner = [&](std::size_t first, std::size_t last, auto&& body) {
     parallel_for(0, tets.size(), star_grain, [&](std::size_t begin, std::size_t end) {

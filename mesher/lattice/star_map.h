@@ -27,7 +27,7 @@ class StarMap {
       using reference = Index;
 
       Iterator() = default;
-      /// At least one more byte must be readable behind each row.
+      /// \pre at least one more byte is readable after the row
       explicit Iterator(const std::uint8_t* at) : at_(at), next_(at) { read(); }
       static Iterator end(const std::uint8_t* at) {
         Iterator end;
@@ -74,19 +74,20 @@ class StarMap {
   };
 
   StarMap() = default;
-  /// `points` ascending; `point_count` in all.
+  /// \param points ascending
+  /// \param point_count number of all points, listed or not
   StarMap(std::vector<Index> points, std::size_t point_count, const TetList& tets);
 
   const std::vector<Index>& points() const { return points_; }  ///< ascending
   bool lists(Index point) const { return slots_[point] != no_index; }
-  Index slot(Index point) const { return slots_[point]; }  ///< place in points(), or no_index
+  Index slot(Index point) const { return slots_[point]; }  ///< index in points(), or no_index
   /// The tets around a listed point.
   Tets tets(Index point) const {
     const Index s = slots_[point], chunk = s / chunk_rows;
     const std::uint8_t* bytes = chunks_[chunk].data();
     return {bytes + offsets_[s + chunk], bytes + offsets_[s + chunk + 1]};
   }
-  /// Frees the rows; tets() must not be called any more.
+  /// Frees the rows; tets() must not be called afterwards.
   void forget_tets() {
     std::vector<std::vector<std::uint8_t>>().swap(chunks_);
     std::vector<std::uint32_t>().swap(offsets_);
@@ -96,7 +97,7 @@ class StarMap {
   static constexpr Index chunk_rows = 4096;
 
   std::vector<Index> points_, slots_;
-  std::vector<std::vector<std::uint8_t>> chunks_;  ///< the rows of so many slots each, then one byte
+  std::vector<std::vector<std::uint8_t>> chunks_;  ///< the rows of chunk_rows slots, then one byte
   std::vector<std::uint32_t> offsets_;             ///< of rows in their chunk, and of each chunk's end
 };
 

@@ -18,7 +18,7 @@ class TetList {
   static constexpr std::size_t piece_size = 1 << 15;
 
   TetList() = default;
-  /// The concatenation of the parts; each part is freed as soon as it is copied.
+  /// Concatenates the parts, freeing each as soon as it is copied.
   explicit TetList(std::vector<std::vector<Tet>> parts) {
     for (std::vector<Tet>& part : parts) {
       append(part);
@@ -30,12 +30,12 @@ class TetList {
   const Tet& operator[](std::size_t i) const { return pieces_[i / piece_size][i % piece_size]; }
 
   std::size_t piece_count() const { return pieces_.size(); }
-  /// The tets piece * piece_size and following.
+  /// The tets from piece * piece_size on.
   std::span<const Tet> piece(std::size_t piece) const { return pieces_[piece]; }
-  /// Frees a piece, whose tets must not be read any more. Different pieces may be freed concurrently.
+  /// Frees a piece, whose tets must not be read afterwards. Different pieces may be freed concurrently.
   void give_back(std::size_t piece) { std::vector<Tet>().swap(pieces_[piece]); }
 
-  /// Keeps the tets for which `keep(tet)` is true, in their order. `keep` is called concurrently.
+  /// Keeps the tets for which `keep(tet)` is true, in order. `keep` is called concurrently.
   template <class Keep>
   void keep_if(Keep&& keep) {
     parallel_for(0, pieces_.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -45,7 +45,7 @@ class TetList {
     *this = TetList(std::move(pieces_));
   }
 
-  /// A copy of all of them.
+  /// A copy of all tets.
   std::vector<Tet> all() const {
     std::vector<Tet> tets;
     for (const std::vector<Tet>& piece : pieces_) tets.insert(tets.end(), piece.begin(), piece.end());

@@ -9,7 +9,7 @@ namespace tetwright {
 
 namespace {
 
-/// Share by which the volume of a material may change.
+/// Max relative change of a material's volume.
 constexpr double volume_share = 0.008;
 
 }  // namespace

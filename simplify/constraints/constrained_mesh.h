@@ -11,19 +11,23 @@
 
 namespace tetwright {
 
-/// A mesh with what operations on it must respect: its surfaces in a grid, the volumes of its materials and
-/// the frozen points.
+/// A mesh with everything that constrains its operations: a grid of its surfaces, the volumes of its
+/// materials and the frozen vertices.
 struct ConstrainedMesh {
-  /// `name` is what messages call the mesh; `frozen` by point, empty: none; `fix_boundary` freezes boundary
-  /// and interfaces. Throws InputError where the volumes of the tets add up to nothing or less. The grid is
-  /// built by whoever works on the mesh; volumes are kept for as long as it exists.
+  /// Takes the mesh over. Does not build the grid: whoever works on the mesh does.
+  ///
+  /// \param name the mesh's name in messages.
+  /// \param frozen one value for each point, nonzero: frozen; empty: no point is.
+  /// \param fix_boundary freezes all points of the boundary and the interfaces.
+  /// \param keep_volumes bounds the volume of each material for as long as this object exists.
+  /// \throws InputError if the sum of the tets' signed volumes is not positive.
   ConstrainedMesh(TetMesh&& input, const std::string& name, const std::vector<std::uint8_t>& frozen,
                   bool fix_boundary, bool keep_volumes);
   ConstrainedMesh(const ConstrainedMesh&) = delete;
   ConstrainedMesh& operator=(const ConstrainedMesh&) = delete;
 
-  /// Patches of faces between materials go from the grid, which knows them, to the mesh: before the grid is
-  /// built anew, or the mesh leaves.
+  /// Copies the patches of interface faces from the grid, which keeps them during operations, to the mesh.
+  /// Call it before the grid is rebuilt and before the mesh is taken out.
   void keep_patches();
 
   EditableMesh mesh;

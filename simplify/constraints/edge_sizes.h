@@ -9,12 +9,13 @@
 
 namespace tetwright {
 
-/// The lengths that edges should have: those that a field wants, within a factor, and bounds that hold
-/// everywhere. Working coordinates. All functions may be called concurrently.
+/// Target lengths of edges: those of a size field, within a factor, and bounds that hold everywhere. Working
+/// coordinates. Const functions may be called concurrently.
 class EdgeSizes {
  public:
-  /// `target_length` may be null: then only the bounds hold. `min_edge` and `max_edge` in input units,
-  /// `extent` of the mesh: longer edges than that are not wanted.
+  /// \param target_length may be null: then only the bounds hold. Input units.
+  /// \param min_edge, max_edge bounds of all edges, input units; 0 and infinity: none.
+  /// \param extent of the mesh, working coordinates; caps the target length.
   EdgeSizes(const SizeField* target_length, double min_edge, double max_edge, double extent,
             const WorkingSpace& space)
       : target_length_(target_length),
@@ -23,19 +24,20 @@ class EdgeSizes {
         max_edge_(max_edge * space.scale()),
         extent_(extent) {}
 
-  /// From now on edges may be shorter than wanted, not than the bound: for shapes, where layers are thinner
-  /// than the wanted length. While no task runs.
+  /// Drops the lower bound of the target length, but not `min_edge`: layers thinner than the target length
+  /// need shorter edges to be well shaped.
+  /// \pre No task runs.
   void allow_shorter() { shorter_allowed_ = true; }
 
   bool has_target_length() const { return target_length_ != nullptr; }
-  /// Whether any edge may break a bound, beside the target length.
+  /// Whether there are bounds beside the target length.
   bool has_bounds() const { return min_edge_ > 0 || std::isfinite(max_edge_); }
-  /// The wanted length at a place. Needs a target length.
+  /// \pre has_target_length().
   double target_length(const Vec3& at) const {
     return std::min(extent_, target_length_->at(space_.to_input(at)) * space_.scale());
   }
 
-  /// Longest and shortest lengths that an edge with this middle should have.
+  /// Max and min length of an edge with this midpoint.
   double upper(const Vec3& middle) const {
     return target_length_ ? std::min(max_edge_, long_edge * target_length(middle)) : max_edge_;
   }
@@ -43,12 +45,12 @@ class EdgeSizes {
     return target_length_ && !shorter_allowed_ ? std::max(min_edge_, short_edge * target_length(middle))
                                                : min_edge_;
   }
-  /// The length of an edge over the longest, and the shortest one over its length: above 1 where it breaks a
-  /// bound, by so much.
+  /// Ratios of an edge's length to its max length, and of its min length to its length: above 1 where the
+  /// edge violates a bound, by that factor.
   struct Excess {
     double longer, shorter;
   };
-  /// `short_share`: of the shortest length beside the bound.
+  /// \param short_share scales the min length that follows from the target length.
   Excess excess(const Vec3& p, const Vec3& q, double short_share = 1) const {
     const Vec3 middle = (p + q) / 2;
     const double length = (q - p).norm();
@@ -59,8 +61,8 @@ class EdgeSizes {
   }
 
  private:
-  /// Lengths over the wanted one within which edges are let be: halving a longer one makes none that is
-  /// collapsed again (as in Botsch & Kobbelt 2004).
+  /// Ratios of length to target length between which an edge is left alone: halving an edge above the upper
+  /// one makes none below the lower one (as in Botsch & Kobbelt 2004).
   static constexpr double short_edge = 0.7, long_edge = 1.48;
 
   const SizeField* target_length_;

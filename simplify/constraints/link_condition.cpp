@@ -49,7 +49,7 @@ void LinkCondition::read_interfaces_of_a() {
 }
 
 bool LinkCondition::walk_star_of_b() {
-  // Begins at a tet of the edge ab.
+  // Start at a tet of the edge ab.
   bool added;
   for (const Star::StarTet& t : star_->tets)
     if (t.links(b_)) {
@@ -146,7 +146,7 @@ bool LinkCondition::vertices_agree() const {
   for (std::size_t p = 0; p < common_.size(); ++p)
     b_on_junction |= p != b_ && common_[p].interfaces.on_junction();
 
-  // omega, and the edges of the links that end in it.
+  // ω, and the edges of the links that end in it.
   if (a_on_boundary_ && b_on_boundary_ && boundary_at_a_[b_] == 0) return false;
   const bool ab_on_interface = star.interface_count[b_] != 0;
   if (ab_on_interface && a_on_junction_ && b_on_junction && !ab_on_junction) return false;

@@ -10,22 +10,24 @@
 
 namespace tetwright {
 
-/// Whether the collapse of a star's centre a onto its link point b keeps the topology of every material,
+/// Tests whether collapsing a star's centre a onto its link point b keeps the topology of every material,
 /// interface and junction curve: Lk(a) ∩ Lk(b) = Lk(ab) in the complexes K, I and J of README.md, Topology
-/// (Dey, Edelsbrunner, Guha & Nekhayev 1999; Thomas & Natarajan 2011). Nothing is changed.
+/// (Dey, Edelsbrunner, Guha & Nekhayev 1999; Thomas & Natarajan 2011). Changes nothing.
 ///
-/// Reads the star of b beside that of a. Keeps its memory from test to test; one for each worker.
+/// Reads the star of b beside that of a. Reuses its memory; one object for each worker.
 class LinkCondition {
  public:
-  /// `b`: local number in `star`. The grid has the patches of faces between materials.
+  /// \param grid has the patches of interface faces.
+  /// \param star the star of a.
+  /// \param b local number in `star`.
   bool holds(const EditableMesh& mesh, const SurfaceGrid& grid, const Star& star, std::size_t b);
 
  private:
   /// The interface triangles at an edge.
   struct EdgeSheets {
     std::uint16_t count = 0;
-    PatchId patch = 0;    ///< of the first one
-    bool crease = false;  ///< another one has another patch
+    PatchId patch = 0;    ///< patch of the first triangle
+    bool crease = false;  ///< the triangles have different patches
     void add(PatchId p) {
       crease |= count != 0 && p != patch;
       if (count++ == 0) patch = p;
@@ -33,38 +35,39 @@ class LinkCondition {
     /// Whether the edge has dimension 1.
     bool on_junction() const { return crease || (count != 0 && count != 2); }
   };
-  /// What the link of b says about a link point of a.
+  /// Incidences of b with a link point p of a.
   struct Common {
-    bool seen = false;               ///< an edge joins b and it
-    bool with_ab = false;            ///< a, b and it are in one tet
-    EdgeSheets interfaces;           ///< at the edge from b to it
-    std::uint16_t boundary = 0;      ///< of those, the ones with outside on one side
-    bool interface_with_ab = false;  ///< (a, b, it) is an interface triangle
-    bool boundary_with_ab = false;   ///< (a, b, it) is a boundary triangle
+    bool seen = false;               ///< edge bp exists
+    bool with_ab = false;            ///< a, b and p share a tet
+    EdgeSheets interfaces;           ///< interface triangles at edge bp
+    std::uint16_t boundary = 0;      ///< boundary triangles among them
+    bool interface_with_ab = false;  ///< (a, b, p) is an interface triangle
+    bool boundary_with_ab = false;   ///< (a, b, p) is a boundary triangle
   };
-  /// A tet at b. `points`: the local numbers of its other three vertices in the star of a; no_index for a
-  /// itself and for vertices outside the star.
+  /// The triangle opposite b in a tet of its star. `points`: local numbers of its vertices in the star of a;
+  /// no_index for a itself and for vertices outside that star.
   struct LinkTriangle {
     std::array<std::uint32_t, 3> points;
-    int in_a = 0;  ///< how many are
+    int in_a = 0;  ///< vertices in the link of a
     bool has_a = false;
   };
 
   void begin(const EditableMesh& mesh, const SurfaceGrid& grid, const Star& star, std::size_t b);
-  /// Fills what depends on a's interface triangles alone.
+  /// Collects what follows from a's interface triangles alone.
   void read_interfaces_of_a();
-  /// Walks the star of b; false as soon as a tet, triangle or edge is in both links but not in that of ab, or
-  /// the star is too large to test.
+  /// Walks the star of b. False as soon as a tet, triangle or edge is in both links but not in that of ab,
+  /// and if the star is too large to test.
   bool walk_star_of_b();
   LinkTriangle link_triangle(Index tet, int slot);
-  /// Walks on across the faces of a tet at b and counts the interface triangles among them.
+  /// Queues the neighbours of a tet at b and counts its interface triangles at b.
   void read_faces_at_b(Index tet, int slot);
   void count_interface(Index point, bool outside, PatchId patch);
-  /// Whether an edge or the whole of b's link triangle is in a's link too, but not in the link of ab.
+  /// Whether b's link triangle, or an edge of it, is also in a's link but not in the link of ab.
   bool shares_simplex(const LinkTriangle& triangle) const;
-  /// Lk(a) ∩ Lk(b) = Lk(ab) for the vertices, those of K, I and J, and omega.
+  /// Lk(a) ∩ Lk(b) = Lk(ab) for the vertices of K, I and J, and for ω.
   bool vertices_agree() const;
-  /// The same for the interface triangles of a opposite it: edges of I, and of K with omega.
+  /// Lk(a) ∩ Lk(b) = Lk(ab) for the edges of I, and for those of K with ω: the edges opposite a in its
+  /// interface triangles.
   bool interface_edges_agree() const;
   bool is_interface_of_b(Index x, Index y) const;
 
@@ -79,7 +82,7 @@ class LinkCondition {
   LocalNumbers local_of_a_;                   ///< local numbers by id
   LocalNumbers tet_numbers_;
   std::vector<Index> walk_;  ///< the tets at b
-  /// Interface triangles at edges from b to points that are not in a's link: they only tell whether b is on a
+  /// Interface triangles at edges from b to points outside a's link: they matter only for whether b is on a
   /// junction curve.
   LocalNumbers other_points_;
   std::vector<EdgeSheets> other_interfaces_;

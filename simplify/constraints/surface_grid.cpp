@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t triangle_grain = 4096;  ///< triangles a parallel loop hands out at a time
 
-/// Cells that the largest triangle may span along an axis: bounds what one operation has to look at.
+/// Max cells that the largest triangle spans along an axis: bounds the work of one operation.
 constexpr double max_cells_across = 24;
 
 void sort_ids(MeshTriangle& t) {
@@ -40,11 +40,12 @@ auto with_record(std::uint32_t record) {
 Vec3 low_corner(const MeshTriangle& t) { return t.points[0].cwiseMin(t.points[1]).cwiseMin(t.points[2]); }
 Vec3 high_corner(const MeshTriangle& t) { return t.points[0].cwiseMax(t.points[1]).cwiseMax(t.points[2]); }
 
-/// Two triangles are nearly folded together where the cosine of the angle between them at their common edge
-/// is larger: below 120 degrees, so that no operation gets past it unseen, while most edges are flatter.
+/// Two triangles count as nearly folded together if the cosine of the angle between them at their common edge
+/// exceeds this. Its 120 degrees are wide enough that no operation gets past it unseen, and most edges are
+/// flatter.
 constexpr double min_narrow_cosine = -0.5;
 
-/// The edge of two triangles, by its ends, where they are nearly folded together.
+/// The common edge of two triangles, by its ends, if they are nearly folded together there.
 std::optional<std::array<Index, 2>> narrow_edge(const MeshTriangle& f, const MeshTriangle& g) {
   std::array<int, 2> shared{};
   int count = 0, apex_f = -1, apex_g = 3;
@@ -81,7 +82,7 @@ SurfaceGrid::Box SurfaceGrid::box_of(const MeshTriangle& t) {
 
 SurfaceGrid::Cell3 SurfaceGrid::cell_at(const Vec3& p) const {
   const auto axis = [&](int i) {
-    // Clamped: a point far outside the box it was built for still has a cell.
+    // Clamp: a point far outside the box that the grid was built for still needs a cell.
     return static_cast<std::int32_t>(std::floor(std::clamp((p[i] - origin_[i]) * to_cell_, -1e9, 1e9)));
   };
   return {axis(0), axis(1), axis(2)};
@@ -134,7 +135,7 @@ void SurfaceGrid::build(const EditableMesh& mesh, double min_cell) {
     sum += extent;
     largest = std::max(largest, extent);
   }
-  // Twice the mean extent: a triangle touches few cells, and a cell lists few triangles, also when they have
+  // Twice the mean extent: a triangle touches few cells, and a cell lists few triangles even when they have
   // grown.
   const double mean = records_.empty() ? 1 : sum / static_cast<double>(records_.size());
   const double size = std::max({2 * mean, largest / max_cells_across, min_cell});
@@ -192,7 +193,7 @@ void SurfaceGrid::insert(std::uint32_t record) {
   for_cells(records_[record], [&](const Cell3& c) {
     Cell& cell = cells_[slot(c)];
     cell.lock();
-    // Two cells of one triangle may share a slot.
+    // Two cells that a triangle touches may share a slot.
     if (std::none_of(cell.entries.begin(), cell.entries.end(), with_record(record)))
       cell.entries.push_back(entry);
     cell.unlock();
@@ -207,7 +208,7 @@ bool SurfaceGrid::hits_standing(const MeshTriangle& t, std::span<const std::uint
   for_cells(t, [&](const Cell3& c) {
     if (hit) return;
     for (const Entry& e : cells_[slot(c)].entries) {
-      // A pair that shares several cells is tested in the one that holds the low corner of the common box.
+      // Test a pair that shares several cells only in the one with the low corner of their common box.
       if (std::max(low.x, e.low.x) != c.x || std::max(low.y, e.low.y) != c.y ||
           std::max(low.z, e.low.z) != c.z)
         continue;
@@ -279,7 +280,7 @@ bool SurfaceGrid::test(Edit& edit) const {
         edit.narrow_edges.push_back(*edge);
     }
   }
-  // The order of a cell's records depends on threads.
+  // Sort: the order of a cell's records depends on the threads.
   std::sort(edit.narrow_edges.begin(), edit.narrow_edges.end());
   edit.narrow_edges.erase(std::unique(edit.narrow_edges.begin(), edit.narrow_edges.end()),
                           edit.narrow_edges.end());
@@ -296,8 +297,8 @@ bool SurfaceGrid::apart(const Edit& first, const Edit& second) {
 }
 
 void SurfaceGrid::take_records(Edit& edit) {
-  for (Added& a : edit.added) sort_ids(a.triangle);  // a new point has its number now
-  // New triangles reuse the records of those that go.
+  for (Added& a : edit.added) sort_ids(a.triangle);  // a new point now has its number
+  // Added triangles reuse the records of removed ones.
   const std::size_t reused = std::min(edit.removed.size(), edit.added.size());
   edit.added_records.assign(edit.removed_records.begin(),
                             edit.removed_records.begin() + static_cast<std::ptrdiff_t>(reused));

@@ -15,42 +15,41 @@ namespace tetwright {
 
 class SurfaceSamples;
 
-/// The boundary and interface triangles of an EditableMesh with their coordinates, in a hashed spatial grid:
-/// the explicit test against self-intersection, which positive tets alone do not prevent (two parts of a
-/// surface may pass through each other from outside). It also holds the patches of the faces between
-/// materials.
+/// The boundary and interface triangles of an EditableMesh with their coordinates, in a hashed spatial grid.
+/// Its test against self-intersection is explicit, since positive tets alone do not prevent one: two parts of
+/// a surface may pass through each other from outside. Also keeps the patches of interface faces.
 ///
-/// While operations are decided, it is read; while they are committed, each writes the records of its own
-/// triangles, and cells of the grid, which a lock guards for the moment: the order of a cell's records does
-/// not matter, since any hit decides.
+/// Concurrency: nobody writes while operations are decided. While they are committed, each writes the records
+/// of its own triangles, and grid cells, each guarded by a short lock. The order of a cell's records does not
+/// matter, since any hit decides.
 class SurfaceGrid {
  public:
-  /// A triangle that comes in.
+  /// A triangle that an edit adds.
   struct Added {
     MeshTriangle triangle;
     PatchId patch;
-    RegionId inside = outside_id, across = outside_id;  ///< that it separates
+    RegionId inside = outside_id, across = outside_id;  ///< regions on its two sides
   };
-  /// A sample of the input's surface that one of the triangles that come in takes over (SurfaceSamples).
+  /// A sample of the input's surface that an added triangle takes over (SurfaceSamples).
   struct ReassignedSample {
     std::uint32_t sample;
-    std::uint32_t added;  ///< place in Edit::added
-    float distance;       ///< between them
+    std::uint32_t added;  ///< index in Edit::added
+    float distance;       ///< from the sample to the triangle
   };
-  /// What an operation takes away and puts in.
+  /// The triangles that an operation removes and adds.
   struct Edit {
     std::vector<MeshTriangle> removed;
     std::vector<Added> added;
-    // Of those that come in, and the records of those that go: filled by test().
+    // Filled by test(): bounding box of the added triangles, records of the removed ones.
     Vec3 low = Vec3::Zero(), high = Vec3::Zero();
     std::vector<std::uint32_t> removed_records;
-    /// Edges, by their ends, where a triangle that comes in and another one are nearly folded together: what
-    /// lies between them, outside or a part of it, may be turned inside out without an intersection.
+    /// Edges, by their ends, at which an added triangle and another one are nearly folded together: the thin
+    /// wedge there, of outside or a material, can invert without an intersection.
     std::vector<std::array<Index, 2>> narrow_edges;
-    /// Records for those that come in: filled by take_records().
+    /// Records of the added triangles: filled by take_records().
     std::vector<std::uint32_t> added_records;
     std::vector<ReassignedSample> reassigned;  ///< filled by SurfaceSamples::reassign_samples()
-    // Its memory.
+    // Scratch memory.
     std::vector<TriangleDistance> distances;
     std::vector<std::uint32_t> takers;
     std::vector<std::uint8_t> near_sample;
@@ -66,53 +65,59 @@ class SurfaceGrid {
     bool empty() const { return removed.empty() && added.empty(); }
   };
 
-  /// All interface triangles of the mesh; while no task runs. `min_cell` (working coordinates) is the
-  /// size that triangles are about to grow to. The records are numbered as in interface_faces().
+  /// Fills the grid with all interface triangles of the mesh; record i is face i of interface_faces().
+  ///
+  /// \param min_cell min size of a grid cell, working coordinates: the size that triangles are about to
+  ///   reach.
+  /// \pre No task runs.
   void build(const EditableMesh& mesh, double min_cell);
-  /// build() for the same mesh with other numbers of its points, by the old ones: samples stay with their
-  /// triangles.
+  /// build() for the same mesh after its points were renumbered. Samples stay with their triangles.
+  ///
+  /// \param new_points new numbers by old ones.
   void rebuild(const EditableMesh& mesh, double min_cell, const std::vector<Index>& new_points);
   std::size_t record_count() const { return records_.size(); }
-  /// Points that the triangles own from now on, or null; must outlive the last edit.
+  /// Samples that the triangles own from now on, or null; they must outlive the last edit.
   void set_samples(SurfaceSamples* samples) { samples_ = samples; }
   const SurfaceSamples* samples() const { return samples_; }
 
-  /// Room for twice as many triangles without copying what there is; memory is taken up only where it is
-  /// written.
+  /// Reserves room for twice as many triangles, so that growth copies nothing; memory is committed only where
+  /// it is written.
   void reserve_twice();
 
-  /// Whether no two triangles that stand meet elsewhere than in what they share; while no task runs, after
-  /// build().
+  /// Whether no two triangles intersect except in shared vertices and edges.
+  /// \pre No task runs; build() has just run.
   bool embedded() const;
 
-  /// Whether no added triangle meets one that stands and stays, or another added one. Fills the edit; the
-  /// points' ids become those of the places where they stand (EditableMesh::original). Safe concurrently.
+  /// Whether no added triangle intersects a remaining one or another added one. Fills the edit and replaces
+  /// its point ids by those of EditableMesh::original(). Safe concurrently while nothing is committed.
   bool test(Edit& edit) const;
-  /// Gives the triangles of an edit the ids that records have, and finds the records of those that go: what
-  /// test() begins with.
+  /// First step of test(): replaces the edit's point ids by those that records use, and finds the records of
+  /// its removed triangles.
   void find_records(Edit& edit) const;
-  /// Whether no triangle that comes in by one edit meets one of the other or is nearly folded onto it. Both
-  /// were tested.
+  /// Whether no added triangle of one edit intersects one of the other or is nearly folded onto it.
+  /// \pre Both edits have passed test().
   static bool apart(const Edit& first, const Edit& second);
-  /// Puts triangles into the place of others without any test, where points were moved from outside. While no
-  /// task runs.
+  /// Replaces triangles without any test, after points were moved from outside.
+  /// \pre No task runs.
   void replace(Edit& edit);
 
-  /// Gives a tested edit the records that it needs, and takes those of removed triangles back. One thread at
-  /// a time, before commit().
+  /// Assigns records to the added triangles of a tested edit and takes back those of the removed ones. One
+  /// thread at a time, before commit().
   void take_records(Edit& edit);
-  /// All that was given records is committed.
+  /// Call it when all edits of a batch are committed.
   void end_batch() { free_records_.end_batch(); }
-  /// Carries an edit out. Safe concurrently for edits that share no triangle.
+  /// Carries out an edit. Safe concurrently for edits that share no triangle.
   void commit(const Edit& edit);
 
-  /// The patch of a standing triangle with these points, of any order; 0 unless the mesh has patches on faces
-  /// between materials. Safe while nothing is committed.
+  /// The patch of an existing triangle with these points, in any order; 0 unless the mesh has patches on
+  /// interface faces. Safe concurrently while nothing is committed.
   PatchId patch(const EditableMesh& mesh, const Triangle& ids) const;
-  /// The patches other than 0 of all faces, by the ascending originals of their points; while no task runs.
+  /// All patches other than 0, by the ascending originals of their points.
+  /// \pre No task runs.
   FacePatches patches() const;
 
-  /// All that stand, ids ascending within each; while no task runs, for tests.
+  /// All triangles, the ids of each ascending. For tests.
+  /// \pre No task runs.
   std::vector<MeshTriangle> triangles() const;
 
  private:
@@ -120,7 +125,8 @@ class SurfaceGrid {
     std::int32_t x, y, z;
     bool operator==(const Cell3&) const = default;
   };
-  /// A triangle's box, rounded outwards: most pairs are told apart by it, and the triangle need not be read.
+  /// A triangle's bounding box, rounded outwards: it separates most pairs, whose triangles then need not be
+  /// read.
   struct Box {
     std::array<float, 3> low, high;
     bool meets(const Box& other) const {
@@ -134,7 +140,7 @@ class SurfaceGrid {
     Cell3 low;  ///< the cell of the box's low corner
     Box box;
   };
-  /// The triangles whose boxes touch the cell.
+  /// Entries of the triangles whose boxes touch the cell.
   struct Cell {
     std::vector<Entry> entries;
     void lock() {
@@ -151,15 +157,17 @@ class SurfaceGrid {
   template <class F>
   void for_cells(const MeshTriangle& t, const F& f) const;
   void insert(std::uint32_t record);
-  /// Appends to `narrow`, if there is one, the edges where they are nearly folded together.
+  /// Whether t intersects a triangle whose record is not among `removed`. Appends to `narrow`, unless it is
+  /// null, the edges at which t and another triangle are nearly folded together.
   bool hits_standing(const MeshTriangle& t, std::span<const std::uint32_t> removed,
                      std::vector<std::array<Index, 2>>* narrow = nullptr) const;
-  /// The records of all that stand, ascending.
+  /// The records in use, ascending.
   std::vector<std::uint32_t> standing() const;
-  /// The record of a standing triangle, ids ascending.
+  /// The record of an existing triangle.
+  /// \pre Ids ascending.
   std::uint32_t record_of(const MeshTriangle& t) const;
 
-  const EditableMesh* mesh_ = nullptr;  ///< tells which points are one and the same
+  const EditableMesh* mesh_ = nullptr;  ///< maps copies of a point to their original
   Vec3 origin_ = Vec3::Zero();
   double to_cell_ = 1;
   std::uint32_t mask_ = 0;

@@ -17,7 +17,7 @@ ProjectionTree::Kind kind_of(RegionId first, RegionId second, PatchId patch) {
   return {std::min(first, second), std::max(first, second), patch};
 }
 
-/// Points of the mesh that are used, numbered anew.
+/// Copies of the mesh points in use, renumbered.
 class PointCopies {
  public:
   explicit PointCopies(const EditableMesh& mesh) : mesh_(mesh) {}
@@ -54,8 +54,8 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
                            kind_of(f.inside, f.across, f.patch)});
     surfaces_ = ProjectionTree(std::move(points.points), std::move(triangles));
   }
-  // The edges with other than two of the triangles, or with two of different patches: junction curves, and
-  // where the input is not manifold.
+  // Collect the edges with a number of triangles other than two, or with two of different patches: junction
+  // curves, and nonmanifold edges of the input.
   struct Edge {
     std::uint64_t key;
     PatchId patch;
@@ -76,7 +76,7 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
     std::size_t j = i + 1;
     while (j < edges.size() && edges[j].key == edges[i].key) ++j;
     const auto p = static_cast<Index>(edges[i].key >> 32), q = static_cast<Index>(edges[i].key);
-    // A given surface knows the creases itself.
+    // A given surface with patches provides the feature edges itself.
     if ((j - i != 2 || (!given_patches_ && edges[i].patch != edges[i + 1].patch)) && complete(p) &&
         complete(q)) {
       const Index a = points.number(p), b = points.number(q);
@@ -84,7 +84,7 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
     }
     i = j;
   }
-  // Where other than two segments meet, curves end or branch.
+  // Curves end or branch where the number of segments is not two.
   std::vector<std::uint32_t> degrees(points.points.size(), 0);
   for (const ProjectionTree::Item& s : segments)
     for (Index p : {s.corners[0], s.corners[1]}) ++degrees[p];

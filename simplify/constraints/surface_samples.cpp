@@ -20,27 +20,27 @@ namespace tetwright {
 namespace {
 
 constexpr std::size_t sample_grain = 1024;
-/// Of memory with all that belongs to a sample: 190 measured for 7 million on a cube.
+/// Memory of a sample with everything that belongs to it: 190 measured for 7 million on a cube.
 constexpr double bytes_per_sample = 200;
-/// Samples for each equilateral triangle of the mesh to come. Its triangles are about twice as large: more
-/// than 12 for each make the result no better, 8 of them a twentieth worse.
+/// Samples for each equilateral triangle with the target edge. The simplified mesh's triangles are about
+/// twice as large: more than 12 samples each do not improve the result, 8 make it 5 % worse.
 constexpr double samples_per_triangle = 6;
 /// Area of an equilateral triangle over its edge squared: sqrt(3) / 4.
 constexpr double equilateral_area = 0.4330127018922193;
-/// Edges of the mesh's surface as it comes within which a part of the input stands for it, and it for the
-/// input.
+/// Distance, in mean edges of the input mesh's surface, within which the mesh and the given surface
+/// correspond.
 constexpr double reach_edges = 2;
 
 double area(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a).norm() / 2; }
 
-/// A place on an item of the input's surface.
+/// A point on an item of the input's surface.
 struct Place {
   Vec3 at;
   std::size_t item;
 };
 
-/// Vertices of the triangles, and points on them where they are large: one for each `area_each`, times the
-/// square of the scale there.
+/// Samples the surface at the triangles' vertices, and inside large triangles at a low-discrepancy sequence:
+/// one sample for each `area_each` times the square of the local scale.
 std::vector<Place> spread_places(const ProjectionTree& surface, double area_each,
                                  const std::function<double(const Vec3&)>& scale) {
   std::vector<std::uint8_t> used(surface.points().size(), 0);
@@ -65,7 +65,7 @@ std::vector<Place> spread_places(const ProjectionTree& surface, double area_each
   return places;
 }
 
-/// The mesh's boundary and interface triangles; kind[0] is the number among mesh.interface_faces().
+/// The mesh's boundary and interface triangles; kind[0] is the index in mesh.interface_faces().
 ProjectionTree faces_of(const EditableMesh& mesh) {
   std::vector<Vec3> points(mesh.point_slots(), Vec3::Zero());
   std::vector<ProjectionTree::Item> items;
@@ -164,7 +164,7 @@ DeviationReport InputSurface::deviation(const EditableMesh& mesh, const Progress
         area(triangles_.corner(item, 0), triangles_.corner(item, 1), triangles_.corner(item, 2)) /
         (scale * scale);
     if (!hidden_.empty() && hidden_[i]) report.hidden_area += size;
-    // Without a surface all stands for itself, and nothing is apart.
+    // Without a given surface every item is the mesh's own, and none counts as apart.
     if (given && !is_given(item)) report.apart_area += size;
   }
   const auto in_input_units = [&](const SurfaceDeviation& d) {
@@ -228,14 +228,14 @@ SurfaceSamples::SurfaceSamples(const EditableMesh& mesh, std::size_t records, co
   parallel_for(0, blocks, 1, [&](std::size_t begin_block, std::size_t end_block) {
     for (std::size_t block = begin_block; block < end_block; ++block) {
       constexpr std::size_t nobody = std::numeric_limits<std::size_t>::max();
-      std::size_t last = nobody;  // the owner of the last place: the next one is not far away
+      std::size_t last = nobody;  // the owner of the previous point: the next one is not far away
       for (std::size_t i = block * sample_grain; i < std::min(places.size(), (block + 1) * sample_grain);
            ++i) {
         const Vec3& at = places[i].at;
         const ProjectionTree::Item& from = surface_.items()[places[i].item];
         const bool given = InputSurface::is_given(from);
         const Vec3 outwards = normal(surface_, from);
-        // The other side of a wall is not meant, nor another interface.
+        // Skip the other side of a thin wall, and other interfaces.
         const auto accepts = [&](const ProjectionTree::Item& item) {
           const Kind& kind = kinds_[item.kind[0]];
           if (!given) return kind == InputSurface::kind_of(from);
@@ -300,7 +300,7 @@ bool SurfaceSamples::choose_new_owners(SurfaceGrid::Edit& edit, double max_dista
         }
       }
       const double d = std::sqrt(best2);
-      // As it is remembered: what stays where it was is no farther than before.
+      // Compare as stored: a sample whose triangle does not move is no farther than before.
       if (d > max_distance && static_cast<float>(d) > sample.distance) return false;
       edit.reassigned.push_back({s, best, static_cast<float>(d)});
     }
@@ -312,7 +312,7 @@ bool SurfaceSamples::stays_near_surface(SurfaceGrid::Edit& edit, double max_dist
   if (!(max_distance < std::numeric_limits<double>::infinity())) return true;
   double allowed = max_distance;
   bool measured = false;
-  // The places of a triangle in between, where it is large.
+  // Tests a lattice of points on a large triangle.
   const auto inside_stays = [&](std::uint32_t added) {
     const auto& p = edit.added[added].triangle.points;
     const double longest2 =
@@ -320,7 +320,7 @@ bool SurfaceSamples::stays_near_surface(SurfaceGrid::Edit& edit, double max_dist
     if (!(longest2 > spacing_ * spacing_)) return true;
     const int steps = static_cast<int>(std::ceil(std::sqrt(longest2) / spacing_));
     const Vec3 u = (p[1] - p[0]) / steps, v = (p[2] - p[0]) / steps, n = u.cross(v);
-    // Most are near a sample of the triangle, which is on the surface.
+    // Most of them are near a sample of the triangle, which is on the surface.
     const std::size_t row = static_cast<std::size_t>(steps) + 1;
     edit.near_sample.assign(row * row, 0);
     if (n.squaredNorm() > 0) {
@@ -347,7 +347,7 @@ bool SurfaceSamples::stays_near_surface(SurfaceGrid::Edit& edit, double max_dist
           return false;
     return true;
   };
-  // Samples are on the surface.
+  // Try the samples first: they are on the surface.
   const auto near = [&](const Vec3& p) {
     const double allowed2 = allowed * allowed;
     for (const SurfaceGrid::ReassignedSample& h : edit.reassigned)
@@ -362,7 +362,8 @@ bool SurfaceSamples::stays_near_surface(SurfaceGrid::Edit& edit, double max_dist
       allowed = std::max(allowed, static_cast<double>(samples_[h.sample].distance));
     return allowed > max_distance && near(p);
   };
-  // What is new of a triangle: where a corner stands that is among those of the removed ones, if it does.
+  // The position of a vertex in the removed triangles, if it is in one: tells what is new of an added
+  // triangle.
   const auto place_before = [&](Index id) -> std::optional<Vec3> {
     for (const MeshTriangle& t : edit.removed)
       for (int k = 0; k < 3; ++k)
@@ -376,7 +377,7 @@ bool SurfaceSamples::stays_near_surface(SurfaceGrid::Edit& edit, double max_dist
     return std::any_of(edit.removed.begin(), edit.removed.end(),
                        [&](const MeshTriangle& t) { return has(t, p) && has(t, q); });
   };
-  std::optional<Index> tested;  // a corner: one moves at most
+  std::optional<Index> tested;  // the moved corner: there is at most one
   for (std::uint32_t added = 0; added < edit.added.size(); ++added) {
     const auto& p = edit.added[added].triangle.points;
     const auto& ids = edit.added[added].triangle.ids;

@@ -16,15 +16,17 @@
 
 namespace tetwright {
 
-/// The surface that a mesh stands for, as triangles. Working coordinates.
+/// The surface that a mesh represents, as triangles. Working coordinates.
 class InputSurface {
  public:
-  /// `given` (input units) is the surface as it was given, its triangles wound outwards; or null. Parts of
-  /// the mesh's own boundary and interfaces that are far from it (caps of holes, layers, the box of an
-  /// outside that is meshed), or all of them without it, stand for themselves. The mesh as it came.
+  /// Uses the given surface, and those parts of the mesh's own boundary and interfaces that are far from it
+  /// (caps of holes, layers, the box of a meshed outside). Without a given surface it uses all of them.
+  ///
+  /// \param mesh before any operation.
+  /// \param given triangles wound outwards, input units; may be null.
   InputSurface(const EditableMesh& mesh, const TriangleMesh* given);
 
-  /// What is known of a triangle: the regions on both sides and the patch, or nothing if it was given.
+  /// The regions on both sides of a triangle and its patch; unused for given triangles.
   struct Kind {
     RegionId low = outside_id, high = outside_id;
     PatchId patch = 0;
@@ -35,58 +37,71 @@ class InputSurface {
   const ProjectionTree& triangles() const { return triangles_; }
   static bool is_given(const ProjectionTree::Item& item) { return item.kind == given_kind; }
   static Kind kind_of(const ProjectionTree::Item& item);
-  /// What stands for the other, mesh and input, is within this distance.
+  /// Distance, working coordinates, within which mesh and input correspond.
   double reach() const { return reach_; }
-  /// Finds what no part of the mesh as it came is near, for deviation(). Parallel.
+  /// Finds the triangles that no part of the input mesh is near, which deviation() leaves out. Parallel.
+  /// \pre `mesh` is unchanged.
   void find_hidden(const EditableMesh& mesh);
-  /// How far the mesh's surface is from this one now, proven; input units. Of the same mesh. Parallel.
-  /// `progress` (may be null) ends it as it ends surface_deviation().
+  /// Two-sided distance between the current mesh's surface and this one, with proven bounds; input units.
+  /// Parallel.
+  ///
+  /// \param mesh the mesh that this surface was made for.
+  /// \param progress ends it as it ends surface_deviation(); may be null.
   DeviationReport deviation(const EditableMesh& mesh, const Progress* progress) const;
-  /// A boundary or interface face, by number of mesh.interface_faces(), that is far from this surface, or
-  /// nearest to a place of it that is far from all faces.
+  /// A boundary or interface face, by its index in mesh.interface_faces(), that is far from this surface, or
+  /// nearest to a point of it that is far from all faces; `place` is that point.
   struct FarFace {
     std::uint32_t face;
     std::optional<Vec3> place;
   };
-  /// Those of the same mesh where that is farther than `limit`; working coordinates. Parallel.
+  /// The faces with a distance above `limit`, working coordinates. Parallel.
+  /// \pre `mesh` is the one that this surface was made for.
   std::vector<FarFace> far_faces(const EditableMesh& mesh, double limit) const;
 
  private:
-  /// What a mesh is measured against: all but what find_hidden() found.
+  /// The surface that a mesh is compared with: without the triangles of find_hidden().
   ProjectionTree shown() const;
-  /// To which it is measured, working coordinates.
+  /// Accuracy of the distances, working coordinates.
   double accuracy() const;
 
   static constexpr ProjectionTree::Kind given_kind{0, 0, 0};
   ProjectionTree triangles_;
-  std::vector<std::uint8_t> hidden_;  ///< by item of these: what find_hidden() found
+  std::vector<std::uint8_t> hidden_;  ///< by item of triangles_: found by find_hidden()
   double reach_ = 0;
 };
 
-/// Points of the input's surface, each owned by a boundary or interface triangle of the mesh: what keeps a
-/// simplified surface near the input from both sides (Ciampalini, Cignoni, Montani & Scopigno 1997, "Multi-
-/// resolution decimation based on global error"), and what its vertices are fitted to. Working coordinates.
+/// Points of the input's surface, each owned by a boundary or interface triangle of the mesh. They keep a
+/// simplified surface near the input from both sides (Ciampalini, Cignoni, Montani & Scopigno 1997,
+/// "Multiresolution decimation based on global error"), and its vertices are fitted to them. Working
+/// coordinates.
 ///
-/// Every operation hands the samples of the triangles that it removes to the nearest ones of the same kind
-/// that it adds. While operations are decided, all is read; while they are committed, each writes the lists
+/// Every operation reassigns the samples of the triangles that it removes to the nearest added triangles of
+/// the same kind.
+///
+/// Concurrency: nobody writes while operations are decided; while they are committed, each writes the lists
 /// of its own triangles.
 class SurfaceSamples {
  public:
   static constexpr std::uint32_t none = 0xffffffffu;
 
-  /// For a mesh whose grid was just built. `edge`: of a triangle of the mesh to come, for which there will be
-  /// some ten samples, vertices of the input first; at a place it is scale(place) times that. `surface` must
-  /// outlive this.
+  /// \pre The mesh's grid has just been built.
+  ///
+  /// \param records number of the grid's records.
+  /// \param surface must outlive this object.
+  /// \param edge target edge of the simplified mesh: one of its triangles gets some ten samples, vertices of
+  ///   the input first.
+  /// \param scale factor on `edge`, by position.
   SurfaceSamples(
       const EditableMesh& mesh, std::size_t records, const InputSurface& surface, double edge,
       const std::function<double(const Vec3&)>& scale = [](const Vec3&) { return 1; });
 
-  /// Gives the samples of an edit's removed triangles (its records must be known) to added ones. False if a
-  /// sample would be farther from its triangle than `max_distance`, and than before; or a place on an added
-  /// triangle farther from the surface than that, and than one of the samples was: its centre, the middles of
-  /// its new edges, and a corner that moved. Safe while nothing is committed.
+  /// Assigns the samples of an edit's removed triangles, whose records must be known, to its added ones.
+  /// False if that moves a sample farther from its triangle than both `max_distance` and its distance before.
+  /// False also if an added triangle's centroid, a midpoint of a new edge or a moved corner is farther from
+  /// the surface than both `max_distance` and the worst of these samples. Safe concurrently while nothing is
+  /// committed.
   bool reassign_samples(SurfaceGrid::Edit& edit, double max_distance) const;
-  /// From now on the places on an added triangle that are tested are at most this far from each other.
+  /// Max distance between the points at which added triangles are tested from now on.
   void set_spacing(double spacing) { spacing_ = spacing; }
 
   /// Calls f(position, its distance from the triangle) for each sample of a triangle.
@@ -96,19 +111,24 @@ class SurfaceSamples {
       f(samples_[s].position, samples_[s].distance);
   }
 
-  /// Room for so many records; while no task runs.
+  /// Makes room for that many records.
+  /// \pre No task runs.
   void resize(std::size_t records);
-  /// Carries an edit out. Safe concurrently for edits that share no triangle.
+  /// Carries out an edit. Safe concurrently for edits that share no triangle.
   void commit(const SurfaceGrid::Edit& edit);
-  /// Triangles have other records: the one that had number i has new_record[i], or none; `records` of them.
+  /// Renumbers the triangles' records.
+  ///
+  /// \param new_record by old record; `none`: unused.
+  /// \param records number of new records.
   void renumber(const std::vector<std::uint32_t>& new_record, std::size_t records);
 
-  /// Another point of the input's surface, for the triangle that is nearest to it; while no task runs.
+  /// Adds a sample to the triangle nearest to it.
+  /// \pre No task runs.
   void add(const Vec3& position, std::uint32_t record, double distance);
 
   // For tests; while no task runs.
   std::size_t size() const { return samples_.size(); }
-  /// The largest distance of a sample from its triangle, as it is remembered.
+  /// The max stored distance of a sample from its triangle.
   double largest_distance() const;
 
  private:
@@ -116,7 +136,7 @@ class SurfaceSamples {
   struct Sample {
     Vec3 position;
     float distance;      ///< from its triangle
-    std::uint32_t next;  ///< of the same triangle
+    std::uint32_t next;  ///< next sample of the triangle
   };
   bool choose_new_owners(SurfaceGrid::Edit& edit, double max_distance) const;
   bool stays_near_surface(SurfaceGrid::Edit& edit, double max_distance) const;

@@ -11,11 +11,12 @@
 
 namespace tetwright {
 
-/// Keeps the volume of every region within a share of what it was. Error(op) bounds what one operation may do
-/// and lets many small losses add up: a simplified ball lies inside the ball.
+/// Keeps the volume of every region within a share of its initial value. Error(op) only bounds each single
+/// operation, and many small losses add up: a simplified ball lies inside the ball.
 class VolumeLedger {
  public:
-  /// From the volumes as they are; while no task runs.
+  /// Sets the bounds to `share` of the current volumes.
+  /// \pre No task runs.
   void open(const EditableMesh& mesh, double share) {
     allowed_.assign(mesh.region_count(), 0);
     net_.assign(mesh.region_count(), 0);
@@ -24,7 +25,8 @@ class VolumeLedger {
     for (double& a : allowed_) a = std::fabs(a);
   }
 
-  /// Whether no change takes a volume out of its bounds or farther out of them. Safe while no thread commits.
+  /// Whether every change keeps its region within the bounds, or brings it nearer to them. Safe concurrently
+  /// while no thread commits.
   template <class Changes>
   bool allows(const Changes& changes) const {
     for (const VolumeChange& c : changes) {
@@ -34,14 +36,15 @@ class VolumeLedger {
     }
     return true;
   }
-  /// One thread at a time.
+  /// Books the changes. One thread at a time.
   template <class Changes>
   void commit(const Changes& changes) {
     for (const VolumeChange& c : changes)
       if (c.region != outside_id && !allowed_.empty()) net_[c.region] += c.volume;
   }
 
-  /// How much of its bounds the worst region has used: 1 is all. Only while no task runs.
+  /// Used share of its bounds for the worst region: 1 is all.
+  /// \pre No task runs.
   double utilization() const {
     double largest = 0;
     for (std::size_t r = 0; r < allowed_.size(); ++r)
@@ -50,7 +53,7 @@ class VolumeLedger {
   }
 
  private:
-  std::vector<double> allowed_;  ///< by region; empty: no bounds
+  std::vector<double> allowed_;  ///< max change, by region; empty: no bounds
   std::vector<double> net_;
 };
 

@@ -87,7 +87,7 @@ std::vector<Index> MeshCompaction::number_tets(const std::vector<Index>& new_poi
 
 void MeshCompaction::move_tets(const std::vector<Index>& new_point, const std::vector<Index>& new_tet,
                                std::size_t live, std::size_t spare) {
-  // One array after the other: the tets' old and new ones together are the peak of the simplifier's memory.
+  // Move one array after the other: the old and new tets together are the peak of the simplifier's memory.
   const std::size_t slots = mesh_.tets_.size();
   {
     std::vector<TetRecord> tets(live + spare, {dead_tet, {}});

@@ -10,7 +10,8 @@
 
 namespace tetwright {
 
-/// Renumbers an EditableMesh without its dead tets and points; only while no task runs.
+/// Removes an EditableMesh's dead tets and points and renumbers the others.
+/// \pre No task runs.
 class MeshCompaction {
  public:
   explicit MeshCompaction(EditableMesh& mesh) : mesh_(mesh) {}
@@ -20,16 +21,21 @@ class MeshCompaction {
   TetMesh to_mesh();
 
  private:
-  /// The points with a tet, in Morton order of their positions in the bounding box.
+  /// The live points in Morton order within the bounding box.
   std::vector<Index> points_in_curve_order() const;
   void move_points(const std::vector<Index>& order, const std::vector<Index>& new_point, std::size_t spare);
-  /// The new numbers of the living tets, by their first point in the new order; `live` is how many there are.
+  /// New numbers of the live tets, ordered by the smallest new number of their points.
+  ///
+  /// \param points number of points.
+  /// \param live gets the number of live tets.
   std::vector<Index> number_tets(const std::vector<Index>& new_point, std::size_t points,
                                  std::size_t& live) const;
   void move_tets(const std::vector<Index>& new_point, const std::vector<Index>& new_tet, std::size_t live,
                  std::size_t spare);
 
-  /// The patches other than 0, by ascending points; `number`: of each point in the result.
+  /// The patches other than 0, by ascending points.
+  ///
+  /// \param number new number of each point.
   FacePatches patches(const std::vector<Index>& number) const;
 
   EditableMesh& mesh_;

@@ -17,7 +17,7 @@ Outcome EdgeRing::gather(const EditableMesh& mesh, Index tet, int edge, std::siz
   const int j0 = tet_edges[5 - edge][0], j1 = tet_edges[5 - edge][1];
   a = first[i0];
   b = first[i1];
-  // (i0, i1, j0, j1) of tet_edges is an even permutation but for the edges 02 and 13.
+  // (i0, i1, j0, j1) of tet_edges is an even permutation except for the edges 02 and 13.
   const bool even = edge != 1 && edge != 4;
   const Index start = first[even ? j0 : j1], second = first[even ? j1 : j0];
 
@@ -26,9 +26,9 @@ Outcome EdgeRing::gather(const EditableMesh& mesh, Index tet, int edge, std::siz
     regions.push_back(mesh.region(t));
     worst = std::min(worst, mesh.quality(t));
   };
-  /// The tet beyond the face (a, b, keep) of t, whose fourth point is `leave`.
+  /// The tet across the face (a, b, keep) of t, whose fourth point is `leave`.
   const auto beyond = [&](Index t, Index leave) { return mesh.neighbour(t, mesh.slot_of(t, leave)); };
-  /// The point of t that is none of a, b, known.
+  /// The point of t other than a, b and `known`.
   const auto fourth = [&](Index t, Index known) {
     for (Index p : mesh.points(t))
       if (p != a && p != b && p != known) return p;
@@ -47,14 +47,14 @@ Outcome EdgeRing::gather(const EditableMesh& mesh, Index tet, int edge, std::siz
     }
     if (tets.size() == limit) return Outcome::too_large;
     const Index p = fourth(next, points.back());
-    if (p == no_index) return Outcome::too_large;  // a tet that the input repeats: no ring to speak of
-    leave = points.back();                         // on across (a, b, p)
+    if (p == no_index) return Outcome::too_large;  // the input repeats a tet: there is no ring
+    leave = points.back();                         // next: across (a, b, p)
     add(next);
     points.push_back(p);
     at = next;
   }
   if (!closed) {
-    // The other way, in front.
+    // Walk the other way and prepend.
     for (Index at = tet, leave = second;;) {
       const Index next = beyond(at, leave);
       if (next == no_index) break;

@@ -72,8 +72,8 @@ std::size_t EditableMesh::touching_points() const {
 }
 
 void EditableMesh::make_room(std::size_t tets, std::size_t points) {
-  // More than a batch needs, and next to nothing beside a mesh that makes it worth counting: vectors keep
-  // room of their own, so that few of these copy what there is.
+  // More than a batch needs, yet negligible beside a mesh large enough to count. Vectors grow geometrically,
+  // so that few of these resizes copy.
   constexpr std::size_t step = 4096;
   if (const std::size_t have = free_tets_.available(); have < tets) {
     const std::size_t more = std::max(tets - have, step);

@@ -17,7 +17,7 @@
 
 namespace tetwright {
 
-/// New numbers by old ones; no_index: nothing was there.
+/// New numbers by old ones; no_index: unused slot.
 struct SlotNumbers {
   std::vector<Index> points, tets;
 };
@@ -25,26 +25,29 @@ struct SlotNumbers {
 /// The mesh while it is simplified: a tet knows its neighbours across faces, a point knows one incident tet.
 /// No array is reallocated while workers run.
 ///
-/// Who may write what (README.md has the whole protocol): while operations are decided, nobody writes. While
-/// they are committed, each writes the tets that it changes, and across a hull face the link of the tet
-/// outside; all points of such tets and faces are in its write set (Reservations). WriteRule asserts it.
+/// Concurrency (README.md has the whole protocol): nobody writes while operations are decided. While they are
+/// committed, each writes the tets that it changes, and across a hull face the link of the tet outside; all
+/// points of these tets and faces are in its write set (Reservations). WriteRule asserts it.
 class EditableMesh {
  public:
-  /// Takes a mesh over. Working coordinates are shifted along each axis on which that is exact for every
-  /// point, and scaled by a power of two; they come back bit by bit by `to_mesh`. Flat and negative tets are
-  /// taken as they are. A point whose star falls into parts that no face joins becomes one frozen point for
-  /// each part, and one again in to_mesh. Patches are those of the mesh's interfaces. Throws InputError (with
-  /// `name` in the message) where a coordinate is not finite, a tet repeats a point, a face has more than two
-  /// tets or two on one side (such a mesh has no neighbours to walk by), or `interfaces` is neither empty nor
-  /// what the tets say.
+  /// Takes the mesh over. Working coordinates are shifted along each axis on which that is exact for every
+  /// point, and scaled by a power of two; `to_mesh` restores the input coordinates bit by bit. Flat and
+  /// negative tets are accepted as they are. A point whose star falls into parts not joined by faces becomes
+  /// one frozen point for each part, and one point again in `to_mesh`. Patches are those of the mesh's
+  /// interfaces.
+  ///
+  /// \param name the mesh's name in messages.
+  /// \throws InputError if a coordinate is not finite; if a tet repeats a point; if a face has more than two
+  ///   tets, or two on one side (such a mesh has no neighbours to walk by); if `interfaces` is neither empty
+  ///   nor what the tets imply.
   EditableMesh(TetMesh&& mesh, const std::string& name);
 
-  /// The mesh as a plain value, without dead tets and unused points, in input units, with its interfaces;
-  /// what this holds is given up.
+  /// Returns the mesh without dead tets and unused points, in input units, with its interfaces. Empties this
+  /// object.
   TetMesh to_mesh() &&;
 
   std::size_t live_tets() const { return live_; }
-  /// Slots of tets, dead ones included: 0 <= tet < tet_slots().
+  /// Number of tet slots, dead ones included: 0 <= tet < tet_slots().
   std::size_t tet_slots() const { return tets_.size(); }
   std::size_t point_slots() const { return positions_.size(); }
   std::size_t region_count() const { return tags_.size(); }
@@ -54,31 +57,36 @@ class EditableMesh {
   const WorkingSpace& space() const { return space_; }
   Vec3 snap(const Vec3& working) const { return space_.snap(working); }
 
-  /// A point that never moves nor goes. A face of boundary or interfaces with three such points stays.
+  /// Whether the point is never moved nor removed. A boundary or interface face with three frozen points
+  /// stays.
   bool frozen(Index point) const { return any_frozen() && frozen_[point] != 0; }
-  /// A tet that stays as it is: all its points are in the mask of freeze(), or at places where parts touch.
+  /// Whether the tet stays as it is: all its points are in the mask of freeze(), or belong to tets at a
+  /// touching point.
   bool frozen_tet(Index t) const {
     if (!any_frozen()) return false;
     const Tet& p = tets_[t].points;
     return (frozen_[p[0]] & frozen_[p[1]] & frozen_[p[2]] & frozen_[p[3]] & with_tets) != 0;
   }
   bool any_frozen() const { return !frozen_.empty(); }
-  /// Freezes the points p for which mask[p] is not 0, in the order in which the mesh came, and the tets that
-  /// have no others. Points where parts touch without a common face are frozen with all their tets already.
-  /// While no task runs, before compact().
+  /// Freezes the points p with a nonzero mask[p], and the tets with such points only. Points where parts
+  /// touch without a common face are frozen already, with all their tets.
+  ///
+  /// \param mask by point, in the input's order.
+  /// \pre No task runs; before compact().
   void freeze(const std::vector<std::uint8_t>& mask);
-  /// Freezes all points of boundary and interfaces, and so their faces. While no task runs.
+  /// Freezes all points of boundary and interfaces, and so their faces.
+  /// \pre No task runs.
   void freeze_interfaces();
-  /// Places where parts touch without a common face, whatever number of points stands at each.
+  /// Number of positions at which parts touch without a common face, however many points each has.
   std::size_t touching_points() const;
-  /// What such a point was split off from; the point itself for all others.
+  /// The point that a copy was split off from; the point itself for all others.
   Index original(Index point) const { return point < originals_.size() ? originals_[point] : point; }
-  /// Whether faces between materials have patches other than 0: these stand in SurfaceGrid.
+  /// Whether interface faces have patches other than 0; SurfaceGrid keeps these.
   bool interface_patches() const { return !interface_patches_.empty(); }
 
   // Reading.
   const Vec3& position(Index point) const { return positions_[point]; }
-  /// One tet of the point; no_index when the point is no longer there.
+  /// A tet of the point; no_index: the point is dead.
   Index incident_tet(Index point) const { return incident_tets_[point]; }
   /// Whether the point's star was changed since the last begin_round().
   bool touched(Index point) const { return touched_[point] == round_; }
@@ -88,42 +96,45 @@ class EditableMesh {
   /// The tet across a face; no_index: outside.
   Index neighbour(Index t, int face) const { return tets_[t].links[face].tet(); }
   RegionId region(Index t) const { return regions_[t]; }
-  /// By the objective of the schedule, rounded.
+  /// Value of the schedule's objective, rounded.
   float quality(Index t) const { return qualities_[t]; }
   /// The region on the other side of a face.
   RegionId region_across(Index t, int face) const {
     const FaceLink link = tets_[t].links[face];
     return link.is_outside() ? outside_id : regions_[link.tet()];
   }
-  /// Where `point` stands in tet t, which has it.
+  /// Slot of `point` in tet t.
+  /// \pre The tet has the point.
   int slot_of(Index t, Index point) const { return slot_in(tets_[t].points, point); }
-  /// The face of t across which `other` lies, which is a neighbour.
+  /// The face of t shared with `other`.
+  /// \pre The tets are neighbours.
   int face_towards(Index t, Index other) const {
     const auto& n = tets_[t].links;
     return n[0].tet() == other ? 0 : n[1].tet() == other ? 1 : n[2].tet() == other ? 2 : 3;
   }
 
-  /// Asks for what is going to be read of a tet, or of a point, so that it is there by then.
+  /// Prefetches the data of a tet or a point.
   void prefetch_tet(Index t) const {
     __builtin_prefetch(&tets_[t]);
     __builtin_prefetch(&qualities_[t]);
   }
   void prefetch_point(Index p) const { __builtin_prefetch(&positions_[p]); }
 
-  // Writing: while no task runs, or by the winner whose write set has the points concerned.
+  // Writing: while no task runs, or by the winner whose write set has the points written.
   void set_position(Index point, const Vec3& position) {
     WriteRule::check(point);
     positions_[point] = position;
   }
-  /// Only where the tet that stood there dies: then there is one writer.
+  /// Only where the old incident tet dies: then there is one writer.
   void set_incident_tet(Index point, Index tet) {
     WriteRule::check(point);
     incident_tets_[point] = tet;
   }
-  /// Marks a point whose star was changed, with the current round.
+  /// Marks that the point's star has changed in the current round.
   void touch(Index point) {
     WriteRule::check(point);
-    // Several may touch one point at a time; relaxed, since all write the same and nobody reads it meanwhile.
+    // Several threads may touch a point at a time. Relaxed, since all store the same value and nobody reads
+    // it meanwhile.
     std::atomic_ref<std::uint32_t>(touched_[point]).store(round_, std::memory_order_relaxed);
   }
   void set_points(Index t, const Tet& points) {
@@ -151,42 +162,45 @@ class EditableMesh {
 
   // Only while no task runs.
 
-  /// The number of living tets changes by that much.
+  /// Adds `change` to the number of live tets.
   void change_count(std::int64_t change) {
     WriteRule::check();
     live_ = static_cast<std::size_t>(static_cast<std::int64_t>(live_) + change);
   }
-  /// Free slots for operations that add; make_room() adds slots where there are fewer, not many at a time.
+  /// Free slots for operations that add; make_room() adds slots, in small steps, if fewer than that are free.
   FreeSlots& free_tets() { return free_tets_; }
   FreeSlots& free_points() { return free_points_; }
   void make_room(std::size_t tets, std::size_t points);
   Reservations& reservations() { return reservations_; }
-  /// Nothing is touched any more.
+  /// Clears all touched marks.
   void begin_round() { ++round_; }
-  /// Removes dead tets and points and renumbers both along a space-filling curve, so that what is near
-  /// in space is near in memory; leaves free slots at the end for operations that add tets and points.
-  /// `numbers`, unless it is null, gets the new numbers of all slots.
+  /// Removes dead tets and points and renumbers both along a space-filling curve, so that neighbours in space
+  /// are near in memory.
+  ///
+  /// \param spare_tets, spare_points free slots left at the end for operations that add.
+  /// \param numbers gets the new numbers of all slots; may be null.
   void compact(std::size_t spare_tets, std::size_t spare_points, SlotNumbers* numbers = nullptr);
-  /// Room for twice as many without copying what there is; memory is taken up only where it is written.
+  /// Reserves room for twice as many slots, so that growth copies nothing; memory is committed only where it
+  /// is written.
   void reserve_twice();
-  /// The share of the slots that were in use and are dead now.
+  /// Share of dead slots among the slots used so far.
   double dead_share() const;
   /// The faces between two regions, outside being one, each once. Parallel; the order does not depend on the
-  /// threads. Patches of faces between materials are those with which the mesh came: only before the first
+  /// threads. The patches of interface faces are the input's, so they are valid only before the first
   /// operation.
   std::vector<InterfaceFace> interface_faces() const;
-  /// The patches of faces between materials, for to_mesh(); by operations' end they stand in SurfaceGrid.
+  /// Sets the patches of interface faces for to_mesh(): SurfaceGrid keeps them during operations.
   void set_interface_patches(FacePatches&& patches) { interface_patches_ = std::move(patches); }
-  /// Of a living tet, working coordinates cubed.
+  /// Volume of a live tet, working coordinates cubed.
   double signed_volume(Index t) const;
-  /// In working coordinates cubed; flat and negative tets count as they are.
+  /// Sum of the signed volumes, working coordinates cubed.
   double total_volume() const;
-  /// Of the bounding box of the living points, working coordinates.
+  /// Diagonal of the live points' bounding box, working coordinates.
   double diagonal() const;
   /// Whether all tets are positive, by exact sign.
   bool all_positive() const;
-  /// Every invariant of the links: neighbours mutual, incident_tets right, faces equal, live count right. For
-  /// tests.
+  /// Checks every invariant of the links: neighbours mutual, incident tets right, faces equal, live count
+  /// right. For tests.
   bool links_consistent() const;
 
  private:
@@ -211,13 +225,13 @@ class EditableMesh {
   Reservations reservations_;
   std::size_t live_ = 0;
   FreeSlots free_tets_, free_points_;
-  /// What frozen_ says of a point: it stays; it stays with the tets that have only such points.
+  /// Values of frozen_: the point is frozen; the point and the tets that have only such points are.
   static constexpr std::uint8_t alone = 1, with_tets = 2;
-  std::vector<std::uint8_t> frozen_;  ///< by point; empty if none is
+  std::vector<std::uint8_t> frozen_;  ///< by point; empty if no point is frozen
   std::vector<Index> originals_;      ///< by point; empty if no star was split
-  /// By the ascending originals of their points; empty if all are 0.
+  /// Patches of interface faces by the ascending originals of their points; empty if all are 0.
   FacePatches interface_patches_;
-  std::vector<MaterialTag> tags_;  ///< of each region
+  std::vector<MaterialTag> tags_;  ///< by region
   std::map<MaterialTag, std::string> names_;
   std::map<InterfacePatch, SurfaceRegion> patch_groups_;
   WorkingSpace space_;

@@ -12,13 +12,15 @@ namespace tetwright {
 /// Patches other than 0 by the points of their faces, ascending.
 using FacePatches = std::map<Triangle, PatchId>;
 
-/// The key of a face.
+/// Key of a face: its points, ascending.
 Triangle face_key(Triangle points);
 
-/// The same with other numbers of the points, by the old ones.
+/// The patches after a renumbering of the points.
+///
+/// \param numbers new numbers by old ones.
 FacePatches renumbered(const FacePatches& patches, const std::vector<Index>& numbers);
 
-/// Gives triangles the patches that are listed for them; the others keep theirs.
+/// Sets the patches of the triangles that are listed; the others keep theirs.
 void put_patches(const FacePatches& patches, std::vector<InterfaceTriangle>& triangles);
 
 }  // namespace tetwright

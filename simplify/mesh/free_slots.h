@@ -8,24 +8,24 @@
 
 namespace tetwright {
 
-/// The free slots of an array: those that operations gave back, the last first, then those at its end that
-/// nobody had yet. What is given back in a batch is free only when the batch has been committed: until then
-/// two operations would write it. One thread at a time.
+/// The free slots of an array: the ones given back, the last first, then unused ones at its end. A slot given
+/// back becomes free only after end_batch(): before that, two operations of one batch could write it. One
+/// thread at a time.
 class FreeSlots {
  public:
-  /// The slots [first, end) are free.
+  /// Makes the slots [first, end) the free ones.
   void reset(std::size_t first, std::size_t end) {
     free_.clear();
     given_back_.clear();
     first_ = first;
     end_ = end;
   }
-  /// As many more behind the end.
+  /// Adds free slots at the end.
   void grow(std::size_t count) { end_ += count; }
   std::size_t available() const { return free_.size() + unused(); }
-  /// Slots at the end that nobody had yet.
+  /// Slots at the end that have never been used.
   std::size_t unused() const { return end_ - first_; }
-  /// One of the available ones.
+  /// \pre available() > 0.
   Index take() {
     if (free_.empty()) return static_cast<Index>(first_++);
     const Index slot = free_.back();
@@ -33,7 +33,7 @@ class FreeSlots {
     return slot;
   }
   void give_back(Index slot) { given_back_.push_back(slot); }
-  /// Nobody writes what was given back any more.
+  /// Frees the slots given back: nobody writes them any more.
   void end_batch() {
     free_.insert(free_.end(), given_back_.begin(), given_back_.end());
     given_back_.clear();

@@ -8,7 +8,7 @@
 
 namespace tetwright {
 
-/// Small hash table from mesh indices to local numbers, emptied in constant time. For one task.
+/// Small hash table from mesh indices to local numbers, cleared in constant time. For one task at a time.
 class LocalNumbers {
  public:
   LocalNumbers() { slots_.resize(initial_slots); }
@@ -17,7 +17,7 @@ class LocalNumbers {
     size_ = 0;
     if (first_ > max_first) restart();
   }
-  /// The number of `key`; a key not seen since clear() gets the next one and `added` true.
+  /// The number of `key`; a key not seen since clear() gets the next one and sets `added`.
   std::uint32_t number(Index key, bool& added) {
     std::size_t i = home(key);
     for (; slots_[i].stamp >= first_; i = (i + 1) & mask_)
@@ -41,17 +41,17 @@ class LocalNumbers {
 
  private:
   static constexpr std::size_t initial_slots = 256;  // a power of two; stars hold 15 points and 24 tets
-  /// Stamps are below 2^32 as long as fewer than 2^31 keys are added between two calls of clear().
+  /// Stamps stay below 2^32 if fewer than 2^31 keys are added between two calls of clear().
   static constexpr std::uint32_t max_first = 1u << 31;
   struct Slot {
     Index key = 0;
-    std::uint32_t stamp = 0;  ///< first_ + number; below first_: free
+    std::uint32_t stamp = 0;  ///< first_ + number; free if below first_
   };
   /// Multiplicative hashing by the golden ratio (Knuth 1973, section 6.4); the upper half of the product.
   std::size_t home(Index key) const { return (key * std::uint64_t{0x9e3779b97f4a7c15} >> 32) & mask_; }
-  /// Doubles the table; the free slot for `key`.
+  /// Doubles the table and returns the free slot for `key`.
   std::size_t grow(Index key);
-  /// After 2^31 keys: nothing of before may look current.
+  /// Clears all stamps after 2^31 keys, so that no old one looks current.
   void restart();
 
   std::vector<Slot> slots_;

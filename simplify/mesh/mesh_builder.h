@@ -10,10 +10,10 @@
 
 namespace tetwright {
 
-/// Turns a TetMesh into an EditableMesh; what it accepts stands at EditableMesh's constructor.
+/// Turns a TetMesh into an EditableMesh; see EditableMesh's constructor for what it accepts.
 class MeshBuilder {
  public:
-  /// `name`: what messages call the mesh.
+  /// \param name the mesh's name in messages; must outlive this object.
   MeshBuilder(EditableMesh& mesh, const std::string& name) : mesh_(mesh), name_(name) {}
   void build(TetMesh&& input);
 
@@ -21,18 +21,19 @@ class MeshBuilder {
   void take_points(std::vector<Vec3>&& points);
   void take_tets(const TetMesh& input);
   void link_faces();
-  /// Gives the faces the patches of the interfaces that the mesh came with.
+  /// Sets the faces' patches from the input's interfaces.
   void take_patches(const std::vector<InterfaceTriangle>& interfaces);
-  /// Splits points whose star falls into parts that no face joins. They are frozen with all their tets, as
-  /// are tets that share more than one face.
+  /// Splits points whose star falls into parts not joined by faces. Freezes them with all their tets, and so
+  /// tets that share more than one face.
   void split_stars();
   std::vector<Index> points_with_split_stars() const;
-  /// The points of tets that share more than one face with another one: no complex to operate on.
+  /// The points of tets that share more than one face with another one: there is no complex to operate on.
   std::vector<Index> points_of_glued_tets() const;
-  /// Adds a copy of each listed point for each further part of its star. Appends the copies to
-  /// `frozen` and returns them with the points they were split off from.
+  /// Adds a copy of each listed point for each further part of its star. Appends the copies to `frozen`.
+  ///
+  /// \return pairs of a copy and its original.
   std::vector<std::array<Index, 2>> split_points(const std::vector<Index>& split, std::vector<Index>& frozen);
-  /// The tets at `point` that faces join with the tet `first`.
+  /// Collects the tets at `point` that a chain of faces joins to the tet `first`.
   void part_of_star(Index point, Index first, LocalNumbers& seen, std::vector<Index>& part) const;
 
   EditableMesh& mesh_;

@@ -8,11 +8,11 @@
 
 namespace tetwright {
 
-/// From points to the tets around them and back; time goes with the lists, not with the mesh. Keeps its
-/// memory from call to call; for one thread.
+/// Finds the tets around points and the points of tets. Time is proportional to the lists, not to the mesh.
+/// Reuses its memory; one thread at a time.
 class Neighbourhood {
  public:
-  /// The tets at living points for which keep(tet) is true; each once, ascending.
+  /// The tets at live points for which keep(tet) is true; each once, ascending.
   template <class Keep>
   std::vector<Index> tets_at(const EditableMesh& mesh, const std::vector<Index>& points, const Keep& keep) {
     std::vector<Index> tets;
@@ -29,7 +29,7 @@ class Neighbourhood {
     return tets_at(mesh, points, [](Index) { return true; });
   }
 
-  /// The points of living tets; each once, ascending.
+  /// The points of live tets; each once, ascending.
   std::vector<Index> points_of(const EditableMesh& mesh, const std::vector<Index>& tets) {
     std::vector<Index> points;
     seen_.clear();
@@ -40,7 +40,7 @@ class Neighbourhood {
     return points;
   }
 
-  /// Leaves each number once, ascending; fast where most occur many times.
+  /// Sorts the list and removes duplicates; fast if most numbers occur many times.
   void make_distinct(std::vector<Index>& list) {
     seen_.clear();
     std::erase_if(list, [&](Index i) { return !is_new(i); });
@@ -55,7 +55,7 @@ class Neighbourhood {
   }
 
   StarWalk walk_;
-  LocalNumbers seen_;  ///< tets or points, in one function
+  LocalNumbers seen_;  ///< tets or points, within one call
 };
 
 }  // namespace tetwright

@@ -8,28 +8,28 @@
 
 namespace tetwright {
 
-/// What an attempted operation answers. Every one but `done` changes nothing; the statistics count them.
+/// Result of an attempted operation. Only `done` changes something; the statistics count all.
 enum class Outcome : std::uint8_t {
   done,
-  conflict,           ///< an earlier winner of the batch claims some of its read set: tried again
+  conflict,           ///< an earlier winner of the batch has claimed part of its read set: retried
   stale,              ///< the element changed since it was listed
-  no_candidate,       ///< the element has no such operation
+  no_candidate,       ///< the element does not admit this operation
   material_rule,      ///< the dimensions of point and edge forbid it (interfaces, junction curves, spanning
                       ///< edges)
   surface_error,      ///< Weight or Error above E
   inverts,            ///< a tet would become flat or negative
-  quality,            ///< the worst tet would become worse, and annealing did not let it pass
+  quality,            ///< the worst tet would get worse, and annealing did not allow it
   link_condition,     ///< the topology would change
-  self_intersection,  ///< a boundary or interface triangle would meet another
-  no_room,            ///< never answered: arrays grow (kept for the statistics, whose keys are fixed)
-  count,              ///< fewer tets than wanted would be left, or more
-  too_large,          ///< the star holds more points than are worth the time
+  self_intersection,  ///< a boundary or interface triangle would intersect another
+  no_room,            ///< never returned, since arrays grow (kept because the statistics' keys are fixed)
+  count,              ///< the number of tets would leave CountBounds
+  too_large,          ///< the star or ring is too large to be worth the time
   volume,             ///< a material's volume would leave its bounds (VolumeLedger)
-  edge_length,        ///< an edge would be longer or shorter than it should be (EdgeSizes)
+  edge_length,        ///< an edge would leave its bounds (EdgeSizes)
 };
 inline constexpr std::size_t outcome_count = 15;
 
-/// As the statistics call them: their keys are fixed.
+/// Keys of the statistics: fixed.
 inline constexpr std::array<std::string_view, outcome_count> outcome_names{
     "done",          "lock_taken", "stale",     "no_candidate",   "material_rule",
     "surface_error", "inverts",    "quality",   "link_condition", "self_intersection",

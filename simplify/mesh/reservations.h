@@ -9,25 +9,30 @@
 
 namespace tetwright {
 
-/// One word for each vertex: the winner of a batch that claimed it last (deterministic reservations:
-/// Blelloch, Fineman, Gibbons & Shun 2012, "Internally deterministic parallel algorithms can be fast").
-/// Winners are numbered through, so that words of earlier batches need no clearing.
+/// Deterministic reservations: one word for each vertex, the last winner that claimed it (Blelloch, Fineman,
+/// Gibbons & Shun 2012, "Internally deterministic parallel algorithms can be fast"). Winners are numbered
+/// consecutively over all batches, so that old words need no clearing.
 class Reservations {
  public:
-  /// All free. Only while no task runs. `first` is the number of the first winner, for tests.
+  /// Frees all vertices.
+  ///
+  /// \param first number of the first winner, for tests.
+  /// \pre No task runs.
   void reset(std::size_t vertices, std::uint32_t first = 1) {
     words_.assign(vertices, 0);
     first_ = next_ = first;
   }
   void reserve(std::size_t vertices) { words_.reserve(vertices); }
-  /// More vertices, free ones.
+  /// Adds free vertices.
   void grow(std::size_t vertices) { words_.resize(vertices, 0); }
-  /// Frees all vertices. At most `items` items win.
+  /// Frees all vertices.
+  ///
+  /// \param items max number of winners of the batch.
   void begin_batch(std::size_t items);
 
   /// Whether no winner of this batch has claimed a vertex of the read set.
   bool free(std::span<const Index> read_set) const {
-#ifndef TETWRIGHT_IGNORE_RESERVATIONS  // defined only in the test that shows that the others notice
+#ifndef TETWRIGHT_IGNORE_RESERVATIONS  // defined only in the test that shows that the other tests notice it
     for (Index v : read_set)
       if (words_[v] >= first_) return false;
 #else
@@ -35,8 +40,8 @@ class Reservations {
 #endif
     return true;
   }
-  /// Claims a write set for the next winner, also vertices of earlier winners: none of them is in its read
-  /// set, so it has read what it would read after they commit.
+  /// Claims a write set for the next winner, including vertices of earlier winners: none of these is in its
+  /// read set, so it has read what it would read after they commit.
   void claim(std::span<const Index> write_set) {
     for (Index v : write_set) words_[v] = next_;
     ++next_;
@@ -48,13 +53,13 @@ class Reservations {
   std::uint32_t next_ = 1;
 };
 
-/// The rule that makes results independent of threads, asserted in builds without NDEBUG: a thread that
-/// decides writes nothing, one that commits writes only its write set. What breaks it throws
-/// InternalError at once. In release builds these do nothing.
+/// Asserts, in builds without NDEBUG, the rule that makes results independent of threads: a thread that
+/// decides writes nothing, and one that commits writes only its write set. A violation throws InternalError
+/// at once. Does nothing in release builds.
 class WriteRule {
  public:
 #ifndef NDEBUG
-  /// While it exists, this thread may write nothing.
+  /// While it exists, this thread must not write.
   class Deciding {
    public:
     Deciding();
@@ -62,7 +67,7 @@ class WriteRule {
     Deciding(const Deciding&) = delete;
     Deciding& operator=(const Deciding&) = delete;
   };
-  /// While it exists, this thread may write at these vertices alone.
+  /// While it exists, this thread may write only these vertices.
   class Committing {
    public:
     explicit Committing(std::span<const Index> write_set);
@@ -71,7 +76,7 @@ class WriteRule {
     Committing& operator=(const Committing&) = delete;
   };
   static void check(Index vertex);
-  /// For what no vertex reserves.
+  /// Checks a write that no vertex reserves.
   static void check();
 #else
   struct Deciding {

@@ -27,7 +27,7 @@ Outcome Star::gather(const EditableMesh& mesh, Index centre_point) {
   };
   {
     tet_numbers_.number(first, added);
-    // (centre, face opposite it as seen from outside) is positive.
+    // (centre, its opposite face as seen from outside) is positive.
     const int slot = mesh.slot_of(first, centre);
     const Triangle face = face_of(mesh.points(first), slot);
     std::array<std::uint16_t, 3> link;
@@ -39,7 +39,7 @@ Outcome Star::gather(const EditableMesh& mesh, Index centre_point) {
     const RegionId region = tets[i].region;
     const Tet& corners = mesh.points(tet);
     std::array<std::uint16_t, 3> link = tets[i].link;
-    // Of all but the first the neighbour it was met from knows two points of the link.
+    // For all tets but the first, the neighbour that queued it has set two link points.
     const int slot = slot_in(corners, centre), first_corner = slot_in(corners, points[link[0]]),
               second_corner = slot_in(corners, points[link[1]]);
     const std::array<int, 3> corner{first_corner, second_corner, 6 - slot - first_corner - second_corner};
@@ -56,14 +56,15 @@ Outcome Star::gather(const EditableMesh& mesh, Index centre_point) {
         interface_triangles.push_back({a, b, region, outside_id, across.patch()});
       } else {
         const Index other = across.tet();
-        if (k < 2 || i == 0) {  // across the third one is where it was met from
+        if (k < 2 || i == 0) {  // the third face leads back to the tet that queued it
           tet_numbers_.number(other, added);
           if (added) {
             tets.push_back({other, {b, a, 0}, 0, across.is_interface() ? mesh.region(other) : region, 0});
             mesh.prefetch_tet(other);
           }
         }
-        if (!across.is_interface() || other < tet) continue;  // an inner interface is met twice
+        if (!across.is_interface() || other < tet)
+          continue;  // an interface between two materials is seen from both sides
         interface_triangles.push_back({a, b, region, mesh.region(other), 0});
       }
       ++interface_count[a];
@@ -94,7 +95,7 @@ void Star::begin(Index centre_point, const Vec3& position) {
 void Star::find_creases() {
   creases = false;
   if (interface_triangles.empty()) return;
-  // Only where faces of one star differ at all is there something to look for.
+  // Without different patches there can be no creases.
   const InterfaceTriangle& first = interface_triangles.front();
   if (std::all_of(interface_triangles.begin(), interface_triangles.end(),
                   [&](const InterfaceTriangle& t) { return t.patch == first.patch; }))
@@ -134,8 +135,8 @@ void Star::add_interface_triangle(Index first, Index second, RegionId inside, Re
 
 int Star::dimension() const {
   if (interface_triangles.empty()) return 3;
-  // The interface triangles at the centre are the edges of a graph on the link's points; a dimension-2 edge
-  // of the centre is a node that two of them continue across. Walk from interface triangle to interface
+  // The interface triangles at the centre are the edges of a graph on the link points. An edge of dimension 2
+  // from the centre is a node at which two of them continue. Walk from interface triangle to interface
   // triangle across such nodes.
   std::size_t ends[2] = {0, 0};
   std::size_t end_count = 0;
@@ -147,8 +148,7 @@ int Star::dimension() const {
   if (end_count == 1) return 0;
   visited_.assign(interface_triangles.size(), 0);
   const auto walk = [&](std::size_t interface_triangle, std::size_t from) {
-    // Follows the path of interface triangles to the next end of its curve, or round to where it
-    // began.
+    // Follow the interface triangles to the end of their curve, or back to the start.
     std::size_t at = from;
     for (;;) {
       visited_[interface_triangle] = 1;
@@ -217,7 +217,7 @@ double Star::surface_error(const Vec3& step, double gamma, bool losses_cancel) {
     for (const VolumeGradient& g : gradients) sum += portable_cbrt(std::fabs(g.change.dot(step)));
     return gamma * sum;
   }
-  // A moving centre makes each interface triangle sweep a tet of volume |area vector . step| / 3.
+  // Moving the centre makes each interface triangle sweep a tet of volume |area vector . step| / 3.
   swept_.assign(gradients.size(), 0);
   for (std::size_t k = 0; k < interface_triangles.size(); ++k) {
     const double swept = std::fabs(areas_[k].dot(step));

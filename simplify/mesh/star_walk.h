@@ -11,10 +11,11 @@ namespace tetwright {
 
 inline bool contains(const Tet& t, Index p) { return t[0] == p || t[1] == p || t[2] == p || t[3] == p; }
 
-/// Walks the star of a point from tet to tet by ids alone. Keeps its memory from walk to walk.
+/// Walks the star of a point from tet to tet by ids alone. Reuses its memory.
 class StarWalk {
  public:
-  /// Whether `test(tet)` is true for one tet at `point`, which is there.
+  /// Whether test(tet) is true for some tet at `point`; stops at the first.
+  /// \pre The point is live.
   template <class Test>
   bool any_tet(const EditableMesh& mesh, Index point, const Test& test) {
     numbers_.clear();
@@ -36,7 +37,7 @@ class StarWalk {
     return false;
   }
 
-  /// The same for `test(points of the tet)`.
+  /// any_tet() with test(points of the tet).
   template <class Test>
   bool any(const EditableMesh& mesh, Index point, const Test& test) {
     return any_tet(mesh, point, [&](Index t) { return test(mesh.points(t)); });
@@ -47,8 +48,8 @@ class StarWalk {
     return any(mesh, p, [q](const Tet& t) { return contains(t, q); });
   }
 
-  /// Whether a gathered ring has all tets at its edge: where wedges of material touch along an edge it has
-  /// only those of one wedge.
+  /// Whether a gathered ring has all tets at its edge: if wedges of material touch along an edge, a ring has
+  /// the tets of one wedge only.
   bool is_whole(const EditableMesh& mesh, const EdgeRing& ring) {
     std::size_t count = 0;
     any(mesh, ring.a, [&](const Tet& t) {

@@ -8,34 +8,33 @@
 
 namespace tetwright {
 
-/// Number of a region inside an EditableMesh: a material (its place among the tags in ascending order), or
-/// outside.
+/// Number of a region inside an EditableMesh: a material, by its index among the ascending tags, or outside.
 using RegionId = std::uint32_t;
 inline constexpr RegionId outside_id = 0xffffffffu;
 
 /// Number of a patch: a part of the boundary or of an interface that keeps its identity. Faces between the
-/// same two regions that differ in their patch meet in a junction curve.
+/// same two regions that differ in their patch meet in a junction curve: a feature edge, or crease.
 using PatchId = std::uint16_t;
 
-/// What a tet stores for one of its faces: the tet across it, and whether that one is of another region; or
-/// that outside is there, and the patch of the boundary face. 4 bytes.
+/// A tet's entry for one of its faces: the tet across it and whether that one is of another region, or
+/// outside and the patch of the boundary face. 4 bytes.
 class FaceLink {
  public:
   constexpr FaceLink() = default;
-  /// To a tet below max_tets.
+  /// \pre tet < max_tets.
   static constexpr FaceLink to(Index tet, bool interface) { return FaceLink(interface ? tet | flag : tet); }
   static constexpr FaceLink outside(PatchId patch) { return FaceLink(~std::uint32_t{patch}); }
 
   constexpr bool is_outside() const { return word_ >= first_outside; }
-  /// Whether the regions on both sides differ; outside is one.
+  /// Whether the regions on both sides differ; outside counts as a region.
   constexpr bool is_interface() const { return (word_ & flag) != 0; }
-  /// The tet across; no_index: outside.
+  /// The tet across the face; no_index: outside.
   constexpr Index tet() const { return is_outside() ? no_index : word_ & ~flag; }
-  /// Of a boundary face.
+  /// Patch of a boundary face.
   constexpr PatchId patch() const { return static_cast<PatchId>(~word_); }
   constexpr bool operator==(const FaceLink&) const = default;
 
-  /// Tets that fit beside the flag and the codes of outside.
+  /// Number of tets that fit beside the flag and the codes for outside.
   static constexpr std::size_t max_tets = std::size_t{1} << 30;
 
  private:
@@ -44,7 +43,7 @@ class FaceLink {
   std::uint32_t word_ = ~std::uint32_t{0};
 };
 
-/// The connectivity of a tet of an EditableMesh: half a cache line, which is what walking a mesh reads.
+/// The connectivity of a tet: half a cache line, all that a walk through the mesh reads.
 struct alignas(32) TetRecord {
   Tet points;                     ///< no_index four times: dead
   std::array<FaceLink, 4> links;  ///< across the face opposite each point
@@ -57,13 +56,13 @@ inline Triangle face_of(const Tet& points, int face) {
   return {points[c[0]], points[c[1]], points[c[2]]};
 }
 
-/// Where `point` stands among the points of a tet, which has it. Without branches, which no processor would
-/// foresee.
+/// Slot of `point` in a tet. Branch-free, since no processor could predict the branches.
+/// \pre The tet has the point.
 inline int slot_in(const Tet& points, Index point) {
   return (points[1] == point) + 2 * (points[2] == point) + 3 * (points[3] == point);
 }
 
-/// The point that an operation is about to add, as long as it has no number of its own.
+/// Stands for the point that an operation is about to add, until it gets a number.
 inline constexpr Index unnumbered_point = no_index - 1;
 
 inline constexpr Tet dead_tet{no_index, no_index, no_index, no_index};

@@ -12,20 +12,21 @@ namespace tetwright {
 class WorkingSpace {
  public:
   WorkingSpace() = default;
-  /// Shifts along each axis on which the differences from the lowest coordinate are exact for all points (a
-  /// body far away then has as many bits to move in as one at the origin, and one that was moved exactly gets
-  /// the same working coordinates), and scales the largest coordinate to [1, 2). The points
-  /// must be finite; where their differences overflow, valid() is false.
+  /// Chooses the shift and the scale. An axis is shifted by its lowest coordinate if all differences from it
+  /// are exact: a body far away then has as many bits to move in as one at the origin, and a body that was
+  /// moved exactly gets the same working coordinates. The scale brings the largest coordinate into [1, 2). If
+  /// differences overflow, valid() is false.
+  /// \pre The points are finite.
   static WorkingSpace of(const std::vector<Vec3>& points);
 
   bool valid() const { return scale_ > 0; }
-  /// Lengths in working coordinates are input lengths times this power of two.
+  /// Ratio of working to input lengths, a power of two.
   double scale() const { return scale_; }
   Vec3 to_input(const Vec3& working) const;
   Vec3 to_working(const Vec3& input) const;
-  /// The position that a point moved to `working` really gets: on a lattice of 2^-30 (about 1e-9 of the
-  /// mesh's size), and where that has no exact input coordinates, the nearest position that has. So signs
-  /// hold for the coordinates as written, and a mesh that was moved far away gives the same result.
+  /// Rounds a position to a lattice of 2^-30 (about 1e-9 of the mesh's size), and on to the nearest position
+  /// that has exact input coordinates. So signs hold for the coordinates as written, and a mesh that was
+  /// moved far away gives the same result.
   Vec3 snap(const Vec3& working) const;
 
  private:

@@ -7,12 +7,12 @@ namespace tetwright {
 
 namespace {
 
-/// How far a segment of a crease may stray from the creases of the input, as a share of the diagonal.
+/// Max distance of a feature segment from the input's feature edges, as a share of the mesh's diagonal.
 constexpr double max_crease_share = 0.001;
-/// Where on a segment its distance from the creases is looked at.
+/// Parameters along a segment at which its distance from the feature edges is sampled.
 constexpr double segment_samples[] = {0.25, 0.5, 0.75};
 
-/// The largest distance of the samples from the creases, or infinity where one is farther than `at_most`.
+/// Max distance of the samples from the feature edges, or infinity if one exceeds `at_most`.
 double crease_distance(const SurfaceProjection& projection, const Vec3& p, const Vec3& q, double at_most) {
   double largest = 0;
   for (const double s : segment_samples) {
@@ -39,7 +39,7 @@ bool near_crease(const BlockRules& rules, const Star& star, std::size_t first, c
            (!second || crease_distance(*rules.projection, to, star.positions[*second], bound) <= bound);
   };
   if (fits()) return true;
-  // No farther than what there is.
+  // Allow the distance of the segments that are replaced.
   const double unbounded = (star.positions[first] - star.centre_position).norm();
   for (std::size_t p = 0; p < star.points.size(); ++p)
     if (star.edge_dimension(p) == 1)

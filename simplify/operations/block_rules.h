@@ -15,8 +15,8 @@
 
 namespace tetwright {
 
-/// No operation may take the number of tets below the minimum; none that adds tets may take it above the
-/// maximum.
+/// Bounds of the number of tets: no operation may take it below the minimum, and none that adds tets above
+/// the maximum.
 struct CountBounds {
   std::size_t min = 0, max = std::numeric_limits<std::int64_t>::max();
   bool allow(std::size_t live, std::int64_t change) const {
@@ -26,79 +26,82 @@ struct CountBounds {
   }
 };
 
-/// The bounds within which all operations of a block stay. Lengths in working coordinates.
+/// The bounds that all operations of a block respect. Lengths in working coordinates.
 struct BlockRules {
   Objective objective;
   double max_error = 0;  ///< E of Cutler, Dorsey & McMillan 2004, section 3
   double gamma = 10;     ///< weight of the volume error
   CountBounds count;
-  /// Error(op) takes the net change of each volume, as the paper has it; otherwise the volumes that the
-  /// interface triangles sweep are added up.
+  /// Error(op) takes the net volume changes, as in the paper; otherwise it adds up the volumes that the
+  /// interface triangles sweep.
   bool losses_cancel = false;
-  double accept_worse = 0;    ///< annealing: probability of an action that leaves a worse tet than before
-  float annealing_floor = 0;  ///< share of the worst quality that such an action must keep
-  float good_enough =
-      1;  ///< operations whose new tets are all better are accepted, whatever was there before
-  /// The number of targets that a collapse tries, in the order of their weight.
+  /// Annealing: probability of accepting an action that leaves a worse tet than before.
+  double accept_worse = 0;
+  float annealing_floor = 0;  ///< min share of the worst quality that such an action keeps
+  /// Operations whose new tets are all better than this are accepted, whatever was there before.
+  float good_enough = 1;
+  /// Max number of targets that a collapse tries, in the order of their weight.
   std::size_t max_targets = 4;
-  /// Weight, against E, of the distance by which a collapse moves the surface at the removed point; 0: the
-  /// volume alone decides, as in the paper.
+  /// Weight, relative to E, of the distance by which a collapse moves the surface at the removed point; 0:
+  /// the volume alone decides, as in the paper.
   double distance_weight = 0;
-  /// Collapses take only edges up to the first length, and make none longer than the second.
+  /// Max length of an edge that is collapsed, and of an edge that a collapse makes.
   double max_collapsed_edge = std::numeric_limits<double>::infinity(),
          max_edge = std::numeric_limits<double>::infinity();
-  /// What lengths edges should have; null: any. No operation then leaves an edge that is longer, or shorter,
-  /// than its bound and than all edges that it changes were. Where there is a target length, `max_error`,
-  /// `max_distance` and `max_deviation` are for edges of the average length, see scale_at().
+  /// Target lengths of edges; null: none. No operation then leaves an edge that violates a bound by more than
+  /// all edges that the operation changes did before. With a target length, `max_error`, `max_distance` and
+  /// `max_deviation` apply to edges of the average length; see scale_at().
   const EdgeSizes* sizes = nullptr;
-  /// Collapses take only edges that `sizes` calls too short.
+  /// Collapses only edges that `sizes` calls too short.
   bool collapse_short_only = false;
-  /// How far the centre of a new interface triangle may be from the reference (needs `projection`); 0: not
+  /// Max distance of a new interface triangle's centroid from the reference (needs `projection`); 0: not
   /// checked. Unlike E it does not add up over several operations.
   double max_distance = 0;
-  /// How far a sample of the input's surface may be from the triangle that owns it, and a new triangle from
-  /// the input's surface, unless they were as far before (needs SurfaceGrid::samples()).
+  /// Max distance of a sample of the input's surface from the triangle that owns it, and of a new triangle
+  /// from the input's surface, unless they were as far before (needs SurfaceGrid::samples()).
   double max_deviation = std::numeric_limits<double>::infinity();
-  /// fit_to_samples() weights samples by the square of their distances.
+  /// fit_to_samples() weights samples by their squared distance.
   bool fit_farthest = false;
-  /// What max_deviation must never exceed.
+  /// Upper limit of max_deviation.
   double tolerance = std::numeric_limits<double>::infinity();
-  /// The mesh has patches (needs `projection`): points move on them and along the creases between them, and
-  /// nowhere else where they are flat. A segment of a crease strays from the creases as they came by no more
-  /// than this, or than those did that it replaces; 0: no patches.
+  /// Max distance of a feature segment from the input's feature edges; a segment may keep the distance of
+  /// those it replaces. 0: the mesh has no patches. With patches (needs `projection`) points move on their
+  /// patch and along the feature edges between patches, and never leave a flat patch.
   double max_crease_distance = 0;
-  /// Points of interfaces, junction curves and corners may leave them by up to max_distance (or as far as
-  /// they are away already) where that improves the shapes (needs `projection`); those where patches meet,
-  /// and those of flat patches, stay.
+  /// Lets points of interfaces, junction curves and corners leave them by up to max_distance, or as far as
+  /// they are off already, if that improves the shapes (needs `projection`). Points where patches meet, and
+  /// points of flat patches, stay.
   bool leave_surface = false;
-  /// All tets are positive, and no boundary or interface triangles meet but in what they share: then the mesh
-  /// covers no place twice, and where the centre lies within a material, a collapse that leaves positive tets
-  /// satisfies the link condition. For an edge between the target and a point of the centre's link that were
-  /// joined elsewhere would have to lie inside the star.
+  /// All tets are positive, and boundary and interface triangles intersect only in shared vertices and edges:
+  /// the mesh is embedded. If the centre lies within a material, a collapse that leaves positive tets then
+  /// satisfies the link condition: an edge elsewhere that joins the target to a point of the centre's link
+  /// would have to lie inside the star.
   bool embedded = false;
-  /// What points of interfaces and junction curves are projected onto; null: they stay in planes of constant
-  /// volume.
+  /// Target of the projection of points on interfaces and junction curves; null: they stay in planes of
+  /// constant volume.
   const SurfaceProjection* projection = nullptr;
 
-  /// The wanted length of edges at a place over the average one of the mesh to come; 1 without a target
-  /// length.
+  /// Target edge length at a point over the average one of the simplified mesh; 1 without a target length.
   double scale_at(const Vec3& place) const {
     return sizes && sizes->has_target_length() ? objective.scale_at(place) : 1;
   }
-  /// Sets `projection`, and what keeps patches where there are some. `diagonal` of the mesh's bounding box.
+  /// Sets `projection`, and max_crease_distance if there are patches.
+  ///
+  /// \param diagonal of the mesh's bounding box, working coordinates.
   void project_onto(const SurfaceProjection& surfaces, double diagonal);
 };
 
-/// Whether an added interface triangle stays near the reference, as far as the rules ask for it. `inside` and
-/// `across` are the regions that it separates.
+/// Whether an added interface triangle stays near the reference, if the rules require it.
+///
+/// \param inside, across the regions that it separates.
 bool near_reference(const BlockRules& rules, const SurfaceGrid::Added& t, RegionId inside, RegionId across);
 
-/// Whether the segments of a crease that end in the star's centre may become one from its neighbour at local
-/// number `first` to `to`, and with `second` another one from there.
+/// Whether the feature segments that end in the star's centre may be replaced by one from link point `first`
+/// to `to`, and with `second` by another one from `to` to that link point. Link points by local number.
 bool near_crease(const BlockRules& rules, const Star& star, std::size_t first, const Vec3& to,
                  std::optional<std::size_t> second = {});
 
-/// The objective's value for a tet.
+/// Value of the objective for a tet.
 float quality_of(const EditableMesh& mesh, const BlockRules& rules, const Tet& t);
 
 }  // namespace tetwright

@@ -11,7 +11,7 @@ namespace tetwright {
 
 namespace {
 
-/// Rank of a refusal: the higher, the later the test that refused. The highest is reported.
+/// Rank of a refusal: the later the test that refused, the higher. The highest one is reported.
 int depth(Outcome o) {
   switch (o) {
     case Outcome::count:
@@ -35,7 +35,7 @@ int depth(Outcome o) {
   }
 }
 
-/// How far the centre lies from what takes the place of its interface triangles.
+/// Distance of the centre from the triangles that replace its interface triangles.
 double distance_left(const Star& star, std::size_t b) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const Star::InterfaceTriangle& s : star.interface_triangles)
@@ -45,8 +45,8 @@ double distance_left(const Star& star, std::size_t b) {
   return std::sqrt(nearest);
 }
 
-/// Fills the proposal's edit with the interface triangles before and after; false if one is too far from the
-/// reference.
+/// Fills the proposal's edit with the interface triangles before and after the collapse. False if an added
+/// one is too far from the reference.
 bool surface_edit(Workspace& ws, const BlockRules& rules, std::size_t b) {
   const Star& star = ws.star;
   SurfaceGrid::Edit& edit = ws.proposal.edit;
@@ -67,12 +67,12 @@ bool surface_edit(Workspace& ws, const BlockRules& rules, std::size_t b) {
   return true;
 }
 
-/// A tet with both ends of the edge goes: its two outer neighbours are joined, across its faces opposite
-/// these ends, and its points' incident tets become others.
+/// Closes the gap that a tet with both ends of the edge leaves: links the neighbours across its faces
+/// opposite these ends to each other, and gives its points other incident tets.
 void close_gap(const EditableMesh& mesh, Proposal& proposal, Index tet) {
   const int slot_a = mesh.slot_of(tet, proposal.centre), slot_b = mesh.slot_of(tet, proposal.target);
   const FaceLink across_a = mesh.link(tet, slot_a), across_b = mesh.link(tet, slot_b);
-  /// What a tet on one side finds where it found this one.
+  /// Link of a neighbour on one side to the other one.
   const auto joined = [&](Index side, FaceLink other) {
     return other.is_outside() ? other
                               : FaceLink::to(other.tet(), mesh.region(side) != mesh.region(other.tet()));
@@ -81,7 +81,7 @@ void close_gap(const EditableMesh& mesh, Proposal& proposal, Index tet) {
     if (!side.is_outside())
       proposal.relinks.push_back({side.tet(), static_cast<std::uint8_t>(mesh.face_towards(side.tet(), tet)),
                                   joined(side.tet(), other)});
-  // Both keep the tet's two other points, and after the collapse both have b.
+  // Both neighbours keep the tet's two other points, and after the collapse both have b.
   const Index keeper = across_b.is_outside() ? across_a.tet() : across_b.tet();
   for (int k = 0; k < 4; ++k) {
     const Index p = mesh.points(tet)[k];
@@ -97,7 +97,7 @@ void propose(Workspace& ws, std::size_t b) {
   proposal.centre = star.centre;
   proposal.target = star.points[b];
   proposal.claim_star(star);
-  // The target's star was read, too.
+  // Add the target to the read set: its star was read, too.
   std::swap(proposal.write_set[1], proposal.write_set[1 + b]);
   proposal.read_set_size = 2;
   proposal.rated.clear();
@@ -115,12 +115,12 @@ void propose(Workspace& ws, std::size_t b) {
   }
 }
 
-/// Everything but the weight, for the target with local number b.
+/// Runs all tests but the weight for the target with local number b.
 Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
   Star& star = ws.star;
   std::vector<float>& qualities = ws.qualities;
   const Vec3& to = star.positions[b];
-  // Orientation first: the cheapest test, and the one that fails most often.
+  // Test orientation first: the cheapest test, and the one that fails most often.
   std::size_t left = 0;
   double min_det = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < star.tets.size(); ++k) {
@@ -131,7 +131,8 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
     if (!(det > 0)) return Outcome::inverts;
     min_det = std::min(min_det, det);
   }
-  // The whole star vanishes where each of its tets stands on another: an ear of the boundary is cut off.
+  // If each tet of the star stands on another one, the whole star vanishes: an ear of the boundary is cut
+  // off.
   if (left == 0)
     for (const Star::StarTet& t : star.tets)
       if (const Index below = ws.mesh.neighbour(t.tet, t.slot);
@@ -153,7 +154,7 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
         rules.objective(to, star.positions[t.link[0]], star.positions[t.link[1]], star.positions[t.link[2]]);
     if (!(qualities[k] > limit)) return Outcome::quality;
   }
-  // Beside the paper's volumes: the tip of a spike has next to none.
+  // Bound the distance beside the paper's volumes: the tip of a spike has hardly any volume.
   if (!star.interface_triangles.empty() && rules.distance_weight > 0 &&
       rules.distance_weight * distance_left(star, b) > rules.max_error * rules.scale_at(star.centre_position))
     return Outcome::surface_error;

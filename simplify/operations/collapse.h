@@ -5,23 +5,25 @@
 
 namespace tetwright {
 
-/// Half-edge collapse: the star's centre is drawn onto one of its link points, its edge's tets vanish.
+/// Half-edge collapse: moves the centre of the gathered star (Workspace::gather()) onto one of its link
+/// points; the tets at the edge vanish.
 ///
-/// Of the allowed targets (the edge has the dimension of the centre: an interior point goes anywhere, a point
-/// of an interface stays on it, one of a junction curve too; spanning edges never collapse) the
-/// BlockRules::max_targets of least Weight = length + Error (Cutler, Dorsey & McMillan 2004, section 4) are
-/// tried and the first that passes every test is proposed. Tests come in the order of their cost: E,
+/// The edge must have the dimension of the centre: an interior point may go anywhere, a point of an interface
+/// stays on it, a point of a junction curve stays on that; spanning edges never collapse. The
+/// BlockRules::max_targets targets of least Weight = length + Error (Cutler, Dorsey & McMillan 2004, section
+/// 4) are tried, and the first that passes every test is proposed. Tests run in the order of their cost: E,
 /// signs, quality, link condition, self-intersection.
 ///
-/// Of the star that `ws.gather()` left in `ws.star`. done: `ws.proposal` says what is to be done. Otherwise
-/// the outcome is that of the target that got farthest.
+/// \return done: `ws.proposal` is complete. Otherwise the outcome of the target that passed the most tests.
 Outcome collapse(Workspace& ws, const BlockRules& rules);
 
-/// The same for one target alone, the link point with local number b.
+/// Tries one target alone.
+///
+/// \param b local number of the target among the link points.
 Outcome collapse_onto(Workspace& ws, const BlockRules& rules, std::size_t b);
 
-/// Weight(e) of the half-edge from the centre to link point b: length plus Error(collapse). The star's
-/// gradients must be computed.
+/// Weight(e) of the half-edge from the centre to link point b: length plus Error(collapse).
+/// \pre star.compute_gradients() has been called.
 double collapse_weight(Star& star, std::size_t b, const BlockRules& rules);
 
 }  // namespace tetwright

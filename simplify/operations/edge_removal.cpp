@@ -12,12 +12,13 @@ namespace tetwright {
 
 namespace {
 
-/// Tets around an edge of the largest basic flip, 4-4.
+/// Ring size of the largest basic flip, 4-4.
 constexpr std::size_t basic_ring = 4;
 
 Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
 
-/// The interface triangles of an edge (a, b) with interface triangles to s and t, turned to the edge (s, t).
+/// Replaces the interface triangles (a, b, s) and (a, b, t) of the ring's edge (a, b) by the two at the edge
+/// (s, t).
 Outcome surface_edit(Workspace& ws, const BlockRules& rules, Index s, Index t, RegionId inside,
                      RegionId across, PatchId patch) {
   const EditableMesh& mesh = ws.mesh;
@@ -27,7 +28,7 @@ Outcome surface_edit(Workspace& ws, const BlockRules& rules, Index s, Index t, R
   const double swept = std::fabs(orient3d_value(a, b, ps, pt)) / 6;
   const int materials = across == outside_id ? 1 : 2;
   if (rules.gamma * materials * portable_cbrt(swept) > rules.max_error) return Outcome::surface_error;
-  // No fold: every new triangle looks the way both old ones look.
+  // Refuse folds: every new triangle must face the way both old ones do.
   const std::array<Vec3, 2> before{normal_of(a, ps, b), normal_of(a, b, pt)};
   const std::array<Vec3, 2> after{normal_of(a, ps, pt), normal_of(b, pt, ps)};
   for (const Vec3& n : after)
@@ -49,7 +50,7 @@ class EdgeRemoval {
   EdgeRemoval(Workspace& ws, const BlockRules& rules)
       : ws_(ws), rules_(rules), dimension_(ws.ring.dimension()) {}
 
-  /// `kind` becomes the flip that it is, where it is one.
+  /// \param kind set to the flip that the removal is, if it is one.
   Outcome run(const FlipReach& reach, Operation& kind) {
     if (dimension_ == 1) return Outcome::material_rule;
     make_chains();
@@ -101,8 +102,8 @@ class EdgeRemoval {
                   ws_.grid.patch(mesh, {ring.a, ring.b, ws_.chains[0].back()})};
       return;
     }
-    // Of the first and the last tet the face of a, b and the end of the chain is the boundary face: it lies
-    // opposite the chain's next point.
+    // The boundary face of the first and of the last tet has a, b and that end of the chain: it is opposite
+    // the chain's next point.
     const std::size_t n = ring.points.size();
     patches_ = {mesh.link(ring.tets.front(), mesh.slot_of(ring.tets.front(), ring.points[1])).patch(),
                 mesh.link(ring.tets.back(), mesh.slot_of(ring.tets.back(), ring.points[n - 2])).patch()};
@@ -140,7 +141,7 @@ class EdgeRemoval {
            (mesh.frozen(ws_.chains[0].front()) || mesh.frozen(ws_.chains[0].back()));
   }
 
-  /// False if an edge or triangle of the triangulation is in the mesh already.
+  /// Fills the proposal's tets. False if an edge or triangle of the triangulation exists already.
   bool fill_cavity() {
     const EdgeRing& ring = ws_.ring;
     const EditableMesh& mesh = ws_.mesh;
@@ -154,7 +155,7 @@ class EdgeRemoval {
       ws_.triangulations[c].triangles([&](std::size_t i, std::size_t k, std::size_t j) {
         for (const Tet& t : {Tet{p[i], p[k], p[j], ring.b}, Tet{p[i], p[j], p[k], ring.a}})
           proposal.added.push_back({t, regions_[c], quality_of(mesh, rules_, t)});
-        // Diagonals must be new; of a ring of three the triangle must be.
+        // Diagonals must be new; for a ring of three, the triangle must be.
         if (single_triangle) {
           present |=
               ws_.walk.any(mesh, p[i], [&](const Tet& t) { return contains(t, p[k]) && contains(t, p[j]); });
@@ -166,7 +167,7 @@ class EdgeRemoval {
     return !present;
   }
 
-  /// What the regions on both sides of the edge gain.
+  /// Volume changes of the regions on both sides of the edge.
   std::array<VolumeChange, 2> volume_changes() const {
     const EdgeRing& ring = ws_.ring;
     const EditableMesh& mesh = ws_.mesh;
@@ -208,7 +209,7 @@ class EdgeRemoval {
   int dimension_;
   std::size_t chain_count_ = 1;
   std::array<RegionId, 2> regions_{};
-  std::array<PatchId, 2> patches_{};  ///< of an edge of dimension 2
+  std::array<PatchId, 2> patches_{};  ///< if the edge has dimension 2
 };
 
 }  // namespace
@@ -217,7 +218,7 @@ Outcome remove_edge(Workspace& ws, const BlockRules& rules, Index tet, int edge,
   Operation kind = Operation::edge_removal;
   Outcome o = ws.ring.gather(ws.mesh, tet, edge, reach.basic() ? basic_ring : EdgeRing::max_tets);
   if (o == Outcome::done) o = EdgeRemoval(ws, rules).run(reach, kind);
-  // None of the three flips: nothing was tried.
+  // Not a basic flip: nothing was tried.
   if (reach.basic() && kind == Operation::edge_removal) return Outcome::no_candidate;
   return ws.count(kind, o);
 }

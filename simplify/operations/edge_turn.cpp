@@ -10,7 +10,7 @@ namespace tetwright {
 
 namespace {
 
-/// Degrees; what is more is not rounding.
+/// Degrees; the excess is more than rounding.
 constexpr double full_turn = 360.001;
 
 /// A point of a tet after the proposal.
@@ -25,7 +25,9 @@ class EdgeTurn {
   EdgeTurn(Workspace& ws, const std::array<Index, 2>& ends)
       : mesh_(ws.mesh), proposal_(ws.proposal), walk_(ws.walk), ends_(ends) {}
 
-  /// The sum of their dihedral angles, degrees; `at`: one of the edge's ends, which stays where it is.
+  /// Sum of their dihedral angles, degrees.
+  ///
+  /// \param at an end of the edge that the proposal does not change.
   double around(Index at) {
     double sum = 0;
     walk_.any_tet(mesh_, at, [&](Index t) {
@@ -54,7 +56,7 @@ class EdgeTurn {
     return {mesh_.original(p), mesh_.position(p)};
   }
 
-  /// The dihedral angle of a tet at the edge, 0 if it is not there.
+  /// The tet's dihedral angle at the edge, degrees; 0 if it does not have the edge.
   double angle(const Tet& points) const {
     std::array<Vec3, 4> at;
     std::array<bool, 4> is_end{};

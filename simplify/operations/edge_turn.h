@@ -5,11 +5,12 @@
 
 namespace tetwright {
 
-/// Whether the proposal, which is complete, would leave tets that overlap around one of its edit's narrow
-/// edges: their dihedral angles there are more than a full turn. A surface that closes around a cavity of few
-/// triangles can be turned inside out without any two of them meeting, and all tets stay positive.
+/// Whether the proposal would make tets overlap around one of its edit's narrow edges, where their dihedral
+/// angles would then sum to more than a full turn. A surface around a cavity of few triangles can turn inside
+/// out without an intersection of triangles, while all tets stay positive.
 ///
 /// Adds the ends whose stars it reads to the proposal's read set.
+/// \pre The proposal is complete.
 bool folds_over(Workspace& ws);
 
 }  // namespace tetwright

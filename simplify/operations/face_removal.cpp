@@ -7,7 +7,7 @@ namespace tetwright {
 
 namespace {
 
-/// Chooses the faces between the points `a` and `b` that go.
+/// Chooses the faces to remove between the apices `a` and `b`.
 class FaceTree {
  public:
   FaceTree(Workspace& ws, const BlockRules& rules, Index a, Index b, RegionId region, std::size_t max_faces)
@@ -20,18 +20,21 @@ class FaceTree {
         region_(region),
         max_faces_(max_faces) {}
 
-  /// For the tets at both sides of a chosen face and its edge from x to y: the value of the best tets that
-  /// end there. (a, b, x, y) is listed as a positive tet where it is one.
+  /// Extends the removal across the edge xy of a chosen face, if that is better than ending it there with the
+  /// tet (a, b, x, y).
+  ///
+  /// \param tet_a, tet_b the tets on the two sides of the chosen face.
+  /// \return quality of the worst of the tets that end there.
   float grow(Index x, Index y, Index tet_a, Index tet_b) {
     const NewTet plain{{a_, b_, x, y}, region_, quality_of(mesh_, rules_, {a_, b_, x, y})};
     if (faces_ >= max_faces_) return keep(plain);
-    // The tets beyond the edge, on both sides, and their common point.
+    // The tets beyond the edge on both sides, and their common point.
     const Index next_a = across(tet_a, x, y, a_), next_b = across(tet_b, x, y, b_);
     if (next_a == no_index || next_b == no_index || next_a == next_b) return keep(plain);
     if (mesh_.region(next_a) != region_ || mesh_.region(next_b) != region_) return keep(plain);
     const Index w = fourth(mesh_.points(next_a), a_, x, y);
     if (w == no_index || w != fourth(mesh_.points(next_b), b_, x, y)) return keep(plain);
-    // Only where they are bad themselves, or stand in the way.
+    // A tet already removed ends the recursion.
     if (std::find(removed.begin(), removed.end(), next_a) != removed.end()) return keep(plain);
     const std::size_t added_before = added.size(), removed_before = removed.size(), faces_before = faces_;
     removed.push_back(next_a);
@@ -54,7 +57,7 @@ class FaceTree {
     added.push_back(t);
     return t.quality;
   }
-  /// The neighbour of t across its face with x, y and apex.
+  /// Neighbour of t across its face (x, y, apex).
   Index across(Index t, Index x, Index y, Index apex) const {
     const Tet& p = mesh_.points(t);
     for (int k = 0; k < 4; ++k)
@@ -86,8 +89,8 @@ Outcome try_remove(Workspace& ws, const BlockRules& rules, Index tet, int face, 
   const Index a = first[face], b = mesh.points(other)[mesh.face_towards(other, tet)];
   if (a == b) return Outcome::link_condition;
 
-  // The face is listed outward from `tet`, towards b: (a, b, ring[i], ring[i + 1]) are positive where they
-  // can be.
+  // The face is oriented outwards from `tet`, towards b: the tets (a, b, ring[i], ring[i + 1]) are positive
+  // where that is possible.
   const Triangle ring = face_of(first, face);
   Proposal& proposal = ws.proposal;
   proposal.added.clear();

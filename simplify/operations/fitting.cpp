@@ -14,15 +14,16 @@ namespace tetwright {
 
 namespace {
 
-/// How far a point may be moved, in shortest edges.
+/// Max step, in shortest edges.
 constexpr double fit_reach = 1;
 constexpr int fitting_steps = 3;  ///< whole, half and quarter step
-/// Share of the sum of the squared weights that is added in all directions.
+/// Regularisation: share of the trace of the normal equations' matrix that is added to its diagonal.
 constexpr double flat_share = 0.01;
-/// Shorter steps, in ideal edges, are not worth their tests.
+/// Min step, in ideal edges: shorter ones are not worth their tests.
 constexpr double min_fit_step = 0.01;
 
-/// Moves the centre where the worst tet stays above `floor` or hardly gets worse. Gradients must be computed.
+/// Moves the centre if the worst tet stays above `floor` or hardly gets worse.
+/// \pre Gradients are computed.
 Outcome move_fitted(Workspace& ws, const BlockRules& rules, const Vec3& place, float floor) {
   Star& star = ws.star;
   const Vec3 to = ws.mesh.snap(place);
@@ -79,7 +80,7 @@ Outcome fit_to_samples(Workspace& ws, const BlockRules& rules, float floor) {
     double squares = 0, sum = 0;
     samples->for_each(edit.removed_records[i], [&](const Vec3& at, float distance) {
       const double share = std::clamp(height.dot(at - p) / full, 0.0, 1.0);
-      // Of the fourth powers of distances the least sum, by weights that follow them.
+      // These weights approach the least sum of fourth powers of the distances.
       const double weight =
           rules.fit_farthest ? static_cast<double>(distance) * static_cast<double>(distance) : 1;
       squares += weight * share * share;
@@ -90,7 +91,7 @@ Outcome fit_to_samples(Workspace& ws, const BlockRules& rules, float floor) {
   }
   const double trace = a.trace();
   if (!(trace > 0)) return Outcome::no_candidate;
-  // What the normals leave open, along flat parts and straight ridges, moves nowhere.
+  // Suppress motion that the normals leave open, along flat parts and straight ridges.
   a += (flat_share * trace) * Eigen::Matrix3d::Identity();
   Vec3 step = a.ldlt().solve(b);
   if (step.norm() < min_fit_step * rules.objective.quality.ideal_edge) return Outcome::no_candidate;

@@ -5,12 +5,12 @@
 
 namespace tetwright {
 
-/// How far edge and face removal may reach.
+/// Max size of edge and face removals.
 struct FlipReach {
-  std::size_t max_ring = 7;   ///< points of a chain around an edge
-  std::size_t max_faces = 5;  ///< faces removed at once
+  std::size_t max_ring = 7;   ///< tets of a ring within one material
+  std::size_t max_faces = 5;  ///< max faces removed at once
   /// Whether only the swaps of the paper, section 4, are allowed (and 4-4, its 2-2 on an interface): rings of
-  /// three, single faces.
+  /// three and single faces.
   bool basic() const { return max_ring == 3; }
 };
 

@@ -9,9 +9,9 @@ namespace tetwright {
 
 namespace {
 
-/// A new point must gain this factor: it costs tets.
+/// Min factor on the worst quality for a new point: it costs tets.
 constexpr float min_gain = 1.05f;
-/// Tets that a cavity may swallow beyond the first.
+/// Max number of tets that a cavity gains by growing.
 constexpr std::size_t max_grown = 24;
 
 Cone cone(const Workspace& ws, const BlockRules& rules, const Vec3& at, Index tet, int slot) {
@@ -20,8 +20,8 @@ Cone cone(const Workspace& ws, const BlockRules& rules, const Vec3& at, Index te
   return {tet, slot, rules.objective(at, mesh.position(f[0]), mesh.position(f[1]), mesh.position(f[2]))};
 }
 
-/// Builds ws.star of the point that is to be inserted at `at`. False if a point of the old tets would be
-/// lost, or the cavity's hull were no surface (which needs inverted tets).
+/// Builds the star of a point inserted at `at` in ws.star. False if a point of the old tets would be lost, or
+/// if the cavity's hull is no surface (which takes inverted tets).
 bool star_of_new_point(Workspace& ws, const Vec3& at, const std::vector<Cone>& cones) {
   const EditableMesh& mesh = ws.mesh;
   Star& star = ws.star;
@@ -33,7 +33,7 @@ bool star_of_new_point(Workspace& ws, const Vec3& at, const std::vector<Cone>& c
     star.tets.push_back({c.tet, link, static_cast<std::uint8_t>(c.slot), mesh.region(c.tet), c.quality});
     star.worst = std::min(star.worst, c.quality);
   }
-  std::vector<std::uint32_t>& edges = ws.hull_edges;  // each from both its triangles
+  std::vector<std::uint32_t>& edges = ws.hull_edges;  // each edge from both its triangles
   edges.clear();
   for (const Star::StarTet& t : star.tets)
     for (int k = 0; k < 3; ++k) {
@@ -49,8 +49,8 @@ bool star_of_new_point(Workspace& ws, const Vec3& at, const std::vector<Cone>& c
   return true;
 }
 
-/// Lets the cavity grow through the faces of the worst new tets, where that makes them better: all tets
-/// that the new point sees well may go (as in Klingner & Shewchuk 2007, section 3.3, greedily).
+/// Grows the cavity through the faces of the worst new tets while that improves them: all tets that the new
+/// point sees well may be removed (as in Klingner & Shewchuk 2007, section 3.3, greedily).
 void grow(Workspace& ws, const BlockRules& rules, const Vec3& at, std::vector<Cone>& cones) {
   const EditableMesh& mesh = ws.mesh;
   std::vector<Index>& removed = ws.proposal.removed;
@@ -71,7 +71,7 @@ void grow(Workspace& ws, const BlockRules& rules, const Vec3& at, std::vector<Co
       if (f == back) continue;
       const Index across = mesh.neighbour(beyond, f);
       if (across != no_index && std::find(removed.begin(), removed.end(), across) != removed.end()) {
-        // An interface between two parts of the cavity has to stay.
+        // Keep an interface between two parts of the cavity.
         better = !mesh.link(beyond, f).is_interface();
         ++meets;
         continue;
@@ -81,7 +81,7 @@ void grow(Workspace& ws, const BlockRules& rules, const Vec3& at, std::vector<Co
     }
     if (!better || fresh.empty()) return;
     cones.pop_back();
-    if (meets > 0)  // those between the cavity and what it swallows now
+    if (meets > 0)  // the cones between the cavity and the added tet
       std::erase_if(cones, [&](const Cone& c) { return mesh.neighbour(c.tet, c.slot) == beyond; });
     removed.push_back(beyond);
     for (const Cone& c : fresh)
@@ -91,9 +91,10 @@ void grow(Workspace& ws, const BlockRules& rules, const Vec3& at, std::vector<Co
   }
 }
 
-/// The star of a point at `at` that takes the place of the `apexes` of the tets of the proposal's `removed`,
-/// or of more tets around where the place is free and that is better. done, or link_condition where a point
-/// would be lost.
+/// Builds the star of a point at `at` that replaces the `apexes` of the proposal's `removed` tets. With
+/// InsertionPlace::best also removes tets around if that is better.
+///
+/// \return done; link_condition if a point would be lost.
 template <class Apexes>
 Outcome cone_over(Workspace& ws, const BlockRules& rules, const Vec3& at, InsertionPlace place,
                   const Apexes& apexes) {
@@ -114,13 +115,13 @@ Outcome cone_over(Workspace& ws, const BlockRules& rules, const Vec3& at, Insert
   return star_of_new_point(ws, at, cones) ? Outcome::done : Outcome::link_condition;
 }
 
-/// An interface triangle of the mesh as it stands.
+/// An interface triangle at its current position.
 MeshTriangle triangle(const EditableMesh& mesh, Index a, Index b, Index c) {
   return {{a, b, c}, {mesh.position(a), mesh.position(b), mesh.position(c)}};
 }
 
-/// Proposes the point of ws.star in the place of the proposal's `removed`; its edit has the interface
-/// triangles that go.
+/// Proposes to replace the proposal's `removed` by the star in ws.star.
+/// \pre The proposal's edit has the removed interface triangles.
 Outcome propose(Workspace& ws, const BlockRules& rules, InsertionPlace place) {
   const EditableMesh& mesh = ws.mesh;
   Proposal& proposal = ws.proposal;
@@ -132,7 +133,7 @@ Outcome propose(Workspace& ws, const BlockRules& rules, InsertionPlace place) {
   Star& star = ws.star;
   star.find_creases();
   const int dimension = star.dimension();
-  // A point on an edge where interface triangles branch stays in the middle.
+  // A point of dimension 0 stays where it was inserted.
   Placement& placement = ws.placement;
   const float limit = place == InsertionPlace::best ? min_gain * before : ws.acceptance_limit(rules, before);
   star.compute_gradients();
@@ -170,7 +171,7 @@ Outcome propose(Workspace& ws, const BlockRules& rules, InsertionPlace place) {
                                      static_cast<std::int64_t>(proposal.removed.size()));
 }
 
-/// Whether the corners of an interface triangle that would be split stay, and with them the triangle.
+/// Whether an interface triangle must not be split: all its vertices are frozen.
 bool frozen_triangle(const EditableMesh& mesh, const Triangle& ids) {
   return mesh.frozen(ids[0]) && mesh.frozen(ids[1]) && mesh.frozen(ids[2]);
 }
@@ -219,7 +220,7 @@ Outcome try_edge(Workspace& ws, const BlockRules& rules, Index tet, int edge, In
     proposal.edit.removed.push_back(triangle(mesh, ring.a, ring.b, p));
     frozen |= frozen_triangle(mesh, {ring.a, ring.b, p});
   };
-  /// The patch of the boundary face of the edge that lies opposite `apex` in an end's tet.
+  /// Patch of the boundary face at the edge that lies opposite `apex` in the chain's first or last tet.
   const auto end_patch = [&](Index end_tet, Index apex) {
     return mesh.link(end_tet, mesh.slot_of(end_tet, apex)).patch();
   };

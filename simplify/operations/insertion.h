@@ -5,27 +5,30 @@
 
 namespace tetwright {
 
-/// How an inserted point finds its place.
+/// Position of an inserted point.
 enum class InsertionPlace {
-  centre,  ///< as in section 4 of the paper: the centre of the tet, face or edge
-  /// From there where find_place() leads; tets around that the new point sees well go too, so that one tet
-  /// need not become four of its shape.
+  centre,  ///< the centroid of the tet, face or edge, as in section 4 of the paper
+  /// The best position that find_place() reaches from there. Tets around that the new point sees well are
+  /// removed, too, so that one tet need not become four of its shape.
   best
 };
 
-/// Adds a point in a tet, at its centre: one tet becomes four. What comes out decides:
-/// the worst new tet must be better than the old one (or pass the annealing). Counted as insert_in_tet.
+/// Inserts a point in a tet, which becomes four. Accepted only if the worst new tet is better than the worst
+/// old one, or annealing accepts it. Counted as insert_in_tet.
 ///
-/// These three answer done (proposed), no_candidate, too_large, material_rule, quality (also: would invert),
-/// surface_error, link_condition, self_intersection, volume, count.
+/// \return for all three insertions: done (proposed), no_candidate, too_large, material_rule, quality (also:
+///   would invert), surface_error, link_condition, self_intersection, volume or count.
 Outcome insert_in_tet(Workspace& ws, const BlockRules& rules, Index tet, InsertionPlace place);
 
-/// Adds a point in a face of the boundary or of an interface, whose one or two tets become three each.
-/// Counted as insert_in_face.
+/// Inserts a point in a boundary or interface face, whose one or two tets become three each. Counted as
+/// insert_in_face.
 Outcome insert_in_face(Workspace& ws, const BlockRules& rules, Index tet, int face, InsertionPlace place);
 
-/// Adds a point in an edge (of tet_edges), which halves all tets around it: edges of the boundary, of
-/// interfaces and junction curves, and with `interior` all. Counted as insert_in_edge.
+/// Inserts a point in an edge, which halves all tets around it. Counted as insert_in_edge.
+///
+/// \param edge index into tet_edges of `tet`.
+/// \param interior also accepts edges within a material, not only those of the boundary, of interfaces and of
+///   junction curves.
 Outcome insert_in_edge(Workspace& ws, const BlockRules& rules, Index tet, int edge, InsertionPlace place,
                        bool interior);
 

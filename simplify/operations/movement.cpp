@@ -12,10 +12,10 @@ namespace tetwright {
 
 namespace {
 
-/// Fills the proposal's edit with the interface triangles before and after; false if one is too far from the
-/// reference. At junctions that points may leave, find_place() has tested the point itself: where three
-/// regions meet in a loop smaller than a tet, the triangles' centres may have no interface of their two
-/// regions nearby.
+/// Fills the proposal's edit with the interface triangles before and after the move. False if an added one is
+/// too far from the reference. At junctions that points may leave, find_place() has tested the point itself
+/// instead: where three regions meet in a loop smaller than a tet, a triangle's centroid may have no
+/// interface of its two regions nearby.
 bool surface_edit(Workspace& ws, const BlockRules& rules, const Vec3& to) {
   const Star& star = ws.star;
   const bool by_point = rules.leave_surface && star.dimension() < 2;
@@ -30,7 +30,7 @@ bool surface_edit(Workspace& ws, const BlockRules& rules, const Vec3& to) {
   return true;
 }
 
-/// Whether a point where patches meet stays near its crease at `to`.
+/// Whether a point where patches meet stays near its feature edge at `to`.
 bool stays_near_crease(const Star& star, const BlockRules& rules, const Vec3& to) {
   if (!(rules.max_crease_distance > 0) || !star.creases) return true;
   std::optional<std::size_t> first;

@@ -8,23 +8,22 @@
 
 namespace tetwright {
 
-/// How good a tet is, for the operations: larger is better; 0 is flat or negative and never accepted.
+/// Quality of a tet as operations see it: larger is better; 0 means flat or negative and is never accepted.
 struct Objective {
   enum class Kind : std::uint8_t {
-    paper,  ///< Quality(t)^3: angle, volume and longest edge, with the target count in view
-    shape   ///< shape alone: for improving at a count that is reached
+    paper,  ///< Quality(t)^3: angle, volume and longest edge, relative to the target count
+    shape   ///< shape alone, for improvement at a given count
   };
   Kind kind = Kind::paper;
   TetQuality quality{1, 1, 5, 0};
   ShapeObjective shape = ShapeObjective::both;
-  /// Kind::paper: tets are to have edges of these lengths, with a target length; `quality` is then for the
-  /// average of them. Null: all the same.
+  /// Kind::paper: target lengths of edges; `quality` is then for their average. Null: the same everywhere.
   const EdgeSizes* sizes = nullptr;
 
-  /// Edges of a mesh of well-shaped tets over the cube root of their average volume: measured of meshes made
-  /// for sizes, where the median edge has the wanted length with it.
+  /// Ratio of a well-shaped mesh's edges to the cube root of its mean tet volume. Measured on meshes made for
+  /// target lengths: with it the median edge has the target length.
   static constexpr double edge_to_ideal = 2.1;
-  /// The wanted edge length at a place over the average one.
+  /// Target edge length at a point over the average one.
   double scale_at(const Vec3& place) const {
     return sizes->target_length(place) / (edge_to_ideal * quality.ideal_edge);
   }
@@ -32,11 +31,12 @@ struct Objective {
   float operator()(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
     return static_cast<float>(unsigned_value(a, b, c, d));
   }
-  /// The maximum for a tet of six times this volume, rounded up.
+  /// Max value for a tet whose volume is det / 6, rounded up.
   float max_for_volume(double det) const {
     return kind == Kind::paper && !has_target_length() ? static_cast<float>(quality.max_for_volume(det)) : 1;
   }
-  /// Below 0 for a flat or negative tet, the lower the worse it is: shows the way out of inversion.
+  /// Like operator(), but below 0 for a flat or negative tet, lower the worse it is: shows the way out of
+  /// inversion.
   float signed_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
     return static_cast<float>(precise_signed_value(a, b, c, d));
   }
@@ -49,7 +49,7 @@ struct Objective {
     if (kind == Kind::shape) return shape_quality(shape, a, b, c, d);
     return has_target_length() ? sized_quality(a, b, c, d) : quality.cubed(a, b, c, d);
   }
-  /// quality.cubed() for the sizes that are wanted at the tet's centroid.
+  /// quality.cubed() for the target length at the tet's centroid.
   double sized_quality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const;
 };
 

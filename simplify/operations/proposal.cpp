@@ -31,7 +31,7 @@ void commit_collapse(EditableMesh& mesh, const Proposal& p) {
   mesh.set_incident_tet(p.centre, no_index);
 }
 
-/// Writes the new tets; their links are still to be found among `sides`.
+/// Writes the new tets, but not their links; appends their faces to `sides`.
 void write_tets(EditableMesh& mesh, const Proposal& p, CommitWorkspace& ws) {
   for (std::size_t i = 0; i < p.added.size(); ++i) {
     const NewTet& n = p.added[i];
@@ -48,7 +48,7 @@ void write_tets(EditableMesh& mesh, const Proposal& p, CommitWorkspace& ws) {
   for (std::size_t i = p.added.size(); i < p.removed.size(); ++i) mesh.set_points(p.removed[i], dead_tet);
 }
 
-/// The patch of a face that comes to the boundary.
+/// Patch of a new boundary face.
 PatchId patch_of_added(const Proposal& p, const Triangle& key) {
   for (const SurfaceGrid::Added& a : p.edit.added) {
     Triangle ids = a.triangle.ids;
@@ -154,7 +154,7 @@ void Proposal::claim_cavity(const EditableMesh& mesh) {
         continue;
       }
       const Index across = link.tet();
-      // By its vertices: two tets may share more than one face.
+      // Compare vertices: two tets may share more than one face.
       int back = 0;
       while (back < 4 &&
              (mesh.neighbour(across, back) != t || sorted_face(mesh.points(across), back).vertices != key))

@@ -13,26 +13,26 @@
 
 namespace tetwright {
 
-/// A tet that an operation puts into a cavity.
+/// A tet that an operation adds in a cavity.
 struct NewTet {
   Tet points;
   RegionId region;
   float quality;
 };
 
-/// What an operation has decided: everything that its commit will write. Kept and used again, so that
-/// deciding does not allocate.
+/// An operation's decision: everything that its commit will write. Reused, so that deciding does not
+/// allocate.
 struct Proposal {
   enum class Change : std::uint8_t {
     none,
-    move,      ///< a point goes to another place
-    collapse,  ///< a point goes, and with it the tets that have its target
-    replace    ///< tets give way to others, which may have a new point
+    move,      ///< a point moves
+    collapse,  ///< a point is removed with the tets that also have its target
+    replace    ///< tets are replaced by others, which may have a new point
   };
 
   Change change = Change::none;
   Operation operation = Operation::collapse;
-  /// The turn goes on with this stage of its list's attempt when this is committed; below 0: it ends.
+  /// Stage at which the item's turn continues after this proposal is committed; below 0: the turn ends.
   int next_stage = -1;
 
   /// The points of all tets that change. The first `read_set_size` of them are the read set: points whose
@@ -41,10 +41,10 @@ struct Proposal {
   std::size_t read_set_size = 0;
 
   Index centre = no_index;       ///< move, collapse: the point
-  Index target = no_index;       ///< collapse: what it is drawn onto
-  Vec3 position = Vec3::Zero();  ///< move: the new place; replace: that of the new point
+  Index target = no_index;       ///< collapse: the point that it moves onto
+  Vec3 position = Vec3::Zero();  ///< move: the new position; replace: that of the new point
 
-  /// Move and collapse: a tet that stays, the slot of the centre in it, and its new quality.
+  /// Move and collapse: a remaining tet, the centre's slot in it, and its new quality.
   struct RatedTet {
     Index tet;
     std::uint8_t slot;
@@ -52,61 +52,63 @@ struct Proposal {
   };
   std::vector<RatedTet> rated;
 
-  /// Collapse: a link that a tet gets in place of the one to a tet that goes.
+  /// Collapse: a tet's new link, in place of one to a removed tet.
   struct Relink {
     Index tet;
     std::uint8_t face;
     FaceLink link;
   };
   std::vector<Relink> relinks;
-  /// Collapse: points whose incident tet goes, and the one they get.
+  /// Collapse: a point whose incident tet is removed, and its new one.
   struct Incident {
     Index point, tet;
   };
   std::vector<Incident> incidents;
 
-  std::vector<Index> removed;  ///< collapse and replace: tets that go
-  std::vector<NewTet> added;   ///< replace: tets that come
+  std::vector<Index> removed;  ///< collapse and replace: removed tets
+  std::vector<NewTet> added;   ///< replace: added tets
   bool has_new_point = false;
-  /// Replace: a face of the cavity's hull, ids ascending; on the boundary `tet` is no_index.
+  /// Replace: a face of the cavity's hull; key: ids ascending.
   struct HullFace {
     Triangle key;
-    Index tet;          ///< outside the cavity
+    Index tet;          ///< tet outside the cavity; no_index: boundary
     std::uint8_t face;  ///< of that tet
     RegionId region;    ///< of that tet
     PatchId patch;      ///< of a boundary face
   };
   std::vector<HullFace> hull;
-  std::vector<Index> orphans;  ///< replace: points whose incident tet goes
+  std::vector<Index> orphans;  ///< replace: points whose incident tet is removed
 
   SurfaceGrid::Edit edit;
   std::vector<VolumeChange> volumes;
   std::int64_t count_change = 0;
   CountBounds count_bounds;
 
-  /// Filled when the proposal has won: the slots of added tets beyond the removed ones, the new point.
+  /// Filled when the proposal wins: slots of added tets beyond the removed ones, id of the new point.
   std::vector<Index> new_tets;
   Index new_point_id = no_index;
 
   void clear();
   std::span<const Index> read_set() const { return std::span(write_set).first(read_set_size); }
-  /// The write set becomes the star's points and its centre, the read set the centre.
+  /// Sets the write set to the star's points and its centre, the read set to the centre.
   void claim_star(const Star& star);
-  /// Write set and read set become all points of the removed tets; collects the hull and the orphans.
-  /// `removed` must be filled.
+  /// Sets write set and read set to all points of the removed tets; collects the hull and the orphans.
+  /// \pre `removed` is filled.
   void claim_cavity(const EditableMesh& mesh);
 };
 
-// The steps of a batch of proposals. One thread at a time, but for commit().
+// The steps of a batch of proposals. All but commit() run on one thread at a time.
 
-/// Makes room for so many tets, beyond those that go, and points. All vertices are free; at most so many
-/// proposals may win.
+/// Makes room for new tets, beyond those removed, and new points, and frees all vertices.
+///
+/// \param proposals max number of winners.
 void begin_batch(EditableMesh& mesh, std::size_t proposals, std::size_t new_tets, std::size_t new_points);
 /// Makes a proposal a winner: claims its write set, gives it free slots, and takes back those of removed
-/// tets. \pre mesh.reservations().free(proposal.read_set()).
+/// tets.
+/// \pre mesh.reservations().free(proposal.read_set()).
 void grant(EditableMesh& mesh, SurfaceGrid& grid, Proposal& proposal);
 
-/// Memory of commit().
+/// Scratch memory of commit().
 struct CommitWorkspace {
   struct Side {
     Triangle key;
@@ -114,19 +116,18 @@ struct CommitWorkspace {
     std::uint8_t face;
     RegionId region;
     PatchId patch;
-    bool outer;  ///< of the hull, else of a new tet
+    bool outer;  ///< a face of the hull, else of a new tet
   };
   std::vector<Side> sides;
   std::vector<Index> slots;
 };
 
-/// Carries out a proposal that has won: writes its write set. Safe concurrently with other winners of its
-/// batch.
+/// Carries out a winner: writes its write set. Safe concurrently with other winners of its batch.
 void commit(EditableMesh& mesh, SurfaceGrid& grid, const Proposal& proposal, CommitWorkspace& ws);
-/// After the last commit: what its winners gave back may be given again.
+/// Ends the batch after its last commit: slots that its winners gave back become free.
 void end_batch(EditableMesh& mesh, SurfaceGrid& grid);
 
-/// A batch of one, which wins.
+/// Grants and commits a batch of this one proposal.
 void commit_alone(EditableMesh& mesh, SurfaceGrid& grid, Proposal& proposal, CommitWorkspace& ws);
 
 }  // namespace tetwright

@@ -10,19 +10,20 @@
 
 namespace tetwright {
 
-/// The best triangulation of a polygon p[0..n-1] between the ends a (below) and b (above) of an edge: its
-/// worst tet is as good as possible. By the dynamic program of Klincsek (1980, "Minimal triangulations of
-/// polygonal domains") as Shewchuk (2002) uses it. O(n^3).
+/// The triangulation of a polygon p[0..n-1] between the ends a (below) and b (above) of an edge whose worst
+/// tet is best. Dynamic program of Klincsek (1980, "Minimal triangulations of polygonal domains") as used by
+/// Shewchuk (2002). O(n^3).
 class RingTriangulation {
  public:
   static constexpr std::size_t max_points = 8;  ///< a chain of seven tets has eight
 
-  /// False if no triangulation has only tets better than `limit`. The polygon must live until triangles() was
-  /// called.
+  /// Finds the best triangulation. False if each has a tet no better than `limit`.
+  ///
+  /// \param polygon must outlive the calls of triangles().
   bool find(const EditableMesh& mesh, const BlockRules& rules, Index a, Index b,
             const std::vector<Index>& polygon, float limit);
 
-  /// Calls f(i, k, j) for each triangle, places in the polygon in ascending order.
+  /// Calls f(i, k, j) for each triangle: indices into the polygon, ascending.
   template <class F>
   void triangles(const F& f) const {
     triangles(0, polygon_->size() - 1, f);
@@ -39,8 +40,8 @@ class RingTriangulation {
   }
 
   const std::vector<Index>* polygon_ = nullptr;
-  /// The worst tet's quality of the best triangulation of p[i..j], and the third corner of the triangle at
-  /// its closing edge.
+  /// For p[i..j]: the best triangulation's worst quality, and the third corner of its triangle at the edge
+  /// (i, j).
   std::array<std::array<float, max_points>, max_points> best_{};
   std::array<std::array<std::size_t, max_points>, max_points> middle_{};
 };

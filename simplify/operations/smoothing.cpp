@@ -15,22 +15,22 @@ namespace tetwright {
 
 namespace {
 
-constexpr int smoothing_steps = 3;  ///< of smooth(): whole, half and quarter step
+constexpr int smoothing_steps = 3;  ///< of smooth(): whole, half and quarter
 
 // The ascent of find_place().
-constexpr int max_ascents = 8;            ///< steps uphill
-constexpr int max_backsteps = 4;          ///< halvings of a step that leads nowhere
+constexpr int max_ascents = 8;            ///< max steps uphill
+constexpr int max_backsteps = 4;          ///< max halvings of a failed step
 constexpr double first_step = 0.3;        ///< in shortest edges
-constexpr double difference_step = 1e-5;  ///< for gradients, in shortest edges
-constexpr float active_within = 1.15f;    ///< times the worst quality: tets whose gradients count
+constexpr double difference_step = 1e-5;  ///< step of the finite differences, in shortest edges
+constexpr float active_within = 1.15f;    ///< factor on the worst quality up to which a tet's gradient counts
 constexpr std::size_t max_active = 8;
-constexpr int hull_steps = 12;  ///< for the shortest vector of the gradients' hull
-constexpr float min_smoothing_gain =
-    1.01f;  ///< factor on the worst quality that is worth another round's work
-/// How far from its surface a point may be to be brought back onto it, in shortest edges.
+constexpr int hull_steps = 12;  ///< iterations of shortest_of_hull()
+/// Min factor on the worst quality that is worth another round.
+constexpr float min_smoothing_gain = 1.01f;
+/// Max distance from which a point is projected back onto its surface, in shortest edges.
 constexpr double projection_reach = 0.5;
 
-/// The centroid of the neighbours that the centre may follow.
+/// Centroid of the neighbours that the centre may follow.
 Vec3 centroid(const Star& star, int dimension) {
   Vec3 sum = Vec3::Zero();
   double count = 0;
@@ -47,15 +47,15 @@ Vec3 centroid(const Star& star, int dimension) {
 
 /// Projects a step onto the plane that keeps volumes constant.
 Vec3 keep_volumes(const Star& star, Vec3 step) {
-  // On an interface between two materials the gradients are opposite, on the boundary there is one: the first
-  // serves. Along a junction curve they differ; there the step is left whole and the error bound decides.
+  // At an interface between two materials the gradients are opposite, and on the boundary there is one: the
+  // first serves. Along a junction curve they differ: leave the step whole and let the error bound decide.
   const Vec3& g = star.gradients.front().change;
   const double g2 = g.squaredNorm();
   if (g2 > 0) step -= g * (g.dot(step) / g2);
   return step;
 }
 
-/// Directions that a point of the given dimension may be moved in without leaving its surface or curve.
+/// Directions in which a point of the given dimension may move without leaving its surface or curve.
 std::array<Vec3, 3> free_directions(const Star& star, int dimension, bool leave_surface, int& count) {
   if (dimension == 3 || leave_surface) {
     count = 3;
@@ -76,8 +76,8 @@ std::array<Vec3, 3> free_directions(const Star& star, int dimension, bool leave_
   return {along.normalized(), Vec3::Zero(), Vec3::Zero()};
 }
 
-/// The shortest vector of the convex hull of some gradients, by Gilbert's iteration (1966): uphill for all of
-/// them, or next to nothing.
+/// The shortest vector of the gradients' convex hull, by Gilbert's iteration (1966): uphill for all of them,
+/// or next to zero.
 Vec3 shortest_of_hull(const std::array<Vec3, max_active>& gradients, std::size_t count) {
   Vec3 v = gradients[0];
   for (int i = 0; i < hull_steps; ++i) {
@@ -94,15 +94,16 @@ Vec3 shortest_of_hull(const std::array<Vec3, max_active>& gradients, std::size_t
   return v;
 }
 
-/// Puts the worst tets first: most places are refused for their sake.
+/// Sorts the worst tets first: most positions are refused because of them.
 void sort_by_quality(Star& star) {
   std::sort(star.tets.begin(), star.tets.end(), [](const Star::StarTet& x, const Star::StarTet& y) {
     return x.quality != y.quality ? x.quality < y.quality : x.tet < y.tet;
   });
 }
 
-/// Whether the centre may leave its surface or curve a little; points where patches meet never do, nor those
-/// of a flat patch. Gradients must be computed.
+/// Whether the centre may leave its surface or curve a little. Points where patches meet and points of a flat
+/// patch never may.
+/// \pre Gradients are computed.
 bool may_leave(const Star& star, const BlockRules& rules) {
   return rules.leave_surface && rules.projection && !star.creases &&
          !(rules.max_crease_distance > 0 && !star.interface_triangles.empty() && is_flat(star));
@@ -133,10 +134,10 @@ class PlacementSearch {
   }
 
  private:
-  /// The nearest place of the surface, the junction curve or the corners that the centre belongs to, if it is
-  /// nearer than `max_distance`.
+  /// Nearest point on the surface, junction curve or corners that the centre belongs to, if within
+  /// `max_distance`.
   std::optional<Vec3> nearest(const Vec3& to, double max_distance) {
-    // The last one found bounds the search: steps are short.
+    // The last result bounds the search: steps are short.
     const double known = known_ ? (*known_ - to).norm() : std::numeric_limits<double>::infinity();
     std::optional<Vec3> found = find_nearest(to, std::min(max_distance, known));
     if (!found && known < max_distance) found = known_;
@@ -151,30 +152,30 @@ class PlacementSearch {
                              : rules_.projection->onto_corner(to, max_distance);
   }
 
-  /// How far the centre may be from where it belongs. False if it may not move.
+  /// Sets the bounds on the centre's distance from its surface, curve or corner. False if it may not move.
   bool choose_bounds() {
     reach_ = projection_reach * shortest_;
-    // A surface point keeps its distance from the reference (fit_to_samples() chose it); farther away than
-    // the reach it stays in its plane.
+    // A surface point keeps its distance from the reference, which fit_to_samples() chose. Beyond the reach
+    // it stays in its plane.
     if (rules_.projection && dimension_ == 2 && !leave_surface_)
       if (const auto on = nearest(star_.centre_position, reach_)) {
         const Vec3 normal = star_.gradients.front().change.normalized();
         offset_ = normal * normal.dot(star_.centre_position - *on);
-        // Rounding, which would add up.
+        // Drop rounding errors, which would add up.
         if (rules_.max_crease_distance > 0 && offset_.norm() <= tolerance::flat_patch) offset_.setZero();
       }
     max_distance_ = rules_.max_distance;
-    // A point of dimension 0 that is no end or branching of a curve (two interfaces that touch there) has no
-    // place to stay near, unless a corner is that near.
+    // A point of dimension 0 at which no curve ends or branches (two interfaces that touch) has no corner to
+    // stay near, unless one happens to be within the distance.
     if (leave_surface_ && dimension_ == 0 && !nearest(star_.centre_position, max_distance_)) return false;
-    // Chords of a curve may have left a point farther away than it could get by itself: it gets no farther.
+    // Chords of a curve may have left a point farther away than its own moves allow: let it get no farther.
     if (leave_surface_ && dimension_ == 1)
       if (const auto on = nearest(star_.centre_position, std::numeric_limits<double>::infinity()))
         max_distance_ = std::max(max_distance_, (*on - star_.centre_position).norm());
     return true;
   }
 
-  /// Where a step to `to` ends: back on the surface or curve, or near it; nothing where that is too far away.
+  /// End of a step to `to`: back on the surface or curve, or near it; nullopt if that is too far away.
   std::optional<Vec3> placed(Vec3 to) {
     if (rules_.projection && dimension_ < 3) {
       const auto on = nearest(to, leave_surface_ ? max_distance_ : reach_);
@@ -189,7 +190,7 @@ class PlacementSearch {
                                          star_.positions[t.link[2]]);
   }
 
-  /// The values of all tets at the start; flat and inverted tets get their signed value, which is below 0.
+  /// Sets the tets' values at the start; flat and inverted ones get their signed value, below 0.
   void start() {
     at_ = star_.centre_position;
     worst_ = star_.worst;
@@ -203,7 +204,7 @@ class PlacementSearch {
     }
   }
 
-  /// The worst value at `to`, all values in ws.trial; nothing where one is not above the present worst or E
+  /// The worst value at `to`; all values in ws.trial. nullopt if a value is not above the current worst, or E
   /// forbids the move.
   std::optional<float> worst_at(const Vec3& to) {
     if (!star_.interface_triangles.empty() && star_.surface_error(to - star_.centre_position, rules_.gamma,
@@ -218,7 +219,8 @@ class PlacementSearch {
     return worst;
   }
 
-  /// The gradients of the tets that are about as bad as the worst one, by forward differences.
+  /// Gradients, by forward differences, of the tets that are about as bad as the worst one. Returns their
+  /// number.
   std::size_t active_gradients(std::array<Vec3, max_active>& gradients) {
     std::vector<std::size_t>& order = ws_.order;
     const std::vector<float>& values = ws_.current;
@@ -234,7 +236,7 @@ class PlacementSearch {
       const std::size_t k = order[i];
       if (values[k] > (worst_ > 0 ? active_within * worst_ : 0)) break;
       const Star::StarTet& t = star_.tets[k];
-      // In double precision: the differences are small.
+      // Double precision, since the differences are small.
       const auto precise = [&](const Vec3& p) {
         return rules_.objective.precise_signed_value(p, star_.positions[t.link[0]],
                                                      star_.positions[t.link[1]], star_.positions[t.link[2]]);
@@ -248,7 +250,7 @@ class PlacementSearch {
     return active;
   }
 
-  /// Whether the centre has moved.
+  /// Ascends; returns whether the centre has moved.
   bool ascend() {
     bool moved = false;
     double length = first_step * shortest_;
@@ -286,10 +288,10 @@ class PlacementSearch {
   bool leave_surface_;
   std::array<Vec3, 3> directions_;
   int direction_count_ = 0;
-  double shortest_ = 0;  ///< edge at the centre
-  double reach_ = 0;     ///< how far a step may leave the surface before it is projected back
+  double shortest_ = 0;  ///< shortest edge at the centre
+  double reach_ = 0;     ///< max distance of a step from the surface before it is projected back
   double max_distance_ = 0;
-  std::optional<Vec3> known_;   ///< what nearest() has found last
+  std::optional<Vec3> known_;   ///< last result of nearest()
   Vec3 offset_ = Vec3::Zero();  ///< from the surface
   Vec3 at_ = Vec3::Zero();
   float worst_ = 0;

@@ -5,24 +5,34 @@
 
 namespace tetwright {
 
-/// Looks for the place of a star's centre at which its worst tet is best, from where it stands: steepest
-/// ascent of the worst by the active-set method (Freitag, Jones & Plassmann 1995; Freitag & Ollivier-Gooch
-/// 1997), gradients by differences. A point of an interface (dimension 2) moves in the tangent plane and is
-/// brought back onto the surface (BlockRules::projection), one of a junction curve (1) along it; without a
-/// projection they keep the volumes of both sides. With BlockRules::leave_surface all of them and corners (0)
-/// move freely near where they belong: loops of a junction curve that are smaller than a tet open up.
-/// Error(op) stays within E. True if a place better than `limit` was found; the star is not changed but for
-/// the order of its tets. gradients must be computed.
+/// Searches for the position of a star's centre that makes its worst tet best: steepest ascent of the worst
+/// quality by the active-set method (Freitag, Jones & Plassmann 1995; Freitag & Ollivier-Gooch 1997), with
+/// gradients by finite differences, starting at the current position.
+///
+/// A point of an interface (dimension 2) moves in the tangent plane and is projected back onto the surface
+/// (BlockRules::projection), a point of a junction curve (1) moves along it; without a projection both keep
+/// the volumes of both sides. With BlockRules::leave_surface these and corners (0) move freely near their
+/// surface, curve or corner: loops of a junction curve smaller than a tet so open up. Error(op) stays within
+/// E. Changes only the order of the star's tets.
+///
+/// \param limit quality that the worst tet must exceed.
+/// \param found the position, if there is one.
+/// \return whether a position was found.
+/// \pre Gradients are computed.
 bool find_place(Workspace& ws, const BlockRules& rules, int dimension, float limit, Placement& found);
 
-/// Moves the centre of the gathered star towards the centroid of its neighbours (section 4 of the paper): of
-/// all of them within a material, of those on the same interface, of the two on a junction curve; whole, half
-/// or quarter way. Answers done (proposed), material_rule (a corner, or frozen), quality, surface_error,
-/// self_intersection, volume. The star is used up.
+/// Moves the centre of the gathered star towards a centroid (section 4 of the paper): of all neighbours
+/// within a material, of those on the same interface, of the two on a junction curve. Tries the whole, half
+/// and quarter step. Uses up the star.
+///
+/// \return done (proposed), material_rule (a corner, or frozen), quality, surface_error, self_intersection or
+///   volume.
 Outcome smooth(Workspace& ws, const BlockRules& rules);
 
-/// Moves the centre of the gathered star where find_place() says; corners only with leave_surface. Same
-/// answers.
+/// Moves the centre of the gathered star to the position of find_place(); corners only with
+/// BlockRules::leave_surface.
+///
+/// \return as smooth().
 Outcome optimise(Workspace& ws, const BlockRules& rules);
 
 }  // namespace tetwright

@@ -10,12 +10,12 @@ namespace tetwright {
 
 namespace {
 
-/// What goes with an edge that is too long may leave edges of this share of the shortest length: where its
-/// tets are flat, halving it makes short ones, and nothing else shortens it.
+/// Share of the min length that new edges may have where the proposal removes one that is too long: halving
+/// the edge of flat tets makes short ones, and nothing else shortens it.
 constexpr double short_share_beside_long = 0.5;
 
-/// Whether no edge is too long, or too short, that the proposal makes: or at least none by more than one that
-/// it takes away.
+/// Whether the proposal makes no edge too long or too short, or violates no bound by more than an edge that
+/// it removes.
 bool keeps_sizes(const Workspace& ws, const EdgeSizes& sizes) {
   const Proposal& p = ws.proposal;
   EdgeSizes::Excess before{1, 1}, after{0, 0};

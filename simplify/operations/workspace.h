@@ -33,19 +33,18 @@ struct CollapseTarget {
   std::uint16_t point;  ///< local number in the star
 };
 
-/// A tet that an insertion makes: the new point over the face of an old tet opposite its vertex `slot`.
+/// A tet that an insertion adds: the new point over the face of an old tet opposite its vertex `slot`.
 struct Cone {
   Index tet;
   int slot;
   float quality;
 };
 
-/// What one worker decides with: the mesh, which it only reads, the proposal that it fills, and the memory
-/// that operations reuse, so that none of them allocates.
+/// State of one worker while it decides: the mesh, which it only reads, the proposal that it fills, and
+/// memory that operations reuse, so that none of them allocates.
 ///
-/// An operation that answers `done` has left in `proposal` all that its commit will write. Whether it is
-/// carried out is not its affair: an earlier one of the batch may come before it. Any other answer leaves a
-/// proposal of no meaning.
+/// An operation that answers `done` has left everything that its commit will write in `proposal`. It may
+/// still lose to an earlier operation of the batch. After any other answer the proposal is meaningless.
 struct Workspace {
   Workspace(const EditableMesh& m, const SurfaceGrid& g, const VolumeLedger& l)
       : mesh(m), grid(g), ledger(l) {}
@@ -57,14 +56,14 @@ struct Workspace {
   Random random{0};
   OperationCounts counts;
 
-  // What operations read and change.
+  // Gathered parts of the mesh.
   Star star;
   EdgeRing ring;
   StarWalk walk;
   LinkCondition link_condition;
 
-  // Memory of single operations.
-  std::vector<float> qualities;                     ///< smoothing and collapse: of the star's tets
+  // Scratch memory of single operations.
+  std::vector<float> qualities;                     ///< smoothing and collapse: qualities of the star's tets
   std::vector<CollapseTarget> targets;              ///< collapse
   std::array<std::vector<Index>, 2> chains;         ///< edge removal: points around the edge, by region
   std::array<RingTriangulation, 2> triangulations;  ///< edge removal
@@ -75,12 +74,12 @@ struct Workspace {
   std::vector<Index> plain_cavity;                  ///< insertion
   std::vector<std::uint32_t> hull_edges;            ///< insertion
 
-  /// Star::gather() with the patches of all faces.
+  /// Star::gather() with the patches of interface faces, too.
   Outcome gather(Index point);
-  /// The quality that the worst new tet must exceed: that of the worst old one, or less if annealing accepts
-  /// a worse result. Draws one random number when annealing.
+  /// Quality that the worst new tet must exceed: that of the worst old one, or less if annealing accepts a
+  /// worse result. Draws one random number when annealing.
   float acceptance_limit(const BlockRules& rules, float worst);
-  /// Counts a refusal; what is done is counted when it has won (Proposal::operation).
+  /// Counts a refusal. A success is counted when it wins (Proposal::operation).
   Outcome count(Operation operation, Outcome outcome) {
     if (outcome == Outcome::done) {
       proposal.operation = operation;
@@ -89,11 +88,13 @@ struct Workspace {
     }
     return outcome;
   }
-  /// Whether the proposal's edit of the surface neither meets other triangles nor leaves the input's surface
-  /// (BlockRules::max_deviation): done, self_intersection or surface_error.
+  /// Tests the proposal's edit of the surface against self-intersection and BlockRules::max_deviation.
+  ///
+  /// \return done, self_intersection or surface_error.
   Outcome test_surface(const BlockRules& rules);
-  /// What all operations end with: whether no tets come to overlap around an edge, and the count may change
-  /// by that much, and the volumes as the proposal says; then done.
+  /// Last test of every operation: volumes, overlaps around an edge, edge lengths and the number of tets.
+  ///
+  /// \return done, volume, self_intersection, edge_length or count.
   Outcome within_bounds(const BlockRules& rules, std::int64_t count_change);
 };
 

@@ -9,12 +9,13 @@
 
 namespace tetwright {
 
-/// What the tets and points that operations changed were before: time and memory go with their number.
+/// Records the state before the operations of all tets and points that they changed: time and memory are
+/// proportional to their number.
 class ChangeJournal {
  public:
   struct OldTet {
     Index slot;
-    Tet points;  ///< dead_tet: there was none in this slot
+    Tet points;  ///< dead_tet: the slot was free
     RegionId region;
   };
   struct OldPoint {
@@ -24,14 +25,15 @@ class ChangeJournal {
   };
 
   void clear();
-  /// Takes down what a winner is about to change; before its commit, one thread at a time.
+  /// Records the state of everything that a winner is about to change. One thread at a time.
+  /// \pre The winner is not committed yet.
   void note(const EditableMesh& mesh, const Proposal& proposal);
 
-  /// In the order in which they were first changed, each once: those that went or changed, and slots that
-  /// were given to new ones.
+  /// The tets that were removed or changed, and the slots given to new ones; each once, in the order of the
+  /// first change.
   const std::vector<OldTet>& tets() const { return tets_; }
   const std::vector<OldPoint>& points() const { return points_; }
-  /// Of a point of an old tet.
+  /// \pre p is a point of an old tet.
   const OldPoint& point(Index p) const { return points_[point_numbers_.find(p)]; }
 
  private:

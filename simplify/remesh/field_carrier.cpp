@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t leaf_tets = 4;
 constexpr std::size_t transfer_grain = 64;  ///< tets a parallel loop hands out at a time
-/// Passes that correct a sum: the first leaves rounding errors of the values, the second those of the sum.
+/// Passes of the correction: the first leaves rounding errors of the values, the second those of the sum.
 constexpr int correction_passes = 2;
 
 Box3 box_of(const TetCorners& corners) {
@@ -23,7 +23,7 @@ Box3 box_of(const TetCorners& corners) {
   return box;
 }
 
-/// Kahan's compensated sum: many small summands lose nothing.
+/// Kahan's compensated sum: many small summands are not lost.
 class Sum {
  public:
   void add(double x) {
@@ -126,7 +126,7 @@ FieldCarrier::Weights FieldCarrier::weights_at(const Vec3& p) const {
     return weigh(sources_[i], p, best.weights);
   };
   if (tree_.any_containing(p, tree_.all(), holds)) return best;
-  // Outside of all: the nearest place of their faces.
+  // Outside all: take the nearest point on their faces.
   best = {};
   double nearest = std::numeric_limits<double>::infinity();
   tree_.nearest(p, nearest, tree_.all(), [&](std::size_t i, double limit) {
@@ -160,7 +160,7 @@ void FieldCarrier::carry_point_field(std::vector<double>& values, std::size_t co
   std::vector<double> carried(placed_.size() * components, 0);
   for (std::size_t i = 0; i < placed_.size(); ++i)
     for (int k = 0; k < 4; ++k)
-      // A corner without weight says nothing, whatever stands there.
+      // Skip corners without weight, whatever their value.
       if (const double w = placed_[i].from.weights[k]; w > 0)
         for (std::size_t c = 0; c < components; ++c)
           carried[i * components + c] += w * values[placed_[i].from.points[k] * components + c];

@@ -10,26 +10,26 @@
 
 namespace tetwright {
 
-/// Carries fields over from the tets that a ChangeJournal has to those that took their place.
+/// Carries fields over from the tets of a ChangeJournal to the tets that replace them.
 ///
-/// Numbers at points are linear in each old tet; where none holds a point that moved or came (the surface
-/// went outwards), the nearest place of an old tet counts. Numbers of tets are densities: constant in each
-/// old tet, weighted by the volumes that old and new tets have in common; then those of each material are
-/// corrected by one summand, so that the sum of number times volume over the changed tets stays what it was.
+/// Point fields are linear in each old tet. A point that no old tet contains (the surface moved outwards)
+/// gets the value of the nearest point on an old tet. Tet fields are densities: constant in each old tet,
+/// averaged by the volumes that old and new tets share. A constant added to the values of each material then
+/// restores the sum of value times volume over the changed tets.
 class FieldCarrier {
  public:
-  /// After the changes; both must live as long.
+  /// \pre The changes are done. Both arguments must outlive this object.
   FieldCarrier(const EditableMesh& mesh, const ChangeJournal& journal);
 
-  /// `values`: `components` for each point slot. Those of points that came or moved are written; those of
-  /// points that went become 0.
+  /// \param values `components` for each point slot. Writes those of points that were added or moved; sets
+  ///   those of removed points to 0.
   void carry_point_field(std::vector<double>& values, std::size_t components) const;
-  /// `values`: `components` for each tet slot. Those of all tets that came or changed are written, those of
-  /// tets that went become 0.
+  /// \param values `components` for each tet slot. Writes those of all tets that were added or changed; sets
+  ///   those of removed tets to 0.
   void carry_tet_field(std::vector<double>& values, std::size_t components) const;
 
  private:
-  /// An old tet with its positive volume; inverted ones count as their mirror images.
+  /// An old tet with positive volume; an inverted one counts as its mirror image.
   struct Source {
     PlanedTet tet;
     Tet points;
@@ -53,7 +53,8 @@ class FieldCarrier {
   void add_sources();
   void add_targets();
   void place_points();
-  /// Shares of a source's corners in a place, none below 0, or all 0 where it is flat; whether it holds it.
+  /// Barycentric weights of a point in a source, clamped to at least 0; all 0 if the source is flat. Returns
+  /// whether the source contains the point.
   static bool weigh(const Source& source, const Vec3& p, std::array<double, 4>& weights);
   Weights weights_at(const Vec3& p) const;
   template <class Visit>
@@ -62,7 +63,7 @@ class FieldCarrier {
   const EditableMesh& mesh_;
   const ChangeJournal& journal_;
   std::vector<Source> sources_;  ///< in the order of the tree
-  std::vector<Box3> boxes_;      ///< of the sources
+  std::vector<Box3> boxes_;      ///< by source
   BoxTree tree_;
   std::vector<Target> targets_;
   std::vector<PlacedPoint> placed_;

@@ -11,24 +11,27 @@
 
 namespace tetwright {
 
-/// Tets and points to be worked on, as lists that follow what changes: nothing looks at the whole mesh. Sees
-/// all that a BlockRunner carries out while it exists.
+/// Tets and points to work on, as lists that follow the changes: nothing scans the whole mesh. Observes every
+/// operation that a BlockRunner carries out while it exists.
 class LocalArea final : public ImprovementArea {
  public:
-  /// Of `tets`, each listed once, of the rim around them, and of what takes their place. `with_rim` are all
-  /// tets that share points with `tets`, which are among them. Points beyond it are never worked on; tets at
-  /// the rim's points change with these. `journal` takes down what changes.
+  /// Covers `tets`, the rim around them, and the tets that replace these. Points beyond the rim are never
+  /// worked on; tets at the rim's points change with these.
+  ///
+  /// \param journal records the changes.
+  /// \param tets each once.
+  /// \param with_rim all tets that share points with `tets`, including these.
   LocalArea(const EditableMesh& mesh, BlockRunner& runner, ChangeJournal& journal,
             const std::vector<Index>& tets, const std::vector<Index>& with_rim);
   ~LocalArea() override;
   LocalArea(const LocalArea&) = delete;
   LocalArea& operator=(const LocalArea&) = delete;
 
-  /// Of the tets that there were at first, with the rim.
+  /// Initial number of tets, with the rim.
   std::size_t tet_count() const override { return first_count_; }
-  /// The mean of those of its tets that there were at first.
+  /// Mean edge of the initial tets.
   double usual_edge() const override { return usual_edge_; }
-  /// The limit may not rise: what was above it before and has not changed since is not listed.
+  /// \pre The limit does not rise from call to call: unchanged tets above it before are not listed.
   std::vector<TetSnapshot> bad_tets(float limit) override;
   std::vector<Index> bad_points(float limit) override;
   std::vector<TetSnapshot> tets_around(const std::vector<TetSnapshot>& tets) override;
@@ -37,19 +40,19 @@ class LocalArea final : public ImprovementArea {
     return points_around(bad);
   }
 
-  /// The points of the tets that there were at first, ascending.
+  /// The points of the initial tets, ascending.
   const std::vector<Index>& first_points() const { return first_points_; }
-  /// Which tets: those of inner points alone, or all without a point beyond the rim. Which points: those of
-  /// the tets that there were at first and those that came since, or with the rim's.
+  /// Tets with inner points only, or all without a point beyond the rim. Inner points are those of the
+  /// initial tets and those added since; with_rim adds the points of the rim.
   enum class Part { inner, with_rim };
-  /// The living points around which something changed since this was last called, ascending.
+  /// The live points around which something has changed since the last call, ascending.
   std::vector<Index> take_changed_points(Part part);
-  /// The tets of the area at points, each once, ascending.
+  /// The area's tets at these points, each once, ascending.
   std::vector<Index> tets_at(const std::vector<Index>& points, Part part);
-  /// From now on bad_tets() looks at the tets around these points, some of which may have gone since, and at
-  /// what changes.
+  /// Restricts bad_tets() to the tets around these points, some of which may have been removed, and to later
+  /// changes.
   void look_around(std::vector<Index>&& points);
-  /// Operations that were carried out.
+  /// Number of operations carried out.
   std::uint64_t operations() const { return operations_; }
 
  private:
@@ -71,10 +74,10 @@ class LocalArea final : public ImprovementArea {
   std::size_t first_count_;
   double usual_edge_;
   LocalNumbers point_numbers_;
-  std::vector<Place> places_;  ///< by these
+  std::vector<Place> places_;  ///< by number of point_numbers_
   std::vector<Index> first_points_;
   std::vector<Index> candidates_;      ///< tets that bad_tets() looks at
-  std::vector<Index> changed_points_;  ///< since they were last taken
+  std::vector<Index> changed_points_;  ///< since take_changed_points()
   Neighbourhood near_;
   std::uint64_t operations_ = 0;
 };

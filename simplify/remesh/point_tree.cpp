@@ -9,7 +9,7 @@ namespace tetwright {
 
 namespace {
 
-/// Points of a leaf: most, at first, and up to which two leaves become one.
+/// Points of a leaf: max, max at first, and max of two leaves that are merged.
 constexpr std::size_t leaf_points = 32, first_leaf_points = 20, joined_points = 12;
 constexpr Index root = 0;
 
@@ -38,7 +38,7 @@ void PointTree::build(const EditableMesh& mesh) {
   new_node(no_index);
   for (Index p = 0; p < mesh.point_slots(); ++p)
     if (mesh.incident_tet(p) != no_index) nodes_[root].points.push_back(p);
-  // As many as there may be, so that a later change does not move them all.
+  // Reserve for all nodes that may arise, so that no later change reallocates.
   nodes_.reserve(2 * (4 * nodes_[root].points.size() / first_leaf_points + 1));
   halve(mesh, root, first_leaf_points);
 }
@@ -53,12 +53,12 @@ void PointTree::halve(const EditableMesh& mesh, Index first, std::size_t max_poi
     Box3 box;
     for (const Index p : points) box.add(mesh.position(p));
     int axis;
-    if (!((box.high - box.low).maxCoeff(&axis) > 0)) continue;  // all at one place
+    if (!((box.high - box.low).maxCoeff(&axis) > 0)) continue;  // all points coincide
     const auto middle = points.begin() + static_cast<std::ptrdiff_t>(points.size() / 2);
     const auto before = [&](Index a, Index b) { return mesh.position(a)[axis] < mesh.position(b)[axis]; };
     std::nth_element(points.begin(), middle, points.end(), before);
     double split = mesh.position(*middle)[axis];
-    // Neither side may stay empty.
+    // Neither side may be empty.
     if (split == box.low[axis]) {
       split = box.high[axis];
       for (const Index p : points)
@@ -89,7 +89,7 @@ Index PointTree::leaf_of(const Vec3& position) const {
 void PointTree::repair(const EditableMesh& mesh, std::span<const ChangeJournal::OldPoint> changed) {
   const auto is = [&](Index p) { return mesh.incident_tet(p) != no_index; };
   std::vector<Index> coming;
-  // All that go before any comes: leaves are halved by where their points stand now.
+  // Erase all before inserting any: leaves are halved by the current positions of their points.
   for (const ChangeJournal::OldPoint& p : changed) {
     if (is(p.point)) coming.push_back(p.point);
     if (p.existed) erase(p.point, p.position);

@@ -11,12 +11,12 @@ namespace tetwright {
 
 namespace {
 
-/// Edges shorter than this many times the size are collapsed, longer ones than this many halved: so that
-/// halving makes none that would be collapsed again (as in Botsch & Kobbelt 2004).
+/// Factors on the size: shorter edges are collapsed, longer ones halved. Halving makes none that would be
+/// collapsed again (as in Botsch & Kobbelt 2004).
 constexpr double short_edge = 0.8, long_edge = 4.0 / 3;
-/// How far new triangles of a coarser surface may be from the one that the call found, in sizes.
+/// Max distance of new triangles from the surface that the call found, in sizes, when coarsening.
 constexpr double coarsening_distance = 0.1;
-/// Share of the tets below the bound above which improving begins in bulk, as in improve().
+/// Share of bad tets above which improvement begins in bulk, as in improve().
 constexpr double remesh_bulk_before = 0.4;
 constexpr int max_coarsening_rounds = 12, max_refining_rounds = 12;
 

@@ -8,24 +8,29 @@
 
 namespace tetwright {
 
-/// What one call of a Remesher does in its region.
+/// The work of one Remesher call on its region.
 class RemeshRounds {
  public:
-  /// `region`: living tets, each once; `with_rim`: all that share points with them. `journal`
-  /// takes down what changes. `tools.rules` are copied.
+  /// \param tools its rules are copied.
+  /// \param journal records the changes.
+  /// \param region live tets, each once.
+  /// \param with_rim all tets that share points with them.
   RemeshRounds(const ImprovementTools& tools, ChangeJournal& journal, const std::vector<Index>& region,
                const std::vector<Index>& with_rim);
 
   RemeshRounds(const RemeshRounds&) = delete;
   RemeshRounds& operator=(const RemeshRounds&) = delete;
 
-  /// `size` in working coordinates; `floor`: the shape_quality() that they leave.
+  /// \param size target edge length, working coordinates.
+  /// \param floor min shape_quality() of the tets that these leave.
   void coarsen(double size, float floor);
   void refine(double size, float floor);
-  /// What is bad of the region, or, with the rim around it, of what coarsen() and refine() have changed.
-  /// Returns the number of rounds.
+  /// Improves the bad tets of the region, or, with the rim, of the parts that coarsen() and refine() have
+  /// changed.
+  ///
+  /// \return number of rounds.
   int improve(const ImprovementPlan& plan);
-  /// Operations that were carried out.
+  /// Number of operations carried out.
   std::uint64_t operations() const { return area_.operations(); }
 
  private:

@@ -10,13 +10,13 @@ namespace tetwright {
 
 namespace {
 
-/// Each plane but the last cuts a piece into three at most; of the last only volumes are asked.
+/// The first three planes each cut a piece into at most three; the last one only measures volumes.
 constexpr std::size_t max_pieces = 27;
-/// Distances from a plane of less than this share of the largest are rounding errors of coordinates.
+/// Distances from a plane below this share of the largest are rounding errors of coordinates.
 constexpr double rounding = 1e-13;
 
-/// The signed distances of a place from the planes that cut: they change linearly from place to place, so
-/// that coordinates are not needed.
+/// Signed distances of a point from the cutting planes. They are linear in the point, so that coordinates are
+/// not needed.
 using Distances = std::array<double, 4>;
 
 struct Piece {
@@ -32,7 +32,7 @@ struct Pieces {
   }
 };
 
-/// The corners of a piece by the side of a plane that they are on.
+/// The corners of a piece on each side of a plane.
 struct Sides {
   Sides(const Piece& piece, int plane) {
     for (int k = 0; k < 4; ++k) {
@@ -40,7 +40,7 @@ struct Sides {
       (distance[k] > 0 ? inside[in++] : outside[out++]) = k;
     }
   }
-  /// Where the plane crosses the edge from an inner corner to an outer one, as a share of it.
+  /// Parameter at which the plane crosses the edge from an inner corner to an outer one.
   double share(int i, int o) const { return distance[i] / (distance[i] - distance[o]); }
 
   std::array<double, 4> distance{};
@@ -48,7 +48,7 @@ struct Sides {
   int in = 0, out = 0;
 };
 
-/// What of a piece lies inside a plane.
+/// Volume of the part of a piece inside a plane.
 double volume_inside(const Piece& piece, int plane) {
   const Sides s(piece, plane);
   const auto& i = s.inside;
@@ -72,8 +72,8 @@ double volume_inside(const Piece& piece, int plane) {
   }
 }
 
-/// Appends what of a piece lies inside a plane. The volumes are determinants of the corners' barycentric
-/// coordinates in the piece.
+/// Appends the part of a piece inside a plane, as tets. Their volumes are determinants of the corners'
+/// barycentric coordinates in the piece.
 void clip(const Piece& piece, int plane, Pieces& out) {
   const Sides s(piece, plane);
   const auto crossing = [&](int i, double share, int o) {
@@ -120,7 +120,7 @@ void clip(const Piece& piece, int plane, Pieces& out) {
   }
 }
 
-/// How the corners of one tet lie to the planes of another.
+/// Position of one tet's corners relative to another one's planes.
 struct Relation {
   Relation(const PlanedTet& tet, const PlanedTet& planes) : volume(tet.volume()) {
     for (int k = 0; k < 4; ++k) distances[k] = planes.distances(tet.corners()[k]);
@@ -128,14 +128,14 @@ struct Relation {
     apart = (max_distances <= 0).any();
     if (apart) return;
     const Eigen::Array4d min_distances = distances[0].min(distances[1]).min(distances[2].min(distances[3])),
-                         // What rounding alone puts across a plane, such as the halves of an edge, does not
-                         // count as such.
+                         // Do not count corners that only rounding puts across a plane, such as those of the
+                         // halves of an edge.
         tolerance = rounding * max_distances.max(-min_distances);
     apart = (max_distances <= tolerance).any();
     for (int f = 0; f < 4; ++f)
       if (min_distances[f] < -tolerance[f]) crossed[count++] = f;
   }
-  /// The tet by its distances from the planes that cross it.
+  /// The tet as distances from the planes that cross it.
   Piece piece() const {
     Piece piece{{}, volume};
     for (int i = 0; i < count; ++i)
@@ -166,7 +166,7 @@ PlanedTet::PlanedTet(const TetCorners& corners)
 double overlap_volume(const PlanedTet& first, const PlanedTet& second) {
   const bool ordered = first.volume() <= second.volume();
   const PlanedTet &smaller = ordered ? first : second, &larger = ordered ? second : first;
-  // The planes of the larger one tell most pairs apart.
+  // The planes of the larger tet separate most pairs.
   const Relation a(smaller, larger);
   if (a.apart) return 0;
   if (a.count == 0) return smaller.volume();

@@ -16,29 +16,30 @@ namespace tetwright {
 
 namespace {
 
-/// M: of that many items near each other, one is in a batch. More of them make fewer conflicts, but the
-/// batches of a block then reach over more memory: 24 times a batch of points still fits into a core's cache.
-/// For tets conflicts cost more than cache misses: there are five times as many, an operation on one changes
-/// those around its four points, and tets around one edge stand next to each other in a list.
+/// M: a batch has one of that many neighbouring items. A larger M makes fewer conflicts, but the batches of a
+/// block then reach over more memory: 24 times a batch of points still fits into a core's cache. For tets
+/// conflicts cost more than cache misses: there are five times as many tets, an operation on one changes
+/// those around its four points, and tets around an edge are neighbours in the list.
 constexpr std::size_t point_spacing = 24, tet_spacing = 256;
-/// Items of a batch: enough to keep several threads busy, few enough for the cache, and more of them where
-/// there are so many items that none of these fits it anyway.
+/// Items of a batch: enough to keep several threads busy, few enough for the cache. Blocks that exceed the
+/// cache in any case get larger batches.
 constexpr std::size_t min_batch = 256, max_batch = 1024, batches_of_large_blocks = 1024;
-/// The same in the order given, where each item takes ten times as long and what failed before comes again.
+/// Items of a batch in the order given, where each item takes ten times as long and earlier failures are
+/// tried again.
 constexpr std::size_t min_ordered_batch = 16, max_ordered_batch = 1024, ordered_batches = 16;
-/// Of the proposals of a batch, the share that loses: above it the next batch is filled up less, below half
-/// of it more. What loses is decided twice, and in a mesh of few points, or around points of many tets, large
-/// batches hold little else.
+/// Share of a batch's proposals that may lose: above it the next batch is smaller, below half of it larger.
+/// Losers are decided twice, and in a mesh of few points, or around points of many tets, large batches have
+/// hardly any winners.
 constexpr double max_lost_share = 0.3;
-/// Batches are not made smaller than this.
+/// Min size of a reduced batch.
 constexpr std::size_t min_shrunk_batch = 16;
-/// Items that a thread decides at a time, and winners that it commits.
+/// Items that a thread decides, and winners that it commits, at a time.
 constexpr std::size_t chunk_in_order = 2, chunk_shuffled = 16, commit_chunk = 16;
-/// Batches with fewer chunks than this are not worth waking other threads.
+/// Min number of chunks that is worth waking other threads.
 constexpr std::size_t min_parallel_chunks = 3;
 
-/// The order of a shuffled block: item i has the key i / step + r, the keys ascend, and r goes through all
-/// numbers below `spacing` in random order, for as many items in a row. `step` 0: the order given.
+/// The order of a shuffled block, by ascending keys: item i has the key i / step + r, where r is a random
+/// permutation of the numbers below `spacing` for as many consecutive items. `step` 0: the order given.
 class BlockOrder {
  public:
   BlockOrder(std::size_t items, std::size_t step, std::size_t spacing, Random random)
@@ -49,7 +50,7 @@ class BlockOrder {
     waiting_.resize(spacing_);
   }
   bool empty() const { return left_ == 0; }
-  /// The next item; there is one.
+  /// \pre !empty().
   std::uint32_t take() {
     --left_;
     if (step_ == 0) return static_cast<std::uint32_t>(listed_++);
@@ -71,13 +72,13 @@ class BlockOrder {
 
   std::size_t items_, step_, spacing_, left_, listed_ = 0, key_ = 0;
   Random random_;
-  std::vector<std::uint32_t> keys_;  ///< of `spacing` items in a row, less key_
+  std::vector<std::uint32_t> keys_;  ///< of `spacing` consecutive items, less key_
   std::vector<std::vector<std::uint32_t>> waiting_;
-  std::vector<std::uint32_t> due_;  ///< of one key
+  std::vector<std::uint32_t> due_;  ///< items of one key
   std::size_t next_ = 0;            ///< of due_
 };
 
-/// In the test build that looks for what depends on time: lets another thread run now and then.
+/// Lets another thread run now and then, in the test build that looks for dependence on timing.
 void maybe_yield() {
 #ifdef TETWRIGHT_INJECT_YIELDS
   static thread_local Random random(reinterpret_cast<std::uintptr_t>(&random));
@@ -85,7 +86,7 @@ void maybe_yield() {
 #endif
 }
 
-/// Over chunks, or in this thread where there are few.
+/// Runs chunks in parallel, or all in this thread if there are few.
 void for_chunks(std::size_t count, std::size_t chunk,
                 const std::function<void(std::size_t begin, std::size_t end, unsigned worker)>& body) {
   const std::size_t chunks = (count + chunk - 1) / chunk;
@@ -217,7 +218,7 @@ void BlockRunner::run(const std::vector<Item>& items, bool in_order, const Attem
   again_.clear();
   while (!order.empty() || !again_.empty()) {
     if (progress_) progress_->throw_if_stopped();
-    // Those that lost come first, so that each is done some time.
+    // Losers come first, so that each item gets its turn.
     totals_.repeats += static_cast<std::uint64_t>(
         std::count_if(again_.begin(), again_.end(), [](const Entry& e) { return e.stage == 0; }));
     batch_ = again_;

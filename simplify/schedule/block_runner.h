@@ -10,7 +10,7 @@
 
 namespace tetwright {
 
-/// A tet and its four points at the time it was listed: equal points mean that the tet still exists.
+/// A tet and its four points when it was listed: if they are still equal, the tet still exists.
 struct TetSnapshot {
   Index tet;
   Tet points;
@@ -22,47 +22,53 @@ struct TetSnapshot {
 ///
 /// - decide, in parallel: each item's operation reads the mesh, which nobody changes, and leaves a Proposal;
 /// - select, in the batch's order: a proposal wins if no earlier winner's write set meets its read set.
-/// Winners commit their volumes to the ledger and get their slots. What lost comes again in the next batch,
-/// before the others;
+///   Winners commit their volumes to the ledger and get their slots. Losers are decided again in the next
+///   batch, before all others;
 /// - commit, in parallel: winners write their write sets.
 ///
-/// Random numbers come from (seed, block, item). Nothing depends on which thread does what, or when.
+/// Random numbers are seeded by (seed, block, item). Nothing depends on which thread does what, or when.
 class BlockRunner {
  public:
-  /// `batch_size`: of the first batch of a block, and the most for all; 0: from the number of items.
+  /// \param batch_size size of a block's first batch, and max size of all; 0: chosen from the number of
+  ///   items.
+  /// \param progress may be null.
   BlockRunner(EditableMesh& mesh, SurfaceGrid& grid, VolumeLedger& ledger, std::uint64_t seed,
               std::size_t batch_size, Progress* progress);
   ~BlockRunner();
 
-  /// An operation or several on an item: done with a proposal, or a refusal. `stage` is 0, or what the
-  /// proposal that was committed for this item asked for (Proposal::next_stage).
+  /// Tries one or more operations on an item: done with a proposal, or a refusal. `stage` is 0, or the
+  /// Proposal::next_stage of the proposal committed for this item.
   using PointAttempt = std::function<Outcome(Workspace&, Index)>;
   using TetAttempt = std::function<Outcome(Workspace&, const TetSnapshot&, int stage)>;
-  /// Asked before each winner is chosen; true ends the block.
+  /// Called before each winner is chosen; true ends the block.
   using Stop = std::function<bool()>;
 
-  /// In random order: of M items near each other one is in a batch, while a batch slides along the list,
-  /// which is in the order of the mesh's curve; so that few meet and memory is near. Throws Interrupted when
-  /// cancelled.
+  /// Runs the items in random order, with one of M neighbouring items in a batch, so that few conflict. A
+  /// batch slides along the list, so that its memory is near.
+  ///
+  /// \param items in the order of the mesh's space-filling curve.
+  /// \throws Interrupted or OutOfTime between batches.
   void points(const std::vector<Index>& items, const PointAttempt& attempt, const Stop& stop);
   void tets(const std::vector<TetSnapshot>& items, const TetAttempt& attempt, const Stop& stop);
-  /// One try at each of the points with an operation on its star, which may answer anything.
+  /// Tries an operation once on the star of each point. `operation` may return any outcome.
+  ///
+  /// \param kind the operation under which it is counted.
   void each_star(
       const std::vector<Index>& points, Operation kind, const std::function<Outcome(Workspace&)>& operation,
       const Stop& stop = [] { return false; });
-  /// In the order given.
+  /// Runs the items in the order given.
   void tets_in_order(const std::vector<TetSnapshot>& items, const TetAttempt& attempt);
 
-  /// Is shown each winner before any of its batch is committed, in their order.
+  /// Calls `observer` with each winner, in their order, before any of the batch is committed.
   void set_observer(std::function<void(const Proposal&)> observer) { observer_ = std::move(observer); }
 
-  /// What was counted since the last call.
+  /// Counts since the last call.
   struct Totals {
     OperationCounts counts;
     std::uint64_t conflicts = 0;  ///< proposals that lost
-    std::uint64_t repeats = 0;    ///< items that were decided again for that reason
+    std::uint64_t repeats = 0;    ///< items decided again for that reason
     std::uint64_t batches = 0;
-    std::vector<std::uint64_t> decided;  ///< items, by worker
+    std::vector<std::uint64_t> decided;  ///< decided items by worker
   };
   Totals take_totals();
 
@@ -74,13 +80,13 @@ class BlockRunner {
   struct Worker;
   template <class Item, class Attempt>
   void run(const std::vector<Item>& items, bool in_order, const Attempt& attempt, const Stop& stop);
-  /// Decides the entries of batch_ with decide(workspace, entry); fills outcomes_ and proposals_.
+  /// Decides the entries of batch_; fills outcomes_ and proposals_.
   void decide(const std::function<Outcome(Workspace&, const Entry&)>& decide_entry, std::size_t chunk);
   /// Fills winners_ and again_; false if `stop` ended the block.
   bool select(const Stop& stop);
   Outcome admit(Proposal& proposal);
   void commit_winners();
-  /// From how many of the batch have lost.
+  /// Adapts the batch size to the number of losers.
   std::size_t next_batch_size(std::size_t size, std::size_t max_size) const;
   void make_workers();
 
@@ -96,13 +102,13 @@ class BlockRunner {
   std::vector<std::unique_ptr<Worker>> workers_;
   std::vector<Entry> batch_, again_;
   std::vector<Outcome> outcomes_;                         ///< of batch_
-  std::vector<Proposal> proposals_;                       ///< of those whose outcome is done
-  std::vector<std::uint32_t> winners_, surface_winners_;  ///< places in batch_
+  std::vector<Proposal> proposals_;                       ///< by batch entry, if its outcome is done
+  std::vector<std::uint32_t> winners_, surface_winners_;  ///< indices into batch_
   std::size_t lost_ = 0;                                  ///< of the batch
   Totals totals_;
 };
 
-/// Whether a listed tet is still there.
+/// Whether a listed tet still exists.
 inline bool exists(const EditableMesh& mesh, const TetSnapshot& item) {
   return mesh.points(item.tet) == item.points;
 }

@@ -19,26 +19,26 @@ namespace tetwright {
 
 namespace {
 
-/// Sizes are changed where more than this share of all tets is bad: of fewer, shapes alone are mended.
+/// Share of bad tets above which sizes are changed; below it only shapes are improved.
 constexpr double resize_above = 0.01;
-/// A round that leaves more than this share of the bad tets gains too little; so many may.
+/// A round gains too little if it leaves more than this share of the bad tets; max number of such rounds.
 constexpr double idle_above = 0.9;
 constexpr int max_idle = 2;
-/// Cubed edge of the regular tet of volume 1: 6 sqrt(2).
+/// Cube of the edge of the regular tet of volume 1: 6 sqrt(2).
 constexpr double cubed_edge_of_unit_volume = 8.48528137423857;
-/// In edges of the regular tet of the volume that the tets around have on average: longer edges of the
-/// surface are split, and a point with a shorter edge is crowded.
+/// In edges of the regular tet with the mean volume of the tets around: edges of the surface above the first
+/// are split, and a point with an edge below the second is crowded.
 constexpr double long_edge_factor = 1.6;
 constexpr double short_edge_factor = 0.6;
 /// Share of the worst quality that splits and collapses must leave: halves of a tet are hardly better than
-/// the whole, but flips and better places then make them so.
+/// the whole, but flips and smoothing then improve them.
 constexpr float resize_floor = 0.5f;
 
 double local_edge(double volume, std::size_t tets) {
   return portable_cbrt(cubed_edge_of_unit_volume * volume / static_cast<double>(tets));
 }
 
-/// The first flip that makes the worst tet better.
+/// Tries flips until one improves the worst tet.
 Outcome flip_tet(Workspace& ws, const BlockRules& rules, const TetSnapshot& item, float bad_quality) {
   if (!exists(ws.mesh, item) || ws.mesh.quality(item.tet) > bad_quality) return Outcome::stale;
   for (int e = 0; e < 6; ++e)
@@ -48,7 +48,7 @@ Outcome flip_tet(Workspace& ws, const BlockRules& rules, const TetSnapshot& item
   return Outcome::no_candidate;
 }
 
-/// A point in the longest edge of the tet that is on the surface and long for what stands around it.
+/// Splits the tet's longest surface edge if it is long for its surroundings.
 Outcome split_tet(Workspace& ws, const BlockRules& rules, const TetSnapshot& item, float bad_quality) {
   const EditableMesh& mesh = ws.mesh;
   if (!exists(mesh, item) || mesh.quality(item.tet) > bad_quality) return Outcome::stale;
@@ -120,7 +120,7 @@ class BulkLoop {
       perturb();
     }
     std::vector<TetSnapshot> bad = area_.bad_tets(plan_.bad_quality);
-    // What failed comes again where something changed.
+    // Retry failures only where something has changed.
     if (!first)
       std::erase_if(bad, [&](const TetSnapshot& t) {
         return std::none_of(t.points.begin(), t.points.end(), [&](Index p) { return mesh_.touched(p); });

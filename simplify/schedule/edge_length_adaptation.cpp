@@ -15,18 +15,18 @@ namespace tetwright {
 
 namespace {
 
-/// Edges are halved twice in three rounds or so: enough for some that are a million times too long.
+/// Edges are halved about twice in three rounds: enough for edges a million times too long.
 constexpr int max_adaptation_rounds = 60;
-/// Share of the edges, each counted once for each tet, that may be left out of what a size field wants; of
-/// bounds none.
+/// Share of the edges, each counted once for each of its tets, that may violate a size field; none may
+/// violate a bound.
 constexpr double few = 0.002;
-/// A round that leaves more than this share of the excess that the best one before left gains too little; so
-/// many may.
+/// A round gains too little if it leaves more than this share of the excess after the best round before; max
+/// number of such rounds.
 constexpr double size_idle_above = 0.97;
 constexpr int max_idle_adaptation_rounds = 2;
-/// Of the bound of shapes: what collapses and splits must leave. Flips and better places mend it.
+/// Share of the shape bound that collapses and splits must leave. Flips and smoothing repair the shapes.
 constexpr float adaptation_floor = 0.3f;
-constexpr int shape_rounds = 2;  ///< of flips and better places between
+constexpr int shape_rounds = 2;  ///< of flips and smoothing between
 
 class EdgeLengthAdaptation {
  public:
@@ -70,10 +70,10 @@ class EdgeLengthAdaptation {
   }
 
  private:
-  /// Edges that are too long or too short, each counted once for each tet.
+  /// Edges that are too long or too short, each counted once for each of its tets.
   struct OutOfBounds {
     double share;   ///< of all edges
-    double excess;  ///< mean of the binary logarithms of the factors: halving one that is far too long counts
+    double excess;  ///< mean binary logarithm of the factors: halving an edge that is far too long counts
   };
 
   OutOfBounds out_of_bounds() {
@@ -100,7 +100,7 @@ class EdgeLengthAdaptation {
                             [&](Workspace& ws) { return collapse(ws, rules); });
   }
 
-  /// A point in the middle of the tet's edge that is too long by the largest factor.
+  /// Splits the edge of each tet that is too long by the largest factor at its midpoint.
   void split_long() {
     tools_.runner.tets(
         area_.bad_tets(1),

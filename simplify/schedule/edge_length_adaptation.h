@@ -8,16 +8,17 @@
 namespace tetwright {
 
 struct SizePlan {
-  const char* kind;  ///< of its rounds in the report
-  double angle;      ///< steradians: shapes that are better stay better; what is worse is improved between
+  const char* kind;  ///< kind of its rounds in the report
+  double angle;  ///< steradians: better shapes stay better than it; worse ones are improved between rounds
   std::size_t min_tets, max_tets;
 };
 
-/// Collapses edges that are shorter than BlockRules::sizes asks for and halves longer ones, with flips and
-/// better places between, until few are left or rounds gain little. Shapes may get worse on the way, down to
-/// a share of the bound. The rules must have sizes.
+/// Collapses edges shorter than BlockRules::sizes allows and halves longer ones, with flips and smoothing
+/// between, until few are left or rounds gain little. On the way shapes may get worse, down to a share of the
+/// bound.
 ///
-/// The mesh is compacted and rated by shape. Throws Interrupted and OutOfTime.
+/// \throws Interrupted, OutOfTime.
+/// \pre The rules have sizes. The mesh is compacted and rated by shape.
 void adapt_edge_lengths(const ImprovementTools& tools, ImprovementArea& area, const SizePlan& plan);
 
 }  // namespace tetwright

@@ -21,12 +21,13 @@ namespace tetwright {
 namespace {
 
 constexpr std::size_t slot_grain = 8192;  ///< tets or points a parallel loop hands out at a time
-/// The mesh is compacted and renumbered when more than this share of the slots in use are dead.
+/// Share of dead slots among those used above which the mesh is compacted.
 constexpr double compact_above = 0.3;
-/// Free slots left for operations that add, as shares of what is alive: with more of them the arrays grow.
+/// Free slots left for operations that add: the inverse of their share of the live ones, and their min
+/// number. If they run out, the arrays grow.
 constexpr std::size_t spare_share = 16;
 constexpr std::size_t min_spare = 4096;
-/// What fitting to creases must leave of tets, by any objective: shapes recover.
+/// Min quality of tets, by any objective, when points are fitted to feature edges: shapes recover.
 constexpr float crease_floor = 1e-4f;
 
 }  // namespace
@@ -40,7 +41,7 @@ Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, P
   rules.objective.quality = TetQuality::for_target(mesh_.total_volume(), options.target_tets, options.beta);
   rules.objective.shape = options.objective;
   rules.gamma = options.gamma;
-  // Patches are kept from the first collapse on; without them shapes alone need surfaces.
+  // Keep patches from the first collapse on; without patches only improvement needs the projection.
   if (projection_.has_patches()) rules.project_onto(projection_, mesh_.diagonal());
 }
 
@@ -61,7 +62,7 @@ void Engine::compact() {
   } else {
     grid_.rebuild(mesh_, min_cell, numbers.points);
   }
-  // What is embedded stays so: no operation undoes it.
+  // An embedded mesh stays embedded: no operation undoes it.
   if (first) rules.embedded = mesh_.all_positive() && grid_.embedded();
 }
 
@@ -121,7 +122,7 @@ void Engine::rate_all() {
 
 float Engine::cutoff(double percent) const {
   // Bit patterns of floats in [0, 1] ascend with their values: a histogram of their upper halves finds the
-  // bin, and only its tets are looked at again.
+  // bin, and only the bin's tets are read again.
   constexpr std::size_t bins = 1 << 14;
   const auto bin = [](float q) { return std::bit_cast<std::uint32_t>(q) >> 16; };
   std::vector<std::atomic<std::uint32_t>> shared(bins);
@@ -197,7 +198,7 @@ std::vector<Index> Engine::marked_points(const Mark& mark) const {
     for (std::size_t i = begin; i < end; ++i) {
       const auto t = static_cast<Index>(i);
       if (mesh_.dead(t)) continue;
-      // Relaxed: the same value whoever writes it, and read after the loop.
+      // Relaxed: all threads write the same value, which is read after the loop.
       for (int k = 0; k < 4; ++k)
         if (mark(t, k))
           std::atomic_ref<std::uint8_t>(marks[mesh_.points(t)[k]]).store(1, std::memory_order_relaxed);
@@ -270,10 +271,10 @@ std::vector<Index> Engine::interface_points() const {
 }
 
 std::vector<Index> Engine::points_off_creases() const {
-  // By point: the smallest and the largest patch of its boundary faces.
+  // By point: min and max patch of its boundary faces.
   constexpr std::uint32_t no_patch = 0xffffffff;
   std::vector<std::uint32_t> smallest(mesh_.point_slots(), no_patch), largest(mesh_.point_slots(), 0);
-  std::vector<std::uint8_t> third(mesh_.point_slots(), 0);  // whether it has more than these
+  std::vector<std::uint8_t> third(mesh_.point_slots(), 0);  // whether the point has a third patch
   for (std::size_t i = 0; i < mesh_.tet_slots(); ++i) {
     const auto t = static_cast<Index>(i);
     if (mesh_.dead(t)) continue;
@@ -293,7 +294,7 @@ std::vector<Index> Engine::points_off_creases() const {
                                  [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
                                    for (std::size_t p = begin; p < end; ++p) {
                                      if (smallest[p] == no_patch || smallest[p] == largest[p]) continue;
-                                     // Nearly all are where they belong.
+                                     // Nearly all points pass this test.
                                      const Vec3& at = mesh_.position(static_cast<Index>(p));
                                      if (!(third[p] ? projection_.onto_corner(at, tolerance::flat_patch)
                                                     : projection_.onto_curve(at, tolerance::flat_patch)))

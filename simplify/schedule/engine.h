@@ -14,7 +14,7 @@
 
 namespace tetwright {
 
-/// State that the schedules share: the mesh, its grid, the block runner, the selection of bad tets, the
+/// State shared by the schedules: the mesh, its grid, the block runner, the selection of bad tets, the
 /// report.
 class Engine {
  public:
@@ -28,13 +28,13 @@ class Engine {
     const ReferenceSurface* reference;
     const std::vector<std::uint8_t>& frozen;
     bool fix_boundary;
-    bool keep_volumes = true;  ///< by a VolumeLedger
+    bool keep_volumes = true;  ///< bounds them by a VolumeLedger
   };
   Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, Progress* progress);
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  /// Ends the work; the mesh with its interface triangles.
+  /// Ends the work and returns the mesh with its interface triangles.
   TetMesh take() &&;
 
   EditableMesh& mesh() { return mesh_; }
@@ -44,52 +44,60 @@ class Engine {
   RoundRecorder& recorder() { return recorder_; }
   BlockRules rules;
 
-  /// Compacts the mesh and rebuilds the grid. Leaves free slots for operations that add tets. Every schedule
+  /// Compacts the mesh, leaves free slots for operations that add, and rebuilds the grid. Every schedule
   /// calls it first, and rate_all() after setting its objective.
   void compact();
-  /// Keeps what the mesh as it came stands for: the `surface` (input units) that it was made from, or its own
-  /// one. Before the first operation. `measured`: deviation() will be asked for.
+  /// Keeps the input's surface: the `surface` (input units) that the mesh was made from, or without it the
+  /// mesh's own.
+  ///
+  /// \param measured deviation() will be called.
+  /// \pre No operation has run.
   void keep_input_surface(const TriangleMesh* surface, bool measured);
-  /// From now on triangles own samples of that, some ten for each triangle with edges of this length.
+  /// Gives the triangles samples of the input's surface, some ten for each triangle with edges of length
+  /// `edge`.
+  /// \pre keep_input_surface() has been called.
   void own_samples(double edge);
   void set_spacing(double spacing) { spacing_ = spacing; }
-  /// Wanted edge lengths and their bounds, input units, which rules follow from now on; `target_length` may
-  /// be null.
+  /// Sets the target edge lengths and their bounds, input units, in the rules.
+  ///
+  /// \param target_length may be null.
   void set_sizes(const SizeField* target_length, double min_edge, double max_edge);
-  /// How many well-shaped tets with edges of the wanted lengths fill the mesh.
+  /// Number of well-shaped tets with the target edge lengths that fill the mesh.
   double tets_for_sizes() const;
-  /// The same for one length everywhere, input units.
+  /// tets_for_sizes() for one length everywhere, input units.
   double tets_for_edge(double length) const;
   /// EdgeSizes::allow_shorter().
   void allow_shorter_edges() { sizes_->allow_shorter(); }
-  /// How far the mesh's surface is from that, proven; within wider bounds once the deadline has passed.
+  /// Two-sided distance between the mesh's surface and the input's, with proven bounds; wider bounds once the
+  /// deadline has passed.
   DeviationReport deviation() const;
-  /// As Progress does.
+  /// Progress::throw_if_stopped().
   void throw_if_stopped() const {
     if (progress_) progress_->throw_if_stopped();
   }
-  /// The tets of boundary and interface faces that are farther from that than `limit` (working coordinates),
-  /// or nearest to a part of that which is, in the order of the curve. Places of that part become samples.
+  /// The tets of boundary and interface faces that are farther than `limit` (working coordinates) from the
+  /// input's surface, or nearest to a part of it that is; in the order of the curve. Points of such parts
+  /// become samples.
   std::vector<TetSnapshot> find_far_tets(double limit);
   bool owns_samples() const { return samples_ != nullptr; }
-  /// compact() where so many slots are dead that it pays.
+  /// compact() if so many slots are dead that it pays off.
   void compact_if_sparse();
-  /// Every tet's quality by rules.objective.
+  /// Rates every tet by rules.objective.
   void rate_all();
-  /// Compacts the mesh, rates its tets by their shapes and sets the rules that all improvement shares: before
-  /// the first run_bulk_improvement() or run_improvement().
+  /// Compacts the mesh, rates its tets by shape and sets the rules that all improvement shares. Call it
+  /// before the first run_bulk_improvement() or run_improvement().
   void begin_improvement();
 
   // Only while no task runs. Parallel; the results do not depend on the threads.
 
-  /// The quality below which `percent` of the tets lie; 1 if all.
+  /// The quality below which `percent` of the tets lie; 1 for all tets, 0 for an empty mesh.
   float cutoff(double percent) const;
-  /// The tets of at most that quality, in the order of the curve.
+  /// The tets of quality `limit` or less, in the order of the curve.
   std::vector<TetSnapshot> bad_tets(float limit) const;
-  /// The points of these tets, each once, in the order of the curve.
+  /// The points of bad_tets(), each once, in the order of the curve.
   std::vector<Index> bad_points(float limit) const;
-  /// The share of the tets whose shape is worse than this solid angle (steradians) stands for, whatever they
-  /// are rated by.
+  /// Share of the tets whose shape is worse than the shape_quality_bound() of a solid angle (steradians),
+  /// whatever objective rates them.
   double share_below(double angle) const;
   /// The tets that share a point with a listed one, in the order of the curve, and their points, each once.
   std::vector<TetSnapshot> tets_around(const std::vector<TetSnapshot>& tets) const;
@@ -99,22 +107,22 @@ class Engine {
 
   /// fit_to_samples() for all interface points.
   void fit_interfaces(float floor);
-  /// fit_to_samples() for those of the listed tets and around them, farthest samples first.
+  /// fit_to_samples() for the points of the listed tets and around them, weighting the farthest samples most.
   void fit_far(const std::vector<TetSnapshot>& tets, float floor);
-  /// fit_to_crease() for all boundary points that are off their crease or corner; what cannot go there is
-  /// collapsed along its crease.
+  /// fit_to_crease() for all boundary points off their feature edge or corner; a point that cannot move there
+  /// is collapsed along its feature edge.
   void fit_creases();
 
  private:
-  /// The points for which mark(tet, place in it) holds for some tet.
+  /// The points for which mark(tet, slot in it) is true for some tet.
   template <class Mark>
   std::vector<Index> marked_points(const Mark& mark) const;
-  /// The points of the boundary where two patches meet off any crease, or three off any corner.
+  /// The boundary points at which two patches meet off any feature edge, or three off any corner.
   std::vector<Index> points_off_creases() const;
-  /// The living tets that pass the test, in the order of the curve.
+  /// The live tets that pass the test, in the order of the curve.
   template <class Test>
   std::vector<TetSnapshot> tets_where(const Test& test) const;
-  /// 1 for the points of the listed tets.
+  /// By point: 1 if it is a vertex of a listed tet.
   std::vector<std::uint8_t> points_of(const std::vector<TetSnapshot>& tets) const;
 
   bool compacted_ = false;  ///< the grid is built
@@ -131,7 +139,7 @@ class Engine {
   const Progress* progress_;  ///< may be null
 };
 
-/// The mesh of an engine.
+/// The whole mesh of an engine.
 class WholeMesh final : public ImprovementArea {
  public:
   explicit WholeMesh(Engine& engine) : engine_(engine) {}

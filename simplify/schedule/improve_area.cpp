@@ -9,12 +9,11 @@ namespace tetwright {
 
 namespace {
 
-/// Rounds in bulk each time.
+/// Max rounds of each bulk phase.
 constexpr int max_bulk_rounds = 30;
-/// Share of the tets below the bound from which on what stays below it after rounds for the worst is taken up
-/// in bulk.
+/// Share of the tets still below the bound above which the second bulk phase runs.
 constexpr double bulk_after = 0.01;
-/// Factor from one bound to the next.
+/// Factor between successive bounds.
 constexpr double bound_step = 1.18;
 
 }  // namespace

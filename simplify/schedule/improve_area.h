@@ -7,15 +7,17 @@
 
 namespace tetwright {
 
-/// Improves what is below plan.angle: in bulk first where more than `bulk_first` of the area's tets are below
-/// it, then the worst first; what still is below it after that is taken up in bulk again and once more,
-/// unless it is next to nothing or the plan is brief. Returns the number of rounds it took. Throws
-/// Interrupted.
+/// Improves the tets below plan.angle: first in bulk if more than `bulk_first` of the area's tets are below
+/// it, then the worst first. If more than next to nothing is still below it, bulk and worst first are
+/// repeated once, unless the plan is brief.
+///
+/// \return number of rounds.
+/// \throws Interrupted, OutOfTime.
 int improve_area(const ImprovementTools& tools, ImprovementArea& area, ImprovementPlan plan,
                  double bulk_first);
 
-/// The bounds (steradians) on the way to `last`, ascending, `last` being the last one: the worst first, also
-/// in the large, since a bound that most tets are below would leave no time for them.
+/// Ascending bounds (steradians) from `first` to `last`, `last` included. The worst tets so come first also
+/// on a large scale: a bound that most tets are below would leave no time for them.
 std::vector<double> rising_bounds(double first, double last);
 
 }  // namespace tetwright

@@ -13,13 +13,13 @@ namespace tetwright {
 
 namespace {
 
-/// Error bound E of collapses and edge removals, and the distance by which they may move the surface away
-/// from the reference; both in usual edges.
+/// Relaxed bound E of collapses and edge removals, and max distance by which they move the surface away from
+/// the reference; both in usual edges.
 constexpr double relaxed_error_edges = 12;
 constexpr double relaxed_distance_edges = 0.3;
-constexpr std::size_t relaxed_targets = 30;  ///< all neighbours of nearly every point
+constexpr std::size_t relaxed_targets = 30;  ///< covers all neighbours of nearly every point
 
-/// The first place of one of the tet's points that makes the worst tet around better.
+/// Smooths the tet's points until one move improves the worst tet around.
 Outcome move_points(Workspace& ws, const BlockRules& rules, const TetSnapshot& item) {
   for (Index p : item.points) {
     Outcome o = ws.gather(p);
@@ -29,7 +29,7 @@ Outcome move_points(Workspace& ws, const BlockRules& rules, const TetSnapshot& i
   return Outcome::no_candidate;
 }
 
-/// The same of the flips.
+/// Tries flips until one improves the worst tet around.
 Outcome flip(Workspace& ws, const ImproveRules& step, const TetSnapshot& item) {
   for (int e = 0; e < 6; ++e)
     if (remove_edge(ws, step.relaxed, item.tet, e, full_reach) == Outcome::done) return Outcome::done;

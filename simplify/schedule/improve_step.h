@@ -5,7 +5,8 @@
 
 namespace tetwright {
 
-/// Qualities (shape_quality()) below which a tet is worked on, and points may leave the surface for it.
+/// Bounds of shape_quality() below which a tet is worked on, and below which points may leave the surface for
+/// it.
 struct ImproveBounds {
   float bad_quality, leave_surface;
 };
@@ -13,22 +14,23 @@ struct ImproveBounds {
 /// The rules of an improvement step.
 struct ImproveRules {
   const BlockRules& rules;
-  const BlockRules& relaxed;  ///< of edge removals and collapses: relaxed_rules()
+  const BlockRules& relaxed;  ///< relaxed_rules(), for edge removals and collapses
   ImproveBounds bounds;
-  bool last_resort;  ///< points of tets worse than bounds.leave_surface move by `relaxed`, too
-  bool flips_first;  ///< before better places: half the time, but less gain in thin layers of many materials
+  bool last_resort;  ///< points of tets worse than bounds.leave_surface also move by `relaxed`
+  bool flips_first;  ///< before smoothing: half the time, but less gain in thin layers of many materials
 };
 
-/// One improvement step at a tet: tries actions until one makes the worst tet around better.
+/// One improvement step at a tet: tries operations until one improves the worst tet around.
 Outcome improve_tet(Workspace& ws, const ImproveRules& step, const TetSnapshot& item);
 
-/// A flip of the tet, chosen at random, that leaves only good tets (BlockRules::good_enough) or an
-/// improvement: it changes the connectivity near tets that no operation improves.
+/// Tries a random flip of the tet that leaves only good tets (BlockRules::good_enough) or improves the worst:
+/// it changes the connectivity near tets that no operation improves.
 Outcome perturb_tet(Workspace& ws, const BlockRules& perturbation, const TetSnapshot& item);
 
-/// Rules of collapses that cut off an ear and of edge removal. They sweep much volume though the surface
-/// hardly moves, so that the distance from the reference bounds them instead of E. `edge`: a usual one,
-/// working coordinates.
+/// Rules for edge removals and for collapses that cut off an ear. These sweep much volume though the surface
+/// hardly moves, so they are bounded by the distance from the reference instead of E.
+///
+/// \param edge usual edge length, working coordinates.
 BlockRules relaxed_rules(const BlockRules& rules, double edge);
 
 }  // namespace tetwright

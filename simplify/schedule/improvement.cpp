@@ -13,32 +13,32 @@ namespace tetwright {
 
 namespace {
 
-/// A round that leaves more than this share of the bad tets is followed by one that flips tets around them
-/// at random and moves all points around, for what stands in their way.
+/// After a round that leaves more than this share of the bad tets, the next one also flips tets around them
+/// at random and moves all points around, to free tets that are stuck.
 constexpr double stuck_above = 0.8;
-/// What collapses that make room for insertions must leave, over the quality that is aimed at.
+/// Factor on the target quality for tets left by collapses that make room for insertions.
 constexpr float thinning_margin = 1.1f;
-/// Share of the bad tets that a round must get rid of to count as gain.
+/// Min share of the bad tets that a round must fix to count as gain.
 constexpr double min_round_gain = 0.02;
-/// The same where more than this share of all tets is bad.
+/// Share of bad tets above which many are bad, and then the min gain and the max rounds without gain.
 constexpr double many_bad = 0.01;
 constexpr double min_gain_of_many = 0.05;
 constexpr int max_idle_rounds_of_many = 4;
-/// Rounds without gain before the work ends: while some tets are below ImprovementPlan::leave_surface_angle,
-/// else.
+/// Max rounds without gain: while tets are below ImprovementPlan::leave_surface_angle, and otherwise.
 constexpr int max_idle_rounds = 8;
 constexpr int max_idle_rounds_when_good = 2;
-/// The same where less than this share of all tets is bad: such rounds take next to no time.
+/// Share of bad tets below which few are bad, and then the max rounds without gain: such rounds take hardly
+/// any time.
 constexpr double few_bad = 5e-4;
 constexpr int max_idle_rounds_of_few = 30;
-/// Perturbation leaves tets that are at least this much of what is aimed at: it frees twice as many of the
-/// last ones as with all of it, and what is bad then is mended at once.
+/// Share of the target quality that perturbation must leave: it frees twice as many of the last bad tets as
+/// the whole would, and tets below the target are repaired at once.
 constexpr float perturbed_share = 0.95f;
-/// Share of the tets by which the count may fall that is kept for the last resort: edge removals would use up
-/// all of it, and no collapse could take the last slivers out.
+/// Share of the allowed decrease of the count that is reserved for the last resort: edge removals would use
+/// up all of it, and no collapse could remove the last slivers.
 constexpr double kept_share = 0.125;
-/// BlockRules::max_deviation grows by so much with each round that is a last resort, up to so many times: the
-/// last slivers of fine detail need room. Grown without end it would double the largest distances.
+/// Growth of BlockRules::max_deviation with each last-resort round, and its max factor: the last slivers of
+/// fine detail need room. Unlimited growth would double the max distance.
 constexpr double round_deviation_growth = 1.25, max_deviation_factor = 3;
 
 /// The rounds of run_improvement().
@@ -80,9 +80,9 @@ class ImprovementLoop {
     return static_cast<float>(shape_quality_bound(rules_.objective.shape, angle));
   }
 
-  /// Judges the round before by what it left: false where the last ones gained too little. Decides whether
-  /// the next one also moves the points around the bad tets and resorts to perturbation; where the plan is
-  /// not fast, the first one perturbs in any case.
+  /// Judges the last round by the bad tets that it left: false if the last rounds gained too little. Decides
+  /// whether the next one also moves the points around the bad tets and perturbs; if the plan is not fast,
+  /// the first one always perturbs.
   bool worth_a_round(const std::vector<TetSnapshot>& bad, bool first) {
     const bool any_may_leave_surface = std::any_of(bad.begin(), bad.end(), [&](const TetSnapshot& t) {
       return mesh_.quality(t.tet) < bounds_.leave_surface;
@@ -90,7 +90,7 @@ class ImprovementLoop {
     stuck_ = static_cast<double>(bad.size()) > stuck_above * static_cast<double>(min_bad_);
     if (plan_.brief && stuck_ && !any_may_leave_surface) return false;
     const double gain = 1 - static_cast<double>(bad.size()) / static_cast<double>(min_bad_);
-    // Where a large share is bad, the interfaces are the reason, and more rounds would take long for little.
+    // If a large share is bad, the interfaces are the reason, and more rounds would take long for little.
     const bool many = static_cast<double>(bad.size()) > many_bad * static_cast<double>(area_.tet_count());
     idle_ = gain >= (many ? min_gain_of_many : min_round_gain) ? 0 : idle_ + 1;
     const bool few = static_cast<double>(bad.size()) < few_bad * static_cast<double>(area_.tet_count());
@@ -100,7 +100,7 @@ class ImprovementLoop {
                                                    : max_idle_rounds_when_good))
       return false;
     min_bad_ = std::min(min_bad_, bad.size());
-    // Not before perturbation on the surfaces has gained nothing: what leaves them stays off.
+    // Wait until perturbation on the surfaces has gained nothing: points that leave them do not return.
     const bool perturbed = plan_.fast || perturbs_;
     last_resort_ = stuck_ && ((idle_ > 0 && perturbed) || (plan_.fast && !many));
     perturbs_ = last_resort_ || (!plan_.fast && (stuck_ || first));
@@ -115,7 +115,8 @@ class ImprovementLoop {
                             ? 0
                             : kept_share * static_cast<double>(plan_.target_tets - plan_.min_tets);
     rules_.count.min = relaxed_.count.min = plan_.min_tets + static_cast<std::size_t>(kept);
-    // More than halfway from the target to the upper bound, which may be the largest number there is.
+    // Make room if the count is more than halfway from the target to the upper bound, which may be the
+    // largest number there is.
     if (2 * static_cast<double>(mesh_.live_tets()) >
         static_cast<double>(plan_.target_tets) + static_cast<double>(plan_.max_tets))
       make_room(bad);
@@ -133,7 +134,7 @@ class ImprovementLoop {
     });
   }
 
-  /// Makes room for insertions: collapses that leave only good tets, or better ones.
+  /// Makes room for insertions by collapses that leave only good tets, or improve the worst.
   void make_room(const std::vector<TetSnapshot>& bad) {
     BlockRules thinning = rules_;
     thinning.good_enough = bounds_.bad_quality * thinning_margin;
@@ -158,8 +159,8 @@ class ImprovementLoop {
     runner_.each_star(around, Operation::optimise, [&](Workspace& ws) { return optimise(ws, rules_); });
   }
 
-  /// Tets that the last round tried come again only where something around them changed, or where this round
-  /// allows more.
+  /// Drops tets that the last round tried, unless something around them has changed or this round allows
+  /// more.
   std::vector<TetSnapshot> worth_trying(const std::vector<TetSnapshot>& bad) const {
     if (last_resort_) return bad;
     std::vector<TetSnapshot> tries;
@@ -182,9 +183,9 @@ class ImprovementLoop {
   ImproveBounds bounds_;
   BlockRules relaxed_;
   double max_deviation_ = 0;
-  std::vector<TetSnapshot> tried_;  ///< in the last round, by number
-  std::size_t min_bad_ = 0;         ///< the minimum of bad tets after a round
-  int idle_ = 0;                    ///< rounds in a row without gain
+  std::vector<TetSnapshot> tried_;  ///< tets tried in the last round, by number
+  std::size_t min_bad_ = 0;         ///< min number of bad tets after a round
+  int idle_ = 0;                    ///< consecutive rounds without gain
   bool stuck_ = false, perturbs_ = false, last_resort_ = false;
 };
 

@@ -9,24 +9,24 @@
 namespace tetwright {
 
 struct ImprovementPlan {
-  const char* kind;  ///< of its rounds in the report
-  /// Steradians: tets whose shape is worse than shape_quality_bound() of it are worked on.
+  const char* kind;  ///< kind of its rounds in the report
+  /// Steradians: tets worse than the shape_quality_bound() of this angle are worked on.
   double angle;
   /// Likewise: for tets worse than this, points of the surface may leave it a little.
   double leave_surface_angle;
   std::size_t target_tets, min_tets, max_tets;
-  /// Flips before better places, and the last resort as soon as a round gains little but not much is bad:
+  /// Flips before smoothing, and uses the last resort as soon as a round gains little and few tets are bad:
   /// half the time of improve(), but less gain where thin layers of many materials keep most points from
-  /// moving far. Else the first round perturbs: after a simplification that gives better shapes on nearer
-  /// surfaces.
+  /// moving far. Otherwise the first round perturbs: after a simplification that gives better shapes on
+  /// nearer surfaces.
   bool fast;
-  /// Ends as soon as a round gains little and no tet is below leave_surface_angle: the last ones of those
-  /// that are better take as long as all others.
+  /// Ends as soon as a round gains little and no tet is below leave_surface_angle: the last of the tets above
+  /// it take as long as all others.
   bool brief;
   int max_rounds;
 };
 
-/// What an improvement works with.
+/// The objects that an improvement works with.
 struct ImprovementTools {
   EditableMesh& mesh;
   BlockRunner& runner;
@@ -34,8 +34,11 @@ struct ImprovementTools {
   RoundRecorder& recorder;
 };
 
-/// Improves the shapes of the worst tets, worst first (README.md, Improvement). The mesh is compacted and
-/// rated by shape. Returns the number of rounds it took. Throws Interrupted and OutOfTime.
+/// Improves the shapes of the worst tets, worst first (README.md, Improvement).
+///
+/// \return number of rounds.
+/// \throws Interrupted, OutOfTime.
+/// \pre The mesh is compacted and rated by shape.
 int run_improvement(const ImprovementTools& tools, ImprovementArea& area, const ImprovementPlan& plan);
 
 }  // namespace tetwright

@@ -8,19 +8,20 @@
 
 namespace tetwright {
 
-/// What an improvement works on: the whole mesh, or a part of it. Only while no task runs.
+/// The part of the mesh that an improvement works on: all or some of it.
+/// \pre No task runs during any call.
 class ImprovementArea {
  public:
   virtual ~ImprovementArea() = default;
-  /// The number of its tets, which shares are of.
+  /// Number of its tets, to which shares refer.
   virtual std::size_t tet_count() const = 0;
-  /// A usual edge, working coordinates.
+  /// Usual edge length, working coordinates.
   virtual double usual_edge() const = 0;
-  // Ascending, which is the order of the curve after compaction.
+  // Results are ascending: the order of the curve after compaction.
 
-  /// The tets of at most that quality.
+  /// The tets of quality `limit` or less.
   virtual std::vector<TetSnapshot> bad_tets(float limit) = 0;
-  /// Their points.
+  /// The points of bad_tets().
   virtual std::vector<Index> bad_points(float limit) = 0;
   /// The tets that share a point with a listed one, and their points.
   virtual std::vector<TetSnapshot> tets_around(const std::vector<TetSnapshot>& tets) = 0;

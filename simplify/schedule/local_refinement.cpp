@@ -13,16 +13,16 @@ namespace tetwright {
 namespace {
 
 constexpr int max_refinements = 8;
-/// Where more tets than this number and this share have far faces, local refinement does not help.
+/// Max number and max share of tets with far faces (the larger counts): above, local refinement does not
+/// help.
 constexpr double max_far_share = 0.02, max_far_tets = 100;
-constexpr int far_fits = 2;  ///< sweeps after each round
-/// Rounds that may gain nothing: each halves edges farther around.
+constexpr int far_fits = 2;  ///< fitting sweeps after each round
+/// Max rounds without gain: each halves edges farther around.
 constexpr int max_idle_refinements = 2;
-/// Of the bound of shapes: what halved tets must be. Flips and better places mend them.
+/// Share of the shape bound that halved tets must have. Flips and smoothing improve them.
 constexpr float split_floor = 0.3f;
 
-/// The edge of a tet that is to be halved: the longest, or, with `surface`, the longest of its faces that are
-/// on the boundary or an interface. Of tet_edges.
+/// The longest edge of a tet, or with `surface` of its boundary and interface faces; index into tet_edges.
 int longest_edge(const EditableMesh& mesh, const TetSnapshot& item, bool surface) {
   int longest = 0;
   double max_length = 0;
@@ -36,7 +36,7 @@ int longest_edge(const EditableMesh& mesh, const TetSnapshot& item, bool surface
   return longest;
 }
 
-/// Halves an edge of each of these tets where what comes out can be mended to have that angle.
+/// Halves an edge of each tet if the resulting tets can be improved to that angle.
 void halve(const ImprovementTools& tools, const std::vector<TetSnapshot>& tets, const ImprovementPlan& plan,
            double angle, bool surface) {
   EditableMesh& mesh = tools.mesh;
@@ -56,7 +56,7 @@ void halve(const ImprovementTools& tools, const std::vector<TetSnapshot>& tets, 
   round.finish();
 }
 
-/// Whether rounds go on gaining: fewer tets are left than after any earlier round, or were until recently.
+/// Whether rounds still gain: the number of tets left has reached a new minimum recently.
 class Gain {
  public:
   bool goes_on(std::size_t left) {
@@ -87,7 +87,7 @@ void refine_bad_tets(const ImprovementTools& tools, ImprovementArea& area, Impro
 void refine_beyond_tolerance(Engine& engine, ImprovementArea& area, const ImprovementPlan& plan, double angle,
                              double limit) {
   const ImprovementTools tools{engine.mesh(), engine.runner(), engine.rules, engine.recorder()};
-  // Not that of the plan, which leaves a point less room than the tolerance may need.
+  // Use this bound, not the plan's, which leaves a point less room than the tolerance may need.
   const auto floor = static_cast<float>(shape_quality_bound(engine.rules.objective.shape, angle));
   for (int i = 0; i < max_refinements; ++i) {
     const std::vector<TetSnapshot> far = engine.find_far_tets(limit);

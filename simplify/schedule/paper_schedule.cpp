@@ -17,10 +17,10 @@ namespace tetwright {
 
 namespace {
 
-/// Around the target, once it is reached: actions that leave this band are not taken.
+/// Half width of the band around the target, once it is reached: actions that leave it are refused.
 constexpr double count_slack = 0.005;
 
-/// The tet's half-edge of least weight that passes every test.
+/// Collapses the tet's half-edge of least weight that passes every test.
 Outcome collapse_tet(Workspace& ws, const BlockRules& rules, const TetSnapshot& item) {
   struct HalfEdge {
     double weight;
@@ -61,7 +61,8 @@ Outcome collapse_tet(Workspace& ws, const BlockRules& rules, const TetSnapshot& 
   return refusal;
 }
 
-/// "move each vertex of the element": the first from `first` on that moves; the turn goes on with the next.
+/// "move each vertex of the element": moves the first point from `first` on that can move; the turn continues
+/// with the next.
 Outcome smooth_points(Workspace& ws, const BlockRules& rules, const TetSnapshot& item, int first) {
   for (int k = first; k < 4; ++k) {
     Outcome o = ws.gather(item.points[k]);
@@ -73,8 +74,8 @@ Outcome smooth_points(Workspace& ws, const BlockRules& rules, const TetSnapshot&
   return Outcome::no_candidate;
 }
 
-/// One step at a tet: tries the actions of section 4 in their order until one succeeds. Stages above 0
-/// are the points still to be moved.
+/// One step at a tet: tries the actions of section 4 in their order until one succeeds. A stage above 0 is
+/// the next point to move.
 Outcome paper_step(Workspace& ws, const BlockRules& rules, const TetSnapshot& item, int stage, float limit) {
   const EditableMesh& mesh = ws.mesh;
   if (!exists(mesh, item)) return Outcome::stale;
@@ -86,7 +87,7 @@ Outcome paper_step(Workspace& ws, const BlockRules& rules, const TetSnapshot& it
     if (remove_edge(ws, rules, item.tet, e, basic_reach) == Outcome::done) return Outcome::done;
   if (ws.count(Operation::collapse, collapse_tet(ws, rules, item)) == Outcome::done) return Outcome::done;
   if (smooth_points(ws, rules, item, 0) == Outcome::done) return Outcome::done;
-  // New points must better the tets they go into: what annealing lets pass would be split for ever.
+  // A new point must improve the tets around it: tets that annealing accepts would be split for ever.
   BlockRules strict = rules;
   strict.accept_worse = 0;
   if (insert_in_tet(ws, strict, item.tet, InsertionPlace::centre) == Outcome::done) return Outcome::done;
@@ -134,7 +135,7 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
   for (int i = 0; i < options.max_iterations && idle < max_idle_iterations; ++i) {
     reached = reached || mesh.live_tets() <= target_tets;
     if (reached) {
-      // The second stop. The counts of bad tets tell whether anything is still gained.
+      // Second stop: the number of bad tets tells whether anything is still gained.
       const std::size_t now = below_angle(mesh, options.min_solid_angle);
       if (now == 0) break;
       idle = now < bad ? 0 : idle + 1;
@@ -147,7 +148,8 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
     const auto before = static_cast<double>(it.tets_before);
     const double log_now = portable_log(std::max(before / target, 1.0));
     rules.accept_worse = reached ? 0 : first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
-    // Before, whatever does not undo the iterations before it; then only what keeps or restores the count.
+    // Before the target is reached, allow all that does not undo earlier iterations; then only what keeps or
+    // restores the count.
     rules.count.max = reached ? static_cast<std::size_t>(target * (1 + count_slack)) : it.tets_before;
     const float limit = engine.cutoff(percent);
     it.cutoff = portable_cbrt(limit);

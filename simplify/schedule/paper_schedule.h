@@ -6,8 +6,9 @@
 
 namespace tetwright {
 
-/// Figure 3 of Cutler, Dorsey & McMillan 2004 (README.md, The paper's schedule). Throws Interrupted and
-/// OutOfTime.
+/// Runs the schedule of Figure 3 of Cutler, Dorsey & McMillan 2004 (README.md, The paper's schedule).
+///
+/// \throws Interrupted, OutOfTime.
 void run_paper_schedule(Engine& engine, const SimplifyOptions& options);
 
 }  // namespace tetwright

@@ -33,7 +33,7 @@ void RoundRecorder::Round::finish() {
 
 void RoundRecorder::begin_stage(const char* name) {
   if (!progress_) return;
-  // Where time is over the first batch of the stage says so, when what there is can be kept.
+  // If time is over, leave it to the first batch of the stage to say so, when the current mesh can be kept.
   if (progress_->cancelled()) throw Interrupted();
   progress_->begin_stage(name);
 }

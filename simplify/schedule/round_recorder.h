@@ -9,20 +9,20 @@
 
 namespace tetwright {
 
-/// Takes down the rounds of work on a mesh, for whoever asked for a report, and tells the progress.
+/// Records the rounds of work on a mesh in the report and tells the progress.
 class RoundRecorder {
  public:
   /// `report` and `progress` may be null.
   RoundRecorder(const EditableMesh& mesh, BlockRunner& runner, SimplifyReport* report, Progress* progress)
       : mesh_(mesh), runner_(runner), report_(report), progress_(progress) {}
 
-  /// Times a round and takes down what its tasks counted.
+  /// Times a round and records its counts.
   class Round {
    public:
     /// `max_error`: E, working coordinates.
     Round(RoundRecorder& recorder, const char* kind, double max_error);
     IterationReport& report() { return report_; }
-    /// Into the recorder's report.
+    /// Adds the round to the recorder's report.
     void finish();
 
    private:
@@ -31,11 +31,11 @@ class RoundRecorder {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   };
 
-  /// How much of the stage is done, from 0 to 1.
+  /// Sets the fraction of the stage that is done, 0 to 1.
   void update(double fraction) {
     if (progress_) progress_->update(fraction);
   }
-  /// Throws Interrupted and OutOfTime.
+  /// \throws Interrupted, but not OutOfTime: the first batch of the stage throws it.
   void begin_stage(const char* name);
 
  private:

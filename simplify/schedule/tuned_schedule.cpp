@@ -16,51 +16,53 @@ namespace tetwright {
 
 namespace {
 
-// Found by trying on scans (README.md, The tuned schedule).
-constexpr double first_error_edges = 4;  ///< E at first, in ideal edges
+// Tuned on scans (README.md, The tuned schedule).
+constexpr double first_error_edges = 4;  ///< initial E, in ideal edges
 constexpr double error_growth = 1.3;     ///< E's factor after an iteration that removed too little
-constexpr double min_removed = 0.15;     ///< of the tets: less than that is too little
-constexpr double flip_percent = 40;      ///< of the tets, at most, that flips and smoothing take up
-constexpr double swaps_below = 2;        ///< times the target: above it flips and smoothing are wasted work
-/// What annealing must leave of the worst Quality^3. Below it (0: anything positive) the loop ends with
-/// 5-10 % of tets under 0.1 sr instead of 2-3 %; larger ones need a larger E to reach the target, which costs
-/// surface and volume.
+constexpr double min_removed = 0.15;     ///< share of the tets: removing less is too little
+constexpr double flip_percent = 40;      ///< max percentage of tets that flips and smoothing work on
+constexpr double swaps_below = 2;        ///< times the target: above it flips and smoothing are wasted
+/// Share of the worst Quality^3 that annealing must leave. Below this value (0: anything positive) the loop
+/// ends with 5-10 % of tets under 0.1 sr instead of 2-3 %; larger values need a larger E to reach the target,
+/// which costs surface and volume.
 constexpr float annealing_floor = 0.1f;
-/// TetQuality::needle_angle, steradians: without it thin layers of tiny tets end in needles of no angle at
-/// all.
+/// TetQuality::needle_angle, steradians: without it thin layers of tiny tets end as needles with hardly any
+/// angle.
 constexpr double needle_angle = 0.02;
-/// E over the distance that a surface may move at a point that goes. On five scans (10,000 tets) the largest
-/// distance ended at 1.3-2.2 % of the diagonal without it, at 1.0-1.7 % with it; larger ones drive E up
-/// instead.
+/// E over the max distance by which a collapse may move the surface at the removed point. On five scans
+/// (10,000 tets) the max distance ended at 1.3-2.2 % of the diagonal without it, at 1.0-1.7 % with it; larger
+/// values drive E up instead.
 constexpr double distance_weight = 50;
-/// Triangles own samples of the input's surface below so many times the target: until then E keeps surfaces
-/// near enough, and samples from the start on would take twice the time for nothing.
+/// Multiple of the target below which triangles own samples of the input's surface: until then E keeps
+/// surfaces near enough, and samples from the start would take twice the time for nothing.
 constexpr double samples_below = 8;
-/// BlockRules::max_deviation then, in ideal edges, and its factor after an iteration that removed too little.
-/// Bunny and armadillo to 10K, mean largest distance both ways in percent of the diagonal: 0.38 with these,
-/// 0.43 with 0.2 and 1.1, 0.33 with 0.18 and 1.05, which takes longer and leaves less to shapes.
+/// Initial BlockRules::max_deviation, in ideal edges, and its factor after an iteration that removed too
+/// little. Bunny and armadillo to 10K, mean of the max distances both ways in percent of the diagonal: 0.38
+/// with these values, 0.43 with 0.2 and 1.1, 0.33 with 0.18 and 1.05, which takes longer and leaves less room
+/// for shapes.
 constexpr double first_deviation = 0.2;
 constexpr double deviation_growth = 1.05;
-/// The share of SimplifyOptions::tolerance that samples may be off in the loop, and in closing, which needs
+/// Share of SimplifyOptions::tolerance that samples may be off in the loop, and in the closing, which needs
 /// room for shapes: between samples surfaces may be farther, on scans by up to 15 %.
 constexpr double loop_tolerance = 0.8, closing_tolerance = 0.87;
-/// Of the diagonal: larger tolerances bound nothing, and samples for them would be too few to fit to.
+/// Max tolerance, as a share of the diagonal: larger ones bound nothing, and their samples would be too few
+/// to fit to.
 constexpr double max_tolerance = 0.1;
-/// With a tolerance samples are as dense as for triangles with edges of so many sampled tolerances, at least,
-/// and places of triangles that must be near the surface are so many of them apart: with 4 and 1 the bunny at
-/// 0.5 % is up to 4.6 % farther between them, with these 1 %.
+/// With a tolerance: max edge, in sampled tolerances, whose triangles set the density of samples, and
+/// distance between the tested points of triangles. With 4 and 1 the bunny at 0.5 % is up to 4.6 % farther
+/// between them, with these values 1 %.
 constexpr double tolerances_to_edge = 2.5, tolerances_between_places = 0.5;
-/// Without a count, from one target to the next; a stage has ended when an iteration over all tets removes
-/// less than this share of them. With wanted sizes, too: what they leave is for size rounds.
+/// Without a count: ratio of successive targets, and the share of the tets below which an iteration over all
+/// of them ends a stage. The last value is for target lengths: rounds of edge length adaptation do the rest.
 constexpr double stage_share = 0.6, stage_min_removed = 0.1, sized_min_removed = 0.01;
-/// Without a count annealing accepts no worse tets while so many are below the bound: nothing but the
-/// tolerance ends the loop, and on the way to where that refuses all, bunny at 0.2 % had 41 % of them, for 23
-/// % fewer tets.
+/// Share of bad tets above which annealing accepts no worse ones, without a count: only the tolerance ends
+/// that loop, and on the way to where it refuses everything, the bunny at 0.2 % had 41 % of bad tets, for
+/// 23 % fewer tets.
 constexpr double max_bad_share = 0.25;
-/// Every iteration fits surfaces below so many times the target: from 4 times the target on makes the result
-/// no better, none in the loop a tenth worse.
+/// Multiple of the target below which every iteration fits surfaces: fitting from 4 times the target on makes
+/// the result no better, no fitting in the loop makes it 10 % worse.
 constexpr double fits_below = 2;
-/// VolumeLedger::utilization() from which on the loop fits surfaces.
+/// VolumeLedger::utilization() above which the loop fits surfaces.
 constexpr double fit_above_utilization = 0.6;
 
 void collapse_block(Engine& engine, float limit, std::size_t target) {
@@ -70,7 +72,7 @@ void collapse_block(Engine& engine, float limit, std::size_t target) {
       [&](Workspace& ws) { return collapse(ws, engine.rules); }, [&] { return mesh.live_tets() <= target; });
 }
 
-/// Flips and smoothing of what is still bad.
+/// Flips and smooths tets that are still bad.
 void flip_and_smooth_block(Engine& engine, float limit) {
   const EditableMesh& mesh = engine.mesh();
   engine.runner().tets(
@@ -92,8 +94,11 @@ void flip_and_smooth_block(Engine& engine, float limit) {
       [] { return false; });
 }
 
-/// Whether the target was reached. `counted`: it is what is wanted, not a stage on the way to as few as the
-/// tolerance holds.
+/// Runs the loop down to a target.
+///
+/// \param counted the target is the one asked for, not a stage on the way to as few tets as the tolerance
+///   allows.
+/// \return whether the target was reached.
 bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loop_target,
                  bool counted = true) {
   EditableMesh& mesh = engine.mesh();
@@ -133,19 +138,19 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
     collapse_block(engine, limit, loop_target);
     const std::size_t collapsed = mesh.live_tets();
     const double removed = 1 - static_cast<double>(collapsed) / static_cast<double>(it.tets_before);
-    // Where collapses stall, other connectivity and places may let them go on.
+    // If collapses stall, other connectivity and positions may let them continue.
     if (collapsed > loop_target &&
         (static_cast<double>(collapsed) < swaps_below * target || (removed < min_removed && percent >= 100)))
       flip_and_smooth_block(engine, removed < min_removed && percent >= 100
                                         ? limit
                                         : std::min(limit, engine.cutoff(flip_percent)));
-    // Where a body has lost much of its volume, its surface is put back to the middle of what it stands for;
-    // near the target every surface is.
+    // If a body has lost much of its volume, fit its surface back to the middle of its samples; near the
+    // target fit every surface.
     if (collapsed > loop_target && (engine.ledger().utilization() > fit_above_utilization ||
                                     static_cast<double>(collapsed) < fits_below * target))
       engine.fit_interfaces(1);
     round.finish();
-    // A larger E helps as long as E is what refuses.
+    // A larger E helps only if E is what refuses.
     const bool error_refuses =
         rules.max_error < max_error &&
         10 * it.counts.of(Operation::collapse, Outcome::surface_error) > it.counts.tried(Operation::collapse);
@@ -180,7 +185,7 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options, std::siz
   if (loop_target > 0) {
     simplify_to(engine, options, loop_target);
   } else {
-    // As few as the tolerance holds: sizes of tets follow one target after the other.
+    // As few as the tolerance allows: tet sizes follow one target after the other.
     bool reached = true;
     while (reached && mesh.live_tets() > 1) {
       const double target = std::max(1.0, std::floor(stage_share * static_cast<double>(mesh.live_tets())));

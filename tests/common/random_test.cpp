@@ -11,7 +11,7 @@
 namespace tetwright::random_test {
 namespace {
 
-// The numbers are part of what makes results repeat between machines: they may never change.
+// Results are reproducible on all machines only with these numbers: they must never change.
 TEST(Random, KnownNumbers) {
   Random random(1234567);  // reference values of Vigna's splitmix64.c
   EXPECT_EQ(random.next(), 6457827717110365317u);

@@ -9,7 +9,7 @@
 
 namespace tetwright {
 
-/// A folder that goes with the test.
+/// A folder that is removed with the object.
 class TemporaryFolder {
  public:
   TemporaryFolder() {

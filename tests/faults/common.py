@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of faults share."""
+"""Common parts of the tests of faults."""
 import shutil
 import subprocess
 from pathlib import Path
 
 # The documented exit statuses: done, short of what was asked, wrong call, bad input, nothing to mesh, no output,
-# interrupted. 70 is a bug of the program's.
+# interrupted. 70 is a bug in the program.
 STATUSES = {0, 1, 2, 3, 4, 5, 130}
-# Longer than any run here takes on a machine that is ten times slower.
+# Seconds; longer than any run here takes on a ten times slower machine.
 TIMEOUT = 300
 
 
@@ -21,7 +21,7 @@ class Program:
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", **options)
 
     def run(self, arguments, **options):
-        """The status and what was printed to stderr; a hang is the status None."""
+        """Runs the program; returns its status, None for a hang, and its output to stderr."""
         process = self.start(arguments, **options)
         try:
             error = process.communicate(timeout=TIMEOUT)[1]
@@ -37,7 +37,7 @@ class Program:
             raise SystemExit(f"{' '.join(map(str, arguments))}: status {status}: {error}")
 
     def wrong(self, what, *files):
-        """Notes a fault, and keeps the files that show it."""
+        """Records a fault, and keeps the files that show it."""
         self.faults.append(what)
         for file in files:
             file = Path(file)

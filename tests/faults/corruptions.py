@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Inputs of all formats with bytes flipped, cut off, left out, repeated or put in."""
+"""Inputs of all formats with bytes flipped, truncated, deleted, repeated or inserted."""
 import collections
 import gzip
 import io
@@ -12,7 +12,7 @@ from pathlib import Path
 SURFACES = ("ply", "obj", "stl", "off", "vtp")
 SEEDS = Path(__file__).parents[1] / "fuzz" / "seeds"
 TETS = ("vtu", "msh", "mesh", "meshb", "vtk", "inp", "bdf", "xdmf", "node")
-# Of a header it matters most: each other damage is done near the beginning.
+# Damage to a header matters most: about half of the damage is near the beginning.
 HEADER = 400
 
 
@@ -27,15 +27,15 @@ def damaged(data, draw):
     if kind == 0:  # flipped
         for _ in range(draw.choice((1, 1, 2, 8, 64))):
             data[draw.randrange(min(len(data), near))] ^= 1 << draw.randrange(8)
-    elif kind == 1:  # cut off
+    elif kind == 1:  # truncated
         del data[at:]
-    elif kind == 2:  # left out
+    elif kind == 2:  # deleted
         del data[at:at + length]
     elif kind == 3:  # repeated
         data[at:at] = data[at:at + length] * draw.choice((1, 2, 50))
-    elif kind == 4:  # put in
+    elif kind == 4:  # inserted
         data[at:at] = bytes(draw.randrange(256) for _ in range(length))
-    else:  # a digit becomes another one, or large
+    else:  # a digit is changed or enlarged
         digits = [i for i in range(len(data)) if 48 <= data[i] <= 57]
         for _ in range(min(len(digits), draw.choice((1, 1, 3)))):
             i = draw.choice(digits)
@@ -75,7 +75,7 @@ def volumes(folder):
 
 
 def damaged_file(path, data, draw):
-    """Of a .3mf that stores its model, damaged in there: archives that are damaged end at their checksums."""
+    """Damages the stored model in a .3mf: damage to the archive itself would fail at its checksums."""
     if path.name != "stored.3mf" or draw.random() < 0.2:
         return damaged(data, draw)
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
@@ -88,7 +88,7 @@ def damaged_file(path, data, draw):
 
 
 def inputs(p):
-    """Files, each with what it is read by."""
+    """Files, each with the calls that read it."""
     folder = p.folder / "in"
     folder.mkdir()
     p.must(["sample", "cube", "-o", folder / "s.ply"])
@@ -130,7 +130,7 @@ def one(p, path, call, draw):
     original = path.read_bytes()
     out = p.folder / "out.vtu"
     out.unlink(missing_ok=True)
-    # A file of two is damaged in place, with the other one as it was.
+    # One of two files is damaged in place, with the other one intact.
     path.write_bytes(damaged_file(path, original, draw))
     try:
         other = [argument for argument in call if isinstance(argument, Path)]

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What goes wrong around the program must leave whole files, no temporary ones, and a status that tells.
+"""Faults around the program must leave whole files, no temporary ones, and the right status.
 
     faults.py PROGRAM [--kills N] [--corruptions N] [--seed S] [--keep FOLDER]
 
-Kills at all moments, a disk that fills, a folder that becomes read-only, two processes with one output, limits on
+Kills at any time, a disk that fills, a folder that becomes read-only, two processes with one output, limits on
 memory and open files, and damaged inputs of all formats. Prints counts of the outcomes; status 1 if one is wrong,
 with the files that show it in FOLDER.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Signals at moments that are spread over whole runs."""
+"""Signals at times spread over whole runs."""
 import collections
 import json
 import random
@@ -77,7 +77,7 @@ def run_one(p, arguments, outputs, new, number, delay):
     if number == signal.SIGKILL:
         allowed = {0, -signal.SIGKILL}
     else:
-        # One that arrives before the handler is there ends the process as it always does.
+        # A signal before the handler is installed ends the process by default.
         allowed = {0, 130, -number}
         if left:
             p.wrong(f"{what}: leaves {len(left)} temporary files")
@@ -91,7 +91,7 @@ def run_one(p, arguments, outputs, new, number, delay):
 
 
 def run_batch(p, number, delay):
-    """A batch that is killed goes on, and does what was finished no more."""
+    """A killed batch can be continued, and does not repeat finished jobs."""
     folder = p.folder / "batch"
     folder.mkdir(exist_ok=True)
     jobs, results = folder / "jobs.jsonl", folder / "results.jsonl"
@@ -134,7 +134,7 @@ def run(p, count, seed):
     draw = random.Random(seed)
     for i in range(count):
         number = SIGNALS[i % len(SIGNALS)]
-        # Each fifth round of signals is for batches.
+        # Every fifth round of signals is for batches.
         if i // len(SIGNALS) % 5 == 4:
             outcomes[run_batch(p, number, draw.uniform(0, batch_seconds))] += 1
             continue

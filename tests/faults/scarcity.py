@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""No room on the disk, no permission, no memory, no file handles, and company."""
+"""No space on the disk, no permission, no memory, no file handles, and concurrent processes."""
 import collections
 import os
 import resource
@@ -13,7 +13,7 @@ NOBODY = 65534
 
 
 def expect(p, what, status, error, allowed, out, states):
-    """`states`: the contents that the output may have."""
+    """Checks a run; `states` are the permitted contents of the output."""
     if status not in allowed:
         p.wrong(f"{what}: status {status}: {error.strip()}", out)
     if status not in (0, 1) and not error.startswith("tetwright: "):
@@ -31,7 +31,7 @@ def limit(kind, value):
 
 
 def full_disk(p, arguments, out, new):
-    """Files may not be longer than some sizes up to the one that is needed."""
+    """Limits on the size of files, up to the size needed."""
     outcomes = collections.Counter()
     size = len(new)
     for share in (0, 0.01, 0.3, 0.6, 0.999, 1):
@@ -43,7 +43,7 @@ def full_disk(p, arguments, out, new):
 
 
 def read_only_folder(p, arguments, out, new, seconds):
-    """At first, and while the program works."""
+    """A folder is read-only at first, or becomes so while the program works."""
     outcomes = collections.Counter()
     if os.geteuid() == 0:
         # root may write anywhere
@@ -64,7 +64,7 @@ def read_only_folder(p, arguments, out, new, seconds):
         out.parent.chmod(0o755)
         allowed = {5} if delay is None else {0, 5}
         if process.returncode == 5 and delay is not None:
-            # A temporary file that was there when the folder became read-only cannot be removed.
+            # A temporary file that existed when the folder became read-only cannot be removed.
             for file in temporaries(out.parent):
                 file.unlink()
         outcomes[expect(p, "a read-only folder", process.returncode, error, allowed, out,
@@ -75,7 +75,7 @@ def read_only_folder(p, arguments, out, new, seconds):
 
 
 def two_processes(p, arguments, out):
-    """Both end well, and the file is that of one of them."""
+    """Two processes with one output both succeed, and the file is that of one of them."""
     outcomes = collections.Counter()
     results = []
     for seed in ("1", "2"):

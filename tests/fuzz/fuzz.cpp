@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// One program for all targets, so that what they share is compiled once: build/asan/bin/fuzz TARGET and then
-// what libFuzzer takes; `fuzz --list` prints the targets.
+// One program for all targets, so that common code is compiled once: build/asan/bin/fuzz TARGET and then the
+// arguments of libFuzzer; `fuzz --list` prints the targets.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -31,11 +31,11 @@ Target chosen;
 }  // namespace
 }  // namespace tetwright::fuzz
 
-// Called before libFuzzer reads the arguments: takes the target's name out of them.
+// Removes the target's name from the arguments before libFuzzer reads them.
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
   using namespace tetwright::fuzz;
   const std::string_view wanted = *argc > 1 ? (*argv)[1] : "";
-  // -merge, -fork and -minimize_crash start the program again without the name that was taken out.
+  // -merge, -fork and -minimize_crash restart the program without that name.
   constexpr const char* variable = "TETWRIGHT_FUZZ_TARGET";
   if (const char* before = std::getenv(variable); before && wanted.starts_with('-'))
     for (const Target& target : all_targets())

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Fuzzes the operations of the simplifier: the input's bytes choose a mesh of several materials, then tets
-// and operations on them. After each operation that changed the mesh it must be valid, with the topology it
-// began with.
+// Fuzzes the operations of the simplifier: the bytes of the input choose a mesh of several materials, then
+// tets and operations on them. After each operation that changed the mesh it must be valid and have its
+// original topology.
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -23,7 +23,7 @@
 namespace tetwright::fuzz {
 namespace {
 
-/// The bytes of the input, one after the other; 0 at its end.
+/// Returns the bytes of the input in turn, then 0.
 class Bytes {
  public:
   explicit Bytes(std::string_view bytes) : bytes_(bytes) {}
@@ -51,7 +51,7 @@ TetMesh choose_mesh(Bytes& bytes) {
   return mesh;
 }
 
-/// The living tets as a plain mesh.
+/// The live tets as a plain mesh.
 TetMesh snapshot(const EditableMesh& mesh) {
   TetMesh out;
   std::vector<Index> number(mesh.point_slots(), no_index);

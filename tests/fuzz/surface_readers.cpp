@@ -41,7 +41,7 @@ void run(std::string_view bytes, Read read, Write write, Read read_back) {
   }
 }
 
-/// For formats that are only read: the round trip is by way of PLY.
+/// For formats that are only read: round trip through PLY.
 void run(std::string_view bytes, Read read) { run(bytes, read, write_ply, read_ply); }
 
 void run_fields(std::string_view bytes, ReadWithFields read_with_fields, Read read) {
@@ -57,7 +57,7 @@ void run_fields(std::string_view bytes, ReadWithFields read_with_fields, Read re
   }
 }
 
-/// The bytes as the model in a .3mf: archives that are damaged end at their checksums.
+/// Reads the bytes as the model in a .3mf: a damaged archive would fail at its checksum.
 TriangleMesh read_3mf_model(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped) {
   return read_3mf(zip_of({{"_rels/.rels", relationships_of_3mf}, {"3D/a.model", std::string(bytes)}}), name,
                   dropped);

@@ -6,10 +6,10 @@
 
 namespace tetwright::fuzz {
 
-/// What libFuzzer is let loose on. `run` returns if all is well with what the bytes say, also if they are
-/// refused; it throws what is not an InputError, and aborts or is stopped by a sanitizer otherwise.
+/// A target of libFuzzer. `run` returns if the bytes are read or rejected correctly. Otherwise it throws
+/// something other than an InputError, aborts, or is stopped by a sanitizer.
 struct Target {
-  std::string_view name;  ///< of the format, as tests/fuzz/seeds/ has it
+  std::string_view name;  ///< of the format, as in tests/fuzz/seeds/
   void (*run)(std::string_view bytes);
 };
 

@@ -54,7 +54,7 @@ void run(std::string_view bytes, Read read, Write write, Read read_back) {
     TETWRIGHT_CHECK(back.points == mesh.points);
     TETWRIGHT_CHECK(back.tets == mesh.tets);
     TETWRIGHT_CHECK(back.materials == mesh.materials);
-    constexpr std::size_t max_tets = 100;  // of meshes on which all the rest is tried
+    constexpr std::size_t max_tets = 100;  // limit of meshes for the further functions
     if (mesh.tets.size() >= max_tets) return;
     // A format may change names and components in the first round trip, but not in the second.
     const std::string again = write(back);
@@ -72,11 +72,10 @@ void run(std::string_view bytes, Read read, Write write, Read read_back) {
   }
 }
 
-/// By way of VTU.
+/// Round trip through VTU.
 void run(std::string_view bytes, Read read) { run(bytes, read, write_vtu, read_vtu); }
 
-/// The files of points, tets and faces in one text, in which lines of equal signs separate them; faces may be
-/// left out.
+/// Files of points, tets and faces in one text, separated by lines of equal signs; faces may be missing.
 ReadTetMesh read_tetgen_files(std::string_view bytes, const std::string& name, const ReadTetMeshOptions&) {
   constexpr std::string_view between = "=====\n";
   const auto next = [&] {
@@ -91,7 +90,7 @@ ReadTetMesh read_tetgen_files(std::string_view bytes, const std::string& name, c
   return read_tetgen({node, name}, {ele, name}, face);
 }
 
-/// A file with its numbers in the text: no other file is there.
+/// Reads a file with its numbers in the text: there is no other file.
 ReadTetMesh read_xdmf_alone(std::string_view bytes, const std::string& name, const ReadTetMeshOptions&) {
   return read_xdmf(bytes, name,
                    [](const std::string& path) -> std::string { throw InputError(path + ": is not there"); });

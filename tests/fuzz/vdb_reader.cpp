@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Fuzzes the reader of .vdb files: OpenVDB, which trusts all sizes, must be given only what take_apart_vdb()
-// has validated. The file is a surface or a volume, or an InputError.
+// Fuzzes the reader of .vdb files: OpenVDB, which trusts all sizes, must get only data that take_apart_vdb()
+// has validated. The result is a surface or a volume, or an InputError.
 #include <stdexcept>
 
 #include "common/error.h"
@@ -16,7 +16,7 @@ void run_vdb(std::string_view bytes) {
   std::vector<VdbGrid> grids;
   try {
     grids = take_apart_vdb(bytes);
-  } catch (const std::runtime_error&) {  // for the caller to put the file's name before
+  } catch (const std::runtime_error&) {  // the caller adds the file's name
     return;
   }
   for (VdbGrid& grid : grids) {
@@ -31,7 +31,7 @@ void run_vdb(std::string_view bytes) {
         TETWRIGHT_CHECK(volume.labels.size() <= max_voxels);
       }
     } catch (const InputError&) {
-    } catch (const std::domain_error&) {  // a transform without sense
+    } catch (const std::domain_error&) {  // an invalid transform
     }
   }
 }

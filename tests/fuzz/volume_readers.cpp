@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Readers of volumes: each must return a volume as label_volume.h describes it, or throw an InputError. The
-// volume must survive a round trip through the NRRD writer. The file that a header names follows a line of
-// equal signs.
+// Readers of volumes: each must return a volume that satisfies label_volume.h, or throw an InputError. The
+// volume must survive a round trip through the NRRD writer. The file that a header refers to follows a line
+// of equal signs.
 #include "common/error.h"
 #include "common/io/volumes/inr.h"
 #include "common/io/volumes/metaimage.h"
@@ -16,7 +16,7 @@ namespace {
 using Read = LabelVolume (*)(std::string_view, const std::string&, const FileReader&);
 
 void run(std::string_view bytes, Read read) {
-  constexpr std::size_t max_voxels = 100000;  // of volumes that are written
+  constexpr std::size_t max_voxels = 100000;  // limit of volumes that are written
   constexpr std::string_view between = "=====\n";
   const std::size_t at = bytes.find(between);
   try {
@@ -39,7 +39,7 @@ void run(std::string_view bytes, Read read) {
   }
 }
 
-/// A format in one file.
+/// Reads a format of one file.
 LabelVolume read_inr_alone(std::string_view bytes, const std::string& name, const FileReader&) {
   return read_inr(bytes, name);
 }

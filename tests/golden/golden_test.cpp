@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Dense and simplified meshes, byte for byte: the same hashes with g++ and clang++, with and without
-// sanitizers. A hash that changes must be meant to; the failure prints the new one. Inputs are built-in
-// samples and a scan, the Stanford bunny of Debian's glmark2-data: lattices of our own mesher, where other
-// tests of the simplifier use Kuhn grids.
+// Dense and simplified meshes, compared by hashes that are equal with g++ and clang++, with and without
+// sanitizers. A hash may change only on purpose; the failure prints the new one. Inputs are built-in samples
+// and a scan, the Stanford bunny of Debian's glmark2-data: lattices of our own mesher, where other tests of
+// the simplifier use Kuhn grids.
 #include <gtest/gtest.h>
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads what tetwright writes with meshio and Gmsh, and compares points, tets, materials, surfaces and their names.
+"""Reads files of tetwright with meshio and Gmsh, and compares points, tets, materials, surfaces and their names.
 
 usage: read_back.py TETWRIGHT    (Debian's python3 with meshio, h5py and numpy, and gmsh)
 """
@@ -28,7 +28,7 @@ FORMATS = {
     "xdmf": "m.xdmf",
 }
 SECOND_ORDER = {"vtu", "vtk", "msh22", "msh41", "msh41-binary", "abaqus", "nastran", "xdmf"}
-# In characters: the formats of solvers round coordinates.
+# Maximum difference of coordinates: formats of solvers have few characters for them, and round.
 TOLERANCE = {"abaqus": 1e-14, "nastran": 1e-9}
 failures = []
 
@@ -44,7 +44,7 @@ def run(*arguments):
 
 
 def decoded(field):
-    """The names of VTK's field data: lines of a number, a tab and a name."""
+    """Names in VTK's field data: lines of a number, a tab and a name."""
     lines = bytes(np.asarray(field, dtype=np.uint8)).decode().splitlines()
     return dict(line.split("\t")[::-1] for line in lines)
 
@@ -153,7 +153,7 @@ def saved_again_by_gmsh(file, format_name, names):
 
 
 def outside_is_kept_by_gmsh(folder):
-    """A mesh with its surroundings, whose tag 0 is no number of a group in Gmsh."""
+    """A mesh with its surroundings, whose tag 0 cannot be the number of a group in Gmsh."""
     surface = folder / "cube.ply"
     run("sample", "cube", "-o", surface)
     mesh = folder / "outside.msh"

@@ -17,7 +17,7 @@ def sources():
         folders[:] = sorted(f for f in folders if f not in NOT_OURS and (not f.startswith(".") or f == ".ci"))
         for name in sorted(names):
             path = here / name
-            if path.suffix in SUFFIXES or name == "CMakeLists.txt":
+            if (path.suffix in SUFFIXES and not name.endswith(".md.in")) or name == "CMakeLists.txt":
                 yield path
             elif path.suffix in ("", ".sh") and not name.startswith("."):
                 with open(ROOT / path, "rb") as f:

@@ -6,7 +6,7 @@
 
 namespace tetwright {
 
-/// Surfaces as materials 1, 2, ... called m1, m2, ..., layers as those after them called l1, l2, ...
+/// Surfaces as materials 1, 2, ... called m1, m2, ..., followed by layers called l1, l2, ...
 inline MesherInput make_input(const std::vector<TriangleMesh>& surfaces,
                               const std::vector<double>& layers = {}) {
   std::vector<MaterialSurface> bodies;

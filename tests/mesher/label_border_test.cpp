@@ -14,8 +14,10 @@
 namespace tetwright::label_border_test {
 namespace {
 
-/// Checks that all of the boundary near the volume's border is in it, with the patch of its side, and that
-/// each side has the area of the labels there within `tolerance`, a share. Returns the number of its faces.
+/// Checks that all of the boundary near the volume's border lies in it, with the patch of its side, and that
+/// each side has the area of the labels there.
+/// \param tolerance relative
+/// \return the number of faces on the border
 std::size_t expect_cut_off(const LabelInput& labels, const TetMesh& mesh, double tolerance) {
   const Eigen::Matrix3d to_index = labels.directions.inverse();
   const bool mirrored = labels.directions.determinant() < 0;
@@ -38,7 +40,7 @@ std::size_t expect_cut_off(const LabelInput& labels, const TetMesh& mesh, double
         if (farthest < 1e-9) {
           patch = static_cast<std::uint16_t>(1 + 2 * a + (mirrored && a == 2 ? 1 - side : side));
         } else if (!t.other && farthest < 0.3) {
-          // Rounded rims would be seen as faces along the border, but off it.
+          // Rounded rims would appear as faces along the border, but off it.
           EXPECT_LT(std::abs(normal.normalized()[a]), 0.9) << at[0].transpose() << ", " << nearest;
         }
       }
@@ -61,7 +63,7 @@ std::size_t expect_cut_off(const LabelInput& labels, const TetMesh& mesh, double
   return count;
 }
 
-/// The directions of volumes that are turned, mirrored and skewed.
+/// Directions of rotated, mirrored and skewed volumes.
 std::vector<Eigen::Matrix3d> several_directions() {
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()) * Eigen::Matrix3d(Vec3(1, 1, 1.3).asDiagonal());
@@ -101,7 +103,7 @@ TEST(LabelBorder, CellsOfAThinVolumeAreNotFlat) {
 TEST(LabelBorder, LabelsAreCutOffByPlanes) {
   for (const Eigen::Matrix3d& directions : several_directions())
     for (const double cell : {0.5, 1.0}) {
-      // A ball cut off by one side, and two labels in a corner of the box, which meet on its sides and edge.
+      // A ball cut off by one side, and two labels in a corner of the box that meet on its sides and edge.
       const LabelInput labels = make_labels(
           {22, 20, 18},
           [](int x, int y, int z) {

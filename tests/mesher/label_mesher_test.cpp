@@ -15,7 +15,7 @@
 namespace tetwright::label_mesher_test {
 namespace {
 
-/// Promises of cells no larger than half a voxel.
+/// Checks the promises for cells no larger than half a voxel.
 void expect_faithful(const LabelInput& labels, const TetMesh& mesh) {
   const LabelComparison f = compare_with_voxels(labels, mesh);
   EXPECT_EQ(f.lost, 0u) << comparison_line(f);
@@ -38,8 +38,7 @@ Angles angles_of(const TetMesh& mesh) {
   return a;
 }
 
-/// Cells of voxels that are nearest to scattered seeds: blobs without thin parts in most places, of labels
-/// from `lowest` on.
+/// Voronoi cells of scattered seeds: blobs mostly without thin parts, of labels from `lowest` on.
 LabelInput blobs(const std::array<int, 3>& size, int seeds, int labels, std::uint64_t seed,
                  MaterialTag lowest = 1, const Eigen::Matrix3d& directions = Eigen::Matrix3d::Identity(),
                  const Vec3& origin = Vec3::Zero()) {
@@ -121,13 +120,13 @@ const std::vector<Sides> all_sides{{0, 0}, {1, 1}, {1, 3}, {0, 1}};
 
 const std::string shell = "components 1, euler 2, boundary components 2, boundary euler 4";
 
-/// The sheet is label 2; `topology` is what it must have.
+/// Expects that the sheet, label 2, has this topology.
 void expect_whole(const LabelInput& labels, double adaptivity, const std::string& topology) {
   const TetMesh mesh = checked_mesh(labels, cells_of(0.5, adaptivity)).mesh;
   expect_line(mesh, (labels.materials.size() > 1 ? "material 2: " : "domain: ") + topology);
 }
 
-/// A plane from side to side of a volume, by its slopes.
+/// Expects that a plane across a volume, given by its slopes, stays whole.
 void expect_plane_whole(double a, double b, double thickness, double adaptivity) {
   for (const Sides& s : all_sides) {
     SCOPED_TRACE(::testing::Message()
@@ -215,7 +214,7 @@ TEST(LabelMesher, NormalsOfABallAreSmooth) {
   }
 }
 
-/// True if each voxel is in a cube of 2 x 2 x 2 of its label; outside goes on beyond the volume.
+/// True if each voxel is in a cube of 2 x 2 x 2 of its label; the outside continues beyond the volume.
 bool two_thick(const LabelInput& labels) {
   const auto at = [&](int x, int y, int z) {
     const std::array<int, 3> v{x, y, z};
@@ -238,7 +237,7 @@ bool two_thick(const LabelInput& labels) {
   return true;
 }
 
-/// Coarse voxels of random labels, each of two by two by two.
+/// Random labels on coarse voxels of 2 x 2 x 2.
 LabelInput doubled_noise(int side, std::uint32_t labels, std::uint64_t seed) {
   Random random(seed);
   std::vector<MaterialTag> coarse;
@@ -327,7 +326,7 @@ TEST(LabelMesher, RightPlacesInAnyDirections) {
   }
 }
 
-// A label that fills the volume ends where the voxels end, half a step beyond their centres.
+// A label that fills the volume ends at the border of the voxels, half a step beyond their centres.
 TEST(LabelMesher, LabelsTouchingTheBorder) {
   const LabelInput full = make_labels({9, 8, 7}, [](int, int, int) { return 4; });
   const TetMesh mesh = checked_mesh(full, 0.5).mesh;

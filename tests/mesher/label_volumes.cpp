@@ -33,7 +33,7 @@ RegionIndex region_of(const LabelInput& labels, MaterialTag tag) {
 
 namespace {
 
-/// Regions by index, outside beyond the volume.
+/// Regions by index; outside beyond the volume.
 class Voxels {
  public:
   explicit Voxels(const LabelInput& labels) : labels_(labels) {}
@@ -59,14 +59,14 @@ class Voxels {
     return true;
   }
 
-  /// Distance of a place (index space) to the nearest face of the two regions, and of any two.
+  /// Distance of a point (index space) from the closest face of the two regions, and of any two.
   std::pair<double, double> to_faces(const Vec3& p, RegionIndex first, RegionIndex second) const {
     constexpr double far = LabelComparison::out_of_sight;
     double of_pair = far, of_any = far;
     const std::array<int, 3> centre{static_cast<int>(std::lround(p.x())),
                                     static_cast<int>(std::lround(p.y())),
                                     static_cast<int>(std::lround(p.z()))};
-    // Faces whose nearest end lies in a ring are no nearer than ring - 1.
+    // Faces whose closest end lies in a ring are no closer than ring - 1.
     for (int ring = 0; ring <= static_cast<int>(far); ++ring) {
       if (of_pair <= ring - 1.0) break;
       for (int dz = -ring - 1; dz <= ring; ++dz)
@@ -102,7 +102,7 @@ class Voxels {
 
 enum Hit : std::uint8_t { own = 1, other = 2 };
 
-/// What holds the centre of each voxel: tets of its own region, tets of others (well inside).
+/// The tets that contain the centre of each voxel: of its own region, of others (strictly inside).
 std::vector<std::uint8_t> hits(const LabelInput& labels, const std::vector<Vec3>& at, const TetMesh& mesh) {
   constexpr double slack = 1e-9;
   const Voxels voxels(labels);
@@ -176,7 +176,7 @@ LabelComparison compare_with_voxels(const LabelInput& labels, const TetMesh& mes
       const InterfaceTriangle& t = mesh.interfaces[i];
       const RegionIndex first = region_of(labels, t.material),
                         second = t.other ? region_of(labels, *t.other) : outside_region;
-      if (first == second) continue;  // the box around a kept outside
+      if (first == second) continue;  // the box around a meshed outside
       for (int k = 0; k < 7; ++k) {
         Vec3 p = Vec3::Zero();
         for (int j = 0; j < 3; ++j) {

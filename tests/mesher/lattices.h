@@ -7,8 +7,8 @@
 
 namespace tetwright {
 
-/// The lattice of 6 x 6 x 6 equal cells with regions by a function of the position; the distances of all
-/// regions are 1 but that of the point's own, which is -1.
+/// A lattice of 6 x 6 x 6 equal cells with regions as a function of the position. The distance of a point's
+/// own region is -1, that of all others 1.
 inline LabelledLattice make_lattice(const std::function<RegionIndex(const Vec3&)>& region,
                                     std::size_t* isolated_vertices = nullptr) {
   const Octree octree =

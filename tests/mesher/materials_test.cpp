@@ -24,7 +24,7 @@ DenseMesh mesh_of(const MesherInput& input, int resolution, bool keep_outside = 
   options.keep_outside = keep_outside;
   DenseMesh meshed = mesh_surfaces(input, options, nullptr);
   for (const MeshFinding& f : check_mesh(meshed.mesh)) ADD_FAILURE() << mesh_finding_line(f);
-  // The mesher looks at points on interfaces and on the box alone; nothing else may be an interface.
+  // The mesher examines only points on interfaces and on the box; nothing else may be an interface.
   EXPECT_TRUE(without_patches(meshed.mesh.interfaces) == find_interfaces(meshed.mesh));
   return meshed;
 }
@@ -122,7 +122,8 @@ TEST(Materials, FourMeetInAPoint) {
   for (const char* pair : {"1|2", "2|3", "2|4", "2|5", "3|4", "3|5", "4|5"})
     expect_line(mesh, std::string("interface ") + pair + ": components 1, euler 1");
   expect_line(mesh, "interface 1|outside: components 1, euler 2");
-  // Corners: of the four the one where all meet; 1 with three of them at three edges and two more.
+  // Corners: the point where all four boxes meet; points where 1 meets three of them, at three edges; two
+  // more.
   expect_line(mesh, "interfaces touch at points: count 0");
   EXPECT_LT(percent_bad(mesh), 2);
 }
@@ -155,9 +156,9 @@ TEST(Materials, TheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(Materials, RefusesWhatIsCarvedAwayOrTooDeep) {
-  // The outermost last covers all.
+  // The outermost surface, listed last, covers all.
   EXPECT_THROW(mesh_of(make_input({make_sphere(0.5), make_sphere(1)}), 24), InputError);
-  // A few lattice points are in it, or one, or none: it is there or refused, never lost.
+  // A few lattice points are in it, or one, or none: it is meshed or refused, never lost.
   for (double radius : {0.02, 0.04, 0.06, 0.08, 0.1, 0.12}) {
     try {
       const TetMesh mesh =

@@ -17,13 +17,13 @@ constexpr double tolerance = 0.25;
 
 TriangleMesh surface(const char* sample) { return std::get<TriangleMesh>(make_sample(sample)); }
 
-/// The estimates from the input and from the lattice against the mesh.
+/// Compares the estimates from the input and from the lattice with the mesh.
 void expect_good_estimates(const DenseMesh& dense, double lattice_tolerance = 0.15) {
   const MesherReport& r = dense.report;
   const auto tets = static_cast<double>(dense.mesh.tets.size());
   EXPECT_NEAR(static_cast<double>(r.estimate.tets), tets, tolerance * tets);
   EXPECT_NEAR(static_cast<double>(r.lattice_estimate.tets), tets, lattice_tolerance * tets);
-  // The memory that the model gives to the lattice as it came to be.
+  // The memory that the model predicts for the actual lattice.
   const double lattice = surface_bytes_per_lattice_tet * static_cast<double>(r.lattice_tets);
   EXPECT_NEAR(static_cast<double>(r.lattice_estimate.bytes), program_bytes + lattice,
               tolerance * (program_bytes + lattice));
@@ -96,7 +96,7 @@ TEST(MeshEstimate, CellsMuchSmallerThanVoxelsTakeMemoryForTheirInterfacesOnly) {
   MesherOptions options;
   options.voxel_size = 1.0 / 24;
   const DenseMesh dense = mesh_labels(labels, options, nullptr);
-  EXPECT_EQ(dense.report.refinement, 0);  // small islands have more than eight cells to a voxel already
+  EXPECT_EQ(dense.report.refinement, 0);  // small islands already have more than eight cells per voxel
   EXPECT_LT(dense.mesh.tets.size(), 2e6);
 }
 

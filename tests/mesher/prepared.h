@@ -9,7 +9,7 @@
 
 namespace tetwright {
 
-/// How many of something were found; 0 if it is not listed.
+/// The count of a finding; 0 if it is not listed.
 inline std::size_t found(const SurfaceRepair& input, const std::string& what) {
   for (const SurfaceFinding& f : input.findings)
     if (f.what == what) return f.count;

@@ -18,7 +18,7 @@ inline Octree make_random_octree(std::uint64_t seed) {
                                    static_cast<int>(random.below(static_cast<std::uint32_t>(cells[2])))));
   return build_octree(cells, 4, [&](int level, const std::vector<MortonKey>&) {
     std::vector<MortonKey> split;
-    // Some stop at coarser cells.
+    // Stop at coarser cells for some.
     for (std::size_t i = 0; i < wanted.size(); ++i)
       if (level > static_cast<int>(i % 3)) split.push_back(wanted[i] >> 3 * level);
     return split;

@@ -27,7 +27,7 @@ MesherOptions resolution(int n) {
   return options;
 }
 
-/// Meshes, checks every promise and returns what it is like.
+/// Meshes, checks every promise and returns the topology.
 SolidTopology meshed_topology(const TriangleMesh& surface, int n, TetMesh* out = nullptr) {
   TetMesh mesh = mesh_of(surface, resolution(n)).mesh;
   EXPECT_EQ(broken_promise(mesh.points, mesh.tets), "");
@@ -165,7 +165,7 @@ TEST(Mesher, RefusesWhatCannotBeMeshed) {
   MesherOptions options;
   options.voxel_size = 10;
   EXPECT_THROW(mesh_of(make_sphere(1), options), NothingToMeshError);
-  // An open surface that encloses nothing is no matter of the size of cells.
+  // An open surface that encloses nothing fails for any size of cells.
   TriangleMesh open;
   open.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
   open.triangles = {{0, 1, 2}, {1, 3, 2}};
@@ -190,7 +190,7 @@ TEST(Mesher, RefusesWhatCannotBeMeshed) {
 TEST(Mesher, RefusesWhatDoesNotFitInMemory) {
   MesherOptions options = resolution(4096);
   options.uniform = true;
-  EXPECT_THROW(mesh_of(make_sphere(1), options), OutputError);  // at once: the memory would not be there
+  EXPECT_THROW(mesh_of(make_sphere(1), options), OutputError);  // immediately: the memory does not suffice
 }
 
 TEST(Mesher, EstimatesWithinAFactor) {

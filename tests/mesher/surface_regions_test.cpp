@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Groups of a surface's triangles: they come out as patches of the dense mesh, with their borders.
+// Groups of a surface's triangles become patches of the dense mesh and keep their borders.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -47,7 +47,7 @@ TriangleMesh grouped(TriangleMesh mesh, std::vector<SurfaceRegion> groups, const
   return mesh;
 }
 
-/// A square of half the side in the middle of the side z = 1.
+/// A square of half the side length in the middle of the side z = 1.
 TriangleMesh cube_with_inlet() {
   TriangleMesh mesh = grouped(gridded_cube(8), {{}, {7, "inlet"}}, [](const Vec3& p) {
     return p.z() == 1 && (p - Vec3(0.5, 0.5, 1)).cwiseAbs().maxCoeff() < 0.25 ? 1U : 0U;
@@ -80,12 +80,12 @@ TEST(SurfaceRegions, KeepTheirBordersOnAPlane) {
       EXPECT_EQ(broken_promise(dense.mesh.points, dense.mesh.tets), "");
       const auto areas = areas_of(dense.mesh);
       ASSERT_EQ(areas.size(), 2U);
-      // A point may stop just before the border for the sake of a tet.
+      // A point may stop just short of the border to keep a tet's shape.
       EXPECT_NEAR(areas.at("inlet"), 0.25, 1e-5) << resolution;
       if (rule == FeatureAngle::Rule::automatic) {
         EXPECT_NEAR(areas.at(""), 5.75, 1e-5);
       }
-      // The corners of the square and, unless there are none, those of the cube.
+      // The corners of the square and, unless creases are off, those of the cube.
       EXPECT_EQ(dense.report.creases.corners.size(), rule == FeatureAngle::Rule::off ? 4U : 12U);
     }
 }
@@ -115,7 +115,7 @@ TEST(SurfaceRegions, OfTwoSurfacesMustDifferInName) {
 }
 
 TEST(SurfaceRegions, StayWithTheirTrianglesInRepair) {
-  // Repeated and collapsed triangles are left out, and the others are sorted.
+  // Repeated and collapsed triangles are dropped, and the others are sorted.
   TriangleMesh mesh = grouped(gridded_cube(2), {{0, "low"}, {0, "high"}},
                               [](const Vec3& p) { return p.x() > 0.5 ? 1U : 0U; });
   mesh.triangles.insert(mesh.triangles.begin(), {0, 0, 1});
@@ -170,7 +170,7 @@ TEST(SurfaceRegions, OfSurfacesThatMeetAreKept) {
   std::set<std::string> names;
   for (const auto& [patch, group] : dense.mesh.patch_groups) names.insert(group.name);
   EXPECT_EQ(names, (std::set<std::string>{"a1", "a2", "b1", "b2"}));
-  // Known to a cell only, as the curve is in which the surfaces meet.
+  // Known to a cell only, like the curve in which the surfaces meet.
   EXPECT_FALSE(dense.reference->has_patches());
 }
 

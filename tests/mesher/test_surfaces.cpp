@@ -106,7 +106,7 @@ TriangleMesh make_moebius_strip(int around) {
       mesh.points.emplace_back(r * std::cos(u), r * std::sin(u), side * std::sin(u / 2));
     }
   }
-  // After a whole turn the two sides have changed places.
+  // After a full turn the two sides have changed places.
   const auto at = [&](int i, int side) { return static_cast<Index>(i < around ? 2 * i + side : 1 - side); };
   for (int i = 0; i < around; ++i) {
     mesh.triangles.push_back({at(i, 0), at(i + 1, 0), at(i + 1, 1)});
@@ -124,7 +124,7 @@ TriangleMesh make_klein_bottle(int around, int across) {
       const double r = 2 + std::cos(u / 2) * x - std::sin(u / 2) * y;
       mesh.points.emplace_back(r * std::cos(u), r * std::sin(u), std::sin(u / 2) * x + std::cos(u / 2) * y);
     }
-  // After a whole turn the figure eight comes back turned by half a turn: (x, y) is (-x, -y), v is -v.
+  // A full turn rotates the figure eight by half a turn: (x, y) becomes (-x, -y), v becomes -v.
   const auto at = [&](int i, int j) {
     j %= across;
     return static_cast<Index>(i < around ? i * across + j : across - 1 - j);
@@ -187,8 +187,7 @@ std::string broken_promise(const std::vector<Vec3>& points, const std::vector<Te
   }
   if (std::count(used.begin(), used.end(), 0)) return "a point is unused";
 
-  // Corners of tets at one point hang together across faces; the same for the corners of boundary triangles
-  // across edges.
+  // Corners of tets at one point are connected across faces; corners of boundary triangles across edges.
   Sets stars(4 * tets.size());
   std::map<Edge, std::vector<std::size_t>> boundary_edges;
   std::vector<Face> boundary;

@@ -16,29 +16,29 @@ TriangleMesh make_sphere(double radius, const Vec3& centre = Vec3::Zero(), int s
 TriangleMesh make_torus(double ring_radius, double tube_radius, int around = 48, int across = 24);
 /// Axis-aligned box of twelve triangles, wound outwards.
 TriangleMesh make_box(const Vec3& low, const Vec3& high);
-/// Strip around the z axis that comes back turned over.
+/// One-sided strip around the z axis.
 TriangleMesh make_moebius_strip(int around = 24);
 /// The figure-eight immersion of the Klein bottle: no boundary, one-sided.
 TriangleMesh make_klein_bottle(int around = 24, int across = 12);
-/// Without each `step`-th triangle.
+/// Drops every `step`-th triangle.
 TriangleMesh punctured(TriangleMesh mesh, int step);
-/// Each `step`-th triangle wound the other way.
+/// Reverses every `step`-th triangle.
 TriangleMesh partly_turned_over(TriangleMesh mesh, std::size_t step);
-/// The same surface wound the other way.
+/// Reverses all triangles.
 TriangleMesh turned_over(TriangleMesh mesh);
-/// Both in one; points are not merged.
+/// Concatenates both; points are not merged.
 TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
 
 /// Volume enclosed by a closed surface.
 double enclosed_volume(const TriangleMesh& mesh);
 double volume(const std::vector<Vec3>& points, const std::vector<Tet>& tets);
 
-/// The same faces, each of patch 0.
+/// The interfaces with all patches set to 0.
 std::vector<InterfaceTriangle> without_patches(std::vector<InterfaceTriangle> interfaces);
 
-/// What is wrong with a dense mesh, in words; empty if every promise of mesher/README.md holds. Checks exact
-/// signs, faces in one or two tets, the boundary closed and manifold at edges and points, one connected star
-/// at each point, no unused point.
+/// Describes the first broken promise of mesher/README.md; empty if all hold. Checks exact signs, faces in
+/// one or two tets, the boundary closed and manifold at edges and points, one connected star at each point,
+/// no unused point.
 std::string broken_promise(const std::vector<Vec3>& points, const std::vector<Tet>& tets);
 
 struct SolidTopology {

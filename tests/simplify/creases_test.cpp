@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Creases and corners of parts stay exactly where they are while tets become fewer.
+// Feature edges and corners of parts stay exactly in place while the number of tets falls.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,8 +27,8 @@ Eigen::Matrix3d rotation() {
       .toRotationMatrix();
 }
 
-/// A unit cube of n x n x n x 6 tets, or one without a quarter, whose inner points are moved at random;
-/// turned with its patches.
+/// A unit cube of n x n x n x 6 tets, or one without a quarter, with inner points moved at random, rotated
+/// with its patches.
 TetMesh block(int n, bool quarter_missing) {
   TetMesh mesh = grid_mesh({n, n, n}, [&](int x, int y, int) -> std::optional<MaterialTag> {
     if (quarter_missing && 2 * x >= n && 2 * y >= n) return {};
@@ -58,8 +58,8 @@ double volume_of(const TetMesh& mesh) {
   return sum;
 }
 
-/// How far the points of the boundary are from the sides of the block, and how far creases and corners of
-/// `before` are from those of the mesh.
+/// Expects the boundary points on the sides of the block, and the feature edges and corners of `before` on
+/// those of the mesh.
 void expect_exact(const TetMesh& before, const TetMesh& after) {
   for (const MeshFinding& f : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(f);
   for (const InterfaceTriangle& t : after.interfaces)
@@ -108,7 +108,7 @@ TEST(Creases, OfBlocksStayExactWhenShapesImprove) {
   expect_exact(before, improve(before, options, nullptr, nullptr));
 }
 
-/// The square's points moved onto circles around its middle.
+/// A square whose points are moved onto circles around its centre.
 TetMesh disc(int n, int layers) {
   TetMesh mesh = grid_mesh({n, n, layers}, [](int, int, int) { return std::optional<MaterialTag>(1); });
   for (Vec3& p : mesh.points) {
@@ -122,7 +122,7 @@ TetMesh disc(int n, int layers) {
 
 TEST(Creases, ThatAreCurvedStayWithinAThousandthOfTheDiagonal) {
   TetMesh before = disc(32, 6);
-  // Tets at the four corners of the square are flat along the rim; the mesh is taken as it is.
+  // Tets at the four corners of the square are flat along the rim; the mesh is accepted as it is.
   ASSERT_EQ(find_mesh_patches(before, {FeatureAngle::Rule::degrees, 40}, "disc").count, 3U);
   SimplifyOptions options;
   options.target_tets = 1500;
@@ -140,7 +140,7 @@ TEST(Creases, ThatAreCurvedStayWithinAThousandthOfTheDiagonal) {
   }
 }
 
-/// A cube [0, 1]^3 that knows its patches: the mesh's creases are off.
+/// A cube [0, 1]^3 with exact patches: the mesh's feature edges are off.
 class ExactCube final : public ReferenceSurface {
  public:
   double signed_distance(const Vec3&, MaterialTag) const override { return 0; }
@@ -189,7 +189,7 @@ TEST(Creases, OfAReferenceAreReachedFromBesideThem) {
         if (before.points[t.ids[0]][a] == side && before.points[t.ids[1]][a] == side &&
             before.points[t.ids[2]][a] == side)
           t.patch = static_cast<std::uint16_t>(2 * a + side);
-  // Edges and corners are cut off a little.
+  // Cut off edges and corners a little.
   for (Vec3& p : before.points) {
     const auto outer = (p.array() == 0 || p.array() == 1).count();
     if (outer >= 2) p = Vec3::Constant(0.5) + 0.99 * (p - Vec3::Constant(0.5));
@@ -220,7 +220,7 @@ TEST(Creases, FitOnlyWhatIsOffThem) {
     (void)w.star(p);
     EXPECT_EQ(fit_to_crease(*w.ws, rules, 1e-4f), Outcome::no_candidate);
   }
-  // Without patches nothing of it is asked for.
+  // Without patches it is not asked for feature edges.
   Workbench smooth(grid_mesh(3));
   const SurfaceProjection none(smooth.mesh, nullptr);
   BlockRules plain;

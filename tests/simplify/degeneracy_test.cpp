@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The degenerate situations of section 5 of the paper and of the design, each simplified as far as it goes
-// and improved with a strong hand: nothing of it may be lost or torn.
+// The degenerate situations of section 5 of the paper and of the design, each simplified as far as possible
+// and improved aggressively: nothing may be lost or torn.
 #include <gtest/gtest.h>
 
 #include "common/mesh/mesh_check.h"
@@ -22,7 +22,7 @@ struct Case {
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 const Case cases[] = {
-    // A layer one cell, that is one tet, thick, between two others, and as a skin.
+    // A layer one cell, so one tet, thick, between two others and as a skin.
     {"single_tet_thick_layer", {8, 8, 5}, [](int, int, int z) { return Tag(z < 2    ? 1
                                                                            : z == 2 ? 2
                                                                                     : 3); }},
@@ -33,7 +33,7 @@ const Case cases[] = {
        return Tag(inner ? 1 : 2);
      }},
     {"free_sheet", {9, 9, 1}, [](int, int, int) { return Tag(1); }},
-    // Two blocks joined by a bar of one cell; the same between two bodies of another material.
+    // Two blocks joined by a bar of one cell, in the open and between two bodies of another material.
     {"one_tet_bridge",
      {9, 4, 4},
      [](int x, int y, int z) { return x < 4 || x > 4 || (y == 1 && z == 1) ? Tag(1) : Tag(); }},
@@ -60,10 +60,10 @@ const Case cases[] = {
     {"ring",
      {7, 7, 2},
      [](int x, int y, int) { return x >= 3 && x < 4 && y >= 3 && y < 4 ? Tag() : Tag(1); }},
-    // Parts that touch along an edge or in a point.
+    // Parts that touch along an edge or at a point.
     {"touching_in_an_edge", {4, 4, 3}, [](int x, int y, int) { return (x < 2) == (y < 2) ? Tag(1) : Tag(); }},
-    // The same with both ends of the edge inside a slab: no point falls apart, the edge alone is not
-    // manifold.
+    // Parts that touch along an edge with both ends inside a slab: no point is split, only the edge is
+    // nonmanifold.
     {"wedges_between_slabs",
      {4, 4, 3},
      [](int x, int y, int z) { return z != 1 || (x < 2) == (y < 2) ? Tag(1) : Tag(); }},
@@ -81,7 +81,7 @@ const Case cases[] = {
      }},
 };
 
-/// How many findings of each kind there are.
+/// Number of findings of each kind.
 std::map<MeshFault, std::size_t> counts(const TetMesh& mesh) {
   std::map<MeshFault, std::size_t> out;
   for (const MeshFinding& f : check_mesh(mesh)) out[f.fault] = f.count;
@@ -123,7 +123,7 @@ TEST_P(Degeneracy, SurvivesImprovement) {
   for (const std::string& d : topology_differences(topology(mesh), topology(after))) ADD_FAILURE() << d;
 }
 
-// The smallest ones there are: nothing can be collapsed.
+// The smallest meshes: nothing can be collapsed.
 TEST(Degeneracy, SingleTetsAndPairs) {
   TetMesh one;
   one.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -132,7 +132,7 @@ TEST(Degeneracy, SingleTetsAndPairs) {
   SimplifyOptions options;
   options.target_tets = 1;
   EXPECT_EQ(simplify(one, options).tets.size(), 1u);
-  TetMesh pair = one;  // half of the volume must not go
+  TetMesh pair = one;  // half of the volume must not vanish
   pair.points.emplace_back(1, 1, 1);
   pair.tets.push_back({1, 2, 3, 4});
   pair.materials.push_back(1);

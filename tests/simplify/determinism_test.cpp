@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The result depends on the mesh, the options and the seed: on neither the number of threads nor when they
-// run. Built a second time with threads that yield at random (test_yields).
+// The result depends on the mesh, the options and the seed only, neither on the number of threads nor on
+// their timing. Built a second time with threads that yield at random (test_yields).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ TetMesh three_materials() {
   return mesh;
 }
 
-/// Empty if both are the same bit by bit, else what differs.
+/// Empty if both are equal bit by bit, else a description of the difference.
 std::string difference(const TetMesh& a, const TetMesh& b) {
   if (a.points.size() != b.points.size() || a.tets.size() != b.tets.size())
     return "sizes: " + std::to_string(a.tets.size()) + " and " + std::to_string(b.tets.size()) + " tets";
@@ -68,7 +68,7 @@ TetMesh run(const Case& c, unsigned threads, std::uint64_t seed, SimplifyReport*
   return simplify(three_materials(), options, report);
 }
 
-// Batches below 33 points or tets are decided by one thread, but for those of ordered blocks.
+// Batches below 33 points or tets are decided by one thread, except those of ordered blocks.
 class Determinism : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Cases, Determinism,
                          testing::Values(Case{"tuned", Work::tuned, 0},
@@ -92,7 +92,7 @@ TEST_P(Determinism, AnyNumberOfThreadsGivesTheSameBytes) {
     SimplifyReport report;
     const TetMesh mesh = run(GetParam(), threads, 1, &report);
     EXPECT_EQ(difference(mesh, expected), "") << threads << " threads";
-    // What was counted is the same, too.
+    // The counts are equal, too.
     ASSERT_EQ(report.iterations.size(), alone.iterations.size());
     for (std::size_t i = 0; i < report.iterations.size(); ++i) {
       EXPECT_EQ(report.iterations[i].tets_after, alone.iterations[i].tets_after);
@@ -104,7 +104,7 @@ TEST_P(Determinism, AnyNumberOfThreadsGivesTheSameBytes) {
         std::accumulate(decided.begin(), decided.end(), std::uint64_t{0}),
         std::accumulate(alone.decided_by_worker.begin(), alone.decided_by_worker.end(), std::uint64_t{0}));
 #ifdef TETWRIGHT_INJECT_YIELDS
-    // Else nothing was shown. Without yields one may do everything where the machine is busy.
+    // Otherwise nothing was shown. Without yields one thread may do everything on a busy machine.
     EXPECT_GT(std::count_if(decided.begin(), decided.end(), [](std::uint64_t n) { return n > 0; }), 1)
         << threads << " threads";
 #endif

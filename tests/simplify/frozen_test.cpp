@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// What is frozen stays through blocks of every operation.
+// Frozen parts survive blocks of every operation.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -33,8 +33,7 @@ std::array<Place, N> places(const EditableMesh& mesh, const std::array<Index, N>
   return out;
 }
 
-/// What may not change: the frozen points, the tets of which all points are, and the faces between regions
-/// of which all are.
+/// Must not change: the frozen points, and the tets and the faces between regions with frozen points only.
 struct Kept {
   std::set<Place> points;
   std::set<std::pair<std::array<Place, 4>, MaterialTag>> tets;
@@ -63,7 +62,8 @@ bool includes(const Set& all, const Set& some) {
   return std::includes(all.begin(), all.end(), some.begin(), some.end());
 }
 
-/// Blocks of every operation, several times; how many of each were done. What stays is compared after each.
+/// Runs blocks of every operation several times and compares the frozen parts after each. Returns the number
+/// of each operation done.
 std::map<Operation, std::uint64_t> run_all(Workbench& w, const SurfaceProjection& projection) {
   const Kept before = kept(w.mesh);
   w.own_samples(0.5 * w.mesh.space().scale());
@@ -94,7 +94,7 @@ std::map<Operation, std::uint64_t> run_all(Workbench& w, const SurfaceProjection
   };
   const auto tets = [&](Operation operation, int count,
                         const std::function<Outcome(Workspace&, Index, int)>& act) {
-    w.rules.count.max = w.mesh.live_tets() + 300;  // more would take their time
+    w.rules.count.max = w.mesh.live_tets() + 300;  // more would take too long
     std::vector<TetSnapshot> items;
     for (Index t = 0; t < w.mesh.tet_slots(); ++t)
       if (!w.mesh.dead(t)) items.push_back({t, w.mesh.points(t)});
@@ -150,7 +150,7 @@ TEST(Frozen, PointsOfTheMaskStayWithTheirTets) {
   Random random(3);
   std::size_t frozen = 0;
   for (std::size_t p = 0; p < mask.size(); ++p) {
-    // A corner of the mesh as a whole, and points here and there.
+    // A whole corner of the mesh, and scattered points.
     mask[p] = mesh.points[p].maxCoeff() < 3.5 || random.below(12) == 0;
     frozen += mask[p];
   }
@@ -175,11 +175,11 @@ TEST(Frozen, FacesOfBoundaryAndInterfacesStay) {
     EXPECT_GT(done.at(inner), 0u) << operation_names[static_cast<std::size_t>(inner)];
   EXPECT_EQ(done.at(Operation::fit), 0u);
   EXPECT_EQ(done.at(Operation::insert_in_face), 0u);
-  EXPECT_EQ(kept(w.mesh).faces.size(), faces);  // none came, either
+  EXPECT_EQ(kept(w.mesh).faces.size(), faces);  // none was added, either
   EXPECT_EQ(w.grid.triangles().size(), faces);
 }
 
-// Without it, everything moves.
+// Without a mask everything moves.
 TEST(Frozen, NothingIsWithoutAMask) {
   Workbench w(two_materials());
   EXPECT_FALSE(w.mesh.any_frozen());

@@ -10,9 +10,10 @@
 
 namespace tetwright {
 
-/// n.x by n.y by n.z unit cubes of six tets each (Kuhn 1960: all around the diagonal, neighbours agree).
-/// `material` gets the cube's place and answers its tag, or nothing for no cube there. Points without a tet
-/// are left out.
+/// n.x by n.y by n.z unit cubes of six tets each (Kuhn 1960: all around the diagonal, so neighbours agree).
+/// Points without a tet are left out.
+///
+/// \param material returns the tag of the cube at these coordinates, or nothing for no cube.
 inline TetMesh grid_mesh(std::array<int, 3> n,
                          const std::function<std::optional<MaterialTag>(int, int, int)>& material) {
   TetMesh mesh;
@@ -33,7 +34,7 @@ inline TetMesh grid_mesh(std::array<int, 3> n,
             ++at[paths[k][i]];
             t[i + 1] = number(at[0], at[1], at[2]);
           }
-          if (k >= 3) std::swap(t[2], t[3]);  // odd paths turn the other way
+          if (k >= 3) std::swap(t[2], t[3]);  // odd paths have the opposite orientation
           mesh.tets.push_back(t);
           mesh.materials.push_back(*tag);
         }
@@ -54,10 +55,10 @@ inline TetMesh grid_mesh(int n) {
   return grid_mesh({n, n, n}, [](int, int, int) { return std::optional<MaterialTag>(1); });
 }
 
-/// Moves every point a little, less than would turn a tet of grid_mesh over.
+/// Moves every point a little, too little to invert a tet of grid_mesh.
 inline void jitter(TetMesh& mesh, std::uint64_t seed, double amount = 0.1) {
   Random random(seed);
-  // One after another: the order in which arguments are evaluated depends on the compiler.
+  // One statement each: the order in which arguments are evaluated depends on the compiler.
   for (Vec3& p : mesh.points)
     for (int a = 2; a >= 0; --a) p[a] += amount * (random.uniform() - 0.5);
 }

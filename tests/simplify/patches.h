@@ -8,7 +8,7 @@
 
 namespace tetwright {
 
-/// Fills mesh.interfaces with what find_interfaces() finds and the patch that each triangle's centre has.
+/// Fills mesh.interfaces by find_interfaces(), with the patch of each triangle from its centroid.
 inline void set_patches(TetMesh& mesh,
                         const std::function<std::uint16_t(const InterfaceTriangle&, const Vec3&)>& patch) {
   mesh.interfaces = find_interfaces(mesh);
@@ -16,8 +16,7 @@ inline void set_patches(TetMesh& mesh,
     t.patch = patch(t, (mesh.points[t.ids[0]] + mesh.points[t.ids[1]] + mesh.points[t.ids[2]]) / 3);
 }
 
-/// Moves points a little, but none off a side of the cube [0, n]^3, nor off the planes where a coordinate is
-/// `kept`.
+/// Moves points a little, but none off a side of the cube [0, n]^3, nor off a plane with a coordinate `kept`.
 inline void jitter_inside(TetMesh& mesh, double n, std::uint64_t seed, double amount, double kept = -1) {
   Random random(seed);
   for (Vec3& p : mesh.points)
@@ -27,7 +26,7 @@ inline void jitter_inside(TetMesh& mesh, double n, std::uint64_t seed, double am
     }
 }
 
-/// The place of a side of the cube [0, n]^3, 1 to 6, of a point near it that is not near an edge.
+/// Number, 1 to 6, of the side of the cube [0, n]^3 nearest to a point.
 inline std::uint16_t side_of(const Vec3& p, double n) {
   std::uint16_t nearest = 0;
   double distance = n;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Patches of boundary and interfaces: they come in with the mesh, keep their borders, and go out with it.
+// Patches of boundary and interfaces: read from the mesh, kept with their borders, written back.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -17,7 +17,7 @@ namespace tetwright::patches_test {
 namespace {
 
 constexpr int n = 8;
-/// Sums and midpoints of points on a plane lie on it but for rounding; see common/tolerances.h for the rest.
+/// Sums and midpoints of points on a plane lie on it up to rounding; see common/tolerances.h for the rest.
 constexpr double rounding = 1e-9;
 
 std::map<Index, std::set<std::uint16_t>> patches_at_points(const TetMesh& mesh) {
@@ -27,13 +27,13 @@ std::map<Index, std::set<std::uint16_t>> patches_at_points(const TetMesh& mesh) 
   return out;
 }
 
-/// How far a point is from the side of the cube with that number.
+/// Distance of a point from the side of the cube with that number.
 double from_side(const Vec3& p, int side) {
   const int axis = (side - 1) / 2;
   return std::abs(p[axis] - ((side - 1) % 2) * n);
 }
 
-/// `leave`: how far points within a side may leave it.
+/// \param leave max distance of points within a side from it.
 void expect_sides(const TetMesh& before, const TetMesh& after, double leave) {
   for (const MeshFinding& f : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(f);
   for (const std::string& d : topology_differences(topology(before), topology(after))) ADD_FAILURE() << d;
@@ -136,7 +136,7 @@ TEST(Patches, ImprovementKeepsACrease) {
   }
 }
 
-// Without patches the same cube's edges are cut.
+// Without patches the cube's edges are cut.
 TEST(Patches, WithoutThemEdgesMayGo) {
   TetMesh mesh = cube_with_sides(n, 1);
   for (InterfaceTriangle& t : mesh.interfaces) t.patch = 0;
@@ -194,7 +194,7 @@ TEST(Patches, MakeCornersAndCreasesOfAStar) {
     const int on = (at.y() == 0) + (at.z() == 0);
     EXPECT_EQ(star.edge_dimension(p), 3 - on) << at.transpose();
   }
-  // What reads the mesh alone does not know the patches of faces between materials.
+  // The mesh alone has no patches of interface faces.
   Workbench two(two_halves(4, 1, 0));
   EXPECT_EQ(two.star(two.at(2, 2, 2)).dimension(), 1);
   EXPECT_EQ(two.star(two.at(2, 2, 0)).dimension(), 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Ten thousand random operations on small meshes of several materials, looked at after each.
+// Ten thousand random operations on small meshes of several materials, validated after each.
 #include "common/mesh/mesh_check.h"
 #include "common/mesh/topology.h"
 #include "simplify/operations/collapse.h"
@@ -16,7 +16,7 @@ namespace {
 
 using Tag = std::optional<MaterialTag>;
 
-/// The mesh as it stands, with as many points as there are slots.
+/// The current mesh, with as many points as slots.
 TetMesh snapshot(const EditableMesh& mesh) {
   TetMesh out;
   std::vector<Index> number(mesh.point_slots(), no_index);
@@ -44,7 +44,7 @@ const std::array<Tag (*)(int, int, int), 5> materials{
     [](int x, int y, int z) { return x == 1 && y == 1 && z == 1 ? Tag() : Tag(z < 2 ? 5 : 9); },
     [](int x, int y, int z) { return x == 1 && y == 1 ? Tag() : Tag(z == 1 ? 2 : 1); }};
 
-/// One operation, chosen at random, on the tet.
+/// Tries a random operation on the tet.
 Outcome random_operation(Workbench& w, Index t, const SurfaceProjection& projection) {
   Workspace& ws = *w.ws;
   Random& random = ws.random;

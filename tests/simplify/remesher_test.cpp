@@ -49,7 +49,7 @@ double volume_of(const Remesher& r, Index t) {
   return orient3d_value(r.position(p[0]), r.position(p[1]), r.position(p[2]), r.position(p[3])) / 6;
 }
 
-/// Sum over the tets of a material of a field's number times volume, and of its size.
+/// Sum over a material's tets of a field's value times volume, and the sum of its magnitude.
 std::pair<double, double> integral(Remesher& r, std::size_t field, MaterialTag material) {
   long double sum = 0, size = 0;
   for (Index t = 0; t < r.tet_slots(); ++t)
@@ -75,7 +75,7 @@ struct Snapshot {
   std::vector<Vec3> points;
 };
 
-/// Whether the lists say exactly what differs.
+/// Expects the lists to match the differences exactly.
 void expect_told(const Snapshot& before, const Remesher& r, const RemeshChanges& c) {
   const std::set<Index> removed(c.removed_tets.begin(), c.removed_tets.end()),
       added(c.added_tets.begin(), c.added_tets.end());
@@ -93,7 +93,7 @@ void expect_told(const Snapshot& before, const Remesher& r, const RemeshChanges&
     came += !was && is;
     moved += was && is && r.position(p) != before.points[p];
   }
-  // A point's number may be given again in the same call: then it has moved.
+  // A point's number may be reused in the same call: then it counts as moved.
   EXPECT_EQ(c.moved_points.size(), moved);
   EXPECT_EQ(c.removed_points.size(), gone);
   EXPECT_EQ(c.added_points.size(), came);
@@ -147,7 +147,7 @@ TEST(Remesher, ImprovesToAnAimWithinItsCountAndReports) {
   EXPECT_EQ(report.iterations.size(), static_cast<std::size_t>(changes.rounds)) << changes.rounds;
   EXPECT_EQ(report.iterations.front().tets_before, count);
   EXPECT_EQ(report.iterations.back().tets_after, remesher.tet_count());
-  // The bounds were that call's.
+  // The bounds were for that call only.
   remesher.refine(RemeshRegion::box(Vec3(0, 0, 0), Vec3(3, 3, 3)), 0.4);
   EXPECT_GT(remesher.tet_count(), count + 10);
   expect_sound(input, remesher);
@@ -162,7 +162,7 @@ TEST(Remesher, ImprovesToAnAimWithinItsCountAndReports) {
 }
 
 TEST(Remesher, KeepsToTheFirstSurfacesOverManyCalls) {
-  // A ball: a cube of tets whose shells are drawn to spheres.
+  // A ball: a cube of tets whose shells are mapped to spheres.
   constexpr int n = 8;
   TetMesh ball = grid_mesh(n);
   for (Vec3& p : ball.points) {
@@ -171,7 +171,7 @@ TEST(Remesher, KeepsToTheFirstSurfacesOverManyCalls) {
   }
   jitter(ball, 3, 0.2);
   ball.interfaces = find_interfaces(ball);
-  // The depth of the surface below the sphere, at its points and in the middle of its triangles.
+  // Max depth of the surface below the sphere, at its points or at its triangles' centroids.
   const auto depth = [](const TetMesh& mesh, bool middles) {
     double deepest = 0;
     for (const InterfaceTriangle& t : mesh.interfaces) {
@@ -228,7 +228,7 @@ TEST(Remesher, CoarseningEndsInARimOfGoodTetsAndNoPointBeyondItMoves) {
   const TetMesh mesh = two_halves(14, 5, 0.1);
   Remesher r(mesh);
   const Box3 box{{5, 5, 5}, {9, 9, 9}};
-  // The points of the region's tets, and those next to them.
+  // The points of the region's tets, and their neighbours.
   std::vector<bool> reach(r.point_slots(), false);
   for (Index p = 0; p < r.point_slots(); ++p) reach[p] = r.has_point(p) && box.contains(r.position(p));
   for (int ring = 0; ring < 2; ++ring) {
@@ -258,7 +258,7 @@ TEST(Remesher, CoarseningEndsInARimOfGoodTetsAndNoPointBeyondItMoves) {
     bad += min_solid_angle(r.position(p[0]), r.position(p[1]), r.position(p[2]), r.position(p[3])) < 0.1;
   }
   EXPECT_GT(c.removed_tets.size(), c.added_tets.size() * 3 / 2);
-  EXPECT_LT(bad, c.added_tets.size() / 50);  // a tenth where the rim is left as it came out
+  EXPECT_LT(bad, c.added_tets.size() / 50);  // a tenth if the rim is not improved
 }
 
 TEST(Remesher, CarriesLinearFieldsAndKeepsIntegrals) {
@@ -277,7 +277,7 @@ TEST(Remesher, CarriesLinearFieldsAndKeepsIntegrals) {
   const RemeshRegion all = RemeshRegion::where([](const Vec3&) { return true; });
   const RemeshRegion corner = RemeshRegion::box({2, 2, 2}, {6, 6, 6});
   const auto check = [&] {
-    // Within the body interpolation is exact; the surface may move outwards a little.
+    // Inside the body interpolation is exact; the surface may move outwards a little.
     for (Index p = 0; p < r.point_slots(); ++p)
       if (r.has_point(p)) {
         EXPECT_NEAR(r.point_field(0)[p], linear(r.position(p)), 0.5);
@@ -426,7 +426,7 @@ TEST(Remesher, KeepsPatchesWhenAllPositionsAreSetAfterOperations) {
   EXPECT_GT(inner, 200u);
 }
 
-// Two cubes that touch along an edge: its points stand twice, and move as one.
+// Two cubes that touch along an edge: its points exist twice and move together.
 TEST(Remesher, MovesPointsThatWereSplit) {
   const TetMesh mesh = grid_mesh({2, 2, 2}, [](int x, int y, int) { return x == y ? Tag(1) : Tag(); });
   Remesher some(mesh), all(mesh);
@@ -454,7 +454,7 @@ TEST(Remesher, MovesPointsThatWereSplit) {
 }
 
 TEST(TetOverlap, SharesOfAGridAddUp) {
-  // Random tets against the tets of a grid that covers them.
+  // Intersect random tets with the tets of a grid that covers them.
   const TetMesh grid = grid_mesh(3);
   Random random(10);
   for (int i = 0; i < 50; ++i) {

@@ -23,8 +23,7 @@ bool same_bytes(const TetMesh& a, const TetMesh& b) {
          std::memcmp(a.points.data(), b.points.data(), a.points.size() * sizeof(Vec3)) == 0;
 }
 
-/// A ring of two materials with a cavity in one of them, 18 cubes wide: a handle, a cavity, an interface,
-/// junctions.
+/// A ring of two materials, one with a cavity, 18 cubes wide: a handle, a cavity, an interface, junctions.
 TetMesh ring() {
   TetMesh mesh = grid_mesh({18, 18, 6}, [](int x, int y, int z) -> Tag {
     if (x >= 6 && x < 12 && y >= 6 && y < 12) return {};
@@ -56,8 +55,8 @@ TEST(Simplify, ReachesTheCountAndKeepsTheTopology) {
   EXPECT_EQ(report.iterations.back().tets_after, after.tets.size());
 }
 
-// Each operation has a purpose; one that never succeeds in the optimised build has silently broken. Points in
-// tets and faces are the last resort, which such meshes do not need: insertion_test.cpp has them.
+// Each operation has a purpose; one that never succeeds in the optimised build is silently broken. Insertions
+// in tets and faces are the last resort, which such meshes do not need: insertion_test.cpp has them.
 TEST(Simplify, EveryOperationSucceedsAtLeastOnce) {
   OperationCounts counts;
   for (Schedule schedule : {Schedule::tuned, Schedule::paper}) {
@@ -127,7 +126,7 @@ TEST(Simplify, SizeAndPlaceDoNotMatter) {
   }
 }
 
-// Only coordinates that a double holds may come out, and signs hold for those.
+// The output has only coordinates that a double represents, and signs hold for those.
 TEST(Simplify, FarFromTheOriginTheWrittenMeshIsValid) {
   TetMesh mesh = grid_mesh(10);
   jitter(mesh, 9);
@@ -179,7 +178,7 @@ TEST(Simplify, WithoutAnyTimeTheMeshIsAsItCame) {
     EXPECT_TRUE(report.out_of_time);
     EXPECT_TRUE(report.iterations.empty());
   }
-  // Of what simplify() returns the distance is known all the same.
+  // The distance of the result is reported all the same.
   SimplifyReport report;
   (void)simplify(mesh, options, &report, &progress);
   ASSERT_TRUE(report.deviation);
@@ -200,7 +199,7 @@ TEST(Simplify, ADeadlineAtAnyMomentLeavesAValidMesh) {
   options.target_tets = 1500;
   options.tolerance = 0.1;
 
-  // Within the time that making it takes, which differs, at several moments; and some later ones.
+  // Deadlines at several moments within the time that the work takes, which varies, and some later ones.
   SimplifyReport whole;
   SimplifyOptions without_tolerance = options;
   without_tolerance.tolerance = 0;
@@ -216,7 +215,7 @@ TEST(Simplify, ADeadlineAtAnyMomentLeavesAValidMesh) {
     for (const MeshFinding& finding : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(finding);
     for (const std::string& d : topology_differences(topology(mesh), topology(after))) ADD_FAILURE() << d;
     ASSERT_TRUE(report.deviation);
-    // Proven or not, it is held.
+    // The tolerance holds, proven or not.
     EXPECT_LE(report.deviation->from_mesh.lower, options.tolerance);
     EXPECT_LE(report.deviation->from_surface.lower, options.tolerance);
     EXPECT_TRUE(report.out_of_time);

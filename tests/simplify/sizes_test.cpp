@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Wanted edge lengths, and bounds of them.
+// Target edge lengths and their bounds.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -54,7 +54,7 @@ TetMesh block() {
   return mesh;
 }
 
-/// Sizes for the block that grow by a tenth of x.
+/// Target lengths for the block that grow by x / 10.
 SizeField growing_from(double smallest) {
   return {Source([=](const Vec3& p) { return smallest + 0.1 * p.x(); }), {0, 0, 0}, {24, 12, 12}, {}};
 }
@@ -74,7 +74,7 @@ void expect_kept(const TetMesh& before, const TetMesh& after) {
 
 TEST(Sizes, EdgesHaveTheWantedLengths) {
   const TetMesh mesh = block();
-  // From what is there already to three times as much, across an interface.
+  // From the current length to three times that, across an interface.
   const SizeField target_length = growing_from(1.2);
   const TetMesh after = simplify(mesh, wanting(target_length));
   expect_kept(mesh, after);

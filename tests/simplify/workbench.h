@@ -17,7 +17,7 @@ namespace tetwright {
 
 /// One worker on one mesh, for tests of single operations.
 struct Workbench {
-  /// `prepare`: what is to be done before the points get other numbers.
+  /// \param prepare is called before the points are renumbered.
   explicit Workbench(
       const TetMesh& input, const std::function<void(EditableMesh&)>& prepare = [](EditableMesh&) {})
       : mesh(TetMesh(input), "mesh") {
@@ -35,7 +35,7 @@ struct Workbench {
     ws = std::make_unique<Workspace>(mesh, grid, ledger);
   }
 
-  /// The point at a place given in input units.
+  /// The point at a position in input units.
   Index at(double x, double y, double z) const {
     for (Index p : live_points())
       if ((mesh.space().to_input(mesh.position(p)) - Vec3(x, y, z)).norm() < 1e-12) return p;
@@ -43,7 +43,7 @@ struct Workbench {
     return 0;
   }
 
-  /// The points that are there.
+  /// The live points.
   std::vector<Index> live_points() const {
     std::vector<Index> out;
     for (Index p = 0; p < mesh.point_slots(); ++p)
@@ -51,21 +51,21 @@ struct Workbench {
     return out;
   }
 
-  /// The star of a point, with a proposal that is empty.
+  /// The star of a point, with an empty proposal.
   Star& star(Index p) {
     ws->proposal.clear();
     EXPECT_EQ(ws->gather(p), Outcome::done);
     return ws->star;
   }
 
-  /// What BlockRunner does with an operation's answer, in a batch of one: carries out what was proposed.
+  /// Does what BlockRunner does with an operation's answer, in a batch of one: carries out the proposal.
   Outcome carry_out(Outcome answer) {
     last = {};
     std::swap(last, ws->proposal);
     if (answer != Outcome::done) return answer;
     EXPECT_TRUE(ledger.allows(last.volumes));
     EXPECT_TRUE(last.count_bounds.allow(mesh.live_tets(), last.count_change));
-    EXPECT_EQ(mesh.live_tets(), count_live());  // nothing was written by who decided
+    EXPECT_EQ(mesh.live_tets(), count_live());  // deciding wrote nothing
     begin_batch({&last});
     EXPECT_TRUE(admit(last));
     commit(mesh, grid, last, commit_workspace);
@@ -74,8 +74,8 @@ struct Workbench {
     return answer;
   }
 
-  /// Triangles own samples of the surface, given (input units) or the mesh's own, from now on. The grid must
-  /// be as it was built.
+  /// Gives the triangles samples of the `surface` (input units), or without one of the mesh's own.
+  /// \pre The grid is as built.
   void own_samples(double edge, const TriangleMesh* surface = nullptr) {
     input_surface = std::make_unique<InputSurface>(mesh, surface);
     samples = std::make_unique<SurfaceSamples>(mesh, grid.record_count(), *input_surface, edge);
@@ -92,7 +92,7 @@ struct Workbench {
     }
     tetwright::begin_batch(mesh, proposals.size(), tets, points);
   }
-  /// Whether a proposal has won; it has then claimed its write set and taken its slots.
+  /// Whether the proposal wins; it then has claimed its write set and taken its slots.
   bool admit(Proposal& p) {
     if (!mesh.reservations().free(p.read_set())) return false;
     ledger.commit(p.volumes);
@@ -107,8 +107,8 @@ struct Workbench {
     return count;
   }
 
-  /// Links and counts sound, all tets positive, as many triangles in the grid as faces between regions, no
-  /// slot both free and in use.
+  /// Expects consistent links and counts, positive tets, a triangle in the grid for each face between
+  /// regions, and no slot both free and in use.
   void expect_sound() {
     EXPECT_TRUE(mesh.links_consistent());
     std::vector<Triangle> interfaces;
@@ -145,11 +145,11 @@ struct Workbench {
   VolumeLedger ledger;  ///< no bounds unless opened
   BlockRules rules;
   std::unique_ptr<Workspace> ws;
-  Proposal last;  ///< what was carried out last
+  Proposal last;  ///< last proposal carried out
   CommitWorkspace commit_workspace;
 };
 
-/// As if every tet were as bad as can be: any positive ones are better.
+/// Gives every tet the worst quality: any positive tet is better.
 inline void make_bad(Workbench& w) {
   for (Index t = 0; t < w.mesh.tet_slots(); ++t)
     if (!w.mesh.dead(t)) w.mesh.set_quality(t, 0);

@@ -4,7 +4,7 @@
 usage: calculix.py TETWRIGHT [--quick]    (Debian's calculix-ccx and python3-numpy; --quick: the coarser meshes)
 
 A cantilever under its own weight and its first bending mode, and a thick sphere under inner pressure: linear and
-ten-node tets, on meshes of two sizes, whose errors must fall as they get finer.
+ten-node tets, on meshes of two sizes; the errors must decrease with the size.
 """
 import argparse
 import math
@@ -25,7 +25,7 @@ parser.add_argument("--quick", action="store_true")
 options = parser.parse_args()
 options.tetwright = pathlib.Path(options.tetwright).resolve()
 
-SKIPPED = 77  # what CTest takes for a skipped test
+SKIPPED = 77  # CTest's status of a skipped test
 if not shutil.which("ccx"):
     print("skipped: CalculiX (ccx) is not installed")
     sys.exit(SKIPPED)
@@ -63,7 +63,7 @@ def solve(folder, name, deck):
 
 
 def table(text, columns):
-    """The rows of numbers in a .dat file."""
+    """Rows of numbers in a .dat file."""
     rows = []
     for line in text.splitlines():
         words = line.split()
@@ -127,7 +127,7 @@ def pressurised_sphere(folder):
         for tets in (2000, 8000) if options.quick else (2000, 12000, 60000):
             mesh = prepare(folder, surface, f"ball_{order}_{tets}", tets, order)
             nodes = nodes_of(mesh)
-            # Three nodes hold the six rigid motions; the pressure is in balance, so that they carry nothing.
+            # Three nodes constrain the six rigid motions; the pressure is balanced, so that they carry no load.
             far = max(nodes, key=lambda n: nodes[n][0])
             side = max(nodes, key=lambda n: nodes[n][1])
             top = max(nodes, key=lambda n: nodes[n][2])
@@ -138,7 +138,7 @@ def pressurised_sphere(folder):
                          "*NODE PRINT, NSET=inner\nU\n*END STEP\n")
             rows = table(text, 4)
             places = np.array([nodes[int(n)] for n in rows[:, 0]])
-            # What is left of rigid motions is taken out before radial displacements are compared.
+            # Remaining rigid motions are removed before radial displacements are compared.
             design = np.zeros((3 * len(rows), 6))
             for axis in range(3):
                 design[axis::3, axis] = 1

@@ -5,7 +5,7 @@ usage: dolfinx_test.py TETWRIGHT [--quick]    (Debian's python3-dolfinx; status 
                                                --quick: the coarser meshes)
 
 Heat in a ball of two conductivities, a cantilever with a load on its tip, and a thick sphere under inner pressure,
-each on meshes of two sizes, whose errors must fall at the rates of the elements.
+each on meshes of two sizes; the errors must decrease at the rates of the elements.
 """
 import argparse
 import logging
@@ -17,9 +17,9 @@ import sys
 import tempfile
 import xml.etree.ElementTree
 
-SKIPPED = 77  # what CTest takes for a skipped test
+SKIPPED = 77  # CTest's status of a skipped test
 try:
-    # Threads of the linear algebra would only get into each other's way on meshes this small.
+    # Threads of the linear algebra would only slow each other down on meshes this small.
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     import dolfinx
     import numpy as np
@@ -35,13 +35,13 @@ except ImportError as reason:
 from surfaces import beam, spheres
 
 DIRECT = {"ksp_type": "preonly", "pc_type": "lu", "pc_factor_mat_solver_type": "mumps"}
-# Of the residual; errors of the discretisation are larger by many orders.
+# Tolerance of the residual; discretisation errors are larger by many orders.
 ITERATIVE = {"ksp_type": "cg", "pc_type": "jacobi", "ksp_rtol": 1e-10, "ksp_error_if_not_converged": True}
 # Compiling takes longer than these small problems: without optimisation half as long.
 COMPILED = {"cffi_extra_compile_args": ["-O0", "-g0"]}
-# Exact for squares of elements of order 2; what the estimated degree of a closed form would take fills the memory.
+# Exact for squares of elements of order 2; the degree estimated for a closed form would exhaust memory.
 QUADRATURE = {"quadrature_degree": 4}
-# Times the edge of the regular tet of the mean volume.
+# Over the edge of the regular tet of the mean volume.
 LONGEST_EDGE = 1.6
 failures = []
 
@@ -79,7 +79,7 @@ class Body:
 
 
 def names_of(path):
-    """The numbers of the names in a file: an Information element that holds a document, as meshio writes it."""
+    """Numbers of the names in a file, from the document in an Information element, as meshio writes it."""
     numbers = {}
     for information in xml.etree.ElementTree.parse(path).iter("Information"):
         for entry in xml.etree.ElementTree.fromstring(information.text):
@@ -88,13 +88,13 @@ def names_of(path):
 
 
 def prepare(name, tets, volume, surface, *more):
-    """A mesh of tets of about one size, so that errors fall as theirs does."""
+    """A mesh of tets of nearly uniform size, so that errors decrease with it."""
     out = surface.with_name(f"{name}_{tets}.xdmf")
     regular_edge = (6 * math.sqrt(2) * volume / tets) ** (1 / 3)
     call = [options.tetwright, "prepare", surface, "-o", out, "--target-tets", str(tets), "--max-edge",
             repr(LONGEST_EDGE * regular_edge), "--quiet", "--no-progress", *more]
     answer = subprocess.run(call, check=False, capture_output=True, text=True)
-    # 1: short of something that was asked; what the mesh is worth is seen by its errors.
+    # 1: short of something requested; the errors show the mesh's quality.
     if answer.returncode not in (0, 1):
         sys.exit(f"tetwright: {answer.stderr}")
     return Body(out)
@@ -113,12 +113,12 @@ def linear_problem(matrix, right_side, conditions, solver):
 
 
 def rate(counts, errors):
-    """By which power of the edges' length errors fall from the first mesh to the last."""
+    """Order of convergence in the edge length, from the first mesh to the last."""
     return math.log(errors[0] / errors[-1]) / math.log((counts[-1] / counts[0]) ** (1 / 3))
 
 
 def check_rates(what, counts, errors, energy_errors):
-    """Of linear elements: the square of the edges' length for values, the first power for slopes."""
+    """Checks the rates of linear elements: second order for values, first order for gradients."""
     for kind, found, wanted, slack in (("values", errors, 2, 0.5), ("slopes", energy_errors, 1, 0.2)):
         power = rate(counts, found)
         check(f"{what}: errors of {kind} fall at a rate of {power:.2f}, about {wanted}", abs(power - wanted) < slack)
@@ -132,7 +132,7 @@ def ball_of_two_conductivities(folder, sizes):
     for tets in sizes:
         body = prepare("ball", tets, 4 / 3 * math.pi * outer**3, shell_surface, "--material", f"core={core_surface}")
         in_shell, in_core = body.inside("shell"), body.inside("core")
-        # What a sphere holds flows through it, source r / 3 by unit area.
+        # The heat produced in a sphere flows through it, source r / 3 per unit area.
         in_shell_exact = source / (6 * shell) * (outer**2 - square(body.place))
         in_core_exact = source / (6 * shell) * (outer**2 - inner**2) + source / (6 * core) * (inner**2 - square(body.place))
         space = fem.FunctionSpace(body.mesh, ("Lagrange", 1))
@@ -191,7 +191,7 @@ def cantilever(folder, sizes):
 
 
 def rigid_motions(space):
-    """The six of them as vectors of the space's unknowns, one column each."""
+    """The six rigid motions as vectors of the space's unknowns, one column each."""
     places = space.tabulate_dof_coordinates()
     columns = [np.tile(np.eye(3)[axis], (len(places), 1)) for axis in range(3)]
     columns += [np.cross(np.eye(3)[axis], places) for axis in range(3)]
@@ -199,7 +199,7 @@ def rigid_motions(space):
 
 
 def without_rigid_motions(problem, motions):
-    """The solution of a problem that holds the body nowhere, with none of them in it."""
+    """Solution of a problem without supports, free of rigid motions."""
     vectors = []
     for column in motions.T:
         vector = problem.A.createVecLeft()
@@ -238,7 +238,7 @@ def pressurised_sphere(folder, sizes):
     check_rates("pressurised sphere", counts, errors, energy_errors)
 
 
-logging.disable(logging.INFO)  # else every form that is compiled is told
+logging.disable(logging.INFO)  # otherwise every compiled form is logged
 parser = argparse.ArgumentParser()
 parser.add_argument("tetwright", type=pathlib.Path)
 parser.add_argument("--quick", action="store_true")

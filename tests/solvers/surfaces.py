@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bodies with closed forms, as OBJ files whose groups name the parts of the surface."""
+"""Bodies with closed-form solutions, as OBJ files whose groups name the parts of the surface."""
 import math
 
 
@@ -17,7 +17,7 @@ def beam(path, length, side):
 
 
 def spheres(path, outer, inner=None, parts=120):
-    """A ball, or with an inner radius a thick sphere, with its walls as groups, the inner one wound the other way.
+    """A ball, or with an inner radius a thick sphere, with its walls as groups, the inner one reversed.
 
     `parts` is the number of triangles from pole to pole.
     """
@@ -34,7 +34,7 @@ def spheres(path, outer, inner=None, parts=120):
 
 
 def wall(lines, radius, parts):
-    """Appends the points of a sphere to the lines and returns its triangles, seen from outside counter-clockwise."""
+    """Appends the points of a sphere to the lines and returns its triangles, counter-clockwise from outside."""
     faces, rings = [], []
     count = len(lines)
     around = 2 * parts

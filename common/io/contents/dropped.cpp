@@ -33,7 +33,7 @@ void KindCounts::append_to(std::vector<Dropped>& dropped) const {
 
 std::string unsupported_cells(const KindCounts& cells, const std::string& first) {
   const std::string kinds = cells.text();
-  // What is a tet and is refused has more points than those on its edges.
+  // A rejected tet has more nodes than those on its edges.
   const bool curved = kinds.find("tets") != std::string::npos;
   return kinds + ", the first of them " + first + "; only tets of 4 or 10 points can be read: " +
          (curved ? "save the mesh with linear elements, for example with gmsh -order 1, and convert other "

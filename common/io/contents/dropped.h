@@ -7,17 +7,17 @@
 
 namespace tetwright {
 
-/// Something that a file holds and that its reader does not take, so that the caller can tell the user.
+/// Contents of a file that its reader ignores, to be reported to the user.
 struct Dropped {
   std::string what;       ///< plural, for example "quads" or "groups (\"wheel\", \"door\")"
   std::size_t count = 0;  ///< at least 1
-  /// True: nothing is lost, since it follows from what was read. Writers derive it anew.
+  /// True: nothing is lost, since it follows from the data read. Writers derive it anew.
   bool restored = false;
 
   bool operator==(const Dropped&) const = default;
 };
 
-/// Items counted by kind, in the order in which the kinds first appeared.
+/// Counts of items by kind, in the order in which the kinds first appeared.
 class KindCounts {
  public:
   /// `kind` is a plural.
@@ -32,14 +32,15 @@ class KindCounts {
   std::vector<Dropped> counts_;
 };
 
-/// The message that refuses volume cells other than linear tets: their kinds and numbers, where the first of
-/// them is (`first`, for example "element 7"), and how to convert them.
+/// Message that rejects volume cells other than linear tets: their kinds and numbers, and how to convert
+/// them.
+/// \param first location of the first of them, for example "element 7"
 std::string unsupported_cells(const KindCounts& cells, const std::string& first);
 
-/// The names as they may appear in a message, the first few of them: "a", "b" and 3 more.
+/// Formats the first few names for a message: "a", "b" and 3 more.
 std::string quoted_list(const std::vector<std::string>& names);
 
-/// Appends an entry whose `what` ends in the names, in brackets, and whose count is their number; nothing if
+/// Appends an entry whose `what` ends with the names in brackets and whose count is their number; nothing if
 /// there are none.
 void append_dropped_names(std::vector<Dropped>& dropped, const std::string& what,
                           const std::vector<std::string>& names);

@@ -11,17 +11,17 @@
 
 namespace tetwright {
 
-/// What a writer of tet meshes is given: a view, which both must outlive.
+/// Input of a writer of tet meshes: a view that must not outlive the mesh and the nodes.
 struct MeshToWrite {
   // NOLINTNEXTLINE(google-explicit-constructor): every mesh is something to write
   MeshToWrite(const TetMesh& of_mesh, const MidsideNodes* nodes = nullptr) : mesh(of_mesh), midside(nodes) {}
 
   const TetMesh& mesh;
-  /// Those that make the tets second-order elements of ten nodes, for writers that know them; null: they are
-  /// linear.
+  /// Midside nodes that make the tets second-order elements of ten nodes, for writers that support them;
+  /// null: linear tets.
   const MidsideNodes* midside;
 
-  /// The fields of the points and, if there are any, of the midside nodes.
+  /// Fields of the points and, if there are any, of the midside nodes.
   std::vector<MeshField> node_fields() const {
     return midside ? fields_of_nodes(mesh.point_fields, *midside) : mesh.point_fields;
   }
@@ -32,7 +32,7 @@ struct MeshToWrite {
   }
 };
 
-/// Writes one file of this name with the bytes that `content` hands over.
+/// Writes one file named `path` with the bytes that `content` produces.
 using FileWriter =
     std::function<void(const std::string& path, const std::function<void(const ByteSink&)>& content)>;
 

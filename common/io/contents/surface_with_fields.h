@@ -8,7 +8,7 @@
 
 namespace tetwright {
 
-/// A surface with the numbers that its file gives to each point.
+/// A surface with the fields of its points.
 struct SurfaceWithFields {
   TriangleMesh surface;
   std::vector<MeshField> point_fields;  ///< of surface.points, in the file's order

@@ -11,8 +11,8 @@
 
 namespace tetwright {
 
-/// Maps the numbers that a file gives its nodes or elements, which need be neither dense nor sorted, to ours:
-/// 0, 1, ... in the order of add().
+/// Maps the numbers of a file's nodes or elements, which need be neither dense nor sorted, to indices: 0, 1,
+/// ... in the order of add().
 class FileNumbers {
  public:
   void add(std::int64_t number) {
@@ -20,8 +20,8 @@ class FileNumbers {
     numbers_.emplace_back(number, static_cast<Index>(numbers_.size()));
   }
   std::size_t size() const { return numbers_.size(); }
-  /// To be called after the last add() and before find(). Returns a number that was added twice, if there is
-  /// one.
+  /// Prepares find(), after the last add().
+  /// \return a number that was added twice, if there is one
   std::optional<std::int64_t> sort() {
     if (dense_) return std::nullopt;
     std::sort(numbers_.begin(), numbers_.end());
@@ -29,7 +29,7 @@ class FileNumbers {
                                           [](const auto& a, const auto& b) { return a.first == b.first; });
     return twice == numbers_.end() ? std::nullopt : std::optional(twice->first);
   }
-  /// Our number; no_index if `number` was not added.
+  /// Index of a number; no_index if it was not added.
   Index find(std::int64_t number) const {
     if (dense_)
       return number >= 1 && number <= std::ssize(numbers_) ? static_cast<Index>(number - 1) : no_index;

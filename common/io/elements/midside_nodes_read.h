@@ -8,15 +8,15 @@
 
 namespace tetwright {
 
-/// The midside nodes of second-order elements in a file, which are read by their corners.
+/// Midside nodes of second-order elements in a file, whose corners alone are used.
 class MidsideNodesRead {
  public:
-  /// To be called for each tet of ten nodes; `midside` are indices of points.
+  /// Adds a tet of ten nodes; `midside` are indices of points.
   void add_tet(std::span<const Index> midside) {
     ++tets_;
     nodes_.insert(nodes_.end(), midside.begin(), midside.end());
   }
-  /// The same for each triangle of six. no_index is a node that the file does not have.
+  /// Adds a triangle of six nodes; no_index is a node that the file does not have.
   void add_triangle(std::span<const Index> midside) {
     nodes_.insert(nodes_.end(), midside.begin(), midside.end());
   }
@@ -24,8 +24,9 @@ class MidsideNodesRead {
   /// Whether there are tets of ten nodes.
   bool any() const { return tets_ > 0; }
 
-  /// Takes those that are no tet's corner out of the points and their fields, renumbers tets and `triangles`,
-  /// and says so in `read.dropped`. To be called when all of them are there, but before interfaces are.
+  /// Removes the midside nodes that are no tet's corner from the points and their fields, renumbers tets and
+  /// `triangles`, and reports it in `read.dropped`.
+  /// \pre all tets and triangles are added, and `read.mesh.interfaces` is still empty
   void remove_from(ReadTetMesh& read, std::vector<Triangle>& triangles) const;
 
  private:

@@ -58,7 +58,7 @@ bool is_flat_of_higher_order(std::int64_t type) {
          (type >= 75 && type <= 77);
 }
 
-/// Unknown kinds count as volumes, so that they are refused.
+/// Unknown kinds count as volumes, so that they are rejected.
 CellKind cell_kind(std::int64_t type) {
   if (const auto flat = flat_cells.find(type); flat != flat_cells.end()) return {flat->second, false};
   if (const auto volume = volume_cells.find(type); volume != volume_cells.end())

@@ -12,10 +12,10 @@
 
 namespace tetwright {
 
-/// VTK's number of a linear tet, in legacy and in XML files.
+/// VTK's numbers of linear tets and triangles, in legacy and in XML files.
 inline constexpr std::int64_t vtk_tet_type = 10;
 inline constexpr std::int64_t vtk_triangle_type = 5;
-/// Of ten and six nodes.
+/// Tets of ten nodes and triangles of six.
 inline constexpr std::int64_t vtk_quadratic_tet_type = 24;
 inline constexpr std::int64_t vtk_quadratic_triangle_type = 22;
 
@@ -27,7 +27,7 @@ inline constexpr bool is_vtk_triangle(std::int64_t type) {
   return type == vtk_triangle_type || type == vtk_quadratic_triangle_type;
 }
 
-/// The number of nodes of tets and triangles, linear and quadratic ones; of other cells 0.
+/// Number of nodes of a linear or quadratic tet or triangle; 0 for other cells.
 inline constexpr std::size_t vtk_nodes_of(std::int64_t type) {
   return type == vtk_tet_type                  ? 4
          : type == vtk_quadratic_tet_type      ? 10
@@ -36,36 +36,37 @@ inline constexpr std::size_t vtk_nodes_of(std::int64_t type) {
                                                : 0;
 }
 
-/// What our own files call the cell field with the numbers of surfaces, and the field data with the names of
-/// these and of the materials: lines "NUMBER<tab>NAME" as bytes.
+/// Names of arrays in this program's files: the cell field with the numbers of surfaces, and the field data
+/// with the names of surfaces and materials, as the bytes of lines "NUMBER<tab>NAME".
 inline constexpr const char* vtk_surface_field = "surface";
 inline constexpr const char* vtk_surface_names = "surface_names";
 inline constexpr const char* vtk_material_names = "material_names";
 
-/// The text whose bytes an array of numbers gives; ? for what is no byte.
+/// Converts an array of bytes to text; ? for a number that is no byte.
 std::string vtk_text(const std::vector<double>& bytes);
 
-/// The numbers and names of such field data. Throws InputError for a line of another form.
+/// Parses such lines.
+/// \throws InputError for a line of another form
 std::vector<std::pair<std::int64_t, std::string>> parse_vtk_names(const std::string& text,
                                                                   const std::string& array,
                                                                   const std::string& file);
 
-/// The cells of a file that are not linear tets, by kind.
+/// Cells of a file that are not linear tets, by kind.
 class OtherVtkCells {
  public:
   /// `type` is VTK's number of the kind, `cell` the index of the cell.
   void add(std::int64_t type, std::size_t cell);
-  /// Takes one that is no volume away again.
+  /// Removes a cell that is no volume.
   void remove(std::int64_t type) {
     if (--counts_[type] == 0) counts_.erase(type);
   }
-  /// There are cells of three dimensions, or of unknown types, which might be such.
+  /// Whether there are cells of three dimensions, or of unknown types, which might be.
   bool has_volumes() const { return has_volumes_; }
-  /// Of the first of these.
+  /// Index of the first of these.
   std::size_t first_volume() const { return first_volume_; }
-  /// The message that refuses the file for them.
+  /// Message that rejects the file for them.
   std::string refusal() const;
-  /// Appends the kinds that are skipped: lines, faces, vertices.
+  /// Appends the skipped kinds: lines, faces, vertices.
   void append_flat_to(std::vector<Dropped>& dropped) const;
 
  private:

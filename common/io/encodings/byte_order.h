@@ -9,8 +9,8 @@
 
 namespace tetwright {
 
-/// A number from the bytes at `from`, which need not be aligned. `swap`: they are in the other byte order
-/// than this machine's.
+/// Loads a number from bytes that need not be aligned.
+/// \param swap the bytes are not in this machine's order
 template <class Number>
 Number load(const char* from, bool swap) {
   std::array<char, sizeof(Number)> bytes;

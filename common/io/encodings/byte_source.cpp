@@ -15,7 +15,7 @@ namespace tetwright {
 
 namespace {
 
-/// The best that deflate can do: 1032 bytes become one (zlib, "Technical Details").
+/// Maximum compression of deflate: 1032 bytes become one (zlib, "Technical Details").
 constexpr std::uint64_t max_gzip_ratio = 1032;
 
 /// zlib counts bytes in 32 bits.
@@ -24,10 +24,10 @@ constexpr std::size_t max_at_once = std::size_t{1} << 30;
 /// Skipped bytes are inflated into a buffer of this size.
 constexpr std::uint64_t skip_size = std::uint64_t{1} << 16;
 
-/// What inflates to at most this many bytes is inflated at once: less than the labels of such a volume take.
+/// Maximum size that is inflated at once: less memory than the labels of such a volume take.
 constexpr std::size_t max_inflated_at_once = std::size_t{1} << 26;
 
-/// What a gzip file of one member ends with: the checksum and the size of what was packed, modulo 2^32.
+/// Trailer of a gzip member: checksum and size before compression, modulo 2^32.
 constexpr std::size_t gzip_trailer_size = 8;
 
 using Decompressor = std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)>;
@@ -39,7 +39,7 @@ struct ByteSource::State {
   std::size_t packed_size = 0;
   bool member_ended = false;
   std::string buffer;
-  /// All of it, `inflated_size` bytes, if it was inflated at once; null: it is inflated as it is asked for.
+  /// All `inflated_size` bytes, if inflated at once; null: inflated on demand.
   std::unique_ptr<char[]> inflated;
   std::size_t inflated_size = 0, inflated_taken = 0;
 
@@ -51,15 +51,15 @@ struct ByteSource::State {
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
-  /// Inflates a gzip file of one member if the size that it ends with is small enough, which takes libdeflate
-  /// a quarter of zlib's time or less. Leaves everything else, damaged data among it, to zlib.
+  /// Inflates a gzip file of one member if the size in its trailer is small enough; libdeflate takes a
+  /// quarter of zlib's time or less. Leaves everything else, including damaged data, to zlib.
   void inflate_at_once(std::string_view bytes);
 };
 
 void ByteSource::State::inflate_at_once(std::string_view bytes) {
   if (!bytes.starts_with("\x1f\x8b") || bytes.size() < gzip_trailer_size) return;
   const std::size_t size = load<std::uint32_t>(bytes.data() + bytes.size() - 4, !little_endian_machine);
-  // A few bytes at the end of a damaged file may say anything.
+  // The trailer of a damaged file may contain anything.
   if (size > max_inflated_at_once || size / max_gzip_ratio > bytes.size()) return;
   const Decompressor decompressor(libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
   if (!decompressor) throw std::bad_alloc();
@@ -109,7 +109,7 @@ std::string_view ByteSource::inflate_next(std::size_t n) {
   s.stream.avail_out = static_cast<uInt>(n);
   while (s.stream.avail_out > 0) {
     if (s.member_ended) {
-      // Files of several members are one after the other; anything else behind the last is not ours.
+      // Members follow each other directly; other bytes after the last are not part of the file.
       if (!bytes_.starts_with("\x1f\x8b") || inflateReset(&s.stream) != Z_OK) break;
       s.member_ended = false;
     }
@@ -155,7 +155,7 @@ void ByteSource::check_end() {
 
 std::uint64_t ByteSource::max_left() const {
   if (!packed()) return bytes_.size();
-  // One more: what was read but not yet handed out.
+  // One more, for bytes read but not yet returned.
   const std::uint64_t max_size = (state_->packed_size + 1) * max_gzip_ratio;
   return max_size > taken_ ? max_size - taken_ : 0;
 }

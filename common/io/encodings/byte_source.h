@@ -8,32 +8,33 @@
 
 namespace tetwright {
 
-/// The bytes of a part of a file, as they are or inflated (zlib, or gzip of one or more members).
+/// Bytes of a part of a file, plain or inflated (zlib, or gzip of one or more members).
 ///
-/// What inflates to more than 64 MB is inflated as it is asked for, so that a few bytes that would inflate to
-/// terabytes cost no more memory than the caller takes. A gzip file of one member that ends with a smaller
-/// size is inflated at once: libdeflate, which can do nothing else, takes a quarter to a thirtieth of zlib's
-/// time on segmented volumes.
+/// Data of more than 64 MB when inflated are inflated on demand, so that a few bytes that expand to terabytes
+/// cost no more memory than the caller asks for. A gzip file of one member whose trailer gives a smaller size
+/// is inflated at once by libdeflate, which cannot stream but takes a quarter to a thirtieth of zlib's time
+/// on segmented volumes.
 class ByteSource {
  public:
   enum class Packing { none, deflate };
 
-  /// `name` is the name of the file in messages. The bytes must outlive this object.
+  /// \param bytes must outlive this object
+  /// \param name of the file, used in messages
   ByteSource(std::string_view bytes, Packing packing, std::string name);
   ~ByteSource();
   ByteSource(ByteSource&&) noexcept;
 
-  /// Returns the next `n` bytes, or fewer at the end; valid until the next call. Throws InputError if the
-  /// compressed data are damaged.
+  /// Returns the next `n` bytes, or fewer at the end; valid until the next call.
+  /// \throws InputError if the compressed data are damaged
   std::string_view take(std::size_t n);
   /// Skips the next `n` bytes, or fewer at the end, and returns their number.
   std::uint64_t skip(std::uint64_t n);
-  /// To be called when all bytes were taken: reads compressed data to their end. Throws InputError if they
-  /// end early, or their checksum is wrong.
+  /// Reads compressed data to their end, after all bytes were taken.
+  /// \throws InputError if they end early or their checksum is wrong
   void check_end();
 
   std::uint64_t taken() const { return taken_; }
-  /// An upper bound of the number of bytes that are left.
+  /// Upper bound of the number of bytes left.
   std::uint64_t max_left() const;
   bool packed() const { return state_ != nullptr; }
   const std::string& name() const { return name_; }

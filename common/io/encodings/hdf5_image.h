@@ -10,17 +10,18 @@
 
 namespace tetwright {
 
-/// An HDF5 file in memory, on the HDF5 library. Not safe for concurrent use: the library is not.
+/// Writes an HDF5 file in memory, on the HDF5 library. Not safe for concurrent use, since the library is not.
 class Hdf5Writer {
  public:
   Hdf5Writer();
   ~Hdf5Writer();
 
-  /// Adds a dataset of `columns` numbers in each row, compressed by zlib; `name` has no slashes.
+  /// Adds a dataset with `columns` numbers in each row, compressed by zlib.
+  /// \param name without slashes
   void add(const std::string& name, std::span<const double> values, std::size_t columns);
   void add(const std::string& name, std::span<const std::int64_t> values, std::size_t columns);
   void add(const std::string& name, std::span<const std::int32_t> values, std::size_t columns);
-  /// The bytes of the file, the same for the same datasets.
+  /// Bytes of the file, identical for identical datasets.
   std::string bytes();
 
  private:
@@ -31,12 +32,12 @@ class Hdf5Writer {
 /// Reads datasets of an HDF5 file in memory.
 class Hdf5Reader {
  public:
-  /// Throws InputError if the bytes are no HDF5 file.
+  /// \throws InputError if the bytes are no HDF5 file
   Hdf5Reader(std::string bytes, std::string name);
   ~Hdf5Reader();
 
-  /// All numbers of a dataset ("/Mesh/geometry"), row by row; integers beyond 2^53 lose digits. Throws
-  /// InputError if there is none, if it does not hold numbers, or if they are more than `max_count`.
+  /// Reads all numbers of a dataset ("/Mesh/geometry"), row by row; integers beyond 2^53 lose digits.
+  /// \throws InputError if it is missing, not numeric, or has more than `max_count` numbers
   std::vector<double> numbers(const std::string& dataset, std::size_t max_count) const;
 
  private:

@@ -43,7 +43,7 @@ std::size_t MshNumbers::count(std::string_view what, std::size_t text_bytes, std
 std::size_t MshNumbers::checked_count(std::int64_t n, std::string_view what, std::size_t text_bytes,
                                       std::size_t binary_bytes) const {
   if (n < 0) in_.fail("the " + std::string(what) + " is negative: " + std::to_string(n));
-  // The last one of a text may lack the white space that ends it.
+  // The last number of a text may lack trailing white space.
   const std::size_t room = binary_ ? in_.left() / binary_bytes : (in_.left() + 1) / text_bytes;
   if (static_cast<std::uint64_t>(n) > room)
     in_.fail("the " + std::string(what) + " is " + std::to_string(n) + ", but only " +

@@ -8,41 +8,43 @@
 
 namespace tetwright {
 
-/// The numbers of an MSH file's sections, as text or binary.
+/// Reads the numbers of an MSH file's sections, as text or binary.
 class MshNumbers {
  public:
-  /// `in` must outlive this object; it is text unless set_binary() is called.
+  /// Reads text until set_binary() is called. `in` must outlive this object.
   explicit MshNumbers(TextScanner& in) : in_(in) {}
 
-  /// `swap`: the bytes are in the other order than this machine's. `size_bytes`: of what size() reads, 4
-  /// or 8.
+  /// Switches to binary numbers.
+  /// \param swap the bytes are not in this machine's order
+  /// \param size_bytes of the numbers that size() reads, 4 or 8
   void set_binary(bool swap, std::size_t size_bytes) {
     binary_ = true;
     swap_ = swap;
     size_bytes_ = size_bytes;
   }
   bool binary() const { return binary_; }
-  /// The same kind of numbers from another place of the file.
+  /// Reader of the same encoding at another position of the file.
   MshNumbers of(TextScanner& in) const {
     MshNumbers numbers(in);
     if (binary_) numbers.set_binary(swap_, size_bytes_);
     return numbers;
   }
 
-  /// The next number: an int (4 bytes), a size or node number (4 or 8 bytes), a double. `what` names it in
-  /// messages. All throw InputError at the end of the file or for what is no number.
+  /// Reads an int (4 bytes), a size or node number (4 or 8 bytes), or a double.
+  /// \param what names the number in messages
+  /// \throws InputError at the end of the file or if it is no number
   std::int64_t integer(std::string_view what);
   std::int64_t size(std::string_view what);
   double number(std::string_view what);
-  /// A finite one.
+  /// Reads a finite number.
   double coordinate();
-  /// A size that counts items that follow, each of at least `text_bytes` bytes or `binary_bytes`.
+  /// Reads a size that counts subsequent items of at least `text_bytes` or `binary_bytes` bytes each.
   std::size_t count(std::string_view what, std::size_t text_bytes, std::size_t binary_bytes);
-  /// The same of a number that was read already.
+  /// Checks a count that was read already.
   std::size_t checked_count(std::int64_t n, std::string_view what, std::size_t text_bytes,
                             std::size_t binary_bytes) const;
 
-  /// Skips one line feed after a header line of text, behind which binary numbers begin.
+  /// Skips the line feed between a header line of text and binary numbers.
   void begin_binary() {
     if (binary_) in_.skip_line();
   }

@@ -11,9 +11,9 @@ namespace tetwright {
 
 namespace {
 
-/// Checks that `n` items of `bytes_each` are there. (`n` is what the file says.)
+/// Checks that `n` items (a count from the file) of `bytes_each` fit into the rest of the file.
 void expect_bytes(const TextScanner& in, std::size_t n, std::size_t bytes_each, const std::string& what) {
-  // The last word may lack the white space that ends it.
+  // The last word may lack trailing white space.
   if (n > (in.left() + 1) / bytes_each)
     in.fail(std::to_string(n) + " numbers are promised (" + what + "), but only " +
             std::to_string(in.left()) + " bytes follow; the file is cut short or its header is wrong");
@@ -40,7 +40,7 @@ std::vector<Value> read_binary(TextScanner& in, std::size_t n, const std::string
   return values;
 }
 
-/// Eight to a byte, the first in the highest bit.
+/// Reads bits, eight to a byte, the first in the highest bit.
 template <class Value>
 std::vector<Value> read_bits(TextScanner& in, std::size_t n, const std::string& what) {
   in.skip_line();
@@ -139,8 +139,8 @@ void skip_vtk_strings(TextScanner& in, bool binary, std::size_t n) {
       in.skip_line();
       continue;
     }
-    // The two highest bits of the first byte say how many bytes the length has: 8, 4, 2, 1; the rest is its
-    // beginning.
+    // The two highest bits of the first byte encode the number of bytes of the length: 8, 4, 2, 1; the other
+    // bits are its beginning.
     const std::string_view head = in.take_bytes(1);
     const auto first = static_cast<unsigned char>(head[0]);
     const std::size_t more = first >> 6 == 0 ? 7 : first >> 6 == 1 ? 3 : first >> 6 == 2 ? 1 : 0;

@@ -16,8 +16,8 @@
 
 namespace tetwright {
 
-/// What a VTK XML file of this dataset ("UnstructuredGrid", "PolyData") begins with, as write_vtu_array()
-/// encodes its arrays.
+/// Beginning of a VTK XML file of this dataset ("UnstructuredGrid", "PolyData"), for arrays that
+/// write_vtu_array() encodes.
 inline std::string vtu_head(const std::string& dataset) {
   return "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + dataset +
          "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt32\" "
@@ -25,7 +25,7 @@ inline std::string vtu_head(const std::string& dataset) {
          dataset + ">\n";
 }
 
-/// Writes a data array of `size` numbers, the i-th of which is `number(i)`.
+/// Writes a data array of `size` numbers `number(i)`.
 template <class NumberAt>
 void write_vtu_numbers(const ByteSink& sink, const char* type, const std::string& name,
                        const std::string& more, std::size_t size, NumberAt&& number) {
@@ -45,8 +45,8 @@ void write_vtu_numbers(const ByteSink& sink, const char* type, const std::string
   sink("\n</DataArray>\n");
 }
 
-/// Writes names as an array of bytes, since other readers do not know VTK's arrays of text: a line
-/// "NUMBER<tab>NAME" for each.
+/// Writes names as an array of bytes, a line "NUMBER<tab>NAME" for each, since other readers do not know
+/// VTK's arrays of text.
 inline void write_vtu_names(const ByteSink& sink, const char* array,
                             const std::vector<std::pair<std::int64_t, std::string>>& names) {
   std::string text;

@@ -9,17 +9,18 @@
 
 namespace tetwright {
 
-/// Unpacks the blocks of a compressed array of a VTK XML file. Not to be used by several threads at a time.
+/// Decompresses the blocks of a compressed array of a VTK XML file. Not for concurrent use.
 class BlockUnpacker {
  public:
   virtual ~BlockUnpacker() = default;
-  /// False unless the block is sound and fills `to` exactly.
+  /// Whether the block is intact and fills `to` exactly.
   virtual bool unpack(std::string_view block, std::span<char> to) = 0;
-  /// How many bytes one byte may become at most.
+  /// Maximum number of bytes that one compressed byte expands to.
   virtual std::uint64_t max_ratio() const = 0;
 };
 
-/// For a VTKFile's attribute "compressor"; null for an unknown one. Throws std::bad_alloc.
+/// Decompressor for a VTKFile's attribute "compressor"; null for an unknown one.
+/// \throws std::bad_alloc
 std::unique_ptr<BlockUnpacker> make_block_unpacker(std::string_view compressor);
 
 }  // namespace tetwright

@@ -33,7 +33,8 @@ class VtuData {
   /// The pieces of a grid, "UnstructuredGrid" or "PolyData", at least one. Throws InputError if the file
   /// holds another one.
   std::vector<pugi::xml_node> pieces(const char* grid) const;
-  /// The same, where there is to be one alone.
+  /// The only piece of a grid.
+  /// \throws InputError if there are several
   pugi::xml_node only_piece(const char* grid) const;
   /// The number that an attribute of a piece gives.
   std::size_t count(pugi::xml_node piece, const char* attribute) const;
@@ -63,8 +64,8 @@ class VtuData {
   [[noreturn]] void fail(const std::string& message) const;
 
  private:
-  /// What takes the bytes of an array, piece by piece (a block of a compressed one): large ones need not
-  /// stand in memory as a whole.
+  /// Receives the bytes of an array piece by piece (a block of a compressed one), so that a large array need
+  /// not be in memory as a whole.
   struct DecodedBytes {
     std::function<void(std::size_t size)> begin;
     std::function<void(std::string_view bytes)> piece;

@@ -14,7 +14,7 @@ namespace tetwright {
 
 namespace {
 
-/// Text with numbers is packed 3 to 20 times as small; what is meant to fill a machine, a thousand times.
+/// Text with numbers compresses by a factor of 3 to 20, a file meant to exhaust memory by a thousand.
 constexpr std::uint64_t max_packing = 200, unsuspected_size = 1 << 26;
 
 std::string text_of(zip_error_t& error) {
@@ -32,7 +32,7 @@ struct CloseFile {
 void ZipArchive::Discard::operator()(zip* archive) const { zip_discard(archive); }
 
 ZipArchive::ZipArchive(std::string_view bytes, std::string name) : name_(std::move(name)) {
-  if (bytes.empty()) throw InputError(name_, 0, "the file is empty");  // libzip takes it for an archive
+  if (bytes.empty()) throw InputError(name_, 0, "the file is empty");  // libzip accepts it as an archive
   zip_error_t error;
   zip_error_init(&error);
   zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);

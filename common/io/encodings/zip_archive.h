@@ -9,18 +9,20 @@ struct zip;
 
 namespace tetwright {
 
-/// The files in a ZIP archive in memory, by libzip.
+/// Files of a ZIP archive in memory, by libzip.
 class ZipArchive {
  public:
-  /// The bytes must outlive this object; `name` is used in messages. Throws InputError if they are no
-  /// archive.
+  /// \param bytes must outlive this object
+  /// \param name used in messages
+  /// \throws InputError if the bytes are no archive
   ZipArchive(std::string_view bytes, std::string name);
 
-  /// Paths are compared without the case of ASCII letters.
+  /// Whether the archive has a file. The case of ASCII letters is ignored.
   bool has(const std::string& path) const;
 
-  /// The content of a file. Throws InputError if it is missing, encrypted or damaged, or so large for what it
-  /// takes in the archive that it can only be meant to fill memory.
+  /// Content of a file.
+  /// \throws InputError if it is missing, encrypted or damaged, or so large for its compressed size that it
+  ///   can only be meant to exhaust memory
   std::string read(const std::string& path) const;
 
  private:

@@ -9,7 +9,7 @@
 
 namespace tetwright {
 
-/// What a file calls a group: its name on one line, or its number where it has none, or "none".
+/// Label of a group for messages: its name on one line, or its number if it has none, or "none".
 inline std::string group_text(const SurfaceRegion& group) {
   if (!group) return "none";
   return group.name.empty() ? std::to_string(group.number) : printable_name(group.name);
@@ -22,7 +22,7 @@ inline std::string printable_word(const std::string& name) {
   return word;
 }
 
-/// The same for formats in which # begins a comment.
+/// printable_word() for formats in which # begins a comment.
 inline std::string word_without_hash(const std::string& name) {
   std::string word = printable_word(name);
   std::replace(word.begin(), word.end(), '#', '_');

@@ -18,7 +18,7 @@ constexpr std::size_t max_name_size = 200;  // bytes
 
 bool is_whole(double value) { return value == std::floor(value) && std::fabs(value) < max_exact_whole; }
 
-/// The field's values as materials of `file`.
+/// Converts a field to materials; `file` is named in messages.
 std::vector<MaterialTag> materials_of(const MeshField& field, const std::string& file) {
   std::vector<MaterialTag> materials(field.values.size());
   for (std::size_t t = 0; t < materials.size(); ++t) {
@@ -36,7 +36,7 @@ std::vector<MaterialTag> materials_of(const MeshField& field, const std::string&
   return materials;
 }
 
-/// The index of the cell field to take; the size of the list if there is none.
+/// Index of the cell field to use as the material; the size of the list if there is none.
 std::size_t field_by_rule(const std::vector<MeshField>& fields) {
   for (const char* name : {"material", "medit:ref", "gmsh:physical", "MaterialID", "attribute"})
     for (std::size_t f = 0; f < fields.size(); ++f)
@@ -146,7 +146,7 @@ void take_material(ReadTetMesh& read, const ReadTetMeshOptions& options, const s
     fields[taken] = {read.material_field, 1, true,
                      std::vector<double>(mesh.materials.begin(), mesh.materials.end())};
   }
-  // The names in the file belong to the field that the file itself takes for the material.
+  // The file's names belong to its default material field.
   if (!options.material_field.empty() && name != "material") mesh.material_names.clear();
   mesh.materials = std::move(materials);
   read.material_field = name;

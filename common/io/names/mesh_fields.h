@@ -10,15 +10,17 @@
 
 namespace tetwright {
 
-/// Doubles represent every whole number up to this one. From it on they may stand for another one.
+/// Doubles represent every whole number up to this one; from it on a value may stand for another one.
 inline constexpr double max_exact_whole = 0x1p53;
 
-/// The name in a form that every format can hold: valid UTF-8 of at most 200 bytes, with underscores for
-/// control characters and bytes that are not UTF-8; "field" if it is empty.
+/// Name in a form that every format can hold: valid UTF-8 of at most 200 bytes, with underscores for control
+/// characters and bytes that are not UTF-8; "field" if it is empty.
 std::string field_name(std::string_view name);
 
-/// field_name() of each field, in the form that a format can hold (null: as it is), made unique: a name that
-/// is in `taken` or that an earlier field has gets the suffix "_2", "_3" and so on.
+/// Unique names of fields: field_name() in the form that a format can hold.
+/// \param taken names that no field may have; on a conflict with one or with an earlier field a name gets the
+///   suffix "_2", "_3" and so on
+/// \param form null: unchanged
 std::vector<std::string> field_names_to_write(const std::vector<MeshField>& fields,
                                               std::vector<std::string> taken,
                                               std::string (*form)(const std::string& name) = nullptr);
@@ -26,16 +28,17 @@ std::vector<std::string> field_names_to_write(const std::vector<MeshField>& fiel
 /// Whether every value is whole and exactly represented (below 2^53 in absolute value).
 bool all_whole(const MeshField& field);
 
-/// Marks a field that the file has as integers as such, unless doubles are too short for one of them: then it
-/// is none, and `rounded` gets the number of these under its name.
+/// Marks a field of integers as such, unless doubles are too short for one of them: then it stays
+/// floating-point, and `rounded` counts these numbers under its name.
 void take_integers(MeshField& field, KindCounts& rounded);
 
 /// Chooses the material of the tets as ReadTetMesh::material_field describes: fills mesh.materials from a
-/// cell field, removes that field, and sets material_field. The reader has filled in the tets and, if the
-/// format has a place of its own for materials, mesh.materials and the name of that place as material_field;
-/// `also` are names that the options may ask for as well, for the message. Throws InputError if the field
-/// that is asked for is missing or its values are not material tags. A field named "material" must have whole
-/// numbers; a field with another of the known names that has others is not taken.
+/// cell field, removes that field, and sets material_field. A field named "material" must have whole numbers;
+/// fields of the other known names are skipped if they have others.
+/// \param also further names that the options may request, for the message
+/// \pre the reader has filled in the tets and, if the format stores materials itself, mesh.materials and its
+///   name for them as material_field
+/// \throws InputError if the requested field is missing or its values are not material tags
 void take_material(ReadTetMesh& read, const ReadTetMeshOptions& options, const std::string& file,
                    const std::vector<std::string>& also = {});
 

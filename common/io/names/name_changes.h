@@ -10,21 +10,21 @@ namespace tetwright {
 
 struct MeshParts;
 
-/// What a file has in place of a number or name of the user's, as texts; names are in quotes.
+/// A number or name of the input and its replacement in a file, as text; names are in quotes.
 struct NameChange {
   std::string own, written;
 };
 
-/// The numbers and names of the user's that a format cannot hold as they are. Those that writers make up,
-/// where there is none, are not among them.
+/// Numbers and names of the input that a format cannot hold unchanged. Names that writers invent where there
+/// is none are not among them.
 struct NameChanges {
   std::vector<NameChange> tags, material_names, patch_numbers, patch_names, fields;
 };
 
-/// `written` are the materials and surfaces of the mesh as the format's writer calls them.
+/// Changes between the mesh and `written`, the materials and surfaces in the format.
 NameChanges name_changes(const TetMesh& mesh, const MeshParts& written);
 
-/// Appends the fields whose names are others in `written`, which has one for each.
+/// Appends the fields whose names differ in `written`, which has one for each.
 void add_field_changes(const std::vector<MeshField>& fields, const std::vector<std::string>& written,
                        std::vector<NameChange>& changes);
 

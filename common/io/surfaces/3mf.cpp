@@ -21,15 +21,15 @@ namespace tetwright {
 
 namespace {
 
-/// Objects may consist of objects, also of many times themselves: more than any program writes.
+/// Limits on nested and repeated objects, which may contain an object many times: more than any program
+/// writes.
 constexpr std::size_t max_placed_objects = 100'000, max_depth = 1000;
 
-/// Extensions without which a model says all the same where its triangles are, by what their name spaces
-/// hold.
+/// Fragments of name spaces of extensions that do not affect where triangles are.
 constexpr std::array<std::string_view, 4> harmless_3mf_extensions{"/production/", "/material/",
                                                                   "/beamlattice/", "/trianglesets/"};
 
-/// Of an element or attribute, without the prefix of its name space.
+/// Name of an element or attribute without its name space prefix.
 std::string_view local_name(std::string_view name) {
   const std::size_t colon = name.find(':');
   return colon == std::string_view::npos ? name : name.substr(colon + 1);
@@ -91,7 +91,7 @@ class XmlPart {
   pugi::xml_document document_;
 };
 
-/// A part with objects.
+/// A part of the file with objects.
 struct Model {
   std::string path;
   XmlPart xml;
@@ -105,14 +105,14 @@ struct Model {
   }
 };
 
-/// What tells a name space from others: "booleanoperations/2023/07".
+/// Short form of a name space: "booleanoperations/2023/07".
 std::string_view short_name(std::string_view space) {
   constexpr std::string_view common_part = "/3dmanufacturing/";
   const std::size_t at = space.find(common_part);
   return at == std::string_view::npos ? space : space.substr(at + common_part.size());
 }
 
-/// Throws InputError for a model that cannot be understood without an extension which changes the shape.
+/// \throws InputError for a model that requires an extension which changes the shape
 void check_extensions(const XmlPart& xml) {
   const pugi::xml_node root = xml.root();
   TextScanner prefixes(root.attribute("requiredextensions").value(), "");
@@ -125,7 +125,7 @@ void check_extensions(const XmlPart& xml) {
   }
 }
 
-/// Reads the four rows of three numbers that points, as rows, are multiplied by.
+/// Reads a transform: four rows of three numbers, multiplied by points as row vectors.
 Eigen::Affine3d transform_of(const XmlPart& xml, pugi::xml_node node) {
   Eigen::Affine3d result = Eigen::Affine3d::Identity();
   const pugi::xml_attribute attribute = node.attribute("transform");
@@ -158,7 +158,7 @@ class Reader3mf {
   }
 
  private:
-  /// An object that is being placed, within those that consist of it.
+  /// An object being placed, and the objects that contain it.
   struct Placing {
     pugi::xml_node object;
     const Placing* within;
@@ -194,7 +194,7 @@ class Reader3mf {
     return *model;
   }
 
-  /// Adds the object that an item or a component of `from` names.
+  /// Adds the object that an item or a component of `from` refers to.
   void place(const Model& from, pugi::xml_node reference, const Eigen::Affine3d& outer,
              const Placing* within) {
     const Eigen::Affine3d transform = outer * transform_of(from.xml, reference);
@@ -222,7 +222,7 @@ class Reader3mf {
         if (is_called(component, "component")) place(*holder, component, transform, &here);
       return;
     }
-    // That of an object with components says nothing.
+    // The type of an object with components is meaningless.
     const std::string_view type = object.attribute("type").value();
     if (type == "support" || type == "solidsupport") {
       surface_.drop("objects that support others");
@@ -234,7 +234,7 @@ class Reader3mf {
     }
   }
 
-  /// That of an object, or else of the innermost object with a name that it is a part of.
+  /// Group of an object, named after it or the innermost named object that contains it.
   std::uint32_t group_of(const Placing& placing) {
     const Placing* named = &placing;
     while (named && !*named->object.attribute("name").value()) named = named->within;
@@ -287,7 +287,7 @@ class Reader3mf {
   PlacedLimit limit_;
   UniqueNames names_{[](const std::string& name) { return name; }};
   std::vector<SurfaceRegion> groups_;
-  std::map<std::size_t, std::uint32_t> group_numbers_;  ///< by the objects' hashes, which tell them apart
+  std::map<std::size_t, std::uint32_t> group_numbers_;  ///< by the objects' hashes, which identify them
 };
 
 }  // namespace

@@ -10,17 +10,18 @@
 
 namespace tetwright {
 
-/// Reads what a 3D Manufacturing Format file (.3mf, core specification 1.3) builds: its objects with their
-/// components, placed by the transforms of both, also where the production extension spreads them over
-/// several parts of the file. Coordinates stay in the file's unit. The objects are the groups, by their names
-/// or those of objects that they are parts of; of several objects with one name the later ones are called
-/// NAME_2, NAME_3 and so on. Objects that are there only to support others while they are printed or are no
-/// meshes, colours, materials and beam lattices are left out and appended to `dropped`, unless that is null.
-/// `name` is used in messages. Throws InputError with the part of the file and the line for anything that is
-/// malformed, and for extensions that change the shape.
+/// Reads the build of a 3D Manufacturing Format file (.3mf, core specification 1.3): its objects with their
+/// components, placed by the transforms of both, also where the production extension distributes them over
+/// several parts of the file. Coordinates stay in the file's unit. Groups are the objects, by their names or
+/// those of objects that contain them; repeated names become NAME_2, NAME_3 and so on. Objects that only
+/// support others during printing or are no meshes, colours, materials and beam lattices are dropped.
 ///
-/// On libzip and pugixml: Assimp crashes on most damaged files, and Debian's lib3mf (1.8) has no place for
+/// Uses libzip and pugixml: Assimp crashes on most damaged files, and Debian's lib3mf (1.8) does not support
 /// objects in other parts.
+/// \param name used in messages
+/// \param dropped receives the dropped contents; may be null
+/// \throws InputError with the part of the file and the line for malformed contents, and for extensions that
+///   change the shape
 TriangleMesh read_3mf(std::string_view bytes, const std::string& name,
                       std::vector<Dropped>* dropped = nullptr);
 

@@ -25,7 +25,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Deeper than any scene that a program writes; each level takes room on the stack.
+/// Deeper than any program's scenes; each level takes stack space.
 constexpr std::size_t max_node_depth = 1000;
 
 // glTF 2.0, "Binary glTF Layout": 12 bytes of header, and 8 before each chunk.
@@ -36,7 +36,7 @@ constexpr std::uint32_t json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
 constexpr std::int64_t type_uint8 = 5121, type_uint16 = 5123, type_uint32 = 5125, type_float = 5126;
 constexpr std::int64_t mode_points = 0, mode_triangles = 4, mode_strip = 5, mode_fan = 6;
 
-/// Extensions that say nothing about where triangles are, by the beginnings of their names.
+/// Prefixes of extensions that do not affect where triangles are.
 constexpr std::array<std::string_view, 5> harmless_gltf_extensions{"KHR_materials_", "KHR_texture_",
                                                                    "EXT_texture_", "KHR_lights_", "KHR_xmp"};
 
@@ -85,7 +85,7 @@ class SceneReader {
       if (left < chunk_header_size || number(at) > left - chunk_header_size)
         fail("byte " + std::to_string(at) + ": a chunk goes beyond the end of the file; it is cut short");
       const std::string_view content = bytes.substr(at + chunk_header_size, number(at));
-      // The first of each kind counts; there may be chunks of other kinds.
+      // The first chunk of each kind counts; there may be other kinds.
       if (number(at + 4) == json_chunk && !found_text) {
         found_text = true;
         text = content;
@@ -110,7 +110,7 @@ class SceneReader {
     }
   }
 
-  /// A list of the file, empty where there is none.
+  /// A list of the file; empty if it is missing.
   const json& list(const char* kind) const {
     static const json none = json::array();
     const auto found = scene_.find(kind);
@@ -133,12 +133,12 @@ class SceneReader {
     return std::string(kind) + " " + std::to_string(index);
   }
 
-  /// A whole number that must be there, unless there is a default.
+  /// A whole number; required unless there is a default.
   std::int64_t whole(const json& object, const std::string& what, const char* key,
                      std::optional<std::int64_t> otherwise = {}) const {
     const auto found = object.find(key);
     if (found == object.end() && otherwise) return *otherwise;
-    // Some programs write 3.0; beyond this doubles are no longer exact.
+    // Some programs write 3.0; larger doubles are not exact.
     constexpr double exact = 9007199254740992.0;
     if (found == object.end() || !found->is_number() || std::abs(found->get<double>()) > exact ||
         found->get<double>() != std::floor(found->get<double>()))
@@ -155,7 +155,7 @@ class SceneReader {
     return static_cast<std::size_t>(value);
   }
 
-  /// Empty where there is none.
+  /// A list of numbers; empty if it is missing.
   std::vector<double> numbers(const json& object, const std::string& what, const char* key,
                               std::size_t count) const {
     std::vector<double> values;
@@ -187,7 +187,7 @@ class SceneReader {
     for (const json& node : list_of(scene, called("scenes", number), "nodes")) {
       if (!node.is_number_integer()) fail(called("scenes", number) + ": a node is no number");
       const auto index = node.get<std::int64_t>();
-      if (roots_.insert(index).second)  // else another scene shows it, too
+      if (roots_.insert(index).second)  // otherwise another scene shows it, too
         add_node(index, Eigen::Affine3d::Identity(), 0);
     }
   }
@@ -226,7 +226,7 @@ class SceneReader {
     const std::string what = called("meshes", number);
     shown_.insert(number);
     const json& primitives = list_of(mesh, what, "primitives");
-    std::map<std::int64_t, std::uint32_t> groups;  // by materials
+    std::map<std::int64_t, std::uint32_t> groups;  // by material
     std::set<std::int64_t> materials;
     for (const json& primitive : primitives) {
       if (!primitive.is_object()) fail(what + ": a primitive is no object; the file is damaged");
@@ -323,7 +323,7 @@ class SceneReader {
     return {binary_.data() + first + offset, stride, count, component};
   }
 
-  /// The numbers of the points at the vertices.
+  /// Adds the vertices and returns their point numbers.
   std::vector<std::int64_t> add_points(std::int64_t number, const Eigen::Affine3d& transform) {
     const Items of = items(number, "VEC3", 3, {type_float});
     limit_.add(of.count, name_);

@@ -10,17 +10,19 @@
 
 namespace tetwright {
 
-/// Reads the triangles of a binary glTF 2.0 file (.glb): those of its default scene, or of all scenes where
-/// it names none, placed by the nodes' transforms. Vertices at the same place become one, since the format
-/// repeats them wherever normals or textures differ. What a node shows is a group, by the node's name or else
-/// its mesh's, with that of the material behind a colon where a mesh has several; of equal names the later
-/// ones become NAME_2, NAME_3 and so on. Lines, points, skins, morph targets, animations and meshes that the
-/// scene does not show are left out and appended to `dropped`, unless that is null. `name` is used in
-/// messages. Throws InputError with the accessor or node for anything that is malformed, for positions that
-/// are compressed, quantised, sparse or in another file, and for extensions that change the shape.
+/// Reads the triangles of a binary glTF 2.0 file (.glb): those of its default scene, or of all scenes if it
+/// names none, placed by the nodes' transforms. Vertices with equal coordinates are merged, since the format
+/// repeats them wherever normals or textures differ. Groups are the nodes, by the node's name or else its
+/// mesh's, followed by a colon and the material's name if a mesh has several; repeated names become NAME_2,
+/// NAME_3 and so on. Lines, points, skins, morph targets, animations and meshes that the scene does not show
+/// are dropped.
 ///
-/// On nlohmann::json: tinygltf (2.7) follows unchecked offsets in damaged files and overflows the stack on
+/// Uses nlohmann::json: tinygltf (2.7) follows unchecked offsets in damaged files and overflows the stack on
 /// nested ones.
+/// \param name used in messages
+/// \param dropped receives the dropped contents; may be null
+/// \throws InputError with the accessor or node for malformed contents, for positions that are compressed,
+///   quantised, sparse or in another file, and for extensions that change the shape
 TriangleMesh read_glb(std::string_view bytes, const std::string& name,
                       std::vector<Dropped>* dropped = nullptr);
 

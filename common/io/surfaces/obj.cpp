@@ -16,7 +16,7 @@ namespace tetwright {
 
 namespace {
 
-/// The next word of a statement; a backslash at the end of a line continues it on the next.
+/// Next word of a statement; a backslash at the end of a line continues it on the next.
 std::string_view next_word(TextScanner& in) {
   std::string_view word = in.word_on_line();
   while (word == "\\") {
@@ -26,7 +26,7 @@ std::string_view next_word(TextScanner& in) {
   return word;
 }
 
-/// The point of "7", "7/1", "7//3" or "-1/2/3", counted from 0.
+/// Index of the point in "7", "7/1", "7//3" or "-1/2/3", from 0.
 std::int64_t point_of(const TextScanner& in, std::string_view word, std::size_t points) {
   std::int64_t index = 0;
   if (!parse_number(word.substr(0, word.find('/')), index))
@@ -38,7 +38,7 @@ std::int64_t point_of(const TextScanner& in, std::string_view word, std::size_t 
           " points have been read (OBJ counts from 1); export the file again");
 }
 
-/// The statements that are not read, and what each of them adds; without those that only say how to draw.
+/// Unread statements and their contents, except those that only concern display.
 constexpr std::array<std::pair<std::string_view, const char*>, 8> other_statements{
     {{"l", "lines"},
      {"p", "points drawn as such"},
@@ -59,10 +59,10 @@ void note_statement(std::string_view keyword, SurfaceBuilder& surface) {
   surface.drop("statements " + in_quotes(keyword));
 }
 
-/// What the faces belong to: an object, a group and a display material.
+/// Names that faces belong to: an object, a group and a display material.
 class FaceNames {
  public:
-  /// True if `keyword` names one of them, by the rest of the statement.
+  /// Reads the name after `keyword`; false if the keyword gives no name.
   bool read(std::string_view keyword, TextScanner& in) {
     const auto kind = std::find(keywords.begin(), keywords.end(), keyword) - keywords.begin();
     if (kind == std::ssize(keywords)) return false;
@@ -72,7 +72,7 @@ class FaceNames {
     return true;
   }
 
-  /// The group of the next face.
+  /// Group of the next face.
   std::uint32_t group() {
     if (last_ == no_index || all_[last_] != now_) {
       const auto [known, added] = numbers_.emplace(now_, static_cast<std::uint32_t>(all_.size()));
@@ -82,7 +82,8 @@ class FaceNames {
     return last_;
   }
 
-  /// Named by those that differ from face to face. Throws InputError where that makes two of one name.
+  /// Groups named by those names that differ between faces.
+  /// \throws InputError if two groups would have one name
   std::vector<SurfaceRegion> groups(const std::string& file) const {
     std::vector<SurfaceRegion> groups(all_.size());
     for (std::size_t kind = 0; kind < keywords.size(); ++kind) {
@@ -115,7 +116,7 @@ class FaceNames {
   }
 
   Names now_;
-  std::vector<Names> all_;  ///< that faces have
+  std::vector<Names> all_;  ///< names of faces
   std::map<Names, std::uint32_t> numbers_;
   std::uint32_t last_ = no_index;  ///< of the last face
 };
@@ -163,7 +164,7 @@ TriangleMesh read_obj(std::string_view bytes, const std::string& name, std::vect
     for (std::string_view word; !(word = next_word(in)).empty();) {
     }
   }
-  // A face may come before its points.
+  // A face may precede its points.
   if (largest >= static_cast<std::int64_t>(surface.point_count()))
     throw InputError(name, largest_line,
                      "a face names point " + std::to_string(largest + 1) + ", but there are " +

@@ -22,7 +22,7 @@ std::string_view read_keyword(TextScanner& in) {
   if (!prefix.ends_with("OFF"))
     in.fail("expected OFF at the beginning, found " + in_quotes(first) + "; is this an OFF file?");
   prefix.remove_suffix(3);
-  // The letters have this order; what they announce follows the coordinates of a point and is skipped.
+  // The prefixes have this order; their values follow the coordinates of a point and are skipped.
   for (std::string_view letter : {"ST", "C", "N"})
     if (prefix.starts_with(letter)) prefix.remove_prefix(letter.size());
   if (!prefix.empty())
@@ -42,7 +42,7 @@ TriangleMesh read_off(std::string_view bytes, const std::string& name, std::vect
   if (!parse_number(first, points) || points < 0)
     in.fail("expected the number of points, found " + in_quotes(first));
   const std::size_t faces = in.count("number of faces", 2);
-  in.skip_line();  // the number of edges, which nobody uses
+  in.skip_line();  // the number of edges is not used
   // A point takes at least "0 0 0" and a line end.
   if (static_cast<std::uint64_t>(points) > (in.left() + 1) / 6)
     in.fail("the number of points is " + std::to_string(points) + ", but only " + std::to_string(in.left()) +

@@ -8,11 +8,11 @@
 
 namespace tetwright {
 
-/// Counts vertices and triangles of formats that place an object many times: a few lines of such a file can
-/// ask for more than any machine holds.
+/// Limits the vertices and triangles of formats that place an object many times: a few lines of such a file
+/// can ask for more than any machine holds.
 class PlacedLimit {
  public:
-  /// Throws InputError beyond the limit.
+  /// \throws InputError beyond the limit
   void add(std::size_t count, const std::string& file) {
     count_ += count;
     if (count_ > max_count)

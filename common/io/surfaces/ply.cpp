@@ -80,13 +80,13 @@ enum class Encoding { ascii, little, big };
 struct PlyHeader {
   Encoding encoding = Encoding::ascii;
   std::vector<Element> elements;
-  /// Of groups by their names, each of which is that of one: what write_ply() says in comments.
+  /// Labels of groups by name, which is unique, from the comments of write_ply().
   std::map<std::string, std::int64_t> labels;
 };
 
 constexpr std::string_view group_property = "surface", group_comment = "surface ";
 
-/// Of a comment such as " surface 3: inlet".
+/// Reads a comment such as " surface 3: inlet".
 void read_group_name(std::string_view comment, PlyHeader& header) {
   comment.remove_prefix(std::min<std::size_t>(1, comment.size()));
   const std::size_t colon = comment.find(": ");
@@ -116,7 +116,7 @@ void read_property(TextScanner& in, Element& element) {
     return *t;
   };
   Property property;
-  // A list has the word "list" where other properties have their type.
+  // A list property has the word "list" in place of a type.
   const std::string_view first = in.word_on_line();
   const bool list = first == "list";
   if (list) {
@@ -194,8 +194,8 @@ class AsciiBody {
  public:
   AsciiBody(TextScanner& in) : in_(in) {}
   std::string place() const { return "line " + std::to_string(in_.line()); }
-  std::size_t left() const { return in_.left() + 1; }  // the last number may lack its white space
-  /// The smallest number of bytes that a number takes.
+  std::size_t left() const { return in_.left() + 1; }  // the last number may lack trailing white space
+  /// Minimum number of bytes of a number.
   static std::size_t size(Type) { return 2; }
   double coordinate(Type) { return in_.coordinate(); }
   double number(Type) { return in_.number("property"); }
@@ -266,7 +266,7 @@ class BinaryBody {
   bool swap_;
 };
 
-/// Compares what the header promises with the bytes that are there.
+/// Checks that the promised items fit into the rest of the file.
 template <class Body>
 void check_count(const Body& body, const Element& element) {
   std::size_t min_size = 0;
@@ -277,12 +277,12 @@ void check_count(const Body& body, const Element& element) {
               " bytes follow; the file is cut short");
 }
 
-/// What read_element() fills.
+/// Output of read_element().
 struct PlyContent {
   explicit PlyContent(const std::string& name) : surface(name) {}
   SurfaceBuilder surface;
   LabelGroups labels;
-  /// One for each property of element `vertex`, in its order; without values for those that are not taken.
+  /// One for each property of element `vertex`, in its order; empty for those that are not wanted.
   std::vector<std::vector<double>> point_values;
 };
 
@@ -330,7 +330,7 @@ void read_element(Body& body, const Element& element, bool with_fields, PlyConte
   }
 }
 
-/// What the file holds beside the coordinates and the polygons.
+/// Counts the contents other than coordinates and polygons.
 void note_dropped(const PlyHeader& header, SurfaceBuilder& surface) {
   for (const Element& element : header.elements) {
     if (!element.is_vertex() && !element.is_face()) {
@@ -346,7 +346,6 @@ void note_dropped(const PlyHeader& header, SurfaceBuilder& surface) {
   }
 }
 
-/// `point_fields` is filled unless it is null.
 void take_names(const PlyHeader& header, std::vector<SurfaceRegion>& groups) {
   std::map<std::int64_t, std::string> names;
   for (const auto& [name, label] : header.labels) names.emplace(label, name);
@@ -354,6 +353,7 @@ void take_names(const PlyHeader& header, std::vector<SurfaceRegion>& groups) {
     if (const auto known = names.find(group.number); known != names.end()) group.name = known->second;
 }
 
+/// Reads a surface; fills `point_fields` unless it is null.
 TriangleMesh read_polygons(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped,
                            std::vector<MeshField>* point_fields) {
   TextScanner in(bytes, name);
@@ -381,7 +381,7 @@ TriangleMesh read_polygons(std::string_view bytes, const std::string& name, std:
   const auto read_all = [&](auto body) {
     for (const Element& e : header.elements) {
       read_element(body, e, point_fields != nullptr, content);
-      if (&e == face) break;  // nothing behind it is needed
+      if (&e == face) break;  // later elements are not needed
     }
   };
   if (header.encoding == Encoding::ascii)

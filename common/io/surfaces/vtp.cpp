@@ -42,7 +42,7 @@ void note_arrays(pugi::xml_node parent, const std::string& what, const std::stri
   append_dropped_names(dropped, what, names);
 }
 
-/// Those that write_vtp() writes.
+/// Reads the names that write_vtp() writes.
 void read_names(const VtuData& data, pugi::xml_node piece, std::vector<SurfaceRegion>& groups,
                 std::size_t max_size) {
   const pugi::xml_node node =

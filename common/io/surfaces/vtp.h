@@ -21,7 +21,7 @@ namespace tetwright {
 TriangleMesh read_vtp(std::string_view bytes, const std::string& name,
                       std::vector<Dropped>* dropped = nullptr);
 
-/// The same with the arrays of numbers of PointData.
+/// Reads the surface with the numeric arrays of PointData.
 SurfaceWithFields read_vtp_with_fields(std::string_view bytes, const std::string& name);
 
 /// The content of a file, compressed by zlib: points as Float64, and the cell array "surface", which numbers

@@ -10,32 +10,34 @@
 
 namespace tetwright {
 
-/// Begins a comment of write_abaqus() that gives a material's tag: "TAG: NAME" follows.
+/// Beginning of a comment of write_abaqus() with a material's tag; "TAG: NAME" follows.
 inline constexpr const char* abaqus_material_comment = "** material ";
 
-/// What write_abaqus() makes of names.
+/// Constraints on names in write_abaqus().
 NameRules abaqus_names();
 
 /// Reads the mesh of an input file of Abaqus or CalculiX: *NODE, and *ELEMENT of tets with 4 or 10 nodes
-/// (C3D4, C3D10 and their variants, also DC3D4 and such), these by their corners. The element sets of *SOLID
-/// SECTION are the materials; where there is none, those that *ELEMENT lines name. They are numbered from 1
-/// in the order in which they appear, unless comments of write_abaqus() give their tags. Surfaces of element
-/// faces become groups of faces, see take_triangles(). Other volume elements, several parts or instances, and
-/// *INCLUDE are refused; other elements, sets and surfaces are counted in ReadTetMesh::dropped, keywords that
-/// say nothing about the mesh are skipped. Throws InputError with the line for anything that is malformed.
+/// (C3D4, C3D10 and their variants, also DC3D4 and such), of the latter the corners. Materials are the
+/// element sets of *SOLID SECTION, or those named by *ELEMENT lines if there is none. They are numbered from
+/// 1 in order of appearance, unless comments of write_abaqus() give their tags. Surfaces of element faces
+/// become groups of faces, see take_triangles(). Other volume elements, several parts or instances, and
+/// *INCLUDE are rejected; other elements, sets and surfaces are counted in ReadTetMesh::dropped, keywords
+/// unrelated to the mesh are skipped.
 ///
-/// Our own: meshio's reader, the only packaged one, is Python and reads no surfaces.
+/// Not a library: meshio's reader, the only packaged one, is Python and reads no surfaces.
+/// \param name used in messages
+/// \throws InputError with the line for malformed contents
 ReadTetMesh read_abaqus(std::string_view bytes, const std::string& name,
                         const ReadTetMeshOptions& options = {});
 
-/// The content of an input file of Abaqus or CalculiX, to be taken in by *INCLUDE: no step and no material,
-/// nodes and elements numbered from 1 without gaps in the order of the mesh. Each material is an element set
-/// of C3D4 or C3D10 elements; each surface of the mesh, if it has interfaces, is a *SURFACE of element faces
-/// (on the side of the smaller tag) and a node set of the same name. Names are plain_name()s.
+/// Writes an input file of Abaqus or CalculiX, for *INCLUDE: no step and no material, nodes and elements
+/// numbered from 1 without gaps in the order of the mesh. Each material is an element set of C3D4 or C3D10
+/// elements; each surface of a mesh with interfaces is a *SURFACE of element faces (on the side of the
+/// smaller tag) and a node set of the same name. Names are plain_name()s.
 ///
 /// Both programs read 20 characters of a number: a coordinate that needs more is rounded to what fits, 14
-/// digits in the worst case. The format has no place for fields. Throws InputError if a coordinate is out of
-/// the range of what can be written so.
+/// digits in the worst case. The format has no fields.
+/// \throws InputError if a coordinate is out of the range that can be written so
 void write_abaqus(const MeshToWrite& written, const ByteSink& sink);
 
 }  // namespace tetwright

@@ -32,8 +32,8 @@ std::int64_t reference(TextScanner& in) {
   return static_cast<std::int64_t>(number);
 }
 
-/// The sections that hold volume cells other than linear tets, and what these are. The second spelling of
-/// hexahedra is that of old files.
+/// Sections of volume cells other than linear tets, and the kinds of cells. The second spelling of hexahedra
+/// is from old files.
 constexpr std::array<std::pair<std::string_view, const char*>, 12> volume_sections{
     {{"Hexahedra", "hexahedra"},
      {"Hexaedra", "hexahedra"},
@@ -48,7 +48,7 @@ constexpr std::array<std::pair<std::string_view, const char*>, 12> volume_sectio
      {"PyramidsP2", "quadratic pyramids"},
      {"Polyhedra", "polyhedra"}}};
 
-/// Sections that are not read, and what they hold; those that are not listed are named as they are.
+/// Skipped sections and their contents; other sections are reported by their keyword.
 constexpr std::array<std::pair<std::string_view, const char*>, 10> other_sections{
     {{"Quadrilaterals", "quads"},
      {"Edges", "edges"},
@@ -68,7 +68,7 @@ const char* find_section(const Sections& sections, std::string_view keyword) {
   return nullptr;
 }
 
-/// A name as one word that can stand in quotes.
+/// Converts a name to one word for use in quotes.
 std::string medit_name(const std::string& name) {
   std::string out;
   for (const char c : valid_utf8(name)) out += static_cast<unsigned char>(c) <= ' ' || c == '"' ? '_' : c;
@@ -96,7 +96,7 @@ class TextReader {
     return surface_of(triangles_, std::move(result_.mesh.points), in_.name());
   }
 
-  /// To be called when the materials are known.
+  /// \pre the materials are known
   void finish(ReadTetMesh& read) {
     triangles_.name_form = medit_name;
     take_triangles(triangles_, "reference", in_.name(), read);
@@ -135,7 +135,7 @@ class TextReader {
       } else if (word == "End") {
         ended = true;
       } else {
-        // A section that is not read, or one of its numbers.
+        // A skipped section, or one of its numbers.
         note_section(word);
       }
     }
@@ -166,7 +166,7 @@ class TextReader {
     }
   }
 
-  /// Of a surface. Beside tets quads are no faces.
+  /// Reads the quads of a surface; in a file with tets they are no faces.
   void read_quads() {
     const std::size_t n = in_.count("number of quads", 10);
     for (std::size_t i = 0; i < n; ++i) {
@@ -176,7 +176,7 @@ class TextReader {
     }
   }
 
-  /// no_index for none that there can be; in a surface that is an error. Faces may precede the points.
+  /// Index of a point, which a face may precede. An impossible index gives no_index, in a surface an error.
   Index read_point_of_face() {
     const std::int64_t index = in_.integer("index of a point");
     const bool possible = index >= 1 && index < no_index;
@@ -195,7 +195,7 @@ class TextReader {
                          " (counted from 1); export the file again");
   }
 
-  /// What write_medit() says of references.
+  /// Reads the comments of write_medit() on references.
   void read_comments() {
     for (std::size_t at = 0; (at = bytes_.find(reference_comment, at)) != std::string_view::npos;) {
       const bool begins_line = at == 0 || bytes_[at - 1] == '\n' || bytes_[at - 1] == '\r';
@@ -212,8 +212,8 @@ class TextReader {
     }
   }
 
-  /// Counts what a section holds if `word` is the keyword of one: keywords begin with a capital letter, and
-  /// the number of items follows.
+  /// Counts the items of a section if `word` is a section keyword: it begins with a capital letter, and the
+  /// number of items follows.
   void note_section(std::string_view word) {
     if (word[0] < 'A' || word[0] > 'Z') return;
     const std::size_t line = in_.line();
@@ -250,7 +250,7 @@ class TextReader {
     result_.material_field = "medit:ref";
   }
 
-  /// Checked at the end, since tets may precede the points.
+  /// Checks indices at the end, since tets may precede the points.
   void check_indices() const {
     const TetMesh& mesh = result_.mesh;
     check_has_vertices();
@@ -268,20 +268,20 @@ class TextReader {
   ReadTetMesh result_;
   FileTriangles triangles_;
   KindCounts volume_cells_, others_;
-  std::size_t volume_cells_line_ = 0;  ///< of the keyword of the first section that has some
+  std::size_t volume_cells_line_ = 0;  ///< of the first section with volume cells
   std::size_t point_references_ = 0;
-  std::int64_t largest_ = 0;  ///< of the points that faces name, counted from 1
+  std::int64_t largest_ = 0;  ///< maximum point number of the faces, from 1
   std::size_t largest_line_ = 0;
   bool has_vertices_ = false;
-  bool surface_ = false;  ///< a surface is wanted, and no tets
+  bool surface_ = false;  ///< a surface is requested, not tets
 };
 
 void append_triangles(std::string& out, const TetMesh& mesh) {
   const std::vector<InterfaceTriangle>& triangles = mesh.interfaces;
   const BoundaryGroups groups(mesh);
   out += '\n';
-  // Some readers do not know comments, and a name could be one of their keywords: tags of materials, and one
-  // word in quotes for a group of the user.
+  // Some readers do not support comments, and a name could be one of their keywords: write tags of materials,
+  // and one word in quotes for a region of the input.
   for (const BoundaryGroups::Group& g : groups.all()) {
     out += reference_comment;
     append_number(out, g.number);

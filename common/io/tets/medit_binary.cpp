@@ -22,7 +22,7 @@ namespace {
 constexpr std::int32_t dimension_keyword = 3, vertices_keyword = 4, triangles_keyword = 6, tets_keyword = 8,
                        end_keyword = 54;
 
-/// The sections that hold volume cells, and what these are.
+/// Sections of volume cells, and the kinds of cells.
 const std::map<std::int32_t, const char*> volume_keywords{{9, "prisms"},
                                                           {10, "hexahedra"},
                                                           {30, "quadratic tets"},
@@ -40,7 +40,7 @@ const std::map<std::int32_t, const char*> volume_keywords{{9, "prisms"},
                                                           {102, "prisms of higher order"},
                                                           {103, "prisms of higher order"}};
 
-/// Sections that are counted and not read.
+/// Sections that are counted but not read.
 const std::map<std::int32_t, const char*> other_keywords{{5, "edges"},
                                                          {7, "quads"},
                                                          {13, "corners"},
@@ -109,7 +109,7 @@ class BinaryReader {
       throw InputError(name_ + ": byte 4: version " + std::to_string(version_) + "; 1 to 4 are known");
   }
 
-  /// False after the last one.
+  /// Reads a section; false after the last one.
   bool read_section() {
     const std::size_t at = position_;
     if (position_ == bytes_.size()) return false;
@@ -161,7 +161,7 @@ class BinaryReader {
     }
   }
 
-  /// An index, which is checked when all points are there.
+  /// An index, which is checked when all points are read.
   Index index(const char* what) {
     const std::int64_t i = integer(what);
     if (i < 1 || i >= no_index) fail("the index of a point is " + std::to_string(i) + "; they begin at 1");
@@ -225,10 +225,10 @@ class BinaryReader {
   std::size_t volume_cells_at_ = 0, point_references_ = 0, largest_ = 0;
 };
 
-/// Sections, each of which tells where the next one begins.
+/// Writes sections, each of which gives the position of the next one.
 class Sections {
  public:
-  /// `wide`: positions take eight bytes.
+  /// \param wide positions take eight bytes
   Sections(const ByteSink& sink, bool wide) : sink_(sink), wide_(wide) {}
 
   template <class Number>
@@ -268,7 +268,7 @@ class Sections {
   const ByteSink& sink_;
   bool wide_;
   std::string bytes_;
-  std::uint64_t position_ = 0;  ///< bytes handed over
+  std::uint64_t position_ = 0;  ///< bytes written
 };
 
 }  // namespace

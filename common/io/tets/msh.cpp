@@ -64,8 +64,8 @@ std::string write_msh(const MeshToWrite& written) {
     append_point(out, written.node(i));
     out += '\n';
   }
-  // Tets first: their numbers are the same with and without triangles, and simple readers take the first
-  // block of elements only.
+  // Tets first: their numbers are the same with and without triangles, and simple readers use only the first
+  // block of elements.
   out += "$EndNodes\n$Elements\n";
   append_number(out, mesh.tets.size() + mesh.interfaces.size());
   out += '\n';

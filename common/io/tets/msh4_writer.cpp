@@ -20,7 +20,7 @@ namespace {
 
 constexpr int surface_dimension = 2, volume_dimension = 3;
 
-/// Numbers of a section, as text or little-endian.
+/// Writes the numbers of a section, as text or little-endian.
 class Numbers {
  public:
   Numbers(TextWriter& out, bool binary) : out_(out), binary_(binary) {}
@@ -33,7 +33,7 @@ class Numbers {
     if (!binary_) out_ << '\n';
     begins_line_ = true;
   }
-  /// Ends the section: "$End" and this.
+  /// Ends the section with "$End" and its name.
   void end(const char* section) { out_ << (binary_ ? "\n$End" : "$End") << section << '\n'; }
 
  private:
@@ -128,7 +128,7 @@ class Msh4Writer {
     return volumes.try_emplace(number, Entity{volume_dimension, number, {}, {}, {}}).first->second;
   }
 
-  /// Each node belongs to the first entity that has an element with it, surfaces before volumes.
+  /// Classifies each node on the first entity with an element at it, surfaces before volumes.
   void classify_nodes() {
     std::vector<std::uint8_t> done(written_.nodes(), 0);
     for (Entity& entity : entities_) {
@@ -143,12 +143,12 @@ class Msh4Writer {
         }
       std::sort(entity.nodes.begin(), entity.nodes.end());
     }
-    // Points of no tet: a mesh may have some.
+    // Points without a tet.
     for (std::size_t node = 0; node < done.size(); ++node)
       if (!done[node]) entities_.back().nodes.push_back(static_cast<Index>(node));
   }
 
-  /// The nodes of an element in Gmsh's order.
+  /// Nodes of an element in Gmsh's order.
   std::vector<Index> nodes_of(const Entity& entity, std::size_t element) const {
     std::vector<Index> nodes;
     const auto add = [&](const auto& corners) { nodes.insert(nodes.end(), corners.begin(), corners.end()); };
@@ -165,7 +165,7 @@ class Msh4Writer {
     return nodes;
   }
 
-  /// Tags that cannot be the number of a physical group.
+  /// Writes comments with the tags that cannot be numbers of physical groups.
   void write_comments() {
     bool any = false;
     for (const auto& [tag, number] : physical_) {
@@ -225,8 +225,8 @@ class Msh4Writer {
     numbers_.integer(entity.dimension).integer(entity.number).integer(kind).size(items).end_line();
   }
 
-  /// Tets have the numbers from 1 on, in the order of the mesh, and triangles those after them: fields refer
-  /// to tets by these.
+  /// Writes the elements. Tets are numbered from 1, in the order of the mesh, and triangles after them:
+  /// fields refer to tets by these numbers.
   void write_elements() {
     out_ << "$Elements\n";
     const std::size_t all = mesh_.tets.size() + mesh_.interfaces.size();
@@ -247,7 +247,7 @@ class Msh4Writer {
     numbers_.end("Elements");
   }
 
-  // As write_nodes() and write_elements() list them.
+  // Orders in which write_nodes() and write_elements() list items.
   std::vector<std::size_t> order_of_nodes() const {
     std::vector<std::size_t> order;
     for (const Entity& entity : entities_)
@@ -268,7 +268,7 @@ class Msh4Writer {
   TextWriter out_;
   Numbers numbers_;
   bool binary_;
-  std::map<std::int64_t, std::int64_t> physical_;  ///< groups of the materials
+  std::map<std::int64_t, std::int64_t> physical_;  ///< groups by material
   std::vector<Entity> entities_;                   ///< surfaces, then volumes
   std::size_t surfaces_ = 0;
 };

@@ -42,7 +42,7 @@ ElementKind flat_kind(std::int64_t type) {
              : ElementKind{"elements of type " + std::to_string(type), unknown_dimension};
 }
 
-/// The plural; null for types that are no volume elements, or unknown.
+/// Plural of a volume element's kind; null for other or unknown types.
 const char* volume_kind(std::int64_t type) {
   switch (type) {
     case 5:

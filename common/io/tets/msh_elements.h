@@ -22,45 +22,47 @@ inline constexpr std::int64_t msh_tet_type = 4;
 inline constexpr std::int64_t msh_quadratic_triangle_type = 9;
 inline constexpr std::int64_t msh_quadratic_tet_type = 11;
 
-/// Where Gmsh lists the midside nodes of a tet: places in the order of tet_midside_edges.
+/// Gmsh's order of the midside nodes of a tet: positions in tet_midside_edges.
 inline constexpr std::array<std::size_t, 6> msh_midside_order{0, 1, 2, 3, 5, 4};
 
-/// Begins a line of $Comments in our own files of version 4.1, followed by the number of a physical group of
-/// tets and the tag of the material, which is no number that Gmsh would keep: it is not above 0.
+/// Beginning of a line of $Comments in this program's files of version 4.1; the number of a physical group of
+/// tets and the tag of the material follow. Gmsh would not keep such a tag as a number, since it is not above
+/// 0.
 inline constexpr const char* msh_material_comment = "tetwright material: ";
 
-/// The number of nodes of an element of this type; 0: unknown.
+/// Number of nodes of an element of this type; 0: unknown.
 std::size_t msh_nodes_of(std::int64_t type);
 
-/// The elements of an MSH file that are not linear tets, counted by kind and group, and the names of the
-/// groups of every dimension.
+/// Elements of an MSH file that are not linear tets, counted by kind and group, and the names of the groups
+/// of every dimension.
 class OtherMshElements {
  public:
-  /// True for the types of volume elements other than linear tets.
+  /// Whether the type is a volume element other than a linear tet.
   static bool is_volume(std::int64_t type);
 
-  /// A name of section $PhysicalNames; `dimension` is 0 to 3.
+  /// Adds a name of section $PhysicalNames; `dimension` is 0 to 3.
   void add_name(std::int64_t dimension, std::int64_t group, const std::string& name);
-  /// A physical group of an entity that has another one before it, which counts.
+  /// Adds a physical group of an entity after its first one, which is used.
   void add_further_group(std::size_t dimension, std::int64_t group);
-  /// A volume element other than a linear tet, also one of a type that is_volume() does not know.
+  /// Adds a volume element other than a linear tet, also one of a type that is_volume() does not know.
   void add_volume(std::int64_t type, std::int64_t element, std::size_t line);
-  /// A point, line or face other than a linear triangle; `group` is its physical group, 0 for none.
+  /// Adds a point, line or face other than a linear triangle; `group` is its physical group, 0 for none.
   void add_flat(std::int64_t type, std::int64_t group);
-  /// A linear triangle; its nodes as indices of points, no_index for a node that the file does not have.
+  /// Adds a linear triangle; its nodes as indices of points, no_index for a node that the file does not have.
   void add_triangle(const Triangle& ids, std::int64_t group) { triangles_.add(ids, group); }
-  /// A quad of a surface, as two triangles.
+  /// Adds a quad of a surface as two triangles.
   void add_quad(const std::array<Index, 4>& ids, std::int64_t group) { triangles_.add_quad(ids, group); }
 
-  /// The triangles so far.
+  /// Triangles added so far.
   std::vector<Triangle>& triangles() { return triangles_.triangles; }
 
-  /// Throws InputError if there were volume elements.
+  /// \throws InputError if there were volume elements
   void refuse_volumes(const std::string& file) const;
-  /// Takes the triangles, see take_triangles(), and adds all the rest to `read.dropped`. To be called when
-  /// the materials are known.
+  /// Adds the triangles to the mesh, see take_triangles(), and everything else to `read.dropped`.
+  /// \pre the materials are known
   void finish(const std::string& file, ReadTetMesh& read) const;
-  /// The triangles as a surface, see surface_of(); all the rest is added to `dropped`, unless that is null.
+  /// Returns the triangles as a surface, see surface_of().
+  /// \param dropped receives everything else; may be null
   TriangleMesh surface(std::vector<Vec3> points, const std::string& file,
                        std::vector<Dropped>* dropped) const;
 
@@ -75,7 +77,7 @@ class OtherMshElements {
     return dimension == 2 ? triangles_.names : names_[dimension];
   }
 
-  std::array<std::map<std::int64_t, std::string>, 4> names_;  ///< by dimension, but for faces
+  std::array<std::map<std::int64_t, std::string>, 4> names_;  ///< by dimension, except faces
   FileTriangles triangles_;                                   ///< with the names of groups of faces
   std::array<std::set<std::int64_t>, 4> further_groups_;      ///< by dimension
   std::map<std::int64_t, OfKind> flat_;                       ///< by type

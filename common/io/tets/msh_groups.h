@@ -11,18 +11,18 @@
 
 namespace tetwright {
 
-/// The physical groups of a mesh as MSH files list them.
+/// Physical groups of a mesh in MSH files.
 struct MshGroups {
   explicit MshGroups(const TetMesh& mesh);
 
   BoundaryGroups faces;
-  /// By tag, of the materials that have a name. Names that differ stay different, and equal ones equal.
+  /// Names by tag, of the materials that have one. Different names stay different, and equal ones equal.
   std::map<MaterialTag, std::string> material_names;
-  /// By the groups' numbers; without those that have no name, and no two are equal.
+  /// Unique names by the groups' numbers, of the groups that have one.
   std::map<std::int64_t, std::string> face_names;
 };
 
-/// The same for name_changes(): tags of materials are kept, by comments where the format cannot hold one.
+/// Groups for name_changes(): tags of materials are kept, by comments if the format cannot hold one.
 MeshParts msh_parts(const TetMesh& mesh);
 
 }  // namespace tetwright

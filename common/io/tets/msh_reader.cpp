@@ -112,7 +112,7 @@ void MshReader::keep_or_skip(std::string_view section) {
     return;
   }
   if (numbers_.binary()) {
-    // Line feeds in binary numbers begin no lines.
+    // Bytes of binary numbers that equal a line feed begin no line.
     const std::size_t at = bytes_.find(end, in_.offset());
     if (at == std::string_view::npos) in_.fail_cut_short("line " + in_quotes(end));
     (void)in_.take_bytes(at - in_.offset());
@@ -206,7 +206,7 @@ void MshReader::set_materials() {
   if (any_geometrical_ && (asked || (version_4_ && !any_physical_))) {
     mesh.materials = std::move(geometrical_);
     result_.material_field = geometrical_name;
-    // The names are those of physical groups.
+    // The names belong to physical groups.
     mesh.material_names.clear();
   } else if (any_physical_) {
     result_.material_field = "gmsh:physical";
@@ -218,7 +218,7 @@ void MshReader::set_materials() {
 void MshReader::note_dropped() {
   others_.finish(in_.name(), result_);
   std::vector<Dropped>& dropped = result_.dropped;
-  // Nothing is lost if each physical group has one volume only.
+  // Nothing is lost if each physical group has only one volume.
   std::set<std::int64_t> physical;
   for (const auto& volume : volumes_) physical.insert(volume.first);
   if (result_.material_field == "gmsh:physical" && volumes_.size() > physical.size())

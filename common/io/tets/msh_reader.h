@@ -23,13 +23,14 @@
 
 namespace tetwright {
 
-/// The number of a group of faces, or of what is less: where a sign is, Gmsh means the other orientation.
+/// Number of a group of faces, or of lower dimension, without its sign, by which Gmsh marks the opposite
+/// orientation.
 inline std::int64_t without_sign(std::int64_t number) {
   return number < 0 && number != std::numeric_limits<std::int64_t>::min() ? -number : number;
 }
 
-/// What msh.h says of the reading functions, for one file and one call. msh_reader.cpp has the file's
-/// sections and what is made of them, msh_reader_mesh.cpp those of nodes, entities and elements in each
+/// Implements the reading functions of msh.h for one file and one call. msh_reader.cpp has the sections of
+/// the file and the assembly of the result, msh_reader_mesh.cpp the nodes, entities and elements of each
 /// version.
 class MshReader {
  public:
@@ -38,7 +39,7 @@ class MshReader {
 
   ReadTetMesh read();
   TriangleMesh read_surface(std::vector<Dropped>* dropped);
-  /// Nothing for a file with tets.
+  /// \return std::nullopt for a file with tets
   std::optional<SurfaceWithFields> read_surface_with_fields();
 
  private:
@@ -49,15 +50,15 @@ class MshReader {
   void read_sections();
   void read_format();
   void expect(std::string_view end);
-  /// Sections of data are read when all nodes and elements are known: a copy of the scanner keeps their
-  /// place.
+  /// Sections of data are read when all nodes and elements are known: copies of the scanner keep their
+  /// positions.
   void keep_or_skip(std::string_view section);
-  /// Those of write_msh41() tell which materials have tags that are no numbers of groups.
+  /// Reads the comments of write_msh41(): tags of materials that cannot be numbers of groups.
   void read_comments(const std::string& end);
-  /// The material of a physical group of tets.
+  /// Material of a physical group of tets.
   std::int64_t tag_of(std::int64_t group) const;
   void read_names();
-  /// `room` is that of read_msh_data().
+  /// \param room as for read_msh_data()
   void read_node_data(std::size_t& room);
   void read_data();
   void set_materials();
@@ -69,17 +70,17 @@ class MshReader {
   void end_nodes();
   void read_nodes_2();
   void read_nodes_4();
-  /// The smallest and the largest number of a node or element.
+  /// Reads the minimum and the maximum number of a node or element.
   void read_range_of_numbers();
   EntityName read_entity();
   void read_entities();
   void begin_elements();
-  /// In binary files of version 4.1 numbers of nodes and elements are sizes.
+  /// Reads the number of a node or element, which is a size in binary files of version 4.1.
   std::int64_t read_node(const char* what) {
     return version_4_ && !version_40_ ? numbers_.size(what) : numbers_.integer(what);
   }
 
-  /// Nodes that are not there are an error if they are `needed`.
+  /// \param needed a missing node is an error
   template <class Ids>
   Ids read_ids(std::int64_t element, bool needed, const char* what) {
     Ids ids;
@@ -93,16 +94,17 @@ class MshReader {
     return ids;
   }
 
-  /// False: faces of this type are not taken. Beside tets quads are no faces.
+  /// Reads a face. Quads count only in a surface, not beside tets.
+  /// \return false if faces of this type are not read
   bool read_face(std::int64_t type, std::int64_t element, std::int64_t group);
-  /// Of four nodes, or of ten, of which the corners come first.
+  /// Reads a tet of four nodes, or of ten with the corners first.
   void read_tet(std::int64_t type, std::int64_t element);
   static bool is_tet(std::int64_t type) { return type == msh_tet_type || type == msh_quadratic_tet_type; }
 
-  /// Skips the nodes of an element, of which text has those of its line.
+  /// Skips the nodes of an element; in text those on the rest of its line.
   void skip_nodes(std::int64_t type);
-  /// In version 2 each element has a line of its own: number, type, tags, nodes. Binary ones have the type
-  /// and the number of tags once for several.
+  /// Version 2: each element has a line of its own: number, type, tags, nodes. Binary files give type and
+  /// number of tags once for several elements.
   void read_elements_2();
   void read_elements_4();
   void end_elements();
@@ -116,24 +118,24 @@ class MshReader {
   std::string_view bytes_;
   ReadTetMesh result_;
   FileNumbers nodes_, elements_;
-  /// The first physical group of the entities of each dimension.
+  /// First physical group of the entities of each dimension.
   std::array<std::unordered_map<std::int64_t, std::int64_t>, 4> entity_to_group_;
   std::vector<MaterialTag> geometrical_;
   std::vector<std::int64_t> tet_numbers_;
   MidsideNodesRead midside_;
-  std::map<std::int64_t, MaterialTag> group_to_tag_;  ///< where comments of write_msh41() say so
+  std::map<std::int64_t, MaterialTag> group_to_tag_;  ///< from comments of write_msh41()
   std::vector<TextScanner> node_data_, element_data_;
   OtherMshElements others_;
   std::map<std::string, std::int64_t> surface_names_;        ///< physical groups of faces
-  std::set<std::pair<std::int64_t, std::int64_t>> volumes_;  ///< physical and geometrical number of the tets
+  std::set<std::pair<std::int64_t, std::int64_t>> volumes_;  ///< physical and geometrical, of the tets
   std::pair<std::int64_t, std::int64_t> last_volume_;
   std::size_t partitioned_ = 0;
-  std::vector<std::string> empty_fields_, fields_of_others_, other_sections_;  ///< names of what is not taken
-  bool surface_ = false;  ///< a surface is wanted, and no tets
+  std::vector<std::string> empty_fields_, fields_of_others_, other_sections_;  ///< names of ignored contents
+  bool surface_ = false;  ///< a surface is requested, not tets
   bool version_4_ = false, version_40_ = false;
   bool has_elements_ = false;
   bool any_physical_ = false, any_geometrical_ = false;
-  bool keep_numbers_ = false;  ///< of the tets: there are fields that refer to them, or they are out of order
+  bool keep_numbers_ = false;  ///< of the tets: fields refer to them, or they are out of order
 };
 
 }  // namespace tetwright

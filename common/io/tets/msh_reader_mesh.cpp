@@ -7,8 +7,8 @@ namespace tetwright {
 
 namespace {
 
-/// Where the numbers that a file gives its items are 1 to n in another order, sorts these and what it gives
-/// for each in the same way: files list items by entity, but ours are numbered in the order that they had.
+/// Sorts items and their values by number if the numbers are a permutation of 1 to n: files list items by
+/// entity, and the original order is restored.
 template <class... Values>
 void sort_by(std::vector<std::int64_t>& numbers, std::vector<Values>&... values) {
   constexpr std::size_t none = static_cast<std::size_t>(-1);
@@ -105,7 +105,7 @@ void MshReader::read_range_of_numbers() {
 
 MshReader::EntityName MshReader::read_entity() {
   EntityName entity{};
-  // Version 4.0 has them the other way round.
+  // Version 4.0 has them in reverse order.
   for (const bool dimension : {!version_40_, version_40_}) {
     if (!dimension) {
       entity.number = numbers_.integer("number of an entity");
@@ -289,7 +289,7 @@ void MshReader::add_groups(std::int64_t physical, std::int64_t geometrical) {
     volumes_.insert(last_volume_);
   }
   result_.mesh.materials.push_back(checked_material(tag_of(physical), in_.name(), in_.line()));
-  // Version 2 has physical groups wherever it has others.
+  // Version 2 has physical groups wherever it has geometrical ones.
   if (version_4_ || options_.material_field == geometrical_name)
     geometrical_.push_back(checked_material(geometrical, in_.name(), in_.line()));
 }

@@ -10,32 +10,33 @@
 
 namespace tetwright {
 
-/// Begin the comments of write_nastran() that give names: "NUMBER: NAME" follows.
+/// Beginnings of write_nastran()'s comments with names; "NUMBER: NAME" follows.
 inline constexpr std::string_view nastran_material_comment = "$ material ";
 inline constexpr std::string_view nastran_surface_comment = "$ surface ";
 
-/// What write_nastran() makes of tags, numbers and names.
+/// Constraints on tags, numbers and names in write_nastran().
 NameRules nastran_names();
 
 /// Reads the mesh of a Nastran bulk data file, in free, small and large fields: GRID in the basic coordinate
-/// system, CTETRA of 4 or 10 points, these by their corners, whose property is the material, and BSURFS as
-/// groups of faces, see take_triangles(). Names are those of write_nastran()'s comments. Other elements of
-/// three dimensions, other coordinate systems and INCLUDE are refused, further elements are counted in
-/// ReadTetMesh::dropped, entries that say nothing about the mesh are skipped. Throws InputError with the line
-/// for anything that is malformed.
+/// system, CTETRA of 4 or 10 points (of the latter the corners), whose property is the material, and BSURFS
+/// as groups of faces, see take_triangles(). Names come from write_nastran()'s comments. Other elements of
+/// three dimensions, other coordinate systems and INCLUDE are rejected, further elements are counted in
+/// ReadTetMesh::dropped, entries unrelated to the mesh are skipped.
 ///
-/// Our own: no packaged library reads the format.
+/// Not a library: no packaged one reads the format.
+/// \throws InputError with the line for malformed contents
 ReadTetMesh read_nastran(std::string_view bytes, const std::string& name,
                          const ReadTetMeshOptions& options = {});
 
-/// The content of a Nastran bulk data file: GRID in the large field format, CTETRA of 4 or 10 points, a
-/// PSOLID for each material, whose MAT1 of the same number is the user's, and for each surface of the mesh,
-/// if it has interfaces, a BSURFS of element faces (on the side of the smaller tag) and a SET1 of its points,
-/// both with the number of the group. The format has no names: comments before the entries give them. Tags
-/// and numbers of groups stay as they are if they are above 0 and have at most eight digits.
+/// Writes a Nastran bulk data file: GRID in the large field format, CTETRA of 4 or 10 points, a PSOLID for
+/// each material, whose MAT1 of the same number the user adds, and for each surface of a mesh with interfaces
+/// a BSURFS of element faces (on the side of the smaller tag) and a SET1 of its points, both with the number
+/// of the group. The format has no names: comments before the entries give them. Tags and numbers of groups
+/// are kept if they are above 0 and have at most eight digits.
 ///
 /// Coordinates are rounded to 16 characters, 9 digits in the worst case and 13 in most. The format has no
-/// place for fields. Throws OutputError for more than 99,999,999 nodes or tets, whose numbers do not fit.
+/// fields.
+/// \throws OutputError for more than 99,999,999 nodes or tets, whose numbers do not fit
 void write_nastran(const MeshToWrite& written, const ByteSink& sink);
 
 }  // namespace tetwright

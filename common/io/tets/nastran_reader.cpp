@@ -34,14 +34,14 @@ struct Entry {
   std::vector<std::string> fields;
   std::size_t line = 0;
 
-  /// Empty where there is none.
+  /// Field i; empty if it is missing.
   const std::string& field(std::size_t i) const {
     static const std::string none;
     return i < fields.size() ? fields[i] : none;
   }
 };
 
-/// Elements of three dimensions other than tets, and what they are.
+/// Elements of three dimensions other than tets, and their kinds.
 const std::map<std::string, const char*> volume_entries{
     {"CHEXA", "hexahedra"},  {"CPENTA", "prisms"},     {"CPYRAM", "pyramids"},  {"CPYRA", "pyramids"},
     {"CHEXA8", "hexahedra"}, {"CHEXA20", "hexahedra"}, {"CPENTA6", "prisms"},   {"CPENTA15", "prisms"},
@@ -66,7 +66,7 @@ class NastranReader {
   }
 
  private:
-  /// Those of a tet or of a face, as the file numbers them.
+  /// A tet or a face, with the numbers of the file.
   struct Numbered {
     std::int64_t number = 0, group = 0;  ///< element and property, or element and surface
     std::vector<std::int64_t> nodes;
@@ -77,7 +77,7 @@ class NastranReader {
     throw InputError(in_.name(), line, message);
   }
 
-  /// The bulk data is all there is, or follows the line BEGIN BULK.
+  /// Reads the bulk data, which is the whole file or follows the line BEGIN BULK.
   void read_entries() {
     Entry entry;
     bool bulk = !has_begin_bulk();
@@ -110,7 +110,7 @@ class NastranReader {
     return false;
   }
 
-  /// Those of write_nastran(): "$ material NUMBER: NAME" and "$ surface NUMBER: NAME".
+  /// Reads the comments of write_nastran(): "$ material NUMBER: NAME" and "$ surface NUMBER: NAME".
   void read_comment(std::string_view text, std::size_t line) {
     for (const std::string_view what : {nastran_material_comment, nastran_surface_comment}) {
       if (!text.starts_with(what)) continue;
@@ -126,7 +126,7 @@ class NastranReader {
     }
   }
 
-  /// A line of fields: a new entry, or one more of the last.
+  /// Reads a line of fields: a new entry, or a continuation of the last.
   void read_line(std::string_view text, std::size_t line, Entry& entry) {
     text = text.substr(0, text.find('$'));
     std::vector<std::string> fields;
@@ -141,7 +141,7 @@ class NastranReader {
       }
       large = fields[0].ends_with('*');
     } else {
-      // A tab goes on to the next multiple of eight.
+      // A tab advances to the next multiple of eight.
       std::string wide;
       for (const char c : text) {
         if (c != '\t') wide += c;
@@ -154,7 +154,7 @@ class NastranReader {
         fields.push_back(without_blanks(wide.substr(begin, width)));
     }
     const bool goes_on = fields[0].empty() || fields[0][0] == '+' || fields[0][0] == '*';
-    // A line has eight fields, or four large ones, and at its end the name of its continuation.
+    // A line has eight fields, or four large ones, and the name of its continuation at the end.
     const std::size_t on_line = large ? 4 : 8;
     if (goes_on && entry.name.empty()) fail(line, "a line continues an entry, but there is none before it");
     if (!goes_on) {
@@ -177,7 +177,7 @@ class NastranReader {
     return value;
   }
 
-  /// A number as Nastran writes it: the letter before an exponent may be left out, or be a D.
+  /// Reads a number as Nastran writes it: the letter before an exponent may be omitted, or be a D.
   double real(const Entry& entry, std::size_t i) const {
     std::string text = entry.field(i);
     if (text.empty()) return 0;
@@ -232,7 +232,7 @@ class NastranReader {
     tets_.push_back(std::move(tet));
   }
 
-  /// A surface of element faces, from the fifth field on: the element and three of its points.
+  /// Reads a surface of element faces, from the fifth field on: the element and three of its points.
   void read_surface(const Entry& entry) {
     const std::int64_t number = whole_number(entry, 0, "number of a surface");
     for (std::size_t i = 4; i + 3 < entry.fields.size(); i += 4) {
@@ -289,7 +289,7 @@ class NastranReader {
   MidsideNodesRead midside_;
   KindCounts volumes_, others_;
   std::size_t volumes_line_ = 0;
-  std::size_t padding_ = 0;  ///< fields that the last line of the entry left out
+  std::size_t padding_ = 0;  ///< fields missing on the last line of the entry
 };
 
 }  // namespace

@@ -33,7 +33,7 @@ ReadTetMesh read_xdmf_files(const std::string& path, const ReadTetMeshOptions& o
   return read_xdmf(read_whole_file(path), path, read_whole_file, options, facets);
 }
 
-/// The .node, .ele and, where there is one, .face file of one name, that of .node or .ele.
+/// Reads the .node, .ele and, if there is one, .face file of one name, given that of .node or .ele.
 ReadTetMesh read_tetgen_files(const std::string& path, const ReadTetMeshOptions& options) {
   const auto name = [&](const char* extension) {
     return extension_of(path) == extension ? path : with_extension(path, extension);

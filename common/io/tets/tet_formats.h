@@ -13,35 +13,34 @@
 
 namespace tetwright {
 
-/// A file that a tet mesh is written as.
+/// One of the files that a tet mesh is written to.
 struct WrittenFile {
   const char* extension;
-  /// `first` is the name, without folders, of the first file that the mesh is written as.
+  /// \param first name, without folders, of the first file of the mesh
   void (*write)(const MeshToWrite& mesh, const std::string& first, const ByteSink& sink);
 };
 
-/// A format of tet meshes: how files of its extension are read and written, and what it has a place for.
+/// A format of tet meshes: its reader, its writer and the contents that it can store.
 struct TetFormat {
   const char* extension;
   const char* name;
-  /// Of a format of one file, and of one of several; both null: only written.
+  /// Readers of a format of one file, and of one of several; both null: only written.
   ReadTetMesh (*read)(std::string_view bytes, const std::string& name,
                       const ReadTetMeshOptions& options) = nullptr;
   ReadTetMesh (*read_files)(const std::string& path, const ReadTetMeshOptions& options) = nullptr;
   std::vector<WrittenFile> write;  ///< empty: only read
-  /// What the writer calls the parts of a mesh.
+  /// Parts of a mesh as the writer names them.
   MeshParts (*parts)(const TetMesh& mesh) = nullptr;
-  /// Names of cell fields that the writer adds itself; no other field may have them.
+  /// Cell fields that the writer adds itself; no other field may have their names.
   std::vector<std::string> own_cell_fields = {};
-  /// As field_names_to_write() takes it.
+  /// The `form` of field_names_to_write().
   std::string (*field_name)(const std::string& name) = nullptr;
-  bool point_fields = true;  ///< when it is read
+  bool point_fields = true;  ///< it may have fields of points when it is read
   // As in TetFormatInfo.
   bool names = true, surfaces = true, patch_names = true, fields = true, second_order = false;
 };
 
-/// All of them, in the order in which they are listed; the first of an extension is the one that it stands
-/// for.
+/// All formats, in the order in which they are listed; the first of an extension is its default.
 const std::vector<TetFormat>& tet_formats();
 
 }  // namespace tetwright

@@ -11,23 +11,23 @@
 
 namespace tetwright {
 
-/// Reads the files that TetGen writes: `node` (.node), `ele` (.ele) and, where there is one, `face` (.face).
-/// Numbers begin at 0 or 1. Attributes of points become the fields "attribute1", "attribute2", ..., boundary
-/// markers the integer field "boundary_marker". Attributes of tets become "attribute", "attribute2", ..., of
-/// which the first is the material if its values are whole (see ReadTetMesh). Faces with a boundary marker
-/// other than 0 are patches, as take_triangles() makes them of groups. Names of materials and markers are
-/// those of the comments that we write. Quadratic tets are taken by their corners; nothing else in the files
-/// is dropped; a .edge file beside them is not read. Throws InputError with the line for anything that is
-/// malformed.
+/// Reads the files that TetGen writes: `node` (.node), `ele` (.ele) and optionally `face` (.face). Numbers
+/// begin at 0 or 1. Attributes of points become the fields "attribute1", "attribute2", ..., boundary markers
+/// the integer field "boundary_marker". Attributes of tets become "attribute", "attribute2", ..., the first
+/// of which is the material if its values are whole (see ReadTetMesh). Faces with a boundary marker other
+/// than 0 become patches, see take_triangles(). Names of materials and markers come from the comments of this
+/// writer. Quadratic tets are reduced to their corners; nothing else in the files is dropped; a .edge file
+/// beside them is not read.
 ///
-/// Our own: the library of TetGen is under the AGPL, and the format is small.
+/// Not a library: TetGen's is under the AGPL, and the format is small.
+/// \throws InputError with the line for malformed contents
 ReadTetMesh read_tetgen(const NamedBytes& node, const NamedBytes& ele, const std::optional<NamedBytes>& face,
                         const ReadTetMeshOptions& options = {});
 
-/// The content of the three files of a mesh: points, tets with the tag of the material as their attribute,
-/// and the faces of the interfaces, if it has any, with the number of their group (see BoundaryGroups) as
-/// boundary marker. Numbers begin at 1. Comments at the beginning of .ele and .face give the names. Neither
-/// fields nor midside nodes are written.
+/// Write the three files of a mesh: points, tets with the tag of the material as their attribute, and the
+/// faces of the interfaces, if any, with the number of their group (see BoundaryGroups) as boundary marker.
+/// Numbers begin at 1. Comments at the beginning of .ele and .face give the names. Neither fields nor midside
+/// nodes are written.
 void write_tetgen_node(const MeshToWrite& written, const ByteSink& sink);
 void write_tetgen_ele(const MeshToWrite& written, const ByteSink& sink);
 void write_tetgen_face(const MeshToWrite& written, const ByteSink& sink);

@@ -68,7 +68,7 @@ class VtkReader final : private VtkSections {
     return types_.size();
   }
 
-  /// Called at the first data of cells or at the end of the file; does its work once.
+  /// Selects the tets at the first data of cells or at the end of the file; has an effect only once.
   void choose_tets() {
     if (chosen_) return;
     chosen_ = true;
@@ -92,7 +92,7 @@ class VtkReader final : private VtkSections {
     if (triangle_to_cell_.empty()) cells_.free_points();
   }
 
-  /// Of a tet or triangle.
+  /// Nodes of a tet or triangle.
   std::vector<Index> nodes_of(std::size_t c) const {
     const std::size_t begin = cells_.begin(c), size = cells_.size(c);
     if (size != vtk_nodes_of(types_[c]))
@@ -106,7 +106,7 @@ class VtkReader final : private VtkSections {
     return nodes;
   }
 
-  /// The triangles of our own files, by the field that numbers their surfaces; those of tets are 0.
+  /// Reads the triangles of this program's files, by the field that numbers their surfaces; it is 0 for tets.
   void take_surfaces(const std::vector<double>& numbers) {
     for (const std::size_t c : triangle_to_cell_) {
       const std::vector<Index> nodes = nodes_of(c);
@@ -144,7 +144,7 @@ class VtkReader final : private VtkSections {
     return true;
   }
 
-  /// Those that write_vtk() writes.
+  /// Reads the names that write_vtk() writes.
   void read_names(const std::vector<double>& bytes, const std::string& array) {
     for (auto& [number, name] : parse_vtk_names(vtk_text(bytes), array, in_.name())) {
       if (array == vtk_surface_names)

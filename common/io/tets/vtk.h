@@ -16,29 +16,32 @@ namespace tetwright {
 /// Reads the tets (type 10, or 24 of ten nodes, by their corners) of a legacy VTK file (.vtk), versions 1 to
 /// 5, ASCII or binary, of dataset UNSTRUCTURED_GRID. SCALARS, VECTORS, NORMALS, TENSORS, texture coordinates,
 /// ids and FIELD arrays of POINT_DATA and CELL_DATA become fields; integers beyond 2^53 lose digits.
-/// ReadTetMesh describes which of them is the material. Other volume cells are refused; vertices, lines,
+/// ReadTetMesh describes which of them is the material. Other volume cells are rejected; vertices, lines,
 /// faces, and arrays of text, of colours or of the whole dataset are counted in ReadTetMesh::dropped,
-/// METADATA is skipped. `name` is used in messages. Throws InputError with the line (in a binary file one
-/// more than the number of line feeds before it, as an editor counts) for anything that is malformed.
+/// METADATA is skipped.
 ///
-/// Our own: libvtk9.1 takes 105 MB, without what it depends on.
+/// Not VTK itself: libvtk9.1 takes 105 MB, without its dependencies.
+/// \param name used in messages
+/// \throws InputError for malformed contents, with the line (in a binary file the number of preceding line
+///   feeds plus one, as an editor counts)
 ReadTetMesh read_vtk(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options = {});
 
 /// Reads the polygons and triangle strips of a file of dataset POLYDATA, or the triangles, quads, polygons
 /// and strips of an UNSTRUCTURED_GRID without volume cells, as triangles; a cell field of whole numbers with
-/// one of the names of is_face_label() gives groups. Vertices, lines and fields are counted in `dropped`.
-/// Throws InputError as read_vtk() does, and where there are tets.
+/// one of the names of is_face_label() gives groups.
+/// \param dropped counts vertices, lines and fields
+/// \throws InputError as read_vtk(), and for a file with tets
 TriangleMesh read_vtk_surface(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped);
-/// The same with the fields of points; nothing where there are tets.
+/// Reads such a surface with its fields of points.
+/// \return std::nullopt for a file with tets
 std::optional<SurfaceWithFields> read_vtk_surface_with_fields(std::string_view bytes,
                                                               const std::string& name);
 
-/// The content of a legacy VTK file, version 3.0, ASCII: what the simplest readers know. The mesh's
-/// interfaces, if it has any, are triangles after the tets; the cell field "material" gives both their tags
-/// (of a triangle that on its inner side), "surface" the numbers of the triangles' groups, 0 for tets. Names
-/// of materials and surfaces are field data of the dataset, as bytes of lines "NUMBER<tab>NAME". Fields of
-/// points are means of both ends in midside nodes; those of tets are nan, or 0 where they are whole, for
-/// triangles.
+/// Writes a legacy VTK file, version 3.0, ASCII, which the simplest readers support. The mesh's interfaces,
+/// if any, are triangles after the tets. The cell field "material" holds the tags of both (for a triangle
+/// that on its inner side), "surface" the numbers of the triangles' groups, 0 for tets. Names of materials
+/// and surfaces are field data of the dataset, as the bytes of lines "NUMBER<tab>NAME". Fields of points are
+/// means of both endpoints in midside nodes; fields of tets are NaN, or 0 if integer, on triangles.
 void write_vtk(const MeshToWrite& written, const ByteSink& sink);
 
 }  // namespace tetwright

@@ -11,13 +11,13 @@
 
 namespace tetwright {
 
-/// What legacy VTK files of all datasets share: the head, points, lists of cells, fields. A reader derives
-/// from it and calls read_sections(). Errors are InputErrors with the line.
+/// Sections common to legacy VTK files of all datasets: the head, points, lists of cells, fields. A reader
+/// derives from it and calls read_sections(). Errors are InputErrors with the line.
 class VtkSections {
  protected:
   enum class Data { none, points, cells };
 
-  /// A list of cells: each takes points[offsets[c]] and so on.
+  /// A list of cells: the points of cell c begin at points[offsets[c]].
   class Cells {
    public:
     std::size_t count() const { return offsets_.empty() ? 0 : offsets_.size() - 1; }
@@ -25,41 +25,43 @@ class VtkSections {
       return static_cast<std::size_t>(offsets_[cell + 1] - offsets_[cell]) - before_each_;
     }
     std::size_t begin(std::size_t cell) const { return static_cast<std::size_t>(offsets_[cell]); }
-    /// The point at this place; it may be one that is not there.
+    /// Point at this position of the list; it may not exist.
     std::int64_t point(std::size_t place) const { return points_[place]; }
     void free_points() { points_ = {}; }
 
    private:
     friend class VtkSections;
     std::vector<std::int64_t> offsets_, points_;
-    std::size_t before_each_ = 0;  ///< numbers between two cells: in old files the size of the next one
+    std::size_t before_each_ = 0;  ///< numbers before each cell's points: in old files its size
   };
 
   VtkSections(std::string_view bytes, const std::string& name) : in_(bytes, name) {}
   ~VtkSections() = default;
 
-  /// Reads the head and all sections, and appends what is dropped.
+  /// Reads the head and all sections, and appends the dropped contents.
   void read_sections(std::vector<Dropped>& dropped);
 
-  /// For a section that this class does not know, with its keyword in lower case: false if it is none.
+  /// Reads a section that this class does not know, by its keyword in lower case.
+  /// \return false if there is no such section
   virtual bool read_section(const std::string& part) = 0;
-  /// The word after DATASET, in lower case; fails if it is not one for this reader.
+  /// Fails if the word after DATASET, in lower case, is not one for this reader.
   virtual void check_dataset(std::string_view word) = 0;
-  /// The number of cells; called where their data begin.
+  /// Number of cells; called where their data begin.
   virtual std::size_t cell_count() = 0;
   virtual void take_field(Data data, MeshField field) = 0;
-  /// An array of the whole dataset: false if it is to be dropped.
+  /// Receives an array of the whole dataset.
+  /// \return false if it is to be dropped
   virtual bool take_dataset_array(const std::string& name, const std::vector<double>& values) = 0;
 
-  /// What follows the keyword of a list of cells; `begin` becomes the place of the first number, for
+  /// Reads the list of cells after its keyword; `begin` becomes the position of the first number, for
   /// fail_at().
   Cells read_cells(const std::string& keyword, TextScanner& begin);
-  /// A count and as many numbers, likewise.
+  /// Reads a count and as many numbers; `begin` as for read_cells().
   std::vector<std::int64_t> read_whole_numbers(const char* count_of, const char* what, TextScanner& begin);
-  /// The point at a place of a list of cells that began at `begin`, checked.
+  /// Checked point at a position of a list of cells that began at `begin`.
   Index checked_point(const Cells& cells, std::size_t cell, std::size_t place,
                       const TextScanner& begin) const;
-  /// Throws InputError with the line of the k-th number of a list that begins at `begin`.
+  /// \throws InputError with the line of the k-th number of a list that begins at `begin`
   [[noreturn]] void fail_at(TextScanner begin, std::size_t k, const std::string& message) const;
 
   TextScanner in_;
@@ -84,8 +86,8 @@ class VtkSections {
 
   bool binary_ = false;
   Data data_ = Data::none;
-  std::size_t items_ = 0;                                            ///< points or cells that data is for
-  std::vector<std::string> dataset_arrays_, text_arrays_, colours_;  ///< names of what is not taken
+  std::size_t items_ = 0;                                            ///< number of points or cells with data
+  std::vector<std::string> dataset_arrays_, text_arrays_, colours_;  ///< names of ignored arrays
   KindCounts rounded_;                                               ///< integers of fields
 };
 

@@ -27,13 +27,13 @@ namespace {
 // VTK's numbers of the flat cells that become triangles.
 constexpr std::int64_t strip_type = 6, polygon_type = 7, pixel_type = 8, quad_type = 9;
 
-/// POLYDATA, or the faces of an UNSTRUCTURED_GRID without volumes.
+/// Reads POLYDATA, or the faces of an UNSTRUCTURED_GRID without volumes.
 class VtkSurfaceReader final : private VtkSections {
  public:
   VtkSurfaceReader(std::string_view bytes, const std::string& name)
       : VtkSections(bytes, name), begin_(in_), types_begin_(in_), surface_(name) {}
 
-  /// Nothing where there are tets.
+  /// \return std::nullopt for a file with tets
   std::optional<SurfaceWithFields> read(std::vector<Dropped>* dropped) {
     std::vector<Dropped> arrays;
     read_sections(arrays);
@@ -68,7 +68,7 @@ class VtkSurfaceReader final : private VtkSections {
   std::size_t tets() const { return tets_; }
 
  private:
-  /// Cells of one keyword; `type` is VTK's number, or 0 where each cell has its own.
+  /// Cells of one keyword; `type` is VTK's number, or 0 if each cell has its own.
   struct List {
     Cells cells;
     TextScanner begin;
@@ -103,7 +103,7 @@ class VtkSurfaceReader final : private VtkSections {
     for (std::size_t k = 0; k < of_polydata.size(); ++k) {
       const auto& [keyword, type] = of_polydata[k];
       if (grid_ || part != keyword) continue;
-      // Data of cells count them in the order of this table, whatever that of the file.
+      // Cell data count cells in the order of this table, not of the file.
       const auto place =
           std::find_if(lists_.begin(), lists_.end(), [&](const List& l) { return l.order >= k; });
       if (place != lists_.end() && place->order == k) in_.fail("a second section " + std::string(keyword));
@@ -140,7 +140,8 @@ class VtkSurfaceReader final : private VtkSections {
     return true;
   }
 
-  /// `first`: cells before; `count`: of all.
+  /// \param first number of cells before the list
+  /// \param count number of all cells
   void add_cells(const List& list, std::size_t first, std::size_t count) {
     for (std::size_t c = 0; c < list.cells.count(); ++c) {
       corners_.clear();
@@ -152,11 +153,11 @@ class VtkSurfaceReader final : private VtkSections {
     }
   }
 
-  /// The cell of `corners_`.
+  /// Adds the cell of `corners_`.
   void add_cell(std::int64_t type, std::size_t number) {
     const auto place = [&] { return "cell " + std::to_string(number) + " (counted from 0)"; };
     if (type == strip_type) {
-      // Each point with the two before it, every other triangle the other way round.
+      // Each point forms a triangle with the two before it, every other one reversed.
       for (std::size_t k = 2; k < corners_.size(); ++k) {
         const std::size_t turned = k % 2;
         surface_.add_polygon(std::array{corners_[k - 2 + turned], corners_[k - 1 - turned], corners_[k]},

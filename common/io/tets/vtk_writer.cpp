@@ -14,7 +14,7 @@ namespace tetwright {
 
 namespace {
 
-/// A name as one word, as VTK encodes it.
+/// Converts a name to one word in VTK's encoding.
 std::string encoded(const std::string& name) {
   constexpr const char* digits = "0123456789ABCDEF";
   std::string out;
@@ -28,7 +28,8 @@ std::string encoded(const std::string& name) {
   return out;
 }
 
-/// Names as an array of bytes, a line "NUMBER<tab>NAME" for each, since few readers know arrays of text.
+/// Writes names as an array of bytes, a line "NUMBER<tab>NAME" for each, since few readers know arrays of
+/// text.
 template <class Parts, class NumberOf>
 void write_names(TextWriter& out, const char* array, const Parts& parts, const NumberOf& number_of) {
   std::string text;
@@ -37,7 +38,7 @@ void write_names(TextWriter& out, const char* array, const Parts& parts, const N
   for (const char c : text) out << unsigned{static_cast<unsigned char>(c)} << '\n';
 }
 
-/// The fields as arrays of FIELD.
+/// Writes the fields as arrays of FIELD.
 void write_fields(TextWriter& out, const std::vector<MeshField>& fields, std::vector<std::string> taken,
                   std::size_t items) {
   if (fields.empty()) return;
@@ -59,7 +60,7 @@ void write_fields(TextWriter& out, const std::vector<MeshField>& fields, std::ve
       if (whole)
         out << static_cast<std::int64_t>(value);
       else if (std::isnan(value))
-        out << "nan";  // without the sign that nan may have
+        out << "nan";  // without the sign that NaN may have
       else
         out << value;
       out << ((i + 1) % components == 0 ? '\n' : ' ');
@@ -67,7 +68,7 @@ void write_fields(TextWriter& out, const std::vector<MeshField>& fields, std::ve
   }
 }
 
-/// The fields of the tets with values for `triangles` more cells.
+/// Extends the fields of the tets by values for `triangles` more cells.
 std::vector<MeshField> fields_of_cells(std::vector<MeshField> fields, std::size_t triangles) {
   for (MeshField& field : fields)
     field.values.resize(field.values.size() + triangles * static_cast<std::size_t>(field.components),

@@ -50,10 +50,10 @@ class VtuReader {
 
  private:
   static constexpr std::size_t midside_per_tet = 6;
-  /// VTK's name of the array that marks points and cells which another piece has, too.
+  /// VTK's array that marks points and cells shared with another piece.
   static constexpr const char* ghost_marks = "vtkGhostType";
 
-  /// Adds its points, tets and fields to what there is.
+  /// Adds the points, tets and fields of a piece.
   void read_piece(pugi::xml_node piece) {
     TetMesh& mesh = result_.mesh;
     const std::size_t points = data_.count(piece, "NumberOfPoints"),
@@ -73,11 +73,13 @@ class VtuReader {
                first_tet, mesh.tets.size() - first_tet);
   }
 
-  /// Fields that not all pieces have are left out; a piece without items, which parallel writers make, has no
-  /// say. `before` and `items`: points or tets of the pieces before and of this one.
+  /// Adds the fields of a piece. Fields that some piece lacks are left out; a piece without items, which
+  /// parallel writers make, is ignored.
+  /// \param before number of points or tets of the pieces before
+  /// \param items number of points or tets of this piece
   void add_fields(std::vector<MeshField>& all, std::vector<MeshField> added, std::size_t before,
                   std::size_t items) {
-    // What it marks is no longer there.
+    // The marked items have been removed.
     std::erase_if(added, [](const MeshField& field) { return field.name == ghost_marks; });
     if (items == 0) return;
     if (before == 0) {
@@ -101,14 +103,14 @@ class VtuReader {
     for (const MeshField& field : added) field_names_of_some_pieces_.push_back(field.name);
   }
 
-  /// Marks of vtkGhostType: of each cell that a neighbouring piece has, too.
+  /// Marks of vtkGhostType: cells that a neighbouring piece has, too.
   std::vector<std::int64_t> ghosts(pugi::xml_node piece, std::size_t cells) const {
     const pugi::xml_node node =
         piece.child("CellData").find_child_by_attribute("DataArray", "Name", ghost_marks);
     return node ? data_.integers(node, cells) : std::vector<std::int64_t>();
   }
 
-  /// Returns the cells that the tets are.
+  /// Reads the cells and returns the indices of the tets.
   std::vector<std::size_t> read_cells(pugi::xml_node piece, std::size_t points, std::size_t cell_count) {
     constexpr std::int64_t duplicate_cell = 1;
     const pugi::xml_node cells = piece.child("Cells");
@@ -158,8 +160,8 @@ class VtuReader {
     return tet_to_cell;
   }
 
-  /// Where pieces meet each has points of its own: those at one place become that of the first piece, with
-  /// its values. Several that a piece has at one place are meant, and go with as many of the others, in their
+  /// Merges points where pieces meet: points with equal coordinates become that of the first piece, with its
+  /// values. Duplicates within a piece are intended, and are matched with as many of the others, in their
   /// order.
   void join_pieces() {
     TetMesh& mesh = result_.mesh;
@@ -176,7 +178,7 @@ class VtuReader {
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
       while (end < order.size() && coordinates(order[end]) == coordinates(order[begin])) ++end;
       slots.clear();
-      std::size_t piece = 0, used = 0;  // pieces count from 1 here
+      std::size_t piece = 0, used = 0;  // pieces are numbered from 1 here
       for (std::size_t i = begin; i < end; ++i) {
         const Index p = order[i];
         const auto own = static_cast<std::size_t>(
@@ -190,7 +192,7 @@ class VtuReader {
     renumber(to);
   }
 
-  /// `to`: the point that each becomes, none with a greater number.
+  /// \param to for each point the one it becomes, itself or one with a smaller index
   void renumber(std::vector<Index>& to) {
     TetMesh& mesh = result_.mesh;
     Index kept = 0;
@@ -221,20 +223,20 @@ class VtuReader {
         grid.child("FieldData").find_child_by_attribute("DataArray", "Name", vtk_material_names);
     if (!node) return;
     std::string text;
-    // Compressed data may be longer than the file, but names hardly are.
+    // Compressed data may exceed the size of the file, but names hardly do.
     for (std::int64_t c : data_.integers(node, file_size_)) text += static_cast<char>(c);
     for (auto& [tag, name] : parse_vtk_names(text, vtk_material_names, name_))
       result_.mesh.material_names[checked_material(tag, name_, 0)] = name;
   }
 
-  /// Arrays of the whole dataset, and arrays of text.
+  /// Reports arrays of the whole dataset, and arrays of text.
   void note_dropped_arrays(pugi::xml_node grid, const std::vector<pugi::xml_node>& pieces) {
     const auto is_array = [](pugi::xml_node node) {
       return std::string_view(node.name()) == "DataArray" || std::string_view(node.name()) == "Array";
     };
     const auto name_of = [](pugi::xml_node node) { return field_name(node.attribute("Name").as_string()); };
     std::vector<std::string> of_dataset, text;
-    // Some programs put FieldData beside the grid or into the piece.
+    // Some programs put FieldData beside the grid or into a piece.
     std::vector<pugi::xml_node> parents{data_.root(), grid};
     parents.insert(parents.end(), pieces.begin(), pieces.end());
     for (const pugi::xml_node parent : parents)
@@ -297,7 +299,7 @@ std::string write_vtu(const MeshToWrite& written) {
 MeshParts vtu_parts(const TetMesh& mesh) {
   MeshParts parts;
   UniqueNames names(printable_name);
-  std::map<std::string, std::string> written;  // materials of one name keep it
+  std::map<std::string, std::string> written;  // materials of equal names keep them
   for (const auto& [tag, name] : mesh.material_names) {
     const auto [known, added] = written.try_emplace(name);
     if (added) known->second = names.add(name);

@@ -95,7 +95,7 @@ class XdmfReader {
     return chosen;
   }
 
-  /// The numbers of a DataItem, at most `max_count`.
+  /// Reads the numbers of a DataItem, at most `max_count`.
   std::vector<double> numbers(pugi::xml_node parent, std::size_t max_count) {
     const pugi::xml_node item = parent.child("DataItem");
     if (!item) fail(parent, "there is no DataItem in it");
@@ -132,7 +132,7 @@ class XdmfReader {
     return *reader;
   }
 
-  /// A count that an attribute gives ("Dimensions" is "17 3"), or 0.
+  /// Row count in an attribute ("Dimensions" is "17 3"), or 0.
   static std::size_t rows_of(pugi::xml_node parent) {
     const std::string dimensions = parent.child("DataItem").attribute("Dimensions").as_string();
     TextScanner words(dimensions, "");
@@ -140,7 +140,7 @@ class XdmfReader {
     return parse_number(words.word(), rows) && rows > 0 ? static_cast<std::size_t>(rows) : 0;
   }
 
-  /// What the file can hold, whatever it says: HDF5 may be compressed.
+  /// Checks a row count against the capacity of the file, which may be compressed HDF5.
   std::size_t checked_rows(pugi::xml_node parent, const char* what) const {
     const std::size_t rows = rows_of(parent);
     if (rows == 0) fail(parent, std::string("there are no ") + what + ", or no Dimensions of them");
@@ -213,7 +213,7 @@ class XdmfReader {
     (of_cells ? mesh.cell_fields : mesh.point_fields).push_back(std::move(field));
   }
 
-  /// "<main><map key=NAME dim=3>NUMBER</map></main>", as text: those of this dimension.
+  /// "<main><map key=NAME dim=3>NUMBER</map></main>" in text: names of this dimension.
   static std::map<std::int64_t, std::string> names_of(pugi::xml_node grid, std::string_view dimension) {
     std::map<std::int64_t, std::string> found;
     for (const pugi::xml_node information : grid.children("Information")) {
@@ -229,8 +229,8 @@ class XdmfReader {
     return found;
   }
 
-  /// Those of write_xdmf_facets(). A file of this name that has others may be of another program, and of
-  /// other points.
+  /// Reads the file of write_xdmf_facets(). A file of this name with other contents may be of another
+  /// program, and for other points.
   void read_facets(const NamedBytes& file, FileTriangles& listed) {
     XdmfReader reader(file.bytes, file.name, read_file_);
     if (!reader.list_facets(result_.mesh.points.size(), listed))
@@ -239,7 +239,8 @@ class XdmfReader {
                                  1});
   }
 
-  /// The triangles of this file by their tags. False if they are not those of a mesh of so many points.
+  /// Lists the triangles of this file by their tags.
+  /// \return false if they are not for a mesh of this many points
   bool list_facets(std::size_t points, FileTriangles& listed) {
     const pugi::xml_node grid = document_.select_node("//Grid[Topology]").node();
     const pugi::xml_node topology = grid.child("Topology"),
@@ -276,10 +277,10 @@ class XdmfReader {
   KindCounts rounded_;  ///< integers of fields
 };
 
-/// An element with its numbers in the HDF5 file.
+/// Writes an element with its numbers in the HDF5 file.
 void write_item(TextWriter& out, const std::string& hdf5, const std::string& dataset, std::size_t rows,
                 std::size_t columns, bool integer, int bytes) {
-  // Blanks before a name are not part of it.
+  // Leading blanks are not part of a name.
   const char* folder = hdf5.starts_with(' ') ? "./" : "";
   out << "<DataItem Dimensions=\"" << rows << ' ' << columns << "\" NumberType=\""
       << (integer ? "Int" : "Float") << "\" Precision=\"" << bytes << "\" Format=\"HDF\">" << folder
@@ -291,8 +292,8 @@ void begin_grid(TextWriter& out, const char* name) {
       << "\" GridType=\"Uniform\">\n";
 }
 
-/// The file with the numbers of facets beside that of the mesh. dolfinx opens the one that is called as the
-/// XDMF file, whatever that says.
+/// Name of the HDF5 file of facets beside that of the mesh. dolfinx opens the one with the name of the XDMF
+/// file, whatever that refers to.
 std::string facet_file(const std::string& hdf5) {
   const std::size_t stem = hdf5.rfind('.');
   return hdf5.substr(0, stem) + (hdf5.ends_with(".H5") ? "_FACETS" : "_facets") + hdf5.substr(stem);
@@ -313,7 +314,7 @@ void write_names(TextWriter& out, const Parts& parts, int dimension, const Numbe
   out << "<Information Name=\"names\">" << xml_text(text + "</main>") << "</Information>\n";
 }
 
-/// The name of a field's dataset, which need not be one that HDF5 can hold.
+/// Dataset of a field, whose own name may be invalid in HDF5.
 std::string dataset_of(const char* of, std::size_t i) { return of + std::to_string(i); }
 
 void write_fields(TextWriter& out, const std::vector<MeshField>& fields, const char* of, const char* center,
@@ -405,7 +406,7 @@ void write_xdmf_mesh(const MeshToWrite& written, const std::string& hdf5, const 
   out << "</Topology>\n";
   write_geometry(out, written, hdf5);
   write_names(out, mesh_parts(mesh, printable_names()).materials, 3, [](const auto& m) { return m.tag; });
-  // The first attribute: it is what dolfinx takes for the tags of a grid.
+  // First, since dolfinx uses the first attribute as the tags of a grid.
   out << "<Attribute Name=\"" << xdmf_material << "\" AttributeType=\"Scalar\" Center=\"Cell\">\n";
   write_item(out, hdf5, xdmf_material, mesh.tets.size(), 1, true, 4);
   out << "</Attribute>\n";

@@ -16,7 +16,7 @@ namespace {
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f'; }
 
-/// from_chars knows no leading plus; a second sign is not a number.
+/// Removes a leading plus, which from_chars rejects; a second sign is not a number.
 std::string_view without_plus(std::string_view token) {
   if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
   return token;
@@ -29,7 +29,7 @@ bool parse_number(std::string_view token, double& value) {
   const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
   if (end != token.data() + token.size() || token.empty()) return false;
   if (error == std::errc::result_out_of_range) {
-    // from_chars does not say on which side; strtod gives 0, a subnormal or infinity.
+    // from_chars does not distinguish overflow and underflow; strtod gives 0, a subnormal or infinity.
     value = std::strtod(std::string(token).c_str(), nullptr);
     return true;
   }
@@ -135,7 +135,7 @@ std::size_t TextScanner::count(std::string_view what, std::size_t bytes_each) {
   const std::int64_t value = integer(what);
   if (value < 0) fail("the " + std::string(what) + " is negative: " + std::to_string(value));
   const auto n = static_cast<std::uint64_t>(value);
-  // The last one may lack the white space that ends it.
+  // The last item may lack trailing white space.
   if (n > (left() + 1) / bytes_each)
     fail("the " + std::string(what) + " is " + std::to_string(n) + ", but only " + std::to_string(left()) +
          " bytes follow; the file is cut short or its header is wrong");

@@ -10,43 +10,45 @@
 
 namespace tetwright {
 
-/// Parses a whole token. Returns false if it is not a number. "nan" and "inf" are numbers; overflow gives an
-/// infinity, underflow 0 or a subnormal number.
+/// Parses a whole token. "nan" and "inf" are numbers; overflow gives an infinity, underflow 0 or a subnormal
+/// number.
+/// \return false if the token is not a number
 bool parse_number(std::string_view token, double& value);
 bool parse_number(std::string_view token, std::int64_t& value);
 
 /// Splits a text file into words and counts its lines, which end with \n, \r\n or \r. The bytes must outlive
 /// the scanner.
 ///
-/// Our own, since messages need the line of every word, and numbers are parsed exactly in every locale.
+/// Not a library: messages need the line of every word, and numbers must parse exactly in every locale.
 class TextScanner {
  public:
-  /// `comment`: the character that begins a comment, which ends with its line; 0 for none.
+  /// \param comment character that begins a comment, up to the end of its line; 0 for none
   TextScanner(std::string_view bytes, std::string name, char comment = 0)
       : bytes_(bytes), name_(std::move(name)), comment_(comment) {
     // Skips the byte order mark that some editors write before UTF-8.
     if (bytes_.starts_with("\xef\xbb\xbf")) position_ = 3;
   }
 
-  /// The next word, on this or a later line; empty at the end of the file.
+  /// Next word, on this or a later line; empty at the end of the file.
   std::string_view word();
-  /// The next word of this line; empty at the end of the line.
+  /// Next word of this line; empty at the end of the line.
   std::string_view word_on_line();
-  /// The rest of this line without its line end; the next line is current afterwards.
+  /// Rest of this line without its line end; the next line becomes current.
   std::string_view rest_of_line();
   /// Skips the rest of this line.
   void skip_line() { (void)rest_of_line(); }
-  /// The next `n` bytes as they are, or fewer at the end. Their line feeds are counted as lines.
+  /// Next `n` bytes unchanged, or fewer at the end. Their line feeds count as lines.
   std::string_view take_bytes(std::size_t n);
 
-  /// The next word as a number; `what` names it in messages ("coordinate", "index of a point"). Throws
-  /// InputError at the end of the file, if the word is not a number, or if a coordinate is not finite.
+  /// Reads the next word as a number.
+  /// \param what names it in messages ("coordinate", "index of a point")
+  /// \throws InputError at the end of the file, if the word is not a number, or if a coordinate is not finite
   double coordinate(std::string_view what = "coordinate");
   std::int64_t integer(std::string_view what);
-  /// Any number, including nan and infinities.
+  /// Reads any number, including NaN and infinities.
   double number(std::string_view what);
-  /// An integer that counts items that follow in the file, each of at least `bytes_each` bytes. Throws
-  /// InputError if it is negative or more than the rest of the file can hold.
+  /// Reads an integer that counts subsequent items in the file, each of at least `bytes_each` bytes.
+  /// \throws InputError if it is negative or exceeds the capacity of the rest of the file
   std::size_t count(std::string_view what, std::size_t bytes_each);
 
   bool at_end();                                    ///< only white space and comments are left
@@ -55,9 +57,9 @@ class TextScanner {
   std::size_t line() const { return line_; }  ///< of the last word, from 1
   const std::string& name() const { return name_; }
 
-  /// Throws InputError with the file and the line of the last word.
+  /// \throws InputError with the file and the line of the last word
   [[noreturn]] void fail(const std::string& message) const;
-  /// Throws the InputError for a file that ends where `what` was expected.
+  /// \throws InputError for a file that ends where `what` was expected
   [[noreturn]] void fail_cut_short(std::string_view what) const;
 
  private:
@@ -71,7 +73,8 @@ class TextScanner {
   char comment_;
 };
 
-/// Throws InputError unless `value` is a material tag (a 32-bit integer).
+/// Converts a number to a material tag.
+/// \throws InputError unless `value` is a 32-bit integer
 MaterialTag checked_material(std::int64_t value, const std::string& file, std::size_t line);
 
 }  // namespace tetwright

@@ -10,7 +10,7 @@
 
 namespace tetwright {
 
-/// Text on its way into a file, handed over in pieces of about a megabyte.
+/// Buffers text for a file and passes it on in pieces of about a megabyte.
 class TextWriter {
  public:
   /// `sink` must outlive this object.
@@ -18,7 +18,7 @@ class TextWriter {
   TextWriter(const TextWriter&) = delete;
   TextWriter& operator=(const TextWriter&) = delete;
 
-  /// Numbers as append_number() writes them.
+  /// Appends text, or a number as append_number() formats it.
   template <class Value>
   TextWriter& operator<<(const Value& value) {
     if constexpr (std::is_same_v<Value, char>)
@@ -31,7 +31,7 @@ class TextWriter {
     return *this;
   }
 
-  /// To be called at the end.
+  /// Passes on the rest; call it at the end.
   void flush() {
     sink_(text_);
     text_.clear();

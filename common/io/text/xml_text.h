@@ -6,7 +6,7 @@
 
 namespace tetwright {
 
-/// A text without control characters in the form that XML needs in attributes and between elements.
+/// Escapes a text without control characters for XML attributes and elements.
 inline std::string xml_text(std::string_view text) {
   std::string out;
   for (const char c : text) {

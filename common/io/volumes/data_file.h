@@ -9,23 +9,23 @@
 
 namespace tetwright {
 
-/// Returns all bytes of a file. It is read_whole_file() except in tests and fuzzers, which have no files.
+/// Returns all bytes of a file: read_whole_file(), except in tests and fuzzers, which have no files.
 using FileReader = std::function<std::string(const std::string& path)>;
 
-/// The content of a file, and its name in messages.
+/// Content of a file, and its name in messages.
 struct NamedBytes {
   std::string_view bytes;
   std::string name;
 };
 
-/// A file that holds the voxels of a separate header.
+/// File with the voxels of a separate header.
 struct DataFile {
   std::string path;
   std::string bytes;
 };
 
-/// Reads the file that `field` of the header names; its path is relative to the folder of the header. Throws
-/// InputError with the line of the header if the file can't be read.
+/// Reads the file that `field` of the header names, relative to the folder of the header.
+/// \throws InputError with the line of the header if the file cannot be read
 DataFile read_data_file(const HeaderFields& header, const std::string& field, const FileReader& read);
 
 }  // namespace tetwright

@@ -10,17 +10,19 @@
 
 namespace tetwright {
 
-/// The fields of a volume's text header. They are found by their names in lower case. The functions that read
-/// a value throw an InputError that names file, line, field and value if it is missing or malformed.
+/// Fields of a volume's text header, found by their names in lower case. Functions that read a value throw an
+/// InputError that names file, line, field and value if it is missing or malformed.
 class HeaderFields {
  public:
   explicit HeaderFields(std::string file) : file_(std::move(file)) {}
 
-  /// `value` must outlive this object. Throws InputError if the field was added before.
+  /// Adds a field.
+  /// \param value must outlive this object
+  /// \throws InputError if the field was added before
   void add(std::string_view field, std::string_view value, std::size_t line);
 
   bool has(const std::string& field) const { return fields_.contains(field); }
-  /// Of several names of one field the first that the header has; if it has none, the first name.
+  /// First of several names of one field that the header has; if it has none, the first name.
   std::string any_of(std::initializer_list<const char*> names) const;
 
   std::string_view text(const std::string& field) const;
@@ -29,12 +31,12 @@ class HeaderFields {
   double number(const std::string& field) const;
   std::vector<std::string_view> words(const std::string& field) const;
   std::vector<std::int64_t> integers(const std::string& field) const;
-  /// Throws InputError unless the field has exactly `count` numbers.
+  /// \throws InputError unless the field has exactly `count` numbers
   std::vector<double> numbers(const std::string& field, std::size_t count) const;
 
   std::size_t line(const std::string& field) const;
   const std::string& file() const { return file_; }
-  /// Throws InputError with the line of the field, or one that says that the field is missing.
+  /// \throws InputError with the line of the field, or stating that the field is missing
   [[noreturn]] void fail(const std::string& field, const std::string& message) const;
 
  private:

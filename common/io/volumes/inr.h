@@ -9,10 +9,11 @@
 namespace tetwright {
 
 /// Reads an INRIMAGE-4 volume, compressed with gzip or not; the content decides, not the extension. Voxels
-/// may be integers or floats of either byte order. `name` is used in messages. Throws InputError with the
-/// line of the header for anything that is malformed; rotated volumes are refused.
+/// may be integers or floats of either byte order. Rotated volumes are rejected.
 ///
-/// Our own, since the format is small and every message names the line and the value.
+/// Not a library: the format is small, and every message names the line and the value.
+/// \param name used in messages
+/// \throws InputError with the line of the header for malformed contents
 LabelVolume read_inr(std::string_view bytes, const std::string& name);
 
 }  // namespace tetwright

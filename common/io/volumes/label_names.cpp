@@ -18,7 +18,8 @@ constexpr std::size_t max_label_name_size = 120;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 
-/// Removes a comment: from a # or // outside of double quotes that begins the line or follows white space.
+/// Removes a comment: from a # or // on, outside of double quotes, that begins the line or follows white
+/// space.
 std::string_view without_comment(std::string_view line) {
   bool quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -29,7 +30,7 @@ std::string_view without_comment(std::string_view line) {
   return line;
 }
 
-/// Takes the first word off, up to white space or, if wanted, a comma.
+/// Removes and returns the first word, up to white space or, if `comma`, a comma.
 std::string_view take_word(std::string_view& text, bool comma) {
   std::size_t end = 0;
   while (end < text.size() && !is_blank(text[end]) && !(comma && text[end] == ',')) ++end;
@@ -39,7 +40,7 @@ std::string_view take_word(std::string_view& text, bool comma) {
   return word;
 }
 
-/// Takes the last word off.
+/// Removes and returns the last word.
 std::string_view take_last_word(std::string_view& text) {
   std::size_t begin = text.size();
   while (begin > 0 && !is_blank(text[begin - 1])) --begin;
@@ -62,14 +63,14 @@ struct Line {
   std::string_view tag, rest;
 };
 
-/// "NAME R G B A" -> "NAME", which may be missing: then this is a colour table still, with a fault.
+/// "NAME R G B A" -> "NAME". The name may be missing: a faulty colour table.
 bool drop_colour_behind(std::string_view& text) {
   for (int i = 0; i < 4; ++i)
     if (!is_colour(take_last_word(text))) return false;
   return true;
 }
 
-/// "R G B A VISIBLE MESH "NAME"" -> ""NAME"". Alpha is a share from 0 to 1.
+/// "R G B A VISIBLE MESH "NAME"" -> ""NAME"". Alpha is from 0 to 1.
 bool drop_colour_before(std::string_view& text) {
   for (int i = 0; i < 6; ++i) {
     const std::string_view word = take_word(text, false);
@@ -114,7 +115,7 @@ std::map<MaterialTag, std::string> parse_label_names(std::string_view bytes, con
                                                      std::map<MaterialTag, std::size_t>* line_numbers) {
   std::vector<Line> lines = split_lines(bytes, file);
   if (lines.empty()) throw InputError(file, 0, "names no label; expected lines such as: 1 liver");
-  // One line alone may look like another form by chance ("3 rib 1 2 3 4"), all of them don't.
+  // A single line may resemble another form by chance ("3 rib 1 2 3 4"), but not all lines.
   for (bool (*const drop_colour)(std::string_view&) : {drop_colour_behind, drop_colour_before}) {
     std::vector<Line> bare = lines;
     if (!std::all_of(bare.begin(), bare.end(), [&](Line& line) { return drop_colour(line.rest); })) continue;

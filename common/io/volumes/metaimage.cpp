@@ -15,7 +15,7 @@ namespace tetwright {
 namespace {
 
 VoxelType metaimage_voxel_type(const HeaderFields& header) {
-  // A long has 4 bytes in these files, wherever they were written.
+  // A long has 4 bytes in these files, whatever machine wrote them.
   constexpr std::array<std::pair<std::string_view, VoxelType>, 12> names{
       {{"met_char", VoxelType::int8},
        {"met_uchar", VoxelType::uint8},
@@ -38,7 +38,7 @@ VoxelType metaimage_voxel_type(const HeaderFields& header) {
                   "MET_INT");
 }
 
-/// Up to and with the line that says where the voxels are.
+/// Reads the header, up to and including the line that locates the voxels.
 HeaderFields read_metaimage_header(TextScanner& in) {
   if (in.left() == 0) in.fail("the file is empty");
   HeaderFields header(in.name());
@@ -84,17 +84,17 @@ LabelVolume read_geometry(const HeaderFields& header) {
   }
   if (const std::string field = header.any_of({"transformmatrix", "rotation", "orientation"});
       header.has(field)) {
-    // Axis after axis, the direction of each.
+    // The direction of each axis in turn.
     const std::vector<double> matrix = header.numbers(field, 9);
     volume.directions = Eigen::Map<const Eigen::Matrix3d>(matrix.data());
   }
-  // The size of voxels is their spacing unless there are gaps, which the spacing then counts in.
+  // Voxel size equals spacing unless there are gaps, which the spacing then includes.
   if (const std::string field = header.any_of({"elementspacing", "elementsize"}); header.has(field)) {
     const std::vector<double> spacing = header.numbers(field, 3);
     for (int axis = 0; axis < 3; ++axis)
       volume.directions.col(axis) *= spacing[static_cast<std::size_t>(axis)];
   }
-  // Coordinates are ITK's wherever the header says how the patient lies.
+  // Coordinates follow ITK if the header gives the patient's orientation.
   if (header.has("anatomicalorientation") && header.text("anatomicalorientation") != "???")
     volume.space = "left-posterior-superior";
   check_geometry(volume, header.file());
@@ -126,7 +126,7 @@ LabelVolume read_metaimage(std::string_view bytes, const std::string& name, cons
     for (const int n : volume.size) needed *= static_cast<std::uint64_t>(n);
     if (needed < data.size()) data.remove_prefix(data.size() - static_cast<std::size_t>(needed));
   } else if (skip != 0) {
-    // From the beginning of the file, whichever it is.
+    // Counted from the beginning of either file.
     if (skip < 0 || static_cast<std::uint64_t>(skip) > whole.size())
       header.fail("headersize",
                   std::to_string(skip) + " bytes to be skipped of " + std::to_string(whole.size()));

@@ -11,10 +11,12 @@
 namespace tetwright {
 
 /// Reads a MetaImage volume of ITK. The voxels are binary, compressed or text, and follow the header (.mha)
-/// or are in another file (.mhd), which `read` reads. `name` is used in messages. Throws InputError with the
-/// line of the header for anything that is malformed.
+/// or are in another file (.mhd).
 ///
-/// Our own: MetaIO is only packaged as part of ITK, which takes 150 MB and more.
+/// Not a library: MetaIO is only packaged as part of ITK, which takes 150 MB and more.
+/// \param name used in messages
+/// \param read reads that other file
+/// \throws InputError with the line of the header for malformed contents
 LabelVolume read_metaimage(std::string_view bytes, const std::string& name,
                            const FileReader& read = read_whole_file);
 

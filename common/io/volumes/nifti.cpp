@@ -13,13 +13,13 @@ namespace tetwright {
 
 namespace {
 
-/// Where a version of the format has its numbers, and of what type they are.
+/// Offsets and types of a version's header fields.
 struct Layout {
   int header_size;
   std::size_t magic;
   std::size_t dim, dim_bytes;      ///< integers of 2 or 8 bytes
   std::size_t type;                ///< int16
-  std::size_t pixdim, real_bytes;  ///< floats, of 4 or 8 bytes as all that follow
+  std::size_t pixdim, real_bytes;  ///< floats, of 4 or 8 bytes like all following ones
   std::size_t offset;              ///< a float, or an integer of 8 bytes
   std::size_t slope, intercept;
   std::size_t qform, sform, code_bytes;  ///< integers of 2 or 4 bytes
@@ -54,7 +54,7 @@ class NiftiHeader {
   }
 
   std::size_t header_size() const { return static_cast<std::size_t>(layout_->header_size); }
-  /// The voxels are in a file of their own, .img.
+  /// Whether the voxels are in a separate file, .img.
   bool detached() const { return detached_; }
   bool swap() const { return swap_; }
 
@@ -79,7 +79,7 @@ class NiftiHeader {
     VoxelFormat format;
     format.type = type();
     format.swap = swap_;
-    // A slope of 0, or none that is a number, means no scaling.
+    // A slope that is 0 or not finite means no scaling.
     const double slope = real(layout_->slope), intercept = real(layout_->intercept);
     if (slope != 0 && std::isfinite(slope)) {
       if (!std::isfinite(intercept)) fail("scl_inter is not finite; repair the header");
@@ -89,11 +89,11 @@ class NiftiHeader {
     return format;
   }
 
-  /// Of the first voxel in its file.
+  /// Offset of the first voxel in its file.
   std::size_t offset() const {
     const double offset = layout_ == &version_2 ? static_cast<double>(number<std::int64_t>(layout_->offset))
                                                 : real(layout_->offset);
-    // Behind the header are four bytes that say whether extensions follow.
+    // The header is followed by four bytes that announce extensions.
     const std::size_t min_offset = detached_ ? 0 : header_size() + 4;
     if (offset == 0) return min_offset;
     if (!(offset >= static_cast<double>(min_offset) && offset < 0x1p31 && offset == std::floor(offset)))
@@ -103,7 +103,7 @@ class NiftiHeader {
   }
 
   void read_geometry(LabelVolume& volume) const {
-    // NIfTI's own definition: x to the right, y to the front, z up.
+    // By NIfTI's definition: x to the right, y to the front, z up.
     volume.space = "right-anterior-superior";
     if (code(layout_->sform) > 0) {
       for (std::size_t row = 0; row < 3; ++row) {
@@ -126,7 +126,7 @@ class NiftiHeader {
       if (real(layout_->pixdim) < 0) volume.directions.col(2) *= -1;
       for (int k = 0; k < 3; ++k) volume.origin[k] = real(layout_->qoffset, static_cast<std::size_t>(k));
     } else {
-      volume.space.clear();  // nothing is said of where x points to
+      volume.space.clear();  // the direction of x is not specified
     }
     volume.directions = volume.directions * spacing.asDiagonal();
   }
@@ -197,13 +197,14 @@ class NiftiHeader {
     }
   }
 
-  /// Of the quaternion (a, b, c, d), of which the header has the last three; a >= 0 makes it a unit one.
+  /// Rotation matrix of the quaternion (a, b, c, d), of which the header has the last three; a >= 0 makes it
+  /// a unit one.
   Eigen::Matrix3d rotation() const {
     double b = real(layout_->quaternion), c = real(layout_->quaternion, 1), d = real(layout_->quaternion, 2);
     const double rest = 1 - (b * b + c * c + d * d);
     if (!std::isfinite(rest)) fail("the quaternion of the qform is not finite; repair the header");
     double a = 0;
-    // Rounding may have made a half turn's quaternion too long.
+    // Rounding may have lengthened a half turn's quaternion.
     if (rest < tolerance::unit_quaternion) {
       const double length = std::sqrt(b * b + c * c + d * d);
       b /= length;
@@ -233,7 +234,7 @@ class NiftiHeader {
   bool swap_ = false, detached_ = false;
 };
 
-/// The voxels of a header "a.hdr" are in "a.img", in capitals where that is.
+/// Voxel file of a header: "a.img" for "a.hdr", in capitals if that is.
 std::string image_of(const std::string& name) {
   if (name.ends_with(".HDR")) return name.substr(0, name.size() - 4) + ".IMG";
   return (name.ends_with(".hdr") ? name.substr(0, name.size() - 4) : name) + ".img";
@@ -248,7 +249,7 @@ ByteSource source_of(std::string_view bytes, const std::string& name) {
 
 LabelVolume read_nifti(std::string_view bytes, const std::string& name, const FileReader& read_file) {
   ByteSource source = source_of(bytes, name);
-  // The size of the header stands at its beginning.
+  // The header begins with its size.
   std::string header_bytes(source.take(static_cast<std::size_t>(version_1.header_size)));
   if (header_bytes.size() >= 4 && (load<std::int32_t>(header_bytes.data(), false) == version_2.header_size ||
                                    load<std::int32_t>(header_bytes.data(), true) == version_2.header_size))

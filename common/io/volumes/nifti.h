@@ -9,14 +9,15 @@
 
 namespace tetwright {
 
-/// Reads a NIfTI volume of version 1 or 2, in one file or as a header (.hdr) whose voxels are in a file .img
-/// beside it, which `read_file` reads; compressed with gzip or not (the content decides, not the extension),
-/// in either byte order. Coordinates follow the sform, without one the qform, without both the spacing alone.
-/// `name` is used in messages. Throws InputError for anything that is malformed.
+/// Reads a NIfTI volume of version 1 or 2, in one file or as a header (.hdr) with the voxels in an .img file
+/// beside it; compressed with gzip or not (the content decides, not the extension), in either byte order.
+/// Coordinates follow the sform, otherwise the qform, otherwise the spacing alone.
 ///
-/// Our own reader of the bytes that matter: the conversion of headers in libnifti2 3.0.1 prints to
-/// stderr, and silently turns spacings that are zero or not finite and sizes below 1 into 1, which must be
-/// refused here.
+/// Not a library: libnifti2 3.0.1 prints to stderr when it converts headers, and silently turns spacings that
+/// are zero or not finite and sizes below 1 into 1, which must be rejected here.
+/// \param name used in messages
+/// \param read_file reads the .img file
+/// \throws InputError for malformed contents
 LabelVolume read_nifti(std::string_view bytes, const std::string& name, const FileReader& read_file);
 
 }  // namespace tetwright

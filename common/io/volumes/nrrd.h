@@ -10,18 +10,20 @@
 
 namespace tetwright {
 
-/// Reads an NRRD volume: raw, gzip or text, attached to its header or in another file, which `read` reads. Of
-/// more than three axes those of size 1 are dropped. Names of segments as 3D Slicer writes them (.seg.nrrd)
-/// are those of the labels; segments in several layers are refused with advice. `name` is used in messages.
-/// Throws InputError with the line of the header for anything that is malformed.
+/// Reads an NRRD volume: raw, gzip or text, attached to its header or in another file. Of more than three
+/// axes those of size 1 are dropped. Labels get the names of 3D Slicer's segments (.seg.nrrd); segments in
+/// several layers are rejected with advice.
 ///
-/// Our own: libteem, where the format comes from, has had no release since 2012, reads through a FILE and
+/// Not a library: libteem, the format's origin, has had no release since 2012, reads through a FILE and
 /// allocates what the header promises.
+/// \param name used in messages
+/// \param read reads the other file
+/// \throws InputError with the line of the header for malformed contents
 LabelVolume read_nrrd(std::string_view bytes, const std::string& name,
                       const FileReader& read = read_whole_file);
 
-/// The content of an NRRD file: attached, gzip, in the smallest integer type that holds all labels. Origin
-/// and directions are read back bit by bit.
+/// Content of an NRRD file: attached, gzip, in the smallest integer type that holds all labels. Origin and
+/// directions round-trip bit by bit.
 std::string write_nrrd(const LabelVolume& volume);
 
 }  // namespace tetwright

@@ -15,10 +15,10 @@ namespace tetwright {
 
 namespace {
 
-/// Labels that are converted at once.
+/// Labels converted at a time.
 constexpr std::size_t block_labels = std::size_t{1} << 18;
 
-/// A gzip file that grows at the end of `out`. One member, since some readers stop behind the first.
+/// Appends a gzip file to `out`, of one member, since some readers stop after the first.
 class GzipWriter {
  public:
   explicit GzipWriter(std::string& out) : out_(out) {
@@ -72,7 +72,7 @@ void append_vector(std::string& out, const Vec3& v) {
   out += ')';
 }
 
-/// The names that the format knows; anything else it could not say.
+/// Whether the format has a name for this space.
 bool is_nrrd_space(const std::string& space) {
   constexpr std::array<std::string_view, 9> names{"right-anterior-superior",
                                                   "RAS",

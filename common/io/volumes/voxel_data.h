@@ -14,13 +14,13 @@
 
 namespace tetwright {
 
-// Functions that the formats of volumes share: conversion of voxels to labels, and the checks of a volume.
+// Functions shared by the formats of volumes: conversion of voxels to labels, and checks of a volume.
 
 enum class VoxelType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 
 std::size_t voxel_bytes(VoxelType type);
 
-/// The representation of a voxel in the file.
+/// Representation of a voxel in the file.
 struct VoxelFormat {
   VoxelType type = VoxelType::uint8;
   bool swap = false;  ///< the byte order is not this machine's
@@ -28,18 +28,19 @@ struct VoxelFormat {
   double slope = 1, intercept = 0;
 };
 
-/// Returns the sizes of a volume along its three axes, in voxels. Throws InputError unless there are three,
-/// each is at least 1 and their product at most 2^31.
+/// Checks the sizes of a volume along its axes, in voxels.
+/// \throws InputError unless there are three, each is at least 1 and their product at most 2^31
 std::array<int, 3> checked_size(std::span<const std::int64_t> sizes, const std::string& file,
                                 std::size_t line);
 
-/// Reads the labels of a body, the first axis fastest. Throws InputError if the body is too short, or at the
-/// first voxel whose label is not a whole number of 32 bits. Uses memory only for voxels that the body can
-/// hold, whatever `size` promises. Converts in parallel.
+/// Reads the labels of a body, the first axis fastest, converting in parallel. Uses memory only for voxels
+/// that the body can hold, whatever `size` promises.
+/// \throws InputError if the body is too short, or at the first voxel whose label is not a whole number of 32
+///   bits
 std::vector<MaterialTag> read_voxels(ByteSource& body, const VoxelFormat& format,
                                      const std::array<int, 3>& size);
 
-/// The same for numbers written as text, separated by white space.
+/// Reads labels written as text, separated by white space.
 std::vector<MaterialTag> read_voxels_as_text(TextScanner& body, const std::array<int, 3>& size);
 
 }  // namespace tetwright

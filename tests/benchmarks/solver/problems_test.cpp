@@ -26,7 +26,7 @@ TEST(Problems, PoissonErrorsConvergeAtTheRatesOfLinearElements) {
 TEST(Problems, TheSolutionIsTheBestInTheEnergyNorm) {
   const PoissonErrors errors = errors_of_box(10);
   EXPECT_GT(errors.energy, 0.01);
-  // Among fields with these values on the boundary, of which interpolation is one.
+  // The minimum over fields with these boundary values, of which interpolation is one.
   EXPECT_LT(errors.energy, errors.interpolation);
 }
 

@@ -27,12 +27,13 @@ TEST(Spectrum, LargestFrequencyIsThatOfADenseSolver) {
         Eigen::MatrixXd(stiffness), Eigen::MatrixXd(masses.asDiagonal()), Eigen::EigenvaluesOnly);
     const double exact = std::sqrt(dense.eigenvalues()[masses.size() - 1]);
     const double found = largest_frequency(stiffness, masses);
-    EXPECT_GE(found, exact * (1 - 1e-12));  // a step from it is stable
+    EXPECT_GE(found, exact * (1 - 1e-12));  // a time step derived from it is stable
     EXPECT_LE(found, exact * (1 + 2e-6));
   }
 }
 
-/// Central differences from a random state: bounded below the step, and far beyond all bounds above it.
+/// Growth of central differences from a random state: bounded below the critical step, far beyond all bounds
+/// above it.
 double growth(const SparseMatrix& stiffness, const Eigen::VectorXd& masses, double step) {
   Eigen::VectorXd now = Eigen::VectorXd::LinSpaced(masses.size(), -1, 1).array().sin(), before = now;
   const double start = now.norm();
@@ -54,7 +55,7 @@ TEST(Spectrum, CentralDifferencesAreStableUpToTheStep) {
   EXPECT_GT(growth(stiffness, masses, 1.01 * step), 1e10);
 }
 
-/// Of edge `edge`.
+/// Regular tet with this edge length.
 TetMesh regular_tet(double edge) {
   const double s = edge / std::sqrt(8.0);
   return {{{s, s, s}, {-s, -s, s}, {-s, s, -s}, {s, -s, -s}}, {{0, 1, 2, 3}}, {1}, {}};

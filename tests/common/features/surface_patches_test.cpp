@@ -67,7 +67,7 @@ TEST(SurfacePatches, KeepConcaveEdges) {
 }
 
 TEST(SurfacePatches, HoldTheFacetsOfACylinderTogether) {
-  // By 30 degrees turn the edges between twelve facets, by 90 the rims.
+  // The edges between twelve facets turn by 30 degrees, the rims by 90.
   for (const int facets : {12, 64}) {
     const TriangleMesh s = turned(cylinder(facets));
     EXPECT_EQ(patches_of(s).count, 3U) << facets;
@@ -75,9 +75,9 @@ TEST(SurfacePatches, HoldTheFacetsOfACylinderTogether) {
     EXPECT_EQ(creases.segments.size(), static_cast<std::size_t>(2 * facets));
     EXPECT_TRUE(creases.corners.empty());
   }
-  // A prism of six facets is none.
+  // A prism of six facets is no cylinder.
   EXPECT_EQ(patches_of(cylinder(6)).count, 8U);
-  // An angle that is given decides.
+  // An explicit angle decides.
   EXPECT_EQ(patches_of(cylinder(12), degrees(20)).count, 14U);
   EXPECT_EQ(patches_of(cylinder(12), degrees(100)).count, 1U);
 }
@@ -90,7 +90,7 @@ TEST(SurfacePatches, AreNotLookedForOnScans) {
   EXPECT_FALSE(found.any());
   EXPECT_GT(found.loose_ends_high, 0.2);
   EXPECT_EQ(found.patches, std::vector<std::uint16_t>(scan.triangles.size(), 0));
-  // Who gives an angle has looked at it.
+  // An explicit angle overrides the verdict.
   EXPECT_EQ(patches_of(scan, degrees(30)).verdict, Verdict::part);
   EXPECT_EQ(patches_of(unit_cube(), off).verdict, Verdict::off);
   EXPECT_FALSE(patches_of(unit_cube(), off).any());
@@ -120,7 +120,7 @@ TEST(SurfacePatches, LeaveOutCreasesThatFadeOut) {
 }
 
 TEST(SurfacePatches, DoNotHangTogetherAcrossFlatTriangles) {
-  // A point in the middle of an edge that only one side has, and the flat triangle that closes it.
+  // A point in the middle of an edge of one side only, and the flat triangle that closes the gap.
   TriangleMesh s = turned(unit_cube());
   const Triangle t = s.triangles[2];  // a wall, with an edge of the bottom
   ASSERT_EQ(patches_of(s).count, 6U);
@@ -134,7 +134,7 @@ TEST(SurfacePatches, DoNotHangTogetherAcrossFlatTriangles) {
 
 TEST(SurfacePatches, SmallOnesGoToTheirNeighbours) {
   TriangleMesh s = unit_cube();
-  // Beside it, unconnected: of its six sides none is large, and the last one has no neighbour to go to.
+  // Unconnected, beside it: none of its six sides is large, and the last one has no neighbour to merge with.
   const TriangleMesh bump =
       extruded({{0.4, 0.4}, {0.41, 0.4}, {0.41, 0.41}, {0.4, 0.41}}, {0.405, 0.405}, 0.01);
   s = joined(s, bump);
@@ -200,7 +200,7 @@ TEST(SurfacePatches, AZigzagHasNoCorners) {
     }
   EXPECT_GT(find_creases(points, triangles, patches).corners.size(), 20U);
   const std::vector<Index> corners = find_creases(points, triangles, patches, 8).corners;
-  // Its two ends, and where it turns, which is within the reach.
+  // Both ends, and the turn, which is within the reach.
   EXPECT_GE(corners.size(), 3U);
   EXPECT_LE(corners.size(), 4U);
   EXPECT_TRUE(std::any_of(corners.begin(), corners.end(),
@@ -235,7 +235,7 @@ TEST(MeshPatches, AreNumberedForEachPairOfMaterials) {
   EXPECT_EQ(numbers.at({1, std::nullopt}), (std::set<std::uint16_t>{0, 1, 2, 3, 4}));
   EXPECT_EQ(numbers.at({2, std::nullopt}), (std::set<std::uint16_t>{0, 1, 2, 3, 4}));
   EXPECT_EQ(numbers.at({1, 2}), std::set<std::uint16_t>{0});
-  // Eight edges of 4 x 4 sides that no junction curve is, of four or two.
+  // Eight edges of 4 x 4 sides on no junction curve, of four or two segments.
   const CreaseCurves curves = mesh_creases(mesh);
   EXPECT_EQ(curves.segments.size(), 8U * 4 + 8U * 2);
 }
@@ -251,7 +251,7 @@ TEST(MeshPatches, KeepThoseThatAreThere) {
 }
 
 TEST(MeshPatches, OfVoxelsAreNone) {
-  // Balls of cubes: next to each edge turns by 90 degrees.
+  // Balls of cubes: nearly every edge turns by 90 degrees.
   TetMesh mesh = grid_mesh({24, 24, 24}, [](int x, int y, int z) -> std::optional<MaterialTag> {
     if ((Vec3(x, y, z) - Vec3::Constant(11.5)).norm() < 11) return 1;
     return {};

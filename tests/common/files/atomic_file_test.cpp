@@ -57,7 +57,7 @@ TEST_F(AtomicFile, ImpossibleTargets) {
             std::string::npos);
   EXPECT_NE(error_of<OutputError>([&] { check_output_file("/dev/null"); }).find("not a regular file"),
             std::string::npos);
-  if (geteuid() != 0) {  // root may write everywhere
+  if (geteuid() != 0) {  // root may write anywhere
     chmod(path("folder").c_str(), 0555);
     EXPECT_NE(error_of<OutputError>([&] { check_output_file(path("folder/a")); }).find("not writable"),
               std::string::npos);
@@ -147,7 +147,7 @@ TEST_F(AtomicFile, CancellingLeavesTheOldFile) {
 
 TEST_F(AtomicFile, WhatIsAbandonedIsGone) {
   put(path("a"), "old");
-  // In a process of its own, since nothing can be written afterwards.
+  // In a separate process, since nothing can be written afterwards.
   EXPECT_EXIT(
       {
         OutputFiles files;
@@ -166,7 +166,7 @@ TEST_F(AtomicFile, WhatIsAbandonedIsGone) {
 }
 
 TEST_F(AtomicFile, ADiskThatIsFull) {
-  // /dev/full fails every write as a full disk does, but it is refused as a target before that.
+  // /dev/full fails every write like a full disk, but is rejected as a target before.
   EXPECT_NE(error_of<OutputError>([&] { write_file_atomically("/dev/full", "x"); }).find("regular"),
             std::string::npos);
 }

@@ -56,7 +56,7 @@ TEST(PointTriangle, DegenerateOnesAreSegmentsAndPoints) {
 }
 
 TEST(PointTriangle, NeedlesGiveTheNearestPlace) {
-  // Of a triangle this thin the long edge is the nearest place but for its thickness.
+  // The nearest point of such a thin triangle is on its long edge, up to its thickness.
   for (const double thickness : {1e-5, 1e-6, 1e-7, 1e-8, 1e-10, 1e-12}) {
     const Vec3 a(0.1, 0.2, 0.3), b = a + Vec3(1, 1, 0.5), across = Vec3(1, -1, 0).normalized();
     const Vec3 c = a + 0.37 * (b - a) + thickness * across;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Our predicates against CGAL's exact kernel, on points that are random, nearly coplanar and far apart in
-// scale.
+// Compares the predicates with CGAL's exact kernel, on points that are random, nearly coplanar and far apart
+// in scale.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <gtest/gtest.h>
 

@@ -17,7 +17,7 @@ TEST(Predicates, SignOfTheUnitTet) {
   EXPECT_EQ(orient3d_value(o, x, y, z), 1);
 }
 
-// On a plane through integer points the rounded determinant is noise; one step off the plane its sign is
+// On a plane through integer points the rounded determinant is noise; one ulp off the plane its sign is
 // known.
 TEST(Predicates, OneUlpOffAPlaneIsSeen) {
   Random random(7);
@@ -30,7 +30,7 @@ TEST(Predicates, OneUlpOffAPlaneIsSeen) {
     const Vec3 a = on_plane(), b = on_plane(), c = on_plane();
     Vec3 d = on_plane();
     EXPECT_EQ(orient3d(a, b, c, d), 0);
-    // The plane's own side: up is positive where (a, b, c) turns counter-clockwise seen from above.
+    // Above the plane is positive if (a, b, c) turns counter-clockwise seen from above.
     const int turn = orient2d(a, b, c, 0, 1);
     if (turn == 0) continue;
     d.z() = std::nextafter(d.z(), 1e300);
@@ -38,7 +38,7 @@ TEST(Predicates, OneUlpOffAPlaneIsSeen) {
   }
 }
 
-// Even permutations keep the sign, odd ones turn it: only exact arithmetic holds that near zero.
+// Even permutations preserve the sign, odd ones reverse it: near zero only with exact arithmetic.
 TEST(Predicates, PermutationsAgreeNearZero) {
   Random random(8);
   for (int i = 0; i < 5000; ++i) {

@@ -21,7 +21,7 @@ struct Surface {
   ProjectionTree tree() const { return {points, items}; }
 };
 
-/// The graph of a function over n by n squares of [0, 1]^2, two triangles each.
+/// Graph of a function over n by n squares of [0, 1]^2, two triangles each.
 template <class Height>
 Surface graph(Index n, const Height& height) {
   Surface s;
@@ -49,7 +49,7 @@ double distance(const Vec3& p, const Surface& to) {
   return std::sqrt(nearest);
 }
 
-/// The largest distance of many points of the triangles.
+/// Maximum distance of many points of the triangles.
 double farthest_point(const Surface& from, const Surface& to, int steps) {
   double farthest = 0;
   for (const auto& item : from.items)
@@ -86,7 +86,7 @@ TEST(SurfaceDeviation, OfASurfaceFromItselfIsNothing) {
   EXPECT_LT(d.rms, 1e-12);
 }
 
-// One triangle over a ridge: all its corners are on the other surface, and it is 0.3 off between them.
+// One triangle over a ridge: its corners are on the other surface, and it deviates by 0.3 between them.
 TEST(SurfaceDeviation, IsFoundBetweenTheCorners) {
   const Surface roof = graph(40, [](double u, double) { return 0.3 * (1 - std::abs(2 * u - 1)); });
   Surface floor;
@@ -97,7 +97,7 @@ TEST(SurfaceDeviation, IsFoundBetweenTheCorners) {
   const SurfaceDeviation d = surface_deviation(floor.tree(), roof.tree(), 1e-6);
   expect_between(d, 0.3 / std::sqrt(1 + 0.36));
   EXPECT_NEAR(d.place.x(), 0.5, 0.01);
-  // Straight under the slopes distances go from nothing to the largest, linearly.
+  // Below the slopes distances grow linearly from 0 to the maximum.
   EXPECT_NEAR(d.rms, d.lower / std::sqrt(3), 0.01 * d.lower);
 }
 
@@ -118,18 +118,19 @@ TEST(SurfaceDeviation, IsThatOfASearchOfManyPoints) {
     const SurfaceDeviation d = surface_deviation(from.tree(), to.tree(), 1e-6);
     const double farthest = farthest_point(from, to, 60);
     EXPECT_GE(d.upper, farthest);
-    EXPECT_GE(d.lower, 0.99 * farthest);  // a lower bound that is attained
+    EXPECT_GE(d.lower, 0.99 * farthest);  // the lower bound is attained
     EXPECT_LE(d.upper, 1.01 * d.lower + 1e-12);
     EXPECT_NEAR(distance(d.place, to), d.lower, 1e-12);
   }
 }
 
-// With an accuracy that is always reached the upper bound is that of the whole triangle.
+// An accuracy that is always reached leaves the upper bound of the whole triangle.
 TEST(SurfaceDeviation, OfATriangleOverAFanIsBoundedBeforeAnyCut) {
   Random random(7);
   const auto number = [&] { return 2 * random.uniform() - 1; };
   for (int round = 0; round < 200; ++round) {
-    // Around a point at any height, some of them flat; the triangle lies over one to all of the fan's.
+    // A fan around a point at any height, some of it flat; the triangle lies over one to all of its
+    // triangles.
     const Index sides = 3 + static_cast<Index>(4 * random.uniform());
     const double height = round % 3 == 0 ? 0 : number();
     Surface fan, triangle;
@@ -162,7 +163,7 @@ TEST(SurfaceDeviation, OfALidOverAPitIsBoundedBeforeAnyCut) {
 }
 
 TEST(SurfaceDeviation, OfAFlatPartIsKnownBeforeAnyCut) {
-  // A triangle in three parts; over an edge of two of them, and over all.
+  // A triangle in three parts; others over an edge of two of them, and over all.
   const Surface floor{{{0, 0, 0}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}},
                       {{{0, 1, 2}, {}}, {{0, 2, 3}, {}}, {{0, 3, 1}, {}}}};
   for (const double x : {0.3, 0.1}) {
@@ -189,7 +190,7 @@ TEST(TrianglesBeyond, AreThoseWithAPointThatFar) {
       for (int v = 0; u + v <= steps; ++v)
         farthest = std::max(farthest, distance(a + (b - a) * u / steps + (c - a) * v / steps));
     if (listed < far.size() && far[listed].item == i) {
-      // No point is farther from those that were tried.
+      // Every point is this near to a sampled one.
       EXPECT_GT(farthest + ((b - a).norm() + (c - a).norm()) / steps, limit);
       between_corners += std::max({distance(a), distance(b), distance(c)}) <= limit;
       ++listed;
@@ -198,7 +199,7 @@ TEST(TrianglesBeyond, AreThoseWithAPointThatFar) {
     }
   }
   EXPECT_EQ(listed, far.size());  // each once, ascending
-  EXPECT_GT(between_corners, 5);  // not to be seen at the corners
+  EXPECT_GT(between_corners, 5);  // invisible at the corners
   EXPECT_LT(listed, 60);          // of 72
 }
 
@@ -222,7 +223,7 @@ TEST(SurfaceDeviation, OfNothingAndFromNothing) {
   const Surface square = graph(1, flat);
   EXPECT_EQ(surface_deviation(ProjectionTree(), square.tree(), 1).upper, 0);
   EXPECT_TRUE(std::isinf(surface_deviation(square.tree(), ProjectionTree(), 1).lower));
-  // A triangle that is a point.
+  // A triangle reduced to a point.
   Surface point;
   point.points = {{0.5, 0.5, 2}};
   point.items = {{{0, 0, 0}, {}}};

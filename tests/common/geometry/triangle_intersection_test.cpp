@@ -36,8 +36,8 @@ bool intersect_in_any_order(const MeshTriangle& f, const MeshTriangle& g) {
 }
 
 // ------------------------------------------------------------------------------------------ brute force
-// An independent judge for small integer coordinates: two convex hulls of points are apart if and only if a
-// plane separates them, and then one does whose normal is a cross product of two differences of the points
+// An independent check for small integer coordinates: two convex hulls of points are disjoint if and only if
+// a plane separates them, and then one does whose normal is a cross product of two differences of the points
 // (or, in degenerate cases, a difference or the cross product of a difference and such a normal).
 using IntVec = std::array<std::int64_t, 3>;
 IntVec minus(const IntVec& a, const IntVec& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -94,7 +94,7 @@ bool brute_force(const Triangle& f, const Triangle& g, const std::vector<IntVec>
   return cross(n, m) == IntVec{0, 0, 0} && dot(n, m) > 0;
 }
 
-/// Random triangles on a tiny grid (so that touching and lying in one plane are common) among `ids` points.
+/// Random triangles on a tiny grid (so that touching and coplanar ones are common) among `ids` points.
 void compare_with_brute_force(std::uint64_t seed, std::uint32_t size, std::uint32_t flat, std::uint32_t ids,
                               bool degenerate) {
   Random random(seed);
@@ -163,7 +163,7 @@ TEST(TriangleIntersection, NeighboursOfASurfaceDoNotIntersect) {
 TEST(TriangleIntersection, FoldedOntoItselfIntersects) {
   const Vec3 a(0, 0, 0), b(1, 0, 0), c(0.5, 1, 0), d(0.5, 0.5, 0);
   EXPECT_TRUE(intersect_in_any_order(triangle({0, 1, 2}, a, b, c), triangle({0, 1, 3}, a, b, d)));
-  // The same, but off the plane by the smallest step there is.
+  // Off the plane by the smallest possible step.
   EXPECT_FALSE(intersect_in_any_order(triangle({0, 1, 2}, a, b, c),
                                       triangle({0, 1, 3}, a, b, Vec3(0.5, 0.5, 0x1p-1074))));
 }

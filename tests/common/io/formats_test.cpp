@@ -159,7 +159,7 @@ TEST_F(Formats, UnknownExtensions) {
   EXPECT_NE(in.find("\".xyz\" for a surface; known are .ply .obj .stl .off"), std::string::npos) << in;
   const std::string out = error_of<UsageError>([&] { check_output_path(path("x")); });
   EXPECT_NE(out.find("no extension for a tet mesh; known are .vtu .msh .mesh"), std::string::npos) << out;
-  // Formats of surfaces can't hold a tet mesh.
+  // Formats of surfaces cannot hold a tet mesh.
   (void)error_of<UsageError>([&] { check_output_path(path("x.ply")); });
   (void)error_of<UsageError>([&] { check_output_path(path("x.vtu"), FileKind::surface); });
   (void)error_of<UsageError>([&] { write_tet_mesh(tricky_measurable_tets(), path("x.ply")); });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Reads every file of data/regressions/, among them findings of the fuzzers. Each is read and checked, or
-// refused with an InputError; none may crash.
+// Reads every file of data/regressions/, including findings of the fuzzers. Each is read and checked, or
+// rejected with an InputError; none may crash.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -10,8 +10,8 @@
 
 namespace tetwright {
 
-/// Two named materials, -7 and 1, whose faces are listed; of the boundary of material 1 one face is the
-/// user's.
+/// Two named materials, -7 and 1, with listed faces; one boundary face of material 1 belongs to a region of
+/// the input.
 inline TetMesh mesh_with_surfaces() {
   TetMesh mesh = two_tets(-7);
   mesh.points[1] = {1.0 / 3, 1e-7, -2.0 / 3};

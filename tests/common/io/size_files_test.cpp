@@ -132,7 +132,7 @@ TEST_F(SizeFiles, MshWithAndWithoutTets) {
   ASSERT_TRUE(wanted);
   EXPECT_NEAR(wanted->length, 3.5, 1e-12);
   EXPECT_NEAR(wanted->distance, 4, 1e-12);
-  // The section says nothing of the last point, which the tet uses.
+  // The section lacks the last point, which the tet uses.
   EXPECT_NE(message(file("1 4 2 0 1 7 2 3 4")).find("point 3 (counted from 0) has the value nan"),
             std::string::npos);
 }

@@ -16,7 +16,7 @@
 
 namespace tetwright {
 
-/// The bytes of numbers in a file.
+/// Bytes of numbers in a file.
 template <class Number>
 std::string bytes_of(const std::vector<Number>& numbers, bool big = false) {
   std::string out;

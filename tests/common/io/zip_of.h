@@ -9,7 +9,7 @@
 
 namespace tetwright {
 
-/// A ZIP archive with these files, by their names, in memory.
+/// Makes a ZIP archive in memory of these files, by name.
 inline std::string zip_of(const std::vector<std::pair<std::string, std::string>>& files) {
   zip_error_t error;
   zip_error_init(&error);
@@ -29,7 +29,7 @@ inline std::string zip_of(const std::vector<std::pair<std::string, std::string>>
   return bytes;
 }
 
-/// What names the model of a .3mf, as the file "_rels/.rels".
+/// File "_rels/.rels" of a .3mf, which refers to the model.
 inline const std::string relationships_of_3mf =
     "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
     "<Relationship Target=\"/3D/a.model\" Id=\"rel0\" "

@@ -24,9 +24,9 @@ Element element(const TetMesh& mesh, const MidsideNodes& nodes, std::size_t t) {
   return e;
 }
 
-/// The determinant at a place by the shape functions, over that of the straight tet.
+/// Determinant of the Jacobian at a point by the shape functions, over that of the straight tet.
 double scaled_jacobian(const Element& e, const std::array<double, 4>& l) {
-  // Of corner i: l (2 l - 1); of the edge ab: 4 la lb.
+  // Shape functions: corner i: l (2 l - 1); edge ab: 4 la lb.
   std::array<Vec3, 4> by_coordinate;
   for (std::size_t i = 0; i < 4; ++i) {
     by_coordinate[i] = (4 * l[i] - 1) * e.corners[i];
@@ -82,7 +82,7 @@ TEST(CurvedElements, NodesFollowTheSurface) {
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : mesh.points) middle += p / static_cast<double>(mesh.points.size());
   mesh.interfaces = find_interfaces(mesh);
-  // The boundary of the cube on a ball around it, stretched a little.
+  // Maps the boundary of the cube onto a slightly stretched ball around it.
   const auto onto_ball = [&](const Vec3& p) { return Vec3(middle + 1.05 * (p - middle)); };
   SurfaceToFollow ball;
   ball.onto_patch = [&](const Vec3& p, const InterfacePatch&, double) { return std::optional(onto_ball(p)); };

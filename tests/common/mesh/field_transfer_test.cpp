@@ -36,7 +36,7 @@ TetMesh random_points(std::uint64_t seed, std::size_t count, double low, double 
   return mesh;
 }
 
-/// A cube of n^3 grid cells, jittered but for its sides.
+/// A cube of n^3 grid cells, jittered except on its sides.
 TetMesh cube(int n, std::uint64_t seed) {
   TetMesh mesh = grid_mesh(n);
   const TetMesh straight = mesh;
@@ -129,7 +129,7 @@ TEST(FieldTransfer, IntegersAreThoseOfTheNearestVertexByWeight) {
   before.point_fields = {{"id", 1, true, {10, 11, 12, 13}}};
   TetMesh after;
   after.points = {{0.1, 0.1, 0.1}, {0.6, 0.1, 0.1},    {0.1, 0.6, 0.1},
-                  {0.2, 0.1, 0.6}, {0.25, 0.25, 0.25},  // all weights equal: the smallest number
+                  {0.2, 0.1, 0.6}, {0.25, 0.25, 0.25},  // all weights equal: the smallest index
                   {0.5, 0.5, -1}};                      // outside, in the middle of the edge from 1 to 2
   transfer_fields(before, after);
   EXPECT_TRUE(after.point_fields[0].integer);
@@ -154,7 +154,7 @@ TEST(FieldTransfer, InvertedAndFlatTets) {
   Random random(12);
   for (Tet& t : before.tets)
     if (random.below(2)) std::swap(t[0], t[1]);
-  // Flat ones with values of their own, that must not come through where another tet holds the point.
+  // Flat tets with values of their own, which must not appear where another tet contains the point.
   const auto n = static_cast<Index>(before.points.size());
   before.points.insert(before.points.end(), {{1, 1, 2.125}, {3, 1, 2.125}, {1, 3, 2.125}, {3, 3, 2.125}});
   before.points.insert(before.points.end(), {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}});
@@ -185,7 +185,7 @@ TEST(FieldTransfer, FlatTetsAloneAreNearest) {
   EXPECT_EQ(x[2], 0);
   EXPECT_NEAR(x[3], 1.25, 1e-15);
   EXPECT_EQ(after.cell_fields[0].values, std::vector<double>{7});
-  // A tet that is a segment, and one that is a point.
+  // A tet reduced to a segment, and one reduced to a point.
   before.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 0, 0}};
   transfer_fields(before, after);
   for (const double v : after.point_fields[0].values) EXPECT_TRUE(0 <= v && v <= 2) << v;
@@ -228,7 +228,7 @@ TEST(FieldTransfer, CellsTakeFromTheTetThatHoldsTheirCentroid) {
   }
   TetMesh after = before;
   after.tets.insert(after.tets.end(), before.tets.begin(), before.tets.end());
-  after.materials.resize(after.tets.size(), 77);  // not in `before`: from any
+  after.materials.resize(after.tets.size(), 77);  // not in `before`: takes values from any
   transfer_fields(before, after);
   for (std::size_t t = 0; t < after.tets.size(); ++t) {
     ASSERT_EQ(after.cell_fields[0].values[2 * t], static_cast<double>(t % before.tets.size()));
@@ -249,7 +249,7 @@ TEST(FieldTransfer, TheNearestTetOfAMaterial) {
   std::fill(after.materials.begin(), after.materials.end(), 5);
   transfer_fields(before, after);
   const auto distance = [&](const Vec3& p, const Tet& t) {
-    // Sampling of the tet is enough to tell the nearest from one that is clearly farther.
+    // Sampling the tet distinguishes the nearest one from clearly farther ones.
     double best = 1e9;
     constexpr int n = 12;
     for (int i = 0; i <= n; ++i)

@@ -30,7 +30,7 @@ void expect_all_positive(const TetMesh& mesh) {
 
 void turn(Tet& t) { std::swap(t[2], t[3]); }
 
-/// Every tet with points of its own.
+/// Gives every tet points of its own.
 TetMesh soup_of(const TetMesh& mesh) {
   TetMesh soup = mesh;
   soup.points.clear();
@@ -160,7 +160,7 @@ TEST(ImportCleanup, PatchesStayWithTheirFaces) {
   for (InterfaceTriangle& t : soup.interfaces)
     t.patch =
         soup.points[t.ids[0]].x() == 0 && soup.points[t.ids[1]].x() == 0 && soup.points[t.ids[2]].x() == 0;
-  soup.interfaces[faces / 2].patch = 2;  // within the mesh that the soup becomes
+  soup.interfaces[faces / 2].patch = 2;  // inside the merged mesh
   soup.patch_groups[{{1, std::nullopt}, 1}] = {0, "left"};
   const ImportCleanupReport report = make_coherent(soup);
   ASSERT_LT(soup.interfaces.size(), faces);
@@ -208,7 +208,7 @@ TEST(ImportCleanup, PatchesThatComeToLieBetweenMaterialsKeepTheirGroups) {
   }
   TetMesh soup = soup_of(mesh);
   soup.interfaces = find_interfaces(soup);
-  // Both sides of the interface, of which only one is left, are boundary patches with the same number.
+  // Both sides of the interface, one of which remains, are boundary patches with the same number.
   std::size_t between = 0;
   for (InterfaceTriangle& t : soup.interfaces) {
     t.patch = std::all_of(t.ids.begin(), t.ids.end(), [&](Index p) { return soup.points[p].x() == 1; });
@@ -243,7 +243,7 @@ TEST(ImportCleanup, UnusedPointsOfASoupStay) {
 }
 
 TEST(ImportCleanup, PointsOfAConnectedMeshNeverMerge) {
-  // A crack: the second half has points of its own at the place of the first one's.
+  // A crack: the second half duplicates the points of the first.
   TetMesh mesh = grid_mesh(2), half = mesh;
   for (Vec3& p : half.points) p.x() += 2;
   const auto offset = static_cast<Index>(mesh.points.size());
@@ -293,7 +293,7 @@ TEST(ImportCleanup, TetsWithARepeatedVertexAreTakenOut) {
 
 TEST(ImportCleanup, ATrulyNegativeTetStaysAndIsReported) {
   TetMesh mesh = grid_mesh(4);
-  // The point at (2, 2, 2) goes beyond its star, which turns some of it over.
+  // The point at (2, 2, 2) moves beyond its star, which inverts part of it.
   const auto at = std::find(mesh.points.begin(), mesh.points.end(), Vec3(2, 2, 2));
   ASSERT_NE(at, mesh.points.end());
   *at = Vec3(3.5, 3, 3.25);
@@ -331,7 +331,7 @@ TEST(ImportCleanup, ATetThatIsThereTwice) {
   turn(mesh.tets[0]);
   mesh.tets.push_back(mesh.tets[0]);
   mesh.materials.push_back(2);
-  // The two lie on one side of all their faces: one has to stay inverted for the other.
+  // Both lie on one side of all their faces: one stays inverted for the other.
   const ImportCleanupReport report = make_coherent(mesh);
   EXPECT_EQ(report.turned_tets, 1u);
   EXPECT_EQ(report.inverted_tets, 1u);

@@ -51,7 +51,7 @@ TEST(Interfaces, CountsAgreeWithTheFacesAndPairsWithTheTopology) {
 }
 
 TEST(Interfaces, EachMaterialIsEnclosedByNormalsThatPointOutOfIt) {
-  // The divergence theorem: turned around for the other side, a material's triangles enclose its volume.
+  // Divergence theorem: a material's triangles, reversed for the other side, enclose its volume.
   const TetMesh mesh = sample("layers");
   std::map<MaterialTag, double> expected, enclosed;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
@@ -82,7 +82,7 @@ TEST(Interfaces, CandidatesGiveTheSame) {
   ASSERT_GT(std::count(flagged.begin(), flagged.end(), 0), 0);
   EXPECT_EQ(find_interfaces(mesh, &flagged), all);
 
-  // Without a point, without its triangles.
+  // Without a point there are none of its triangles.
   const Index point = all[0].ids[0];
   flagged[point] = 0;
   std::vector<InterfaceTriangle> fewer = all;

@@ -11,7 +11,7 @@
 namespace tetwright {
 namespace {
 
-/// A box, wound outwards.
+/// A box, oriented outwards.
 TriangleMesh box(const Vec3& low, const Vec3& high) {
   TriangleMesh mesh;
   for (int k = 0; k < 8; ++k)

@@ -12,7 +12,7 @@
 namespace tetwright::size_field_test {
 namespace {
 
-/// A function of the place, where it is above 0, and single values beside it.
+/// A function of the position, defined where it is above 0, and single values beside it.
 class Source final : public SizeSource {
  public:
   explicit Source(std::function<double(const Vec3&)> f, std::vector<std::pair<Vec3, double>> values = {})
@@ -101,7 +101,7 @@ TEST(SizeField, FlatBoxesHaveSizes) {
   EXPECT_NEAR(field.at({0.3, 0.6, 0}), 0.13, 1e-6);
 }
 
-/// A square between the nodes' planes, which answers with the distance from it.
+/// A square between planes of nodes, which answers with the distance from it.
 class Sheet final : public SizeSource {
  public:
   explicit Sheet(double length) : length_(length) {}
@@ -120,7 +120,7 @@ class Sheet final : public SizeSource {
 };
 
 TEST(SizeField, OnASurfaceItIsWhatTheSurfaceSays) {
-  // Far smaller than the nodes are apart.
+  // Far smaller than the spacing of the nodes.
   const SizeField field(Sheet(1e-4), low, high, graded(0.5));
   Random random(7);
   for (int i = 0; i < 2000; ++i) {
@@ -128,7 +128,7 @@ TEST(SizeField, OnASurfaceItIsWhatTheSurfaceSays) {
     place -= Sheet::normal.dot(place - Sheet::middle) * Sheet::normal;
     if ((place.array() < low.array()).any() || (place.array() > high.array()).any()) continue;
     EXPECT_NEAR(field.at(place), 1e-4, 1e-8);
-    // And grows away from it, from the next cell on.
+    // It grows away from the square, from the next cell on.
     const Vec3 off = place + 0.2 * Sheet::normal;
     if ((off.array() > high.array()).any()) continue;
     EXPECT_LE(field.at(off), 0.1 + 1e-4);

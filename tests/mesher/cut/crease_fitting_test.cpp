@@ -26,7 +26,7 @@ DenseMesh mesh_of(const TriangleMesh& surface, int resolution, FeatureAngle angl
   return mesh_surfaces(make_mesher_input({{"part", 1, surface, "part.off"}}), options, nullptr);
 }
 
-/// The patches at each point of the boundary.
+/// The patches at each boundary point.
 std::map<Index, std::set<std::uint16_t>> patches_at_points(const TetMesh& mesh) {
   std::map<Index, std::set<std::uint16_t>> patches;
   for (const InterfaceTriangle& t : mesh.interfaces)
@@ -37,9 +37,9 @@ std::map<Index, std::set<std::uint16_t>> patches_at_points(const TetMesh& mesh) 
 struct CreaseNumbers {
   std::size_t corners = 0;     ///< points of three patches
   std::size_t odd = 0;         ///< other ends and branchings of creases
-  double max_distance = 0;     ///< of points of two patches from the creases
-  double max_off_corner = 0;   ///< of points of three from the corners
-  double max_off_surface = 0;  ///< of all boundary points from their patches
+  double max_distance = 0;     ///< distance of points of two patches from the creases
+  double max_off_corner = 0;   ///< distance of points of three patches from the corners
+  double max_off_surface = 0;  ///< distance of all boundary points from their patches
 };
 
 CreaseNumbers numbers_of(const DenseMesh& dense) {
@@ -123,7 +123,7 @@ TEST(CreaseFitting, FollowsCurvedRims) {
   EXPECT_EQ(dense.report.features[0].found.count, 3U);
 }
 
-// Its sides are smaller than eight faces of a cell, but the cells there are not that large.
+// The sides are smaller than eight squared cells, but the cells there are smaller.
 TEST(CreaseFitting, KeepsTheSidesOfAThinRod) {
   TriangleMesh rod = unit_cube();
   for (Vec3& p : rod.points) p.x() *= 400;

@@ -13,10 +13,10 @@
 namespace tetwright::cut_tet_test {
 namespace {
 
-/// The corners of the regular tet, positive.
+/// The corners of a regular tet, positive.
 const std::array<Vec3, 4> corners{Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, -1, 1), Vec3(-1, 1, -1)};
 
-/// Somewhere within the simplex of the corners, different for each, the same for all pieces.
+/// A position inside the simplex of the corners, different for each vertex, equal for all pieces.
 Vec3 place(const CutCase& cut, PieceVertex v) {
   Vec3 sum = Vec3::Zero();
   double weights = 0;
@@ -75,7 +75,7 @@ TEST(CutTet, PiecesFillTheTet) {
   });
 }
 
-/// The triangles that pieces show on the face opposite a corner, with their regions.
+/// The triangles of pieces on the face opposite a corner, with their regions.
 std::set<std::pair<std::set<int>, int>> shown_on(const Pieces& pieces, int n, int dropped) {
   std::set<std::pair<std::set<int>, int>> shown;
   for (int p = 0; p < n; ++p)
@@ -92,7 +92,7 @@ std::set<std::pair<std::set<int>, int>> shown_on(const Pieces& pieces, int n, in
   return shown;
 }
 
-// What a case shows on a face follows from that face's corners alone.
+// The triangles on a face depend only on the corners of that face.
 TEST(CutTet, FacesAgreeWithTheNeighbours) {
   for (int dropped = 0; dropped < 4; ++dropped) {
     std::map<std::vector<int>, std::set<std::pair<std::set<int>, int>>> known;
@@ -108,7 +108,7 @@ TEST(CutTet, FacesAgreeWithTheNeighbours) {
         for (int l = 0; l < 4; ++l)
           if (l != dropped) key.push_back(cut.ranks[k] < cut.ranks[l]);
       }
-      // A face on interfaces is an interface itself, or within whichever region the fourth corner has.
+      // A face on interfaces is an interface itself, or inside the region of the fourth corner.
       if (!any_pure) return;
       const auto [it, fresh] = known.try_emplace(key, shown_on(pieces, n, dropped));
       EXPECT_EQ(it->second, shown_on(pieces, n, dropped));

@@ -17,7 +17,7 @@ namespace tetwright::cutting_test {
 namespace {
 
 TEST(Cutting, CutsAreSharedAndOffTheEnds) {
-  // A plane between two layers of points, all but on the upper one.
+  // The plane lies between two layers of points, almost on the upper one.
   LabelledLattice lattice = make_lattice([](const Vec3& p) { return p.z() < 2.75 ? 1 : 0; });
   for (Index p : lattice.stars.points()) {
     const float above = static_cast<float>(lattice.positions[p].z() - 2.9999);
@@ -28,7 +28,7 @@ TEST(Cutting, CutsAreSharedAndOffTheEnds) {
   EXPECT_EQ(mesh.regions.size(), mesh.tets.size());
   EXPECT_EQ(broken_promise(mesh.points, mesh.tets), "");
   double highest = 0, worst = 4;
-  // The edges that stand upright over corners of cells would be cut at 2.9999.
+  // Vertical edges above corners of cells would be cut at 2.9999.
   for (const Vec3& p : mesh.points)
     if (p.x() == std::floor(p.x()) && p.y() == std::floor(p.y())) highest = std::max(highest, p.z());
   EXPECT_NEAR(highest, 2.75, 1e-9);
@@ -41,7 +41,7 @@ TEST(Cutting, CutsAreSharedAndOffTheEnds) {
         lattice.stars.lists(t[3]))
       expected = std::min(expected, worst_piece_tangent(lattice, t));
   EXPECT_EQ(worst, expected);
-  // No point was moved: what is on the interface are the cuts.
+  // No point was moved, so the points on the interface are the cuts.
   ASSERT_EQ(mesh.on_interface.size(), mesh.points.size());
   std::size_t cuts = 0;
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
@@ -53,8 +53,8 @@ TEST(Cutting, CutsAreSharedAndOffTheEnds) {
   EXPECT_GT(cuts, 0u);
 }
 
-// cut_lattice() and worst_piece_tangent() choose the diagonals separately: a tet that gets those of another
-// one in either of them has other angles there.
+// cut_lattice() and worst_piece_tangent() choose the diagonals separately: a tet that got those of another
+// tet in either of them would have other angles there.
 TEST(Cutting, EachTetHasTheAnglesOfItsOwnPieces) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Random random(seed);

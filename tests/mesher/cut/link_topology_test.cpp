@@ -17,7 +17,7 @@ using Regions = std::vector<int>;
 
 TEST(LinkTopology, FlatInterface) {
   LabelledLattice lattice = make_lattice([](const Vec3& p) { return p.z() < 2.75 ? 1 : 0; });
-  // All of the layer above may go onto the interface, one after another.
+  // All points of the layer above may move onto the interface, one after another.
   for (Index p : std::vector<Index>(lattice.stars.points())) {
     const Vec3 x = lattice.positions[p];
     if (x.z() != 3 || x.x() < 2 || x.x() > 4 || x.y() < 2 || x.y() > 4) continue;
@@ -28,9 +28,9 @@ TEST(LinkTopology, FlatInterface) {
 }
 
 TEST(LinkTopology, AThinWallKeepsItsInside) {
-  // Outside lies on both sides of it.
+  // The outside is on both sides of the wall.
   EXPECT_EQ(meeting(make_lattice([](const Vec3& p) { return p.z() == 3 ? 1 : 0; }), {3, 3, 3}), Regions{});
-  // So does the sheet between two materials, whose other side is another region.
+  // In a sheet between two materials the other side is another region.
   EXPECT_EQ(
       meeting(make_lattice([](const Vec3& p) { return p.z() == 3  ? 1
                                                       : p.z() < 3 ? 2
@@ -39,7 +39,7 @@ TEST(LinkTopology, AThinWallKeepsItsInside) {
 }
 
 TEST(LinkTopology, ANeckIsNotClosed) {
-  // A rod of one point across: its points have inside at two ends.
+  // A rod one point across: its points have the inside at two ends.
   EXPECT_EQ(meeting(make_lattice([](const Vec3& p) { return p.x() == 3 && p.y() == 3 ? 1 : 0; }), {3, 3, 3}),
             Regions{});
 }
@@ -66,7 +66,8 @@ TEST(LinkTopology, JunctionCurvesAndCorners) {
 }
 
 TEST(LinkTopology, ARingAroundThePointIsNoDisc) {
-  // Outside above, a ring of 1 at the height of the point, 2 below: 1 goes all round and 2 shows within.
+  // Outside above, a ring of 1 at the height of the point, 2 below: 1 surrounds the point, and 2 appears
+  // inside the ring.
   const auto ring = [](const Vec3& p) -> RegionIndex { return p.z() > 3 ? 0 : p.z() == 3 ? 1 : 2; };
   const LabelledLattice lattice =
       make_lattice([&](const Vec3& p) { return p == Vec3(3, 3, 3) ? RegionIndex{0} : ring(p); });
@@ -74,7 +75,7 @@ TEST(LinkTopology, ARingAroundThePointIsNoDisc) {
 }
 
 TEST(LinkTopology, RegionsDoNotAlternateAroundAnEdge) {
-  // Around the edge between two points on interfaces: 1, outside, 2 and outside again, or a fourth region.
+  // Around the edge between two points on interfaces: 1, outside, 2, then outside again or a fourth region.
   const auto meeting_with = [](RegionIndex fourth) {
     LabelledLattice lattice = make_lattice([&](const Vec3& p) -> RegionIndex {
       if (p.z() >= 4 || p.z() <= 1 || (p.x() == 3 && p.y() == 3)) return 0;

@@ -14,7 +14,7 @@
 namespace tetwright::field_builder_test {
 namespace {
 
-/// A ball of label 2 whose lower third is label 1, 32 voxels to a side, in space as `directions` say.
+/// A ball of label 2 whose lower third is label 1, 32 voxels along each side, with the given directions.
 LabelVolume two_part_ball(const Eigen::Matrix3d& directions) {
   constexpr int n = 32;
   LabelVolume volume;
@@ -30,7 +30,7 @@ LabelVolume two_part_ball(const Eigen::Matrix3d& directions) {
   return volume;
 }
 
-/// Written and read again, each label has its volume and its place, whatever the axes and the cells.
+/// Writes and reads the labels' level sets: each keeps its volume and position, for any axes and cells.
 void expect_same_again(const Eigen::Matrix3d& directions, double cells_per_voxel, double tolerance) {
   const TemporaryFolder folder;
   const LabelVolume volume = two_part_ball(directions);
@@ -65,7 +65,7 @@ TEST(FieldBuilder, FieldsOfLabelsAreWrittenWithTheirOwnBand) {
   const Eigen::Matrix3d straight = Vec3(1, 1, 1.5).asDiagonal();
   expect_same_again(straight, 1, 0.05);
   expect_same_again(straight, 2.5, 0.05);  // a band wider than that of surfaces
-  expect_same_again(straight, 0.4, 0.15);  // less than a cell, which rims do not hold
+  expect_same_again(straight, 0.4, 0.15);  // less than a cell, which rims do not resolve
 }
 
 TEST(FieldBuilder, FieldsOfTurnedAndMirroredLabels) {
@@ -76,7 +76,7 @@ TEST(FieldBuilder, FieldsOfTurnedAndMirroredLabels) {
   mirrored.col(2) = -mirrored.col(2);
   expect_same_again(mirrored, 1, 0.05);
   expect_same_again(mirrored, 0.4, 0.16);
-  // A gantry that was tilted: axes that are not perpendicular.
+  // A tilted gantry: axes that are not perpendicular.
   Eigen::Matrix3d tilted = turn;
   tilted.col(2) += 0.3 * tilted.col(1);
   expect_same_again(tilted, 1, 0.05);

@@ -34,7 +34,7 @@ TEST(ThinParts, WallsAndGaps) {
 }
 
 TEST(ThinParts, SheetsAreRefinedAsFarAsTheyNeed) {
-  // Shell of so many voxels between two spheres, and the levels it takes for one and a half cells.
+  // Thickness of the shell between two spheres, voxels, and the levels needed for one and a half cells.
   const std::pair<double, int> cases[] = {{2.0, 0}, {1.2, 1}, {0.9, 1}, {0.6, 2}, {0.45, 2}};
   for (const auto& [voxels, levels] : cases) {
     const auto field =

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::array<int, 3> cells{24, 24, 24};
 
-/// Inside where the distance is negative; not asked where the spheres' triangles may decide.
+/// Expects the inside where the distance is negative; skips points where the triangles of the spheres decide.
 template <class Distance>
 void expect_inside(const TriangleMesh& mesh, Distance&& distance) {
   const GridWinding winding(mesh.points, mesh.triangles, cells);
@@ -53,7 +53,7 @@ TEST(GridWinding, BoxOnGridPoints) {
           EXPECT_FALSE(in);
         }
       }
-  EXPECT_EQ(count, 7u * 8u * 9u);  // of two opposite faces exactly one counts as inside
+  EXPECT_EQ(count, 7u * 8u * 9u);  // exactly one of two opposite faces counts as inside
 }
 
 }  // namespace

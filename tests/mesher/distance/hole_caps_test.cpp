@@ -39,7 +39,7 @@ TEST(HoleCaps, GoesAllAroundFromOneEdge) {
   for (const auto& [edge, balance] : sides) EXPECT_EQ(balance, 0);
 }
 
-// The surface is there on one half: the cap ends where it begins.
+// One half has a surface: the cap ends where the surface begins.
 TEST(HoleCaps, EndsAtTheSurface) {
   const auto read = [](int x, int y, int z) {
     GridReading reading = ball(x, y, z);

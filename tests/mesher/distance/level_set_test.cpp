@@ -31,7 +31,7 @@ struct Solid {
   Solid(const TriangleMesh& mesh, double cell) : Solid(prepared(mesh, mesh.triangles.size()), cell) {}
 };
 
-/// The mesh without the triangles whose middles `drop` is true for.
+/// The mesh without the triangles for whose middles `drop` is true.
 template <class Drop>
 TriangleMesh without(const TriangleMesh& mesh, Drop&& drop) {
   TriangleMesh left{mesh.points, {}};
@@ -48,7 +48,7 @@ void for_each_node(const GridFrame& frame, Use&& use) {
 }
 
 /// The largest difference of the distances over a grid edge whose ends lie on both sides, or are both within
-/// two cells, where OpenVDB's distances are exact.
+/// 1.5 cells, where OpenVDB's distances are exact.
 double max_jump(const Solid& solid) {
   LevelSetSampler sampler(*solid.level_set);
   double largest = 0;
@@ -81,7 +81,7 @@ TEST(LevelSet, DistancesOfASphere) {
     Vec3 gradient;
     const double read =
         sampler.at(sphere.frame.to_grid(centre + (radius + cell * distance) * direction), gradient);
-    // Farther than two voxels away OpenVDB hands distances on from voxel to voxel.
+    // Farther than two voxels away OpenVDB propagates distances from voxel to voxel.
     if (std::abs(distance) < 1) {
       EXPECT_NEAR(read, distance, 0.03);
       EXPECT_GT(gradient.normalized().dot(direction), 0.99);
@@ -104,7 +104,7 @@ TEST(LevelSet, SignsBeyondTheBand) {
       for (int z = 0; z <= n[2]; z += 5) {
         const double r = (shell.frame.to_input(Vec3(x, y, z)) - c).norm();
         const double distance = std::max(r - 150, 60 - r);
-        if (std::abs(distance) < 8) continue;  // the spheres' triangles may decide
+        if (std::abs(distance) < 8) continue;  // depends on the triangles of the spheres
         ASSERT_EQ(sampler.at_node(x, y, z), distance < 0 ? -level_set_band : level_set_band)
             << x << ' ' << y << ' ' << z;
       }
@@ -127,7 +127,7 @@ TEST(LevelSet, InterfaceCellsAreThoseWithBothSigns) {
   EXPECT_EQ(found, keys.size());
 }
 
-// Wherever the surface lies relative to the leaves of the tree, no cell away from it is listed.
+// No cell away from the surface is listed, for any position of the surface relative to the tree's leaves.
 TEST(LevelSet, NoInterfaceCellsDeepInside) {
   for (double x : {6.5, 7.5, 8.5, 9.5, 10.5, 11.5, 12.5, 13.5}) {
     const Solid boxes(joined(make_box({0, 0, 0}, {2, 2, 2}), make_box({x, 6.5, 6.5}, {x + 30, 36.5, 36.5})),
@@ -148,8 +148,8 @@ TEST(LevelSet, SphereWithAHoleIsCapped) {
   const Solid open(prepared(without(sphere, [](const Vec3& p) { return p.z() > 15.3; }), 0), 1);
   EXPECT_LE(max_jump(open), 1.03);
   LevelSetSampler sampler(*open.level_set);
-  // A flat rim: the cap is flat. Where the cap and the sphere are far from each other the distance is the
-  // nearer one's.
+  // A flat rim has a flat cap. Where cap and sphere are far from each other the distance is that of the
+  // closer one.
   const double rim = 15.3;
   for_each_node(open.frame, [&](int x, int y, int z) {
     const Vec3 p = open.frame.to_input(Vec3(x, y, z)) - Vec3(0.1, 0.2, 0.3);
@@ -194,7 +194,7 @@ TEST(LevelSet, SphereWithTrianglesMissing) {
   }
 }
 
-// The cap is the disc, wider than the band and beside the bounding box.
+// The cap is the disc, wider than the band and next to the bounding box.
 TEST(LevelSet, HalfASphere) {
   constexpr double radius = 20.3;
   for (const double height : {0.0, 0.37}) {
@@ -234,7 +234,7 @@ TEST(LevelSet, BoxWithoutALid) {
   });
 }
 
-// An open part that reaches into a closed one, a closed cavity beside it, and all of it again askew.
+// An open part reaches into a closed one, next to a closed cavity.
 TEST(LevelSet, OpenAndClosedPartsTogether) {
   const TriangleMesh closed =
       joined(make_sphere(14.3, {0.1, 0.2, 0.3}), turned_over(make_sphere(6.2, {-4.1, 0.2, 0.3})));
@@ -270,7 +270,7 @@ TEST(LevelSet, SheetsHaveNoInside) {
   }
 }
 
-// Above bowls that stand in each other the winding number is over 1/2 far beyond the rims.
+// Above nested bowls the winding number exceeds 1/2 far beyond the rims.
 TEST(LevelSet, NoInsideOutsideTheBox) {
   const auto below = [](const Vec3& p) { return p.z() > -4; };
   TriangleMesh bowls = without(make_sphere(20, {0, 0, 0}, 5), below);
@@ -317,7 +317,8 @@ TEST(LevelSet, OpenSurfacesGiveTheSameForAnyThreads) {
   EXPECT_EQ(values[0], values[1]);
 }
 
-/// Expects the level set at `depth` to be `distance` plus that near its zero, and its sign elsewhere.
+/// Expects the level set at `depth` to be `distance` plus `depth` near its zero, with the right sign
+/// elsewhere.
 template <class Distance>
 void expect_depth(const RepairedSurface& s, double depth, Distance&& distance) {
   const GridFrame frame = make_grid_frame(s.low, s.high, 1, false);
@@ -349,7 +350,7 @@ TEST(LevelSet, DepthsOfABox) {
     });
 }
 
-// Measured from the cap as well.
+// The depth is measured from the cap as well.
 TEST(LevelSet, DepthBelowACap) {
   const Vec3 high(20.2, 17.7, 15.4);
   const TriangleMesh box =

@@ -59,7 +59,7 @@ TEST(ThinWalls, PlatesOfAnyThinnessStayWholeInCellsOfAnySize) {
       EXPECT_EQ(found.components, 1) << thickness << " turned " << turn;
       EXPECT_EQ(found.handles, 0) << thickness << " turned " << turn;
       EXPECT_EQ(dense.report.refinement, 0);
-      // It is said where a wall is thicker than it should be, and only there.
+      // Walls are reported exactly where they are thicker than they should be.
       if (thickness >= 1.25) {
         EXPECT_EQ(dense.report.thickened.points, 0u) << thickness;
       }
@@ -86,7 +86,8 @@ TEST(ThinWalls, GapsAreKeptOrClosedWhole) {
   for (int turn = 0; turn < 3; ++turn)
     for (const double gap : {0.01, 0.3, 0.9, 1.3, 1.6})
       for (const int refinement : {0, 3}) {
-        if (refinement > 0 && (gap > 0.5 || turn != 1)) continue;  // takes long, and shows what the others do
+        if (refinement > 0 && (gap > 0.5 || turn != 1))
+          continue;  // takes long and adds nothing to the other cases
         const DenseMesh dense = mesh_of(boxes(gap, turn), 1, refinement);
         const Counts found = counts_of(dense);
         const bool shown = gap * (1 << refinement) > 1.25;
@@ -101,7 +102,7 @@ TEST(ThinWalls, GapsAreKeptOrClosedWhole) {
       }
 }
 
-// Walls move back on both sides of a gap, where there are no tets that would be turned over.
+// Walls move back on both sides of a gap, where there are no tets that could invert.
 TEST(ThinWalls, WallsThatMoveBackDoNotMeet) {
   const TriangleMesh below = make_box(Vec3(0, 0, 0), Vec3(12, 12, 0.3));
   const TriangleMesh above = make_box(Vec3(0, 0, 1.9), Vec3(12, 12, 2.2));
@@ -215,7 +216,7 @@ TEST(ThinWalls, WhatHasNoThicknessTakesNoMoreTetsThanItsCellsHave) {
   };
   const double plates_area = 16 * 16;
   EXPECT_NEAR(filling(0.5), 0.66 * plates_area / 0.25, 0.3 * 0.66 * plates_area / 0.25);
-  // Eight for each cell, and a slanted plate passes fewer than three cells for each squared cell.
+  // Eight per cell, and a slanted plate crosses fewer than three cells per squared cell.
   EXPECT_LT(filling(1e-5), 8 * 3 * plates_area);
 }
 
@@ -234,7 +235,7 @@ TEST(ThinWalls, TheBudgetGoesToWholeRegionsTheCheapestFirst) {
   choose_depths({&measured}, {3, max_wall_refinement, true, 50, 1000});
   EXPECT_EQ(measured.regions[2].depth, 1);
   EXPECT_EQ(measured.regions[1].depth, 3);
-  EXPECT_EQ(measured.regions[3].depth, 4);  // deeper than 3 as far as that adds less than 50
+  EXPECT_EQ(measured.regions[3].depth, 4);  // deeper than 3 while that adds less than 50
   EXPECT_EQ(measured.regions[0].depth, 1);  // 225 of the 900, as nearly all is spent
   choose_depths({&measured}, {0, max_wall_refinement, false, 50, 1000});
   for (const LocalThickness::Region& r : measured.regions) EXPECT_EQ(r.depth, 0);

@@ -49,7 +49,7 @@ TEST(MaterialField, ConcurrentProjectionsAreThoseOfOneThread) {
     ASSERT_EQ(feet[i], *field->project(points[i], 1, std::nullopt, 1));
 }
 
-// The nearest region has the smallest of all regions' distances, however those are computed.
+// The nearest region has the smallest distance of all regions, however these are computed.
 TEST(MaterialField, TheNearestOfManyRegionsHasTheSmallestDistance) {
   std::vector<TriangleMesh> balls;
   Random random(7);
@@ -69,7 +69,7 @@ TEST(MaterialField, TheNearestOfManyRegionsHasTheSmallestDistance) {
   }
 }
 
-// A later body carves an earlier one, and outside is where none is; also under a finer lattice.
+// A later body carves an earlier one, and outside is where no body is; also under a finer lattice.
 TEST(MaterialField, LaterMaterialsCarveEarlierOnes) {
   const auto coarse = make_field({make_sphere(1), make_sphere(0.6, {0.7, 0.03, 0.01})}, 0.05);
   for (int refinement : {0, 2}) {
@@ -95,7 +95,7 @@ TEST(MaterialField, ProjectsOntoJunctionCurves) {
   FieldSampler& sampler = *owned;
   RegionSet all;
   for (RegionIndex r = 0; r < 3; ++r) all.insert(r);
-  // The circle where both spheres meet.
+  // The circle in which the spheres meet.
   const double x = (1 + 0.81 - 0.64) / 1.8, radius = std::sqrt(1 - x * x);
   int reached = 0;
   Random random(7);
@@ -112,7 +112,7 @@ TEST(MaterialField, ProjectsOntoJunctionCurves) {
   EXPECT_GT(reached, 95);
 }
 
-// Boxes that share a face: no sliver of a third region anywhere on it.
+// Boxes share a face: no sliver of a third region anywhere on it.
 TEST(MaterialField, FacesInContactLeaveNoSlivers) {
   const TriangleMesh left = make_box({-1, -0.5, -0.5}, {0.0131, 0.5, 0.5});
   const TriangleMesh right = make_box({0.0131, -0.5, -0.5}, {1, 0.5, 0.5});

@@ -9,7 +9,7 @@
 namespace tetwright::narrow_patches_test {
 namespace {
 
-/// A unit cube with one edge along z cut off, so that a face of this width is between its neighbours.
+/// A unit cube with one edge along z cut off, leaving a face of the given width between its neighbours.
 TriangleMesh chamfered(double width) {
   const double cut = width / std::numbers::sqrt2;
   return extruded({{0, 0}, {1, 0}, {1, 1 - cut}, {1 - cut, 1}, {0, 1}}, {0.4, 0.4}, 1);

@@ -27,7 +27,7 @@ class VdbFiles : public testing::Test {
   VdbFiles() { openvdb::initialize(); }
   std::string path(const std::string& name) const { return folder_ / name; }
 
-  /// Writes a sphere's level set with our own means.
+  /// Writes a sphere's level set with our own writer.
   void write_sphere(const std::string& file, const std::string& name, double radius, const Vec3& centre,
                     double cell) const {
     const TriangleMesh mesh = make_sphere(radius, centre, 5);
@@ -212,8 +212,8 @@ TEST_F(VdbFiles, SaysWhatIsWrong) {
   EXPECT_THROW(read_level_sets(path("missing.vdb")), InputError);
 }
 
-/// The file with one to three bytes changed; for even k at the start, where names, counts and the transform
-/// are.
+/// The file with one to three bytes changed; for even k at the start, which holds names, counts and the
+/// transform.
 std::string damaged(std::string bytes, int k, Random& random) {
   const std::size_t reach = k % 2 ? bytes.size() : std::min<std::size_t>(bytes.size(), 1500);
   for (int n = 0; n <= k % 3; ++n)
@@ -222,7 +222,7 @@ std::string damaged(std::string bytes, int k, Random& random) {
   return bytes;
 }
 
-// Cut short anywhere and with bytes changed at random: an error or a surface, no crash.
+// Truncated anywhere and with bytes changed at random: an error or a surface, no crash.
 TEST_F(VdbFiles, DamagedFiles) {
   write_grids(path("a.vdb"), {ball("b")});
   const std::string whole = read_whole_file(path("a.vdb"));
@@ -295,10 +295,10 @@ TEST_F(VdbFiles, LabelsOfWholeNumbers) {
 
 TEST_F(VdbFiles, TilesOfLabels) {
   const auto grid = openvdb::Int32Grid::create(0);
-  grid->tree().addTile(1, {0, 0, 0}, 3, true);       // 8 voxels to a side
-  grid->tree().addTile(1, {8, 0, 0}, 4, false);      // inactive, yet there
+  grid->tree().addTile(1, {0, 0, 0}, 3, true);       // 8 voxels along each side
+  grid->tree().addTile(1, {8, 0, 0}, 4, false);      // inactive, but within the bounding box
   grid->tree().addTile(2, {128, 0, 0}, 5, true);     // 128 voxels
-  grid->tree().addTile(3, {-4096, 0, 0}, 6, false);  // beyond what is active
+  grid->tree().addTile(3, {-4096, 0, 0}, 6, false);  // outside the active bounding box
   write_grids(path("a.vdb"), {grid});
   const auto volume = read_label_grid(path("a.vdb"));
   ASSERT_TRUE(volume);
@@ -318,7 +318,7 @@ TEST_F(VdbFiles, ALevelSetComesBeforeLabels) {
   write_grids(file, {labels, ball("b")});
   EXPECT_FALSE(read_label_grid(file));
   EXPECT_EQ(read_level_sets(file).size(), 1u);
-  // Also where the labels are no use.
+  // Also if the labels are unusable.
   labels->setTransform(
       openvdb::math::Transform::createFrustumTransform(openvdb::BBoxd({0, 0, 0}, {10, 10, 10}), 0.5, 10));
   write_grids(file, {labels, ball("b")});
@@ -358,7 +358,7 @@ TEST_F(VdbFiles, SaysWhatIsWrongWithLabels) {
 
 // As for level sets.
 TEST_F(VdbFiles, DamagedLabels) {
-  // Voxels far away that damage sets active are refused before they take memory.
+  // Voxels far away that damage makes active are refused before they take memory.
   constexpr std::size_t max_voxels = 1 << 20;
   const std::string file = path("damaged.vdb");
   for (const std::uint32_t compression : {0u, 2u, 3u, 6u}) {

@@ -19,10 +19,10 @@ namespace {
 
 double linear(const Vec3& p) { return 64 + 2 * p.x() - 0.5 * p.y() + 0.25 * p.z(); }
 
-/// Where the grids made here have voxel (i, j, k).
+/// Position of voxel (i, j, k) of the grids made here.
 Vec3 world(double i, double j, double k) { return {10 + 0.5 * i, 20 - 0.5 * j, 30 + 0.25 * k + 0.5 * i}; }
 
-/// Active from (-2, 0, 0) to (9, 9, 9), with linear() at these voxels.
+/// Active from (-2, 0, 0) to (9, 9, 9), with the value linear() at each voxel.
 template <class Grid = openvdb::FloatGrid>
 typename Grid::Ptr linear_grid(const std::string& name) {
   const auto grid = Grid::create(1000);
@@ -88,7 +88,7 @@ TEST_F(VdbSizes, NothingWhereAVoxelThatIsNeededIsInactive) {
   EXPECT_FALSE(source->at(world(3.001, 4, 4)));
   ASSERT_TRUE(source->at(world(3, 4, 4)));
   EXPECT_TRUE(source->at(world(3, 4.5, 4.5)));
-  // Up to the centres of the last voxels, but for rounding.
+  // Up to the centres of the last voxels, except for rounding.
   EXPECT_TRUE(source->at(world(9, 9, 9)));
   EXPECT_TRUE(source->at(world(9 + 1e-9, 0 - 1e-9, 9)));
   EXPECT_FALSE(source->at(world(9.001, 9, 9)));

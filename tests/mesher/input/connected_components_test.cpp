@@ -40,7 +40,7 @@ std::string merged_plane(const std::string& nine, std::size_t min_voxels) {
   return text;
 }
 
-/// The rules taken literally: all islands sought again after each merge.
+/// A literal implementation of the rules: searches all islands again after each merge.
 class Plain {
  public:
   Plain(Regions regions, const Size& size) : regions_(std::move(regions)), size_(size) {}
@@ -48,7 +48,7 @@ class Plain {
   Regions merge(std::size_t min_voxels) {
     for (;;) {
       std::vector<std::vector<std::size_t>> islands = find();
-      // By their lowest voxels so far; equal sizes stay in that order.
+      // In order of their lowest voxels so far; the sort keeps equal sizes in that order.
       const auto largest = std::max_element(islands.begin(), islands.end(),
                                             [](const auto& a, const auto& b) { return a.size() < b.size(); });
       if (largest->size() < min_voxels) return regions_;
@@ -138,7 +138,7 @@ TEST(ConnectedComponents, TheSameAsByTheRulesTakenLiterally) {
     ASSERT_EQ(result, expected);
     changed += result != regions;
 
-    // What it says was done is what was done.
+    // The reported merges are the actual ones.
     std::map<Index, MergedIsland> merged;
     for (const MergedIsland& m : merging.merged) merged[m.voxel] = m;
     ASSERT_EQ(merged.size(), merging.merged.size());
@@ -181,23 +181,23 @@ TEST(ConnectedComponents, BetweenEqualNeighboursTheSmallestRegionIsJoined) {
 }
 
 TEST(ConnectedComponents, OfEqualIslandsThatWithTheLowestVoxelIsFirst) {
-  // The 1 joins the 2, which then is large enough; the other way round 2 would be gone.
+  // The 1 joins the 2, which then is large enough; in the opposite order the 2 would be gone.
   EXPECT_EQ(merged_row("3331233", 2), "3332233");
   // Here the 2 joins the 1.
   EXPECT_EQ(merged_row("3332133", 2), "3331133");
 }
 
 TEST(ConnectedComponents, TheSmallestIsFirst) {
-  // The 2 joins the 1, which then is large enough; before it, the 1 would have joined the 0.
+  // The 2 joins the 1, which then is large enough; before that, the 1 would have joined the 0.
   EXPECT_EQ(merged_row("00001123333", 3), "00001113333");
 }
 
 TEST(ConnectedComponents, ChainsOfMerges) {
-  // The 3 joins the 2, both the 1, all of them the 4, as each is still too small.
+  // The 3 joins the 2, both join the 1, and all of them the 4, as each is still too small.
   EXPECT_EQ(merged_row("44444112300000", 1), "44444112300000");
   EXPECT_EQ(merged_row("5555552311155555", 4), "5555551111155555");
   EXPECT_EQ(merged_row("9999991299999", 4), "9999999999999");
-  // One that joins two of a region makes them one, large enough.
+  // An island that joins two of one region makes them one, large enough.
   EXPECT_EQ(merged_row("999991121199999", 5), "999991111199999");
 }
 
@@ -210,13 +210,13 @@ TEST(ConnectedComponents, OutsideGoesOnBeyondTheBorder) {
                          "111",
                          4),
             "111110111");
-  // In a slice there is no way out across it.
+  // A slice has no way out across its plane.
   EXPECT_EQ(merged_plane("111"
                          "101"
                          "111",
                          4),
             "111111111");
-  // What joins it is outside for good, however small both are.
+  // Islands that join it are outside for good, however small both are.
   EXPECT_EQ(merged_row("22222223100", 5), "22222220000");
   Regions notch(27, 1);
   notch[13 - 9] = outside_region;  // the middle of the lowest plane
@@ -229,7 +229,7 @@ TEST(ConnectedComponents, OutsideGoesOnBeyondTheBorder) {
 TEST(ConnectedComponents, OutsideIsARegionLikeOthersAndBeyondTheVolumeIsNothing) {
   EXPECT_EQ(merged_row("1101", 2), "1111");
   EXPECT_EQ(merged_row("1000", 2), "0000");
-  // A corner has three faces beyond the volume, which don't count.
+  // A corner has three faces beyond the volume, which do not count.
   Regions corner(27, 1);
   corner[0] = 2;
   EXPECT_EQ(merged(corner, {3, 3, 3}, 2), Regions(27, 1));
@@ -241,7 +241,7 @@ TEST(ConnectedComponents, IslandsHangTogetherByFacesAlone) {
                          "000",
                          2),
             "000000000");
-  // Neither do rows or planes follow each other.
+  // The end of a row or plane does not touch the start of the next.
   EXPECT_EQ(merged_plane("001"
                          "100"
                          "000",
@@ -284,7 +284,7 @@ TEST(ConnectedComponents, TheSameForAnyNumberOfThreads) {
   }
 }
 
-/// By flood fill: the parts of a region, of the outside only those that do not reach the border.
+/// By flood fill: the number of parts of a region, for the outside only those that do not reach the border.
 std::size_t plain_parts(const Regions& regions, const Size& size, RegionIndex region, bool touching) {
   std::vector<std::uint8_t> seen(regions.size(), 0);
   const auto at_border = [&](const Size& p) {

@@ -36,7 +36,7 @@ TEST(ExpectedSolids, LaterBodiesCarveEarlierOnes) {
                      beside = make_box(Vec3(6, 6, 6), Vec3(8, 8, 8)),
                      away = make_box(Vec3(11, 0, 0), Vec3(12, 1, 1));
   const auto solids = expected_solids(make_input({large, middle, inner, beside, away}));
-  expect_solid(solids[0], 1000 - 64 - 8, 1, 0, 2);  // the inner one is a part of the middle one here
+  expect_solid(solids[0], 1000 - 64 - 8, 1, 0, 2);  // the innermost is a part of the middle one here
   expect_solid(solids[1], 64 - 1, 1, 0, 1);
   expect_solid(solids[2], 1, 1, 0, 0);
   expect_solid(solids[3], 8, 1, 0, 0);

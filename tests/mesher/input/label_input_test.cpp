@@ -12,7 +12,7 @@
 namespace tetwright::label_input_test {
 namespace {
 
-/// One row of voxels, at (10, 20, 30) with steps of 2 along the y axis.
+/// One row of voxels, starting at (10, 20, 30) with steps of 2 along the y axis.
 LabelVolume volume_of(const std::vector<MaterialTag>& labels) {
   LabelVolume volume;
   volume.size = {static_cast<int>(labels.size()), 1, 1};
@@ -134,7 +134,8 @@ TEST(LabelInput, TwoLabelsOfOneName) {
   const std::string message = refusal<UsageError>({1, 2, 9}, choice);
   EXPECT_NE(message.find("labels 1 and 9 are both called 'bone'"), std::string::npos) << message;
   EXPECT_NE(refusal<UsageError>({5, 4}, choice).find("labels 4 and 5"), std::string::npos);
-  EXPECT_EQ(prepare({0, 1, 2, 4}, choice).materials.size(), 3u);  // no matter that the 9 would be
+  EXPECT_EQ(prepare({0, 1, 2, 4}, choice).materials.size(),
+            3u);  // the 9 would be refused, but does not occur
   // Names from a file are refused at the later of their lines.
   choice.names_file = "names.txt";
   choice.name_lines = {{1, 8}, {2, 1}, {9, 3}, {4, 2}};
@@ -174,7 +175,7 @@ TEST(LabelInput, TooManyLabels) {
   LabelChoice choice = unmerged();
   choice.labels = {{1, 100000}};
   EXPECT_EQ(prepare(labels, choice).materials.size(), 4u);
-  // Few in each part of a large volume.
+  // Few labels in each part of a large volume.
   labels.resize(600000);
   for (std::size_t i = 0; i < labels.size(); ++i) labels[i] = static_cast<MaterialTag>(i / 9);
   EXPECT_NE(refusal<InputError>(labels, unmerged()).find("more than 60000 labels"), std::string::npos);
@@ -184,7 +185,7 @@ TEST(LabelInput, IslandsAreMergedAndReported) {
   LabelChoice choice;
   choice.min_voxels = 3;
   choice.names = {{7, "fat"}};
-  // The steps are along the y axis: voxel i is at (10, 20 + 2 i, 30).
+  // Voxel i is at (10, 20 + 2 i, 30).
   const LabelInput p = prepare(
       {0, 0, 0, 5, 5, 5, 7, 5, 5, 5, 9, 9, 9, 9, 0, 9, 9, 9, 5, 5, 9, 9, 5, 9, 8, 8, 9, 9, 9}, choice);
   EXPECT_EQ(p.regions,

@@ -19,7 +19,7 @@ std::string refusal(const TriangleMesh& mesh) {
   return "";
 }
 
-/// Without the triangles whose corners all have this x.
+/// Drops the triangles whose corners all have this x.
 TriangleMesh without_wall(TriangleMesh mesh, double x) {
   std::erase_if(mesh.triangles, [&](const Triangle& t) {
     return mesh.points[t[0]].x() == x && mesh.points[t[1]].x() == x && mesh.points[t[2]].x() == x;
@@ -28,7 +28,7 @@ TriangleMesh without_wall(TriangleMesh mesh, double x) {
 }
 
 TEST(SurfaceComponents, OneSidedSurfacesAreRefused) {
-  // Six triangles of the projective plane: every edge in two triangles, but one-sided.
+  // Six triangles of the projective plane: every edge has two triangles, but the surface is one-sided.
   TriangleMesh plane;
   plane.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, 0, 1}};
   plane.triangles = {{0, 1, 4}, {0, 1, 5}, {0, 2, 3}, {0, 2, 5}, {0, 3, 4},
@@ -75,7 +75,7 @@ TEST(SurfaceComponents, ASheetListedFromBothSidesStaysOne) {
   EXPECT_EQ(found(input, "open components whose outside is unclear"), 1u);
 }
 
-// Somewhere the file lists the other side too: no reason to make a hole there.
+// Listing the other side of some triangles too is no reason for a hole.
 TEST(SurfaceComponents, APatchListedFromBothSidesStaysClosed) {
   TriangleMesh sphere = make_sphere(1);
   const std::size_t n = sphere.triangles.size();

@@ -13,9 +13,10 @@ namespace {
 
 constexpr double unit_sphere = 4 * std::numbers::pi / 3;
 
-/// Spheres about the origin, each wound outwards where its sign is 1; the winding numbers between them.
+/// Concentric spheres around the origin, wound outwards where the sign is 1, and the winding numbers between
+/// them.
 struct Nest {
-  std::vector<int> signs;  ///< radii 3, 2, 1 and so on down
+  std::vector<int> signs;  ///< for the radii 3, 2, 1 and so on
   NestedRule rule = NestedRule::automatic;
 
   TriangleMesh mesh() const {
@@ -98,7 +99,7 @@ TEST(SurfaceNesting, MaterialSplitsThemOutOutermostFirst) {
   EXPECT_NEAR(input.surface.volume, 64 * unit_sphere, 3);
 }
 
-// The probe of either is inside the other one, but they cross: none encloses the other.
+// The probe of each is inside the other one, but they cross: none encloses the other.
 TEST(SurfaceNesting, OverlappingSpheresOfOppositeSenseBecomeOne) {
   for (const double apart : {0.3, 1.0, 1.6})
     for (const double radius : {1.0, 0.8})
@@ -125,7 +126,7 @@ TEST(SurfaceNesting, WhatSticksOutIsNotEnclosed) {
     }
 }
 
-// The body in the shell crosses its cavity's wall: it must fill what it covers of the cavity.
+// The body in the shell crosses the wall of the cavity and must fill the part that it covers.
 TEST(SurfaceNesting, WhatReachesIntoACavityIsKept) {
   const TriangleMesh shell = joined(make_sphere(3), turned_over(make_sphere(2)));
   const SurfaceRepair input = repair_surface(joined(shell, make_sphere(0.5, {2, 0, 0})), "");
@@ -162,7 +163,7 @@ TEST(SurfaceNesting, ABowlHasAnOutsideASheetHasNone) {
   EXPECT_LT(winding_at(kept.surface, {0.4, 0.5, -0.01}), 0);
 }
 
-// Rows of boxes, each with a cavity: what encloses what must not be looked for among all pairs.
+// Rows of boxes, each with a cavity: finding enclosers must not test all pairs.
 TEST(SurfaceNesting, ManyComponents) {
   constexpr int side = 60;
   TriangleMesh mesh;

@@ -60,7 +60,7 @@ TEST(SurfaceRepair, MergesASoupAndDropsWhatIsDegenerate) {
     for (Index v : t) soup.points.push_back(box.points[v]);
     soup.triangles.push_back({first, first + 1, first + 2});
     soup.triangles.push_back({first, first + 1, first});
-    soup.triangles.push_back({first + 1, first + 2, first});  // once more
+    soup.triangles.push_back({first + 1, first + 2, first});  // repeated
   }
   soup.points[0].x() = -0.0;
   soup.points.emplace_back(100, 100, 100);  // unused

@@ -63,7 +63,7 @@ TEST(LabelFrame, EndsAtTheBorderOfTheVolume) {
         EXPECT_GT(ends[1][a] - ends[0][a], 0.5);
         EXPECT_LE(frame.box[a], frame.cells[a]);
         EXPECT_EQ(frame.cells[a] % (1 << frame.root_level), 0);
-        // Whole cells that fill a side are at most half a cell off in all.
+        // Whole cells that fill a side are off by at most half a cell in total.
         const double side = directions.col(a).norm() * labels.size[a];
         EXPECT_NEAR(frame.axes.col(a).norm() * frame.box[a] * cell, side, 1e-9);
         EXPECT_LE(std::abs(frame.box[a] * cell - side), 0.5 * cell + 1e-9);
@@ -113,7 +113,7 @@ TEST(LabelField, LabelsGoOnBeyondTheVolume) {
 }
 
 TEST(LabelField, SurfacesPassTheBorderStraight) {
-  // A slab across the volume: where it is cut off it is as thick as within.
+  // A slab across the volume is as thick at the border as inside.
   const LabelInput labels = make_labels({9, 9, 9}, [](int, int, int z) { return z > 2 && z < 6 ? 1 : 0; });
   const auto field = make_field(labels, 0.5);
   const auto sampler = field->sampler();
@@ -168,7 +168,7 @@ TEST(LabelField, GradientsAreThoseOfTheValues) {
       Vec3 measured;
       for (int a = 0; a < 3; ++a)
         measured[a] = (sampler->between(1, 2, p + step * Vec3::Unit(a), other) - here) / step;
-      // Steps over the faces of nodes' cells see the next slope.
+      // Steps across faces of cells between nodes see the next slope.
       const Vec3 within = (at - at.array().floor().matrix()).array() - 0.5;
       if (within.cwiseAbs().maxCoeff() > 0.499) continue;
       EXPECT_LT((gradient - measured).norm(), 1e-3);

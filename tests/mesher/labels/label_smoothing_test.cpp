@@ -17,14 +17,14 @@ constexpr int cells = LabelSmoother::cells, nodes = LabelSmoother::nodes, reach 
 using Labels = std::function<RegionIndex(int x, int y, int z)>;
 using Node = std::array<int, 3>;
 
-/// The nodes of a tile that tests look at: a corner of it, and its faces, which neighbouring tiles share.
+/// The nodes of a tile that tests examine: a corner of it, and its faces, which neighbouring tiles share.
 bool is_looked_at(int x, int y, int z) {
   constexpr int corner = 16;
   const auto on_face = [](int i) { return i == 0 || i == nodes - 1; };
   return (x <= corner && y <= corner && z <= corner) || on_face(x) || on_face(y) || on_face(z);
 }
 
-/// Distances of each label at the nodes looked at of the tile whose first node is `first`.
+/// Distances of each label at the examined nodes of the tile whose first node is `first`.
 std::map<Node, std::map<RegionIndex, float>> distances(LabelSmoother& smoother, const Node& first,
                                                        const Labels& label) {
   std::size_t i = 0;
@@ -45,7 +45,7 @@ std::map<Node, std::map<RegionIndex, float>> distances(LabelSmoother& smoother, 
   return all;
 }
 
-/// The same random label at a place whoever asks.
+/// Random labels that depend only on the position.
 Labels noise(std::uint64_t seed, std::uint32_t labels, int coarseness = 1) {
   return [=](int x, int y, int z) {
     const auto part = [&](int v) { return static_cast<std::uint64_t>((v + 1000) / coarseness); };
@@ -74,7 +74,7 @@ std::vector<Named> all_labels() {
 }
 
 TEST(LabelSmoothing, NodesOfNeighbouringTilesAreTheSameBits) {
-  // One smoother after the other and one smoother for all: nothing of the last tile may stay.
+  // A fresh smoother for each tile and one for all must agree: nothing of the last tile may remain.
   LabelSmoother used;
   for (const Named& n : all_labels()) {
     SCOPED_TRACE(n.what);
@@ -90,7 +90,7 @@ TEST(LabelSmoothing, NodesOfNeighbouringTilesAreTheSameBits) {
         ++shared;
         for (const auto& [label, d] : of_labels) {
           const auto its = other->second.find(label);
-          // A label that one tile does not see at all is far away in the other.
+          // A label that does not occur in one tile is far away in the other.
           ASSERT_EQ(d, its == other->second.end() ? LabelSmoother::band : its->second)
               << "label " << label << " at " << node[0] << " " << node[1] << " " << node[2];
         }
@@ -133,7 +133,7 @@ TEST(LabelSmoothing, SharesAreTheVolumes) {
     LabelSmoother smoother;
     distances(smoother, {0, 0, 0}, n.labels);
     if (smoother.labels().size() > 8) continue;  // too much to sample
-    // Rods from corner to corner are narrower than two of its samples.
+    // Rods from corner to corner are narrower than two samples.
     const double tolerance = std::string_view(n.what) == "checkerboard" ? 0.15 : 0.02;
     std::map<RegionIndex, double> exact = sampled_shares(smoother, 9);
     const std::vector<double> shares = smoother.shares({0, 0, 0});

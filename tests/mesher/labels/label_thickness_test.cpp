@@ -18,7 +18,8 @@ namespace {
 
 using Size = std::array<int, 3>;
 
-/// The rules taken literally: boxes tried at each place, those of outside also beyond the volume.
+/// A literal implementation of the rules: tries boxes at every voxel, those of the outside also beyond the
+/// volume.
 std::vector<Vec3> thin_by_the_rules(const LabelInput& labels, const Size& sides) {
   const auto at = [&](const Size& v) {
     for (int a = 0; a < 3; ++a)
@@ -167,7 +168,7 @@ TEST(LabelThickness, TheSameAsByBoxesTriedEverywhere) {
   EXPECT_GT(thin_volumes, 40u);
 }
 
-/// A cube of 12 voxels within 20, of label 1, with what the caller puts in.
+/// A cube of 12 voxels in a volume of 20, of label 1 except for the caller's labels.
 LabelInput cube(const VoxelLabels& label) {
   return make_labels({20, 20, 20}, [&](int x, int y, int z) {
     const MaterialTag put = label(x, y, z);

@@ -36,7 +36,7 @@ TEST(LabelledLattice, StarMapListsEveryTetOfAPoint) {
 }
 
 TEST(LabelledLattice, StarMapsOfManyChunksAndLongSteps) {
-  // Tets that come back to the same points after one, a hundred, ten thousand and more others.
+  // Tets that return to the same points after one, a hundred, ten thousand and more others.
   constexpr Index points = 4 * 4096 + 3;
   std::vector<std::vector<Tet>> parts(5);
   Random random(3);
@@ -130,7 +130,7 @@ TEST(LabelledLattice, SpecksGoAndPairsStay) {
       [](const Vec3& p) { return p == Vec3(3, 3, 3) || p == Vec3(3, 3, 2) ? 1 : 0; }, &isolated_vertices);
   EXPECT_EQ(isolated_vertices, 0u);
   EXPECT_EQ(count_of(pair, 1), 2);
-  // Among several regions the one most of the neighbours have.
+  // Among several regions the majority of the neighbours wins.
   const auto third = make_lattice([](const Vec3& p) { return p == Vec3(3, 3, 3) ? 3
                                                              : p.z() < 3.2      ? 2
                                                                                 : 1; },

@@ -11,7 +11,7 @@
 namespace tetwright::octree_test {
 namespace {
 
-/// Leaves one after another along the curve, without gap or overlap, add up to the box.
+/// Expects consecutive leaves along the curve, without gap or overlap, to add up to the box.
 void expect_covers_box(const Octree& octree) {
   double volume = 0;
   for (std::size_t i = 0; i < octree.size(); ++i) {
@@ -34,7 +34,7 @@ void expect_balanced(const Octree& octree) {
     for (int dx = -1; dx <= 1; ++dx)
       for (int dy = -1; dy <= 1; ++dy)
         for (int dz = -1; dz <= 1; ++dz) {
-          if (std::abs(dx) + std::abs(dy) + std::abs(dz) > 2) continue;  // corners are free
+          if (std::abs(dx) + std::abs(dy) + std::abs(dz) > 2) continue;  // corners are unrestricted
           const std::array<int, 3> q{low[0] + dx * side, low[1] + dy * side, low[2] + dz * side};
           bool in_box = true;
           for (int a = 0; a < 3; ++a) in_box &= q[a] >= 0 && q[a] < octree.cells[a];
@@ -87,7 +87,7 @@ TEST(Octree, GrowsWithTheSurfaceNotTheVolume) {
       expect_balanced(octree);
       if (before) {
         const double ratio = static_cast<double>(octree.size()) / static_cast<double>(before);
-        // The finer the cells, the flatter the sphere: with a tolerance it takes fewer.
+        // The finer the cells, the flatter the sphere in them: with a tolerance fewer are needed.
         EXPECT_GT(ratio, adaptivity > 0 ? 2 : 3) << resolution;
         EXPECT_LT(ratio, 5) << resolution;
       }

@@ -31,7 +31,7 @@ TEST(SizedCells, AreSmallWhereThatIsWanted) {
   MesherOptions options;
   options.resolution = 24;
   const DenseMesh before = mesh_surfaces(input, options, nullptr);
-  // Smaller than a voxel, in the middle of the ball alone.
+  // Smaller than a voxel, only in the middle of the ball.
   const double wanted = 0.05 * radius;
   ASSERT_GT(before.report.cell_size, wanted);
   options.max_cell = [&](const Vec3& p) { return (p - centre).norm() < 0.3 * radius ? wanted : 10 * radius; };
@@ -40,7 +40,7 @@ TEST(SizedCells, AreSmallWhereThatIsWanted) {
   // The longest edge of the lattice's tets is that of a cell.
   EXPECT_GT(longest_edge(before.mesh, centre, 0.25 * radius), 2 * wanted);
   EXPECT_LE(longest_edge(after.mesh, centre, 0.25 * radius), 1.0001 * wanted);
-  // What is outside of the body is left alone.
+  // The outside of the body is not refined.
   EXPECT_LT(after.mesh.tets.size(), 12 * before.mesh.tets.size());
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// In place of mesher/distance/openvdb_grids.cpp: a map of leaves, filled by exact distances from the
+// Replaces mesher/distance/openvdb_grids.cpp: a map of leaves, filled with exact distances from the
 // triangles.
 #include <algorithm>
 #include <cmath>
@@ -110,7 +110,7 @@ void DistanceGrid::prune_inactive() {
   });
 }
 
-// Fills the box of all leaves with leaves, so that every row along z begins outside.
+// Fills the bounding box of all leaves with leaves, so that every row along z begins outside.
 void DistanceGrid::fill_outside_band() {
   if (impl_->leaves.empty()) return;
   LeafOrigin low = impl_->leaves.begin()->first, high = low;

@@ -56,7 +56,7 @@ TEST(MesherThreads, TheSameOnOneAndOnEight) {
 }
 
 TEST(LabelThreads, TheSameOnOneAndOnEight) {
-  // Enough tiles for several tasks, in which labels meet.
+  // Enough tiles for several tasks in which labels meet.
   LabelInput labels;
   labels.size = {60, 48, 48};
   labels.materials = {{"a", 1, 1, 1}, {"b", 2, 1, 1}};

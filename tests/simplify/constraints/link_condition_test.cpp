@@ -13,7 +13,7 @@ namespace {
 
 using Tag = std::optional<MaterialTag>;
 
-/// The mesh with point a drawn onto b, whatever it does to the shapes: only who meets whom.
+/// The mesh with point a collapsed onto b, whatever the shapes: only the connectivity matters.
 TetMesh contracted(const EditableMesh& mesh, Index a, Index b) {
   TetMesh out;
   std::vector<Index> number(mesh.point_slots(), no_index);
@@ -52,7 +52,7 @@ bool manifold(const TetMesh& mesh) {
   return true;
 }
 
-// Small meshes with materials at random: whatever the condition lets pass must keep the signature of every
+// Small meshes with random materials: collapses that the condition allows must keep the signature of every
 // part.
 TEST(LinkCondition, WhatPassesKeepsTheTopology) {
   int passed = 0, refused = 0, refused_rightly = 0;
@@ -65,7 +65,7 @@ TEST(LinkCondition, WhatPassesKeepsTheTopology) {
     });
     jitter(mesh, seed);
     Workbench w(mesh);
-    // Coarse meshes are where links meet: first some collapses as they come.
+    // Collapse some points first: links conflict in coarse meshes.
     w.rules.accept_worse = 1;
     for (Index p : w.live_points()) {
       w.star(p);
@@ -96,10 +96,10 @@ TEST(LinkCondition, WhatPassesKeepsTheTopology) {
       }
     }
   }
-  // Neither always yes nor always no.
+  // The condition is neither always true nor always false.
   EXPECT_GT(passed, 500);
   EXPECT_GT(refused_rightly, 20);
-  // It may refuse more than it must, since it is sufficient and not necessary, but seldom.
+  // It may refuse too much, since it is sufficient and not necessary, but rarely.
   EXPECT_LT(refused - refused_rightly, refused / 2) << refused;
 }
 

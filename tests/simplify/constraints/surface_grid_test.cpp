@@ -13,7 +13,7 @@ TEST(SurfaceGrid, ListsBoundaryAndInterfaces) {
   EXPECT_EQ(w.grid.triangles().size(), 2u * 16 * 6 + 2u * 16);
 }
 
-/// A triangle of the grid at the edge of nothing: three points of the boundary, ids as in the mesh.
+/// A boundary triangle of the grid, ids as in the mesh.
 MeshTriangle boundary_triangle(const Workbench& w) {
   for (Index t = 0; t < w.mesh.tet_slots(); ++t) {
     if (w.mesh.dead(t)) continue;
@@ -35,7 +35,7 @@ TEST(SurfaceGrid, ATriangleThatWouldCrossAnotherIsRefused) {
   Workbench w(grid_mesh(4));
   SurfaceGrid::Edit edit;
   edit.removed = {boundary_triangle(w)};
-  // In its stead one that pierces the whole cube.
+  // Replace it by one that pierces the whole cube.
   const double s = w.mesh.space().scale();
   edit.added = {
       {{edit.removed[0].ids, {Vec3(-1, 2.1, 2.2) * s, Vec3(5, 2.1, 2.2) * s, Vec3(5, 2.6, 2.4) * s}}, 0}};
@@ -56,7 +56,7 @@ TEST(SurfaceGrid, AHarmlessTriangleReplacesAnother) {
   w.grid.commit(edit);
   w.grid.end_batch();
   EXPECT_EQ(w.grid.triangles().size(), 2u * 16 * 6);
-  // The new one stands now: it can be found and taken away again, and one through it is refused.
+  // The new triangle is in the grid now: it can be found and removed again, and one through it is refused.
   SurfaceGrid::Edit back;
   back.removed = {after};
   back.added = {{before, 0}};
@@ -77,7 +77,7 @@ TEST(SurfaceGrid, AddedTrianglesAreTestedAgainstEachOther) {
   EXPECT_FALSE(w.grid.test(edit));
 }
 
-// Of two edits of one batch neither stands when the other is tested.
+// Two edits of one batch are both tested before either is committed.
 TEST(SurfaceGrid, EditsOfOneBatchAreTestedAgainstEachOther) {
   Workbench w(grid_mesh(4));
   const double s = w.mesh.space().scale();
@@ -85,7 +85,7 @@ TEST(SurfaceGrid, EditsOfOneBatchAreTestedAgainstEachOther) {
   flat.added = {{{{1000, 1001, 1002}, {Vec3(9, 9, 9) * s, Vec3(10, 9, 9) * s, Vec3(9, 10, 9) * s}}, 0}};
   through.added = {
       {{{1003, 1004, 1005}, {Vec3(9.2, 9.2, 8) * s, Vec3(9.2, 9.2, 10) * s, Vec3(9.3, 9.2, 10) * s}}, 0}};
-  // The boxes meet, the triangles do not.
+  // The boxes intersect, the triangles do not.
   beside.added = {
       {{{1006, 1007, 1008}, {Vec3(9.8, 9.8, 8) * s, Vec3(9.8, 9.8, 10) * s, Vec3(9.9, 9.8, 10) * s}}, 0}};
   none.removed = {boundary_triangle(w)};

@@ -19,7 +19,7 @@ TEST(SurfaceProjection, KnowsSurfacesByTheirMaterialsAndJunctionCurves) {
   ASSERT_TRUE(boundary);
   EXPECT_NEAR((*boundary - at(1, 2.2, 0)).norm(), 0, 1e-12);
   EXPECT_FALSE(projection.onto_surface(at(3, 2.2, 0.3), 0, outside_id, 0,
-                                       0.5 * s));  // there it is the other's boundary
+                                       0.5 * s));  // that is the boundary of the other material
   const auto curve = projection.onto_curve(at(2.1, 3, 0.2), s);
   ASSERT_TRUE(curve);
   EXPECT_NEAR((*curve - at(2, 3, 0)).norm(), 0, 1e-12);
@@ -39,7 +39,7 @@ TEST(SurfaceProjection, KnowsWhereJunctionCurvesBranch) {
   const auto on_boundary = projection.onto_corner(at(2.1, 2, 3.8), s);
   ASSERT_TRUE(on_boundary);
   EXPECT_NEAR((*on_boundary - at(2, 2, 4)).norm(), 0, 1e-12);
-  EXPECT_FALSE(projection.onto_corner(at(2, 0.9, 2), 0.5 * s));  // a curve alone
+  EXPECT_FALSE(projection.onto_corner(at(2, 0.9, 2), 0.5 * s));  // a curve, but no corner
 }
 
 }  // namespace

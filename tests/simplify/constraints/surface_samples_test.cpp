@@ -24,7 +24,7 @@ TriangleMesh boundary_of(const TetMesh& mesh) {
   return out;
 }
 
-/// Four by four by four cubes with a bump of a quarter in the middle of the top.
+/// 4 x 4 x 4 cubes with a bump of height 1/4 in the middle of the top.
 TetMesh with_bump() {
   TetMesh mesh = grid_mesh(4);
   for (Vec3& p : mesh.points)
@@ -32,7 +32,7 @@ TetMesh with_bump() {
   return mesh;
 }
 
-/// The record of a triangle that stands.
+/// The record of an existing triangle.
 std::uint32_t record_of(const Workbench& w, const MeshTriangle& t) {
   SurfaceGrid::Edit edit;
   edit.removed = {t};
@@ -40,7 +40,7 @@ std::uint32_t record_of(const Workbench& w, const MeshTriangle& t) {
   return edit.removed_records.front();
 }
 
-/// How many samples triangles own; each must be as far from its own as is remembered at most.
+/// Number of samples that triangles own; expects each no farther from its triangle than stored.
 std::size_t count_owned(const Workbench& w) {
   std::size_t count = 0;
   double largest = 0;
@@ -102,7 +102,7 @@ TEST(SurfaceSamples, AreOwnedByTheNearestTriangle) {
   for (const MeshTriangle& t : triangles)
     w.samples->for_each(record_of(w, t), [&](const Vec3& p, float) {
       const double own = squared_distance(p, t.points[0], t.points[1], t.points[2]);
-      // Those around an edge of the cube face another way.
+      // Skip triangles around an edge of the cube, which face another way.
       for (const MeshTriangle& o : triangles)
         if (std::abs(normal(o).dot(normal(t))) > 0.8 * normal(o).norm() * normal(t).norm()) {
           EXPECT_GE(squared_distance(p, o.points[0], o.points[1], o.points[2]), own - 1e-12);
@@ -110,7 +110,7 @@ TEST(SurfaceSamples, AreOwnedByTheNearestTriangle) {
     });
 }
 
-// A plate, thinner than its cells are wide: what is nearest may be its other side.
+// A plate thinner than its cells are wide: the nearest triangle may be on its other side.
 TEST(SurfaceSamples, AreNotOwnedThroughAWall) {
   TetMesh mesh = grid_mesh({4, 4, 1}, [](int, int, int) { return Tag(1); });
   for (Vec3& p : mesh.points) p.z() *= 0.1;
@@ -158,11 +158,11 @@ TEST(SurfaceSamples, ThatWouldBeTooFarFromTheirTriangleRefuse) {
   EXPECT_EQ(w.carry_out(collapse(*w.ws, w.rules)), Outcome::done);
 }
 
-// From the other side: a triangle that has no sample may not leave the surface either.
+// The other direction: a triangle without samples must not leave the surface either.
 TEST(SurfaceSamples, ATriangleFarFromTheSurfaceIsRefused) {
   Workbench w(grid_mesh(4));
   const double scale = w.mesh.space().scale();
-  w.own_samples(20 * scale);  // a handful
+  w.own_samples(20 * scale);  // few samples
   const Index p = w.at(2, 2, 4);
   SurfaceGrid::Edit edit;
   const Star& star = w.star(p);

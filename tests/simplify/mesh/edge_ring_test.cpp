@@ -7,7 +7,7 @@
 namespace tetwright::edge_ring_test {
 namespace {
 
-/// Place in tet_edges of the axis in tet t.
+/// Index into tet_edges of the axis in tet t.
 int axis_of(const Workbench& w, Index t, Index low, Index high) {
   const Tet& p = w.mesh.points(t);
   for (int e = 0; e < 6; ++e) {

@@ -12,7 +12,7 @@
 namespace tetwright::editable_mesh_test {
 namespace {
 
-/// The tets as sets of positions with their materials, in an order that renumbering does not change.
+/// The tets as sets of positions with their materials, in an order independent of numbering.
 std::vector<std::pair<std::array<std::array<double, 3>, 4>, MaterialTag>> contents(const TetMesh& mesh) {
   std::vector<std::pair<std::array<std::array<double, 3>, 4>, MaterialTag>> out;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
@@ -98,7 +98,7 @@ TEST(EditableMesh, TakesNegativeAndFlatTetsAsTheyAre) {
   EXPECT_EQ(contents(std::move(editable).to_mesh()), before);
 }
 
-// Two cubes that touch along an edge only: no walk across faces leads from one to the other.
+// Two cubes that touch along an edge only: no walk across faces connects them.
 TEST(EditableMesh, SplitsWhatTouchesWithoutAFaceAndPutsItTogetherAgain) {
   const TetMesh touching = grid_mesh({6, 6, 1}, [](int x, int y, int) {
     return (x < 3) == (y < 3) ? std::optional<MaterialTag>(1) : std::optional<MaterialTag>();
@@ -119,7 +119,7 @@ TEST(EditableMesh, SplitsWhatTouchesWithoutAFaceAndPutsItTogetherAgain) {
   EXPECT_EQ(copies, 2u);
   EXPECT_EQ(split.size(), 4u);
   EXPECT_EQ(editable.touching_points(), 2u);
-  // They are frozen with all their tets, and nothing else is.
+  // Touching points are frozen with all their tets, and nothing else is.
   std::size_t frozen = 0;
   for (Index t = 0; t < editable.tet_slots(); ++t) {
     if (editable.dead(t)) continue;
@@ -141,7 +141,7 @@ TEST(EditableMesh, WorksAtTheOriginWhereThatIsExact) {
   for (Vec3& p : moved.points) p += Vec3(0x1p40, -0x1p45, 3);
   EditableMesh here(TetMesh(mesh), "mesh"), there(TetMesh(moved), "mesh");
   for (Index p = 0; p < here.point_slots(); ++p) EXPECT_EQ(here.position(p), there.position(p));
-  // What has no exact input coordinates is rounded to what has.
+  // A position without exact input coordinates is rounded to one with them.
   const Vec3 off = there.position(5) + Vec3::Constant(1e-9);
   const Vec3 snapped = there.snap(off);
   EXPECT_EQ(there.space().to_working(there.space().to_input(snapped)), snapped);

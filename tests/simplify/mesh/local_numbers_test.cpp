@@ -23,7 +23,7 @@ TEST(LocalNumbers, NumbersInTheOrderOfFirstSight) {
   EXPECT_TRUE(added);
 }
 
-// Keys a power of two apart, and more of them than fit the table at first.
+// Keys a power of two apart, and more than fit the initial table.
 TEST(LocalNumbers, GrowsAndKeepsNumbers) {
   for (const Index step : {Index{1}, Index{1} << 8, Index{1} << 15}) {
     LocalNumbers numbers;

@@ -24,7 +24,7 @@ TEST(Reservations, WhatAnEarlierWinnerClaimedIsNotFree) {
   EXPECT_FALSE(r.free(Points{0, 1}));
   EXPECT_FALSE(r.free(Points{3}));
   EXPECT_TRUE(r.free(Points{0, 4}));
-  r.claim(Points{3, 4});  // one of them a second time
+  r.claim(Points{3, 4});  // one vertex a second time
   EXPECT_FALSE(r.free(Points{3}));
   EXPECT_FALSE(r.free(Points{1}));
   r.begin_batch(3);
@@ -38,7 +38,7 @@ TEST(Reservations, WhatAnEarlierWinnerClaimedIsNotFree) {
 TEST(Reservations, NumbersOfWinnersBeginAnewBeforeTheyRunOut) {
   Reservations r;
   r.reset(10, std::numeric_limits<std::uint32_t>::max() - 4);
-  r.claim(Points{5});  // a number that would outlast all others
+  r.claim(Points{5});  // a number higher than all later ones
   r.begin_batch(10);
   EXPECT_TRUE(r.free(Points{5}));
   for (Index p = 0; p < 10; ++p) {
@@ -100,7 +100,7 @@ TEST(WriteRule, ACommitWritesItsWriteSetAlone) {
     EXPECT_THROW(w.mesh.set_quality(t, 0), InternalError);  // the tet's fourth point is not claimed
     EXPECT_THROW(w.mesh.touch(points[3]), InternalError);
     EXPECT_THROW(w.mesh.set_link(t, 0, w.mesh.link(t, 0)), InternalError);
-    w.mesh.set_link(t, 3, w.mesh.link(t, 3));  // the face of the other three
+    w.mesh.set_link(t, 3, w.mesh.link(t, 3));  // the face of the three claimed points
     w.mesh.touch(points[0]);
   }
   {

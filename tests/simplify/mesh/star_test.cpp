@@ -40,7 +40,7 @@ TEST(Star, FourMaterialsMeetInAPointOfDimensionZero) {
     return Tag(z < 2 ? 1 : x < 2 ? 2 : y < 2 ? 3 : 4);
   }));
   EXPECT_EQ(w.star(w.at(2, 2, 2)).dimension(), 0);
-  EXPECT_EQ(w.star(w.at(2, 2, 3)).dimension(), 1);  // three of them along a curve
+  EXPECT_EQ(w.star(w.at(2, 2, 3)).dimension(), 1);  // three regions around a curve
 }
 
 TEST(Star, FourSheetsAlongACurveAreAJunction) {

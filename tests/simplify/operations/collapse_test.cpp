@@ -23,7 +23,7 @@ TEST(Collapse, RemovesAnInnerPointAndItsEdgesTets) {
   w.expect_sound();
 }
 
-// Collapsing everything that may be collapsed, again and again, must keep the mesh sound throughout.
+// Collapses all that may be collapsed, again and again: the mesh must stay sound throughout.
 void collapse_all(Workbench& w) {
   w.rules.accept_worse = 1;
   bool any = true;
@@ -47,7 +47,7 @@ TEST(Collapse, ABallCollapsesToVeryFewTets) {
   EXPECT_GE(w.mesh.live_tets(), 1u);
 }
 
-/// A shape, and what about it must survive.
+/// A shape and its invariants.
 struct Shape {
   const char* name;
   std::array<int, 3> size;
@@ -95,8 +95,7 @@ const Shape shapes[] = {
 
 class CollapseShapes : public testing::TestWithParam<Shape> {};
 
-// Whatever may be collapsed is, whatever it does to the shape: the topology of every part must come out as it
-// was.
+// All possible collapses, however bad the shapes, keep the topology of every part.
 TEST_P(CollapseShapes, KeepTheirTopology) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     TetMesh mesh = grid_mesh(GetParam().size, GetParam().material);
@@ -115,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(All, CollapseShapes, testing::ValuesIn(shapes),
                          [](const auto& shape) { return std::string(shape.param.name); });
 
 TEST(Collapse, ALayerOneCubeThickSurvives) {
-  // Its tets span from one side to the other: every edge across is a spanning one.
+  // The layer's tets span from one side to the other: every edge across is a spanning edge.
   TetMesh mesh = grid_mesh({4, 4, 5}, [](int, int, int z) { return Tag(z == 2 ? 2 : z < 2 ? 1 : 3); });
   jitter(mesh, 4);
   Workbench w(mesh);
@@ -134,7 +133,7 @@ TEST(Collapse, ALayerOneCubeThickSurvives) {
     }
   }
   EXPECT_GT(layer, 1);
-  // The layer never tears: what is below it and what is above share not even a point.
+  // The layer never tears: the parts below and above it do not even share a point.
   EXPECT_EQ(std::count(touching.begin(), touching.end(), std::pair<MaterialTag, MaterialTag>(1, 3)), 0);
   EXPECT_GT(std::count(touching.begin(), touching.end(), std::pair<MaterialTag, MaterialTag>(1, 2)), 0);
 }
@@ -176,7 +175,7 @@ TEST(Collapse, CornersStay) {
   w.expect_sound();
 }
 
-// A tet that hangs on one face: its far point goes with it, onto any of the three others.
+// A tet attached at one face: its apex collapses onto any of the three other points.
 TEST(Collapse, AnEarIsCutOff) {
   TetMesh mesh;
   mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};

@@ -10,7 +10,7 @@ namespace {
 
 const FlipReach all{7, 5}, basic{3, 1};
 
-/// Tries the edge between two points from the first tet that has it.
+/// Tries to remove the edge between two points from the first tet that has it.
 Outcome remove_axis(Workbench& w, Index low, Index high, const FlipReach& reach) {
   for (Index t = 0; t < w.mesh.tet_slots(); ++t) {
     if (w.mesh.dead(t)) continue;
@@ -46,7 +46,7 @@ TEST(EdgeRemoval, EveryRingUpToSeven) {
   EXPECT_EQ(remove_axis(eight, eight.at(0, 0, -1), eight.at(0, 0, 1), all), Outcome::too_large);
 }
 
-// Of all triangulations of the ring the one whose worst tet is best: found again by hand for five points.
+// The best of all triangulations of the ring is found: compared with all fans for five points.
 TEST(EdgeRemoval, FindsTheBestTriangulation) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     TetMesh mesh = ring_mesh(5, 1);
@@ -93,14 +93,14 @@ TEST(EdgeRemoval, TheBoundarysTwoToTwo) {
   EXPECT_EQ(w.mesh.live_tets(), 2u);
   EXPECT_NEAR(w.mesh.total_volume(), volume, 1e-14);
   w.expect_sound();
-  // And back.
+  // The inverse flip.
   make_bad(w);
   ASSERT_EQ(remove_axis(w, w.at(1, 0, 0), w.at(0, 1, 0), basic), Outcome::done);
   w.expect_sound();
 }
 
 TEST(EdgeRemoval, ErrorBoundsWhatTheSurfaceLoses) {
-  TetMesh mesh = ring_mesh(2, 1, true, std::numbers::pi * 0.8);  // a ridge that would be cut off
+  TetMesh mesh = ring_mesh(2, 1, true, std::numbers::pi * 0.8);  // the flip would cut off a ridge
   Workbench w(mesh);
   make_bad(w);
   w.rules.max_error = 1e-3;
@@ -132,7 +132,7 @@ TEST(EdgeRemoval, JunctionEdgesStay) {
   w.expect_sound();
 }
 
-// A cavity of one tet: taking out one of its edges would make the opposite edge, which is there, and fill the
+// A cavity of one tet: removing one of its edges would make the opposite edge, which exists, and fill the
 // cavity.
 TEST(EdgeRemoval, AnEdgeThatIsThereElsewhereIsNotMadeAgain) {
   int refused = 0;

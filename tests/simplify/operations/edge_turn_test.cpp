@@ -9,8 +9,8 @@
 namespace tetwright::edge_turn_test {
 namespace {
 
-/// A solid with a cavity over the triangle 0, 1, 2: its floor is a spike up to the point 3, its roof the
-/// three triangles to the point 4.
+/// A solid with a cavity over the triangle 0, 1, 2: its floor is a spike up to point 3, its roof the three
+/// triangles to point 4.
 TetMesh solid_with_cavity(double floor, double roof) {
   TetMesh mesh;
   for (const double radius : {1.0, 3.0}) {
@@ -40,7 +40,7 @@ TetMesh solid_with_cavity(double floor, double roof) {
   return mesh;
 }
 
-/// What smoothing does with the cavity's top at height `z`.
+/// Outcome of moving the cavity's top to height `z`.
 Outcome move_top(double z) {
   Workbench w(solid_with_cavity(1.2, 1.5));
   const Index top = w.at(0, 0, 1.5);
@@ -55,7 +55,7 @@ Outcome move_top(double z) {
     p.edit.removed.push_back({ids, {star.centre_position, a, b}});
     p.edit.added.push_back({{ids, {to, a, b}}, s.patch});
   }
-  EXPECT_TRUE(w.grid.test(p.edit));  // no triangle meets another one
+  EXPECT_TRUE(w.grid.test(p.edit));  // no triangles intersect
   p.change = Proposal::Change::move;
   p.centre = top;
   p.position = to;

@@ -10,7 +10,7 @@ namespace {
 
 const FlipReach all_flips{7, 5}, basic_flips{3, 1};
 
-/// Two tets above and below a triangle, their far points at the given heights.
+/// Two tets above and below a triangle, with their apices at the given heights.
 TetMesh bipyramid(double height, MaterialTag below = 1) {
   TetMesh mesh;
   mesh.points = {{1, 0, 0}, {-0.5, 0.9, 0}, {-0.5, -0.9, 0}, {0, 0, height}, {0, 0, -height}};
@@ -49,7 +49,7 @@ TEST(FaceRemoval, NeverCrossesAnInterfaceNorTheBoundary) {
   w.expect_sound();
 }
 
-// What edge removal took apart, face removal puts together again: the ring of six stands between two points.
+// Face removal undoes edge removal: the ring of six lies between two points.
 TEST(FaceRemoval, UndoesEdgeRemoval) {
   for (int n = 4; n <= 6; ++n) {
     TetMesh flat =

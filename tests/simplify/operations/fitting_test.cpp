@@ -7,7 +7,7 @@
 namespace tetwright::fitting_test {
 namespace {
 
-/// The boundary of a grid of four whose top is a roof along y = 2, a quarter high; input units.
+/// The boundary of a grid of four whose top is a roof of height 1/4 with its ridge along y = 2; input units.
 TriangleMesh roofed() {
   TetMesh mesh = grid_mesh(4);
   TriangleMesh out;
@@ -43,7 +43,7 @@ TEST(Fitting, BringsTheSurfaceToItsSamples) {
     }
   w.expect_sound();
   EXPECT_LT(sum_of_squares(w), 0.01 * before);
-  // Points have come to lie along the ridge.
+  // Points now lie on the ridge.
   int on_ridge = 0;
   for (const Index p : w.live_points()) {
     const Vec3 at = w.mesh.space().to_input(w.mesh.position(p));

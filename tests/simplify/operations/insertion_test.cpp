@@ -76,7 +76,7 @@ TEST_P(Insertion, InEdgesOfEveryDimension) {
   EXPECT_GT(done[3], 0);
 }
 
-// Where all is well, a point more makes it worse.
+// In a good mesh another point is no improvement.
 TEST(InsertionJudges, ByTheOutcome) {
   Workbench w(grid_mesh(2));
   w.rules.objective.kind = Objective::Kind::shape;
@@ -89,8 +89,8 @@ TEST(InsertionJudges, ByTheOutcome) {
   w.expect_sound();
 }
 
-// Four tets at the centre of a bad one are worse still; with the tets around it something better may come
-// of it.
+// Four tets around the centre of a bad one are worse still; together with the tets around it they may be
+// better.
 TEST(InsertionJudges, TakesTheTetsAroundABadOneToo) {
   std::size_t done = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
@@ -127,7 +127,7 @@ TEST(InsertionLimits, CountAndRoom) {
   w.rules.count.max = 48;
   EXPECT_EQ(w.carry_out(insert_in_tet(*w.ws, w.rules, 5, InsertionPlace::centre)), Outcome::count);
   w.expect_sound();
-  // Where there are no free slots, there are some after.
+  // Without free slots an insertion adds some.
   Workbench tight(grid_mesh(2));
   tight.mesh.compact(0, 0);
   tight.grid.build(tight.mesh, 0);

@@ -91,7 +91,7 @@ TEST(Smoothing, ACornerMayLeaveItsPlaceALittleWhereThatIsAsked) {
   }
   const double moved = (w.mesh.space().to_input(w.mesh.position(p)) - Vec3(2.5, 2.45, 2.4)).norm();
   EXPECT_GT(moved, 0.1);
-  EXPECT_LE(moved, 0.2 + 1e-9);  // from where it was at first, however often it moves
+  EXPECT_LE(moved, 0.2 + 1e-9);  // from its first position, however often it moves
   w.expect_sound();
 }
 

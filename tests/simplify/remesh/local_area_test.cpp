@@ -74,7 +74,7 @@ TEST(LocalArea, ListsWhatAScanFinds) {
   }
 }
 
-/// Some tets of a bench, and what shares points with them.
+/// Some tets of a bench, and the tets that share points with them.
 struct Part {
   Part(const EditableMesh& mesh, Index count) {
     Neighbourhood near;
@@ -105,7 +105,7 @@ TEST(LocalArea, ListsItsTetsAndTheirRim) {
     for (const Index p : mesh.points(t)) EXPECT_TRUE(has(part.points, p));
   EXPECT_EQ(numbers(area.tets_around(b.listed(part.tets))), part.with_rim);
   EXPECT_EQ(area.points_around(b.listed(part.tets)), part.reach);
-  EXPECT_EQ(numbers(area.bad_tets(1)), part.tets);  // and the rim's only where something changed
+  EXPECT_EQ(numbers(area.bad_tets(1)), part.tets);  // tets of the rim only after a change
 }
 
 TEST(LocalArea, NoWorkBeyondTheRimWhateverHappensInIt) {
@@ -132,7 +132,7 @@ TEST(LocalArea, NoWorkBeyondTheRimWhateverHappensInIt) {
       rim_tets += !inner;
     }
     const std::size_t live = b.work.live_points().size();
-    if (round % 2 == 0) {  // points come in edges of all that is listed, and go again
+    if (round % 2 == 0) {  // points are inserted in edges of all listed tets, and later removed
       b.runner.tets_in_order(listed, [&](Workspace& ws, const TetSnapshot& item, int) {
         if (!exists(ws.mesh, item)) return Outcome::stale;
         return insert_in_edge(ws, rules, item.tet, round / 2 % 6, InsertionPlace::centre, true);

@@ -10,7 +10,7 @@
 namespace tetwright::point_tree_test {
 namespace {
 
-/// A mesh whose points are moved one list after another, and the tree that follows.
+/// A mesh whose points are moved list by list, and the tree that follows.
 struct Bench {
   explicit Bench(int n) : mesh(grid_mesh(n), "mesh") { tree.build(mesh); }
 
@@ -54,7 +54,7 @@ TEST(PointTree, FollowsPointsThatMove) {
     some.resize(1 + random.below(200));
     if (round % 3 == 0) {
       b.move(some, [&](const Vec3&) { return anywhere(random); });
-    } else {  // by little, and onto lattice planes
+    } else {  // a little, onto lattice planes
       b.move(some, [&](const Vec3& p) -> Vec3 { return (8 * p).array().round() / 8; });
     }
     const Vec3 c = anywhere(random), d = anywhere(random);
@@ -76,7 +76,7 @@ TEST(PointTree, TakesManyPointsAtOnePlace) {
 TEST(PointTree, StaysSmallWhenTheBodyTravels) {
   Bench b(7);
   const std::size_t nodes = b.tree.node_slots();
-  // Slice by slice, so that the tree is never made anew.
+  // Slice by slice, so that the tree is never rebuilt.
   for (int step = 1; step <= 300; ++step)
     for (int part = 0; part < 4; ++part) {
       std::vector<Index> points;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Batches whose proposals meet: who wins, who comes again, and what a batch may not do. tets_in_order() takes
-// items in the order given, so that the test says which are in one batch; here an item's number is that of a
-// point.
+// Batches with conflicting proposals: who wins, who is decided again, and what a batch must not do.
+// tets_in_order() runs items in the order given, so that the test decides which are in one batch; an item's
+// number is that of a point here.
 #include "simplify/schedule/block_runner.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ struct Block : Workbench {
   BlockRunner runner;
 };
 
-/// Everything that an operation may change: what stands in each slot.
+/// Everything that an operation may change: the contents of each slot.
 struct Contents {
   std::vector<Tet> tets;
   std::vector<std::array<Index, 4>> neighbours;
@@ -81,7 +81,7 @@ TEST(BlockRunner, WhatNeedsWhatAnEarlierOneChangesLosesAndIsDecidedAnew) {
   Block b(grid_mesh(4), 4);
   const Index first = b.at(2, 2, 2), second = b.at(3, 3, 3);  // neighbours
   std::mutex mutex;
-  std::map<Index, std::vector<bool>> met;  // whether each found the other when it was decided
+  std::map<Index, std::vector<bool>> met;  // whether each found the other when decided
   b.in_order({first, second}, [&](Workspace& ws, const TetSnapshot& item, int stage) {
     EXPECT_EQ(stage, 0);
     const Outcome o = b.collapse_point(ws, item.tet);
@@ -92,7 +92,7 @@ TEST(BlockRunner, WhatNeedsWhatAnEarlierOneChangesLosesAndIsDecidedAnew) {
     return o;
   });
   EXPECT_EQ(met[first], (std::vector<bool>{true}));
-  EXPECT_EQ(met[second], (std::vector<bool>{true, false}));  // at last in the mesh as the first one left it
+  EXPECT_EQ(met[second], (std::vector<bool>{true, false}));  // finally in the mesh that the first one left
   EXPECT_EQ(b.mesh.incident_tet(first), no_index);
   EXPECT_EQ(b.mesh.incident_tet(second), no_index);
   const BlockRunner::Totals totals = b.runner.take_totals();
@@ -125,7 +125,7 @@ TEST(BlockRunner, OverlappingWriteSetsWinInOneBatch) {
   b.expect_sound();
 }
 
-/// What each point and tet of a mesh would do, by an operation that goes with its number.
+/// Proposals of each point and tet of a mesh, by an operation that depends on its number.
 std::vector<Proposal> proposals_of(Workbench& w) {
   std::vector<Proposal> out;
   Workspace& ws = *w.ws;
@@ -151,7 +151,7 @@ std::vector<Proposal> proposals_of(Workbench& w) {
   return out;
 }
 
-// The order of commits is the threads' affair.
+// Threads may commit in any order.
 TEST(BlockRunner, WinnersOfABatchCommitInAnyOrder) {
   std::size_t won = 0, shared = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
@@ -245,14 +245,14 @@ TEST(BlockRunner, StopEndsABlockAtAnExactCount) {
 
 TEST(BlockRunner, BoundsHoldForABatchAsAWhole) {
   Block b(jittered(4, 3), 1000);
-  b.rules.count.min = b.mesh.live_tets() - 20;  // each of them alone would do
+  b.rules.count.min = b.mesh.live_tets() - 20;  // each alone would be allowed
   b.in_order(b.live_points(),
              [&](Workspace& ws, const TetSnapshot& item, int) { return b.collapse_point(ws, item.tet); });
   EXPECT_GE(b.mesh.live_tets(), b.rules.count.min);
   EXPECT_GT(b.runner.take_totals().counts.of(Operation::collapse, Outcome::count), 0u);
   b.expect_sound();
 
-  // Points far from each other that stay where they are, but say that a third of what is allowed goes.
+  // Points far from each other that do not move, but report a loss of a third of the allowed volume.
   Block v(grid_mesh(6), 1000);
   v.ledger.open(v.mesh, 0.1);
   const double third = v.mesh.total_volume() * 0.1 / 3.1;
@@ -297,7 +297,7 @@ TEST(BlockRunner, ATurnGoesOnWithTheNextStage) {
     EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
     for (std::size_t i = 1; i < seen.size(); ++i) {
       EXPECT_LE(seen[i], seen[i - 1] + 1);
-      again += seen[i] == seen[i - 1];  // it had lost
+      again += seen[i] == seen[i - 1];  // it had lost before
     }
     to_the_end += seen.back() == 2;
   }
@@ -308,11 +308,10 @@ TEST(BlockRunner, ATurnGoesOnWithTheNextStage) {
   b.expect_sound();
 }
 
-// The first item waits until another worker decides one, too: what others show of threads is not shown by
-// one.
+// The first item waits until another worker decides one, too: other tests of threads would pass with one.
 TEST(BlockRunner, WorkersDecideSideBySide) {
   const ThreadLimit four(4);
-  // oneTBB promises no second thread in any one loop, whatever is free.
+  // oneTBB guarantees no second thread in any single loop, whatever is free.
   constexpr int max_loops = 30;
   std::int64_t workers = 0;
   for (int loop = 0; loop < max_loops && workers < 2; ++loop) {

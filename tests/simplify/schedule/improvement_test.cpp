@@ -49,7 +49,7 @@ TEST(Improve, BettersTheShapesAndKeepsTheRest) {
 }
 
 TEST(Improve, OpensLoopsOfJunctionCurvesThatAreSmallerThanATet) {
-  // Two materials that touch through a hole in a third one, a hundredth of a tet wide.
+  // Two materials that touch through a hole in a third one, 1/100 of a tet wide.
   TetMesh mesh = grid_mesh({7, 7, 8}, [](int x, int y, int z) {
     const bool hole = x == 3 && y == 3;
     return Tag((z == 3 || z == 4) && !hole ? 3 : z < 4 ? 1 : 2);
@@ -63,7 +63,7 @@ TEST(Improve, OpensLoopsOfJunctionCurvesThatAreSmallerThanATet) {
   EXPECT_TRUE(check_mesh(after).empty());
   for (const std::string& d : topology_differences(topology(mesh), topology(after))) ADD_FAILURE() << d;
   const MeshStatistics is = mesh_statistics(after);
-  EXPECT_GT(is.min_dihedral, 8);  // 1 where they stay as they are
+  EXPECT_GT(is.min_dihedral, 8);  // 1 if they are not improved
   EXPECT_GT(is.min_solid_angle, 0.03);
   EXPECT_EQ(interface_groups(find_interfaces(after)).size(), 6u);  // 1|2 is still among them
 }
@@ -76,7 +76,7 @@ TEST(Improve, OnlyBelowLeavesTheRestAlone) {
   const MeshStatistics was = mesh_statistics(mesh, 0.05), is = mesh_statistics(after, 0.05);
   EXPECT_GT(was.below_count, 0u);
   EXPECT_EQ(is.below_count, 0u);
-  // Most points stand where they stood.
+  // Most points have not moved.
   std::set<std::array<double, 3>> places;
   for (const Vec3& p : mesh.points) places.insert({p.x(), p.y(), p.z()});
   std::size_t kept = 0;
@@ -122,7 +122,7 @@ TEST(Improve, SixThreadsGiveTheBytesOfOne) {
   EXPECT_EQ(mesh_statistics(six).below_count, 0u);
 }
 
-// A tet that was turned over by moving one point is put right.
+// A tet inverted by moving one point is repaired.
 TEST(Improve, PutsInvertedTetsRight) {
   TetMesh mesh = grid_mesh(5);
   for (Vec3& p : mesh.points)
@@ -139,7 +139,7 @@ TEST(Improve, RefusesAndCancels) {
   EXPECT_THROW(improve(grid_mesh(3), ImproveOptions(), nullptr, &progress), Interrupted);
 }
 
-// A coarse skin around random points, as other programs fill it: half of the tets are slivers.
+// A coarse skin filled with random points, as by other programs: half of the tets are slivers.
 TEST(Improvement, MendsMeshesWithRandomInteriors) {
   const TetMesh mesh = random_interior(3, 170, 0.25);
   EXPECT_GT(mesh_statistics(mesh, 0.1).below_percent, 35);

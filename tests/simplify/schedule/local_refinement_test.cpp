@@ -50,7 +50,7 @@ TEST(LocalRefinement, FollowsASurfaceWithinItsFaces) {
   const double scale = engine.mesh().space().scale(), limit = 0.08 * scale;
   engine.own_samples(0.2 * scale);
   engine.rules.tolerance = engine.rules.max_deviation = 0.87 * limit;
-  ASSERT_EQ(engine.find_far_tets(limit).size(), 1);  // that of the face below the hill
+  ASSERT_EQ(engine.find_far_tets(limit).size(), 1);  // the tet at the face below the hill
   WholeMesh whole(engine);
   const ImprovementPlan plan{.kind = "close",
                              .angle = 0.12,

@@ -24,7 +24,7 @@ TEST(PaperSchedule, ReachesTheTargetByFigure3) {
   for (const MeshFinding& f : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(f);
   for (const std::string& d : topology_differences(topology(mesh), topology(after))) ADD_FAILURE() << d;
 
-  // percent and E as Figure 3 has them, until the count is reached; no closing improvement.
+  // Percent and E follow Figure 3 until the count is reached; there is no closing improvement.
   ASSERT_GE(report.iterations.size(), 2u);
   const double volume = 16.0 * 16 * 16;
   EXPECT_NEAR(report.iterations[0].max_error, std::cbrt(volume / 1000), 0.02 * std::cbrt(volume / 1000));

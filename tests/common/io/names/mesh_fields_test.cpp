@@ -29,7 +29,7 @@ TEST(MeshFields, NamesAreWrittenOnce) {
 TEST(MeshFields, WholeNumbers) {
   EXPECT_TRUE(all_whole({"", 1, false, {1, -5, 0x1p53 - 1}}));
   EXPECT_FALSE(all_whole({"", 1, false, {1, 0.5}}));
-  EXPECT_FALSE(all_whole({"", 1, false, {0x1p53}}));  // perhaps the number after it
+  EXPECT_FALSE(all_whole({"", 1, false, {0x1p53}}));  // may stand for the next integer
   EXPECT_FALSE(all_whole({"", 1, false, {std::numeric_limits<double>::quiet_NaN()}}));
 }
 
@@ -61,7 +61,7 @@ TEST(MeshFields, TheMaterialByRule) {
     all.push_back({order[i], 1, false, {5, 6}});
     EXPECT_EQ(taken(all), order[i]);
   }
-  // A field with a known name but numbers that are not whole is not taken.
+  // A field with a known name but fractional values is skipped.
   EXPECT_EQ(taken({{"attribute", 1, false, {0.5, 1}}, region}), "region");
   EXPECT_EQ(taken({{"material", 3, true, {1, 2, 3, 4, 5, 6}}, region}), "region");
 }

@@ -42,7 +42,7 @@ TEST(MeshParts, NoTwoNamesAreTheSame) {
   };
   EXPECT_EQ(names(false), std::pair(std::string("Bone"), std::string("bone")));
   EXPECT_EQ(names(true), std::pair(std::string("Bone"), std::string("bone_2")));
-  // A group of the user that is called like a pair keeps its name.
+  // A region of the input with the name of a pair keeps its name.
   TetMesh mesh = two_named("a", "b");
   const auto free = std::find_if(mesh.interfaces.begin(), mesh.interfaces.end(),
                                  [](const auto& t) { return t.material == 1 && !t.other; });
@@ -85,7 +85,7 @@ TEST(MeshParts, NumbersAbove0) {
 
 TEST(MeshParts, TheInterfacesAsASurface) {
   TetMesh mesh = two_named("a", "b");
-  mesh.points.insert(mesh.points.begin(), Vec3(9, 9, 9));  // of no tet
+  mesh.points.insert(mesh.points.begin(), Vec3(9, 9, 9));  // without a tet
   for (Tet& tet : mesh.tets)
     for (Index& v : tet) ++v;
   mesh.interfaces = find_interfaces(mesh);

@@ -53,7 +53,7 @@ TEST(NameChanges, NamesThatAFormatCannotHold) {
   EXPECT_EQ(texts(written_name_changes(mesh, "m.inp").material_names),
             (Texts{R"("a'b" -> "a_b")", R"("a b" -> "a_b_2")"}));
   EXPECT_EQ(texts(written_name_changes(mesh, "m.mesh").patch_names), Texts{R"("in let" -> "in_let")"});
-  EXPECT_TRUE(written_name_changes(mesh, "m.meshb").patch_names.empty());  // has none at all
+  EXPECT_TRUE(written_name_changes(mesh, "m.meshb").patch_names.empty());  // it has no names
   EXPECT_TRUE(written_name_changes(mesh, "m.vtk").material_names.empty());
   mesh.material_names = {{-7, R"(a"b)"}, {1, R"(a\b)"}};
   EXPECT_EQ(texts(written_name_changes(mesh, "m.msh").material_names),
@@ -62,7 +62,7 @@ TEST(NameChanges, NamesThatAFormatCannotHold) {
   for (const char* file : {"m.vtk", "m.bdf", "m.xdmf", "m.node"})
     EXPECT_EQ(texts(written_name_changes(mesh, file).material_names), Texts{R"("same" -> "same_2")"}) << file;
   EXPECT_TRUE(written_name_changes(mesh, "m.vtu").material_names.empty());
-  mesh.material_names = {{-7, ""}};  // a name that is there, and is empty; that of 1 is made up
+  mesh.material_names = {{-7, ""}};  // an empty name; that of material 1 is a default
   EXPECT_EQ(texts(written_name_changes(mesh, "m.vtk").material_names), Texts{R"("" -> "material_-7")"});
 }
 

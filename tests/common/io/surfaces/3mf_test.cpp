@@ -28,7 +28,7 @@ std::string file(const std::string& objects, const std::string& items) {
   return zip_of({{"_rels/.rels", relationships_of_3mf}, {"3D/a.model", model(objects, items)}});
 }
 
-/// Six times the volume, which is positive if the triangles face outwards.
+/// Six times the volume, positive if the triangles face outwards.
 double six_volumes(const TriangleMesh& mesh) {
   double sum = 0;
   for (const Triangle& t : mesh.triangles)
@@ -79,7 +79,7 @@ TEST(ThreeMf, AnUnnamedObjectIsOfTheAssemblyThatHasIt) {
   const auto assembly = [](const std::string& attributes) {
     return object(attributes, "<components><component objectid=\"1\"/></components>");
   };
-  // The type of what has components says nothing.
+  // The type of an object with components is ignored.
   const TriangleMesh mesh =
       read_3mf(file(object("id=\"1\"", tet_mesh) + assembly("id=\"2\" name=\"left\"") +
                         assembly("id=\"3\" name=\"right\" type=\"support\""),

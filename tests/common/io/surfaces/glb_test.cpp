@@ -26,7 +26,7 @@ std::string glb(const json& scene, const std::string& binary) {
   return out + std::string("BIN\0", 4) + numbers;
 }
 
-/// A tet whose vertices are there twice, as where normals differ, with 16-bit indices behind them.
+/// A tet with duplicate vertices, as where normals differ, followed by 16-bit indices.
 std::string tet_bytes() {
   std::string bytes;
   for (int twice = 0; twice < 2; ++twice)
@@ -71,7 +71,7 @@ TEST(Glb, NodesPlaceTheirMeshes) {
   scene["nodes"] = {{{"mesh", 0}, {"matrix", {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 6, 7, 1}}}};
   const TriangleMesh mirrored = read(scene);
   EXPECT_EQ(mirrored.points[1], Vec3(4, 6, 7));
-  EXPECT_EQ(mirrored.triangles[0], (Triangle{0, 1, 2}));  // faces outwards still
+  EXPECT_EQ(mirrored.triangles[0], (Triangle{0, 1, 2}));  // still faces outwards
 }
 
 TEST(Glb, NodesAndMaterialsAreGroups) {

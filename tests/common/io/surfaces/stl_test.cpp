@@ -64,7 +64,7 @@ TEST(Stl, SolidsAreGroups) {
   const TriangleMesh mesh = read_stl(solid(" a b ") + solid("") + solid(" c"), "f");
   EXPECT_EQ(mesh.groups, (std::vector<SurfaceRegion>{{0, "a b"}, {2, ""}, {0, "c"}}));
   EXPECT_EQ(mesh.triangle_groups, (std::vector<std::uint32_t>{0, 1, 2}));
-  EXPECT_TRUE(read_stl(solid(" a"), "f").groups.empty());  // nothing to tell apart
+  EXPECT_TRUE(read_stl(solid(" a"), "f").groups.empty());  // a single solid
   expect_input_error(read_stl, solid(" a") + solid(" b") + solid(" a"), "\"a\"", "another name");
 }
 

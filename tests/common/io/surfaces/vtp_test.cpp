@@ -69,7 +69,7 @@ TEST(Vtp, ArraysOfPointsAreFields) {
   const auto read_all = [](std::string_view bytes, const char* name) { read_vtp_with_fields(bytes, name); };
   const std::string few = with("<DataArray type=\"Int8\" Name=\"c\" format=\"ascii\">1 2</DataArray>");
   expect_input_error(read_all, few, "\"c\"", "5 were expected");
-  // Who does not ask for fields reads the file all the same.
+  // A caller that requests no fields can read the file all the same.
   std::vector<Dropped> dropped;
   EXPECT_EQ(read_vtp(few, "f", &dropped).points.size(), 5u);
   EXPECT_EQ(dropped, (std::vector<Dropped>{{"lines", 1}, {"fields of points (\"c\")", 1}}));

@@ -21,7 +21,8 @@ TEST(MeditBinary, RoundTripKeepsEveryBit) {
 TEST(MeditBinary, TrianglesAreGroupsOfFaces) {
   const TetMesh mesh = mesh_with_surfaces();
   const ReadTetMesh back = read_medit_binary(text_of(write_medit_binary, mesh), "f");
-  // Without names and comments, numbers alone: that of the user makes all of them the user's.
+  // Without names and comments only numbers remain: the region's number makes all of them regions of the
+  // input.
   std::vector<std::int64_t> numbers;
   for (const auto& [patch, group] : back.mesh.patch_groups) numbers.push_back(group.number);
   EXPECT_TRUE(std::find(numbers.begin(), numbers.end(), 5) != numbers.end());
@@ -29,7 +30,7 @@ TEST(MeditBinary, TrianglesAreGroupsOfFaces) {
             text_of(write_medit_binary, back.mesh));
 }
 
-/// A file of version `v` by hand, in either byte order.
+/// Builds a file of version `v`, in either byte order.
 struct File {
   int version;
   bool swap;
@@ -54,7 +55,7 @@ struct File {
     else
       put(static_cast<float>(value));
   }
-  /// A section with the content that `fill` puts.
+  /// Adds a section with the content that `fill` writes.
   template <class Fill>
   void section(std::int32_t keyword, const Fill& fill) {
     File content{version, swap, {}};

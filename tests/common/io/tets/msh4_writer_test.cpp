@@ -18,7 +18,7 @@ TEST(Msh4Writer, RoundTripKeepsEveryBitAndTheOrder) {
     const ReadTetMesh back = read_msh(text_of(write, mesh), "f");
     EXPECT_TRUE(same_bits(back.mesh.points, mesh.points));
     EXPECT_EQ(back.mesh.tets, mesh.tets);
-    EXPECT_EQ(back.mesh.materials, mesh.materials);  // also those that are no number of a group
+    EXPECT_EQ(back.mesh.materials, mesh.materials);  // also those that cannot be numbers of groups
     EXPECT_EQ(back.mesh.material_names, mesh.material_names);
     EXPECT_EQ(back.material_field, "gmsh:physical");
     EXPECT_EQ(text_of(write, back.mesh), text_of(write, mesh));
@@ -71,7 +71,7 @@ TEST(Msh4Writer, CutBinaryFilesAreErrors) {
   mesh.point_fields = {{"t", 1, false, {1, 2, 3, 4, 5}}};
   const std::string whole = text_of(write_msh41_binary, mesh);
   for (std::size_t n = 0; n + 1 < whole.size(); ++n) {
-    // Behind $Elements the rest may be missing as a whole.
+    // All that follows $Elements may be missing as a whole.
     if (whole.compare(0, n, whole, 0, n) == 0 && n == whole.find("$EndElements") + 12) continue;
     if (n == whole.find("$EndElements") + 13) continue;
     (void)error_of<InputError>([&] { (void)read_msh(whole.substr(0, n), "f"); });

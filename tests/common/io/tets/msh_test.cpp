@@ -94,7 +94,7 @@ TEST(Msh, NoTwoGroupsOfFacesHaveOneName) {
   const MaterialPair first{1, std::nullopt}, second{2, std::nullopt};
   for (InterfaceTriangle& t : mesh.interfaces)
     if (t.ids == Triangle{0, 1, 3} || t.ids == Triangle{0, 4, 1}) t.patch = 1;
-  // Like the pair of materials, like that with a suffix, and like each other when written.
+  // Names equal to the pair's, to the pair's with a suffix, and to each other when written.
   mesh.patch_groups = {{{first, 1}, {7, "1|outside"}}, {{second, 1}, {8, "1|outside_2"}}};
   const std::string text = write_msh(mesh);
   EXPECT_NE(text.find("2 7 \"1|outside\"\n2 8 \"1|outside_2\"\n"), std::string::npos) << text;
@@ -110,7 +110,7 @@ TEST(Msh, NoTwoGroupsOfFacesHaveOneName) {
   EXPECT_NE(write_msh(mesh).find("2 7 \"a_b_2\"\n2 8 \"a_b\"\n"), std::string::npos);
   mesh.patch_groups = {{{first, 1}, {7, "same"}}, {{second, 1}, {8, "same"}}};
   EXPECT_NO_THROW(read_msh(write_msh(mesh), "f"));
-  // Materials of one name make pairs of one name.
+  // Materials of equal names make pairs of equal names.
   mesh.patch_groups = {};
   mesh.material_names = {{1, "bone"}, {2, "bone"}};
   EXPECT_NO_THROW(read_msh(write_msh(mesh), "f"));
@@ -252,7 +252,7 @@ TEST(Msh, FieldsComeBack) {
   EXPECT_EQ(back.cell_fields[0], (MeshField{"a _b_", 1, false, {7, -8}}));
   EXPECT_EQ(back.cell_fields[10], (MeshField{"ten_9", 1, false, {0.5, 0.5}}));
   EXPECT_EQ(back.materials, mesh.materials);
-  // What was read once is written unchanged.
+  // A file that was read is written unchanged.
   EXPECT_EQ(write_msh(read_msh(write_msh(back), "f").mesh), write_msh(back));
 }
 
@@ -345,7 +345,7 @@ TEST(Msh, BadInput) {
   expect_input_error(read_msh, head + "$Nodes\n2\n1 0 0 0\n1 1 0 0\n$EndNodes\n", "node 1", "twice");
   expect_input_error(read_msh, head + "$Nodes\n1\n1 0 inf 0\n$EndNodes\n", "line 6", "not finite");
   expect_input_error(read_msh, head + elements(tet), "before the nodes");
-  // Files with other volume elements are refused.
+  // Files with other volume elements are rejected.
   expect_input_error(read_msh, head + nodes + elements("7 5 2 1 1 1 2 3 4 1 2 3 4\n" + tet, "2"), "line 13",
                      "1 hexahedra, the first of them element 7 (type 5)");
   expect_input_error(read_msh, head + nodes + elements("1 12 2 1 1 1 2 3 4 1 2 3 4 1 2\n"), "line 13",

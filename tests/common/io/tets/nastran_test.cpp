@@ -16,7 +16,7 @@ TEST(Nastran, WhatIsWrittenIsReadWithItsNames) {
   for (std::size_t i = 0; i < mesh.points.size(); ++i)
     EXPECT_NEAR((back.mesh.points[i] - mesh.points[i]).norm(), 0, 1e-12);
   EXPECT_EQ(back.mesh.tets, (std::vector<Tet>{mesh.tets[1], mesh.tets[0]}));
-  EXPECT_EQ(back.mesh.materials, (std::vector<MaterialTag>{2, 1}));  // -7 is no number of a property
+  EXPECT_EQ(back.mesh.materials, (std::vector<MaterialTag>{2, 1}));  // -7 cannot be the number of a property
   EXPECT_EQ(back.mesh.material_names, (std::map<MaterialTag, std::string>{{2, "skin"}, {1, "bone"}}));
   EXPECT_EQ(back.mesh.patch_groups,
             (std::map<InterfacePatch, SurfaceRegion>{{{{1, std::nullopt}, 1}, {5, "outlet"}}}));

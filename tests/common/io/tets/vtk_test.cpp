@@ -216,7 +216,7 @@ TEST(Vtk, CutShort) {
     }
 }
 
-/// A tetrahedron whose last face is a strip, with a quad, a line and a vertex beside it.
+/// A tetrahedron with a strip as its last faces, beside a quad, a line and a vertex.
 std::string surface_file(bool binary, bool offsets) {
   File f(binary, offsets ? "5.1" : "3.0", "POLYDATA");
   f.line("POINTS 5 float").numbers<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 2, 2, 2});
@@ -255,7 +255,7 @@ TEST(VtkSurface, PolygonsStripsAndGroups) {
       std::vector<Dropped> dropped;
       const TriangleMesh s = read_vtk_surface(surface_file(binary, offsets), "f", &dropped);
       EXPECT_EQ(s.points.size(), 5u);
-      // The quad becomes two triangles, the strip two that are wound alike.
+      // The quad becomes two triangles, the strip two of consistent orientation.
       EXPECT_EQ(s.triangles,
                 (std::vector<Triangle>{{0, 2, 1}, {0, 1, 3}, {1, 2, 4}, {1, 4, 3}, {0, 3, 2}, {2, 3, 1}}));
       ASSERT_EQ(s.triangle_groups.size(), 6u);
@@ -300,7 +300,7 @@ TEST(VtkSurface, OfSomethingElse) {
   const std::string good = surface_file(false, false);
   expect_input_error(surface, replaced(good, "3 0 2 1", "3 0 2 7"), "point 7 of 5");
   for (std::size_t n = 0; n + 40 < good.size(); n += 3) try {
-      EXPECT_FALSE(surface(good.substr(0, n), "f").triangles.empty());  // what a whole section is may do
+      EXPECT_FALSE(surface(good.substr(0, n), "f").triangles.empty());  // a whole section may be missing
     } catch (const InputError&) {
     }
 }

@@ -378,7 +378,8 @@ TEST(Vtu, BinaryCutShortOrDamaged) {
     }
 }
 
-/// Two tets that share a face, each a piece with points of its own, and a third piece of a triangle alone.
+/// Two tets with a common face, each in a piece with points of its own, and a third piece with only a
+/// triangle.
 std::string two_pieces(const std::string& first_fields, const std::string& second_fields) {
   const auto piece = [](const std::string& points, const std::string& cells, int type,
                         const std::string& data) {
@@ -406,7 +407,8 @@ std::string fields(const std::string& point_values, const std::string& material,
 
 TEST(Vtu, PiecesAreJoinedWhereTheyMeet) {
   std::string file = two_pieces(fields("1 2 3 4", "5"), fields("7 8 9 10", "6"));
-  // The triangle's piece has points without fields, and then none of points is of all pieces; it has no tets.
+  // The triangle's piece has points without fields, so that no field of points is in all pieces; it has no
+  // tets.
   const std::size_t triangle = file.rfind("<Piece");
   const ReadTetMesh all = read_vtu(file, "f");
   EXPECT_TRUE(all.mesh.point_fields.empty());

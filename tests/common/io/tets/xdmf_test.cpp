@@ -84,7 +84,7 @@ TEST_F(Xdmf, PatchesAreReadFromTheFacetsBesideIt) {
 
 TEST_F(Xdmf, FacetsOfOtherPointsAreSaid) {
   write_tet_mesh(one_tet(), path("m.xdmf"));
-  EXPECT_TRUE(read_tet_mesh(path("m.xdmf")).dropped.empty());  // there are none in the file
+  EXPECT_TRUE(read_tet_mesh(path("m.xdmf")).dropped.empty());  // the file has none
   write_tet_mesh(mesh_with_surfaces(), path("a.xdmf"));
   put(path("m_facets.xdmf"), get(path("a_facets.xdmf")));
   EXPECT_EQ(read_tet_mesh(path("m.xdmf")).dropped,

@@ -12,7 +12,7 @@
 namespace tetwright::fixed_width_number_test {
 namespace {
 
-/// As Nastran reads it, too.
+/// Value as Nastran reads it, too.
 double value_of(std::string text) {
   const std::size_t sign = text.find_first_of("+-", 1);
   if (text.find('e') == std::string::npos && sign != std::string::npos) text.insert(sign, "e");
@@ -53,7 +53,7 @@ TEST(FixedWidthNumber, OthersAreRoundedToWhatFits) {
       ASSERT_NE(wide.find('.'), std::string::npos) << wide;
       // Three digits of an exponent leave less room.
       if (std::fabs(value) < 1e-99 || std::fabs(value) > 1e99) continue;
-      // In the worst case a sign, a point, and an exponent of four characters ("e-12") take room.
+      // The worst case has a sign, a point, and an exponent of four characters ("e-12").
       ASSERT_LE(std::fabs(value_of(wide) / value - 1), bare ? 5e-14 : 5e-13) << wide;
       ASSERT_LE(std::fabs(value_of(narrow) / value - 1), bare ? 5e-10 : 5e-9) << narrow;
     }

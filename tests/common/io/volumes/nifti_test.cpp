@@ -37,7 +37,7 @@ class Header {
 Header plain() { return Header(2, 8); }
 const std::string body = counted_voxels<std::uint8_t>();
 
-/// Of one file.
+/// Reads a volume in one file.
 LabelVolume read_alone(std::string_view bytes, const std::string& name) {
   return read_nifti(bytes, name, [](const std::string& path) -> std::string {
     throw InputError(path + ": there is no such file");

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs the code blocks of Markdown pages in order, as a reader does who copies them.
+
+    run_blocks.py --program TETWRIGHT [--python-path FOLDER] [--prefix FOLDER] PAGE...
+
+Each page has an empty folder of its own, which its blocks share. Blocks of `sh` and `python` are run, each by itself: a
+shell that stops at the first command that fails, and a script. Blocks of other languages are text, unless they are a
+file. Behind the language a block may say
+
+    no-run        it is only shown: an installation, or a window that opens
+    needs=NAME    it is run where the program NAME is installed, or with python:NAME the Python module
+    status=N      the exit status that is right, instead of 0
+    file=NAME     the block is written to this file and not run; a script or an input for what follows
+
+--python-path is where the Python package is, --prefix where CMake finds the installed library; without them the blocks
+that need them (`import tetwright`, and `sh` that calls CMake) are left out. Status 1 if a block fails, or another
+package is missing than those that may be; blocks that are left out are named.
+"""
+import argparse
+import importlib.util
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import pages
+
+PYTHON = "/usr/bin/python3"  # another one on the path may not see Debian's modules
+# Packages that tools/optional lists, and what Debian has not. Others are installed by tools/setup test.
+MAY_BE_MISSING = ("ccx", "python:dolfinx", "python:pyvista")
+SECONDS = 500  # for a block, on a machine with much else to do
+
+
+def is_there(need):
+    """Whether a program, or with python: a Python module, is installed."""
+    kind, colon, name = need.partition(":")
+    if not colon:
+        return shutil.which(need) is not None
+    if kind != "python":
+        raise ValueError(f"needs={need} is neither a program nor python:MODULE")
+    return importlib.util.find_spec(name) is not None
+
+
+class Runner:
+    """Runs the blocks of one page in a folder."""
+
+    def __init__(self, options, folder):
+        self._options = options
+        self._folder = folder
+        tools = os.path.join(folder, ".bin")
+        os.mkdir(tools)
+        os.symlink(os.path.abspath(options.program), os.path.join(tools, "tetwright"))
+        os.symlink(PYTHON, os.path.join(tools, "python3"))
+        self._environment = {**os.environ, "PATH": tools + os.pathsep + os.environ["PATH"],
+                             "PYTHONDONTWRITEBYTECODE": "1", "OMP_NUM_THREADS": "1", "CMAKE_GENERATOR": "Ninja",
+                             "PYTHONPATH": options.python_path or ""}
+        if options.prefix:
+            self._environment["CMAKE_PREFIX_PATH"] = options.prefix
+
+    def why_not(self, block):
+        """Why a block is not run, or an empty text."""
+        if block.attributes.get("no-run"):
+            return "no-run"
+        need = block.attributes.get("needs")
+        if need and not is_there(need):
+            return f"{need} is not installed"
+        if not self._options.python_path and "import tetwright" in block.text:
+            return "the Python package is not built"
+        if not self._options.prefix and block.language == "sh" and "cmake " in block.text:
+            return "the library is not installed"
+        return ""
+
+    def run(self, block):
+        """Runs a block; returns what is wrong, or an empty text."""
+        if "file" in block.attributes:
+            with open(os.path.join(self._folder, block.attributes["file"]), "w", encoding="utf-8") as file:
+                file.write(block.text)
+            return ""
+        command = {"sh": ["bash", "-euo", "pipefail", "-c", block.text], "python": [PYTHON, "-c", block.text]}.get(block.language)
+        if command is None:
+            return ""
+        # A group of its own, so that nothing that a block has started outlives it.
+        with subprocess.Popen(command, cwd=self._folder, env=self._environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True, start_new_session=True) as process:
+            try:
+                output, _ = process.communicate(timeout=SECONDS)
+            except subprocess.TimeoutExpired:
+                os.killpg(process.pid, signal.SIGKILL)
+                return f"it took more than {SECONDS} s"
+        right = int(block.attributes.get("status", 0))
+        if process.returncode == right:
+            return ""
+        return f"status {process.returncode} instead of {right}\n{block.text}\n{output[-4000:]}"
+
+
+def run_page(path, options):
+    """Runs a page's blocks; returns the number of those that fail."""
+    name = os.path.relpath(path, pages.SOURCE)
+    with tempfile.TemporaryDirectory(prefix="tetwright-docs-") as folder:
+        runner = Runner(options, folder)
+        ran = 0
+        for block in pages.blocks(pages.read(path)):
+            runs = block.language in ("sh", "python") or "file" in block.attributes
+            why_not = runner.why_not(block) if runs else ""
+            if why_not and why_not != "no-run":
+                print(f"left out: {name}:{block.line}: {why_not}")
+                need = block.attributes.get("needs")
+                if need and not is_there(need) and need not in MAY_BE_MISSING:
+                    print(f"FAILED: {name}:{block.line}: tools/setup test installs {need}")
+                    return 1
+            if why_not or not runs:
+                continue
+            begin = time.monotonic()
+            wrong = runner.run(block)
+            if options.times:
+                print(f"{time.monotonic() - begin:6.2f} s  {name}:{block.line}")
+            if wrong:
+                # Those that follow build upon it.
+                print(f"FAILED: {name}:{block.line}: {wrong}")
+                return 1
+            ran += 1
+    print(f"{name}: {ran} blocks as written")
+    return 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", required=True)
+    parser.add_argument("--python-path", default="")
+    parser.add_argument("--prefix", default="")
+    parser.add_argument("--times", action="store_true", help="print how long each block takes")
+    parser.add_argument("pages", nargs="*")
+    options = parser.parse_args()
+    sys.exit(1 if sum(run_page(path, options) for path in options.pages or pages.guide_pages()) else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,42 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""Checks the comments of C++ sources for openings that have to be read twice, names for words that the field does not use,
+and tests for skips. Status 1 if one is found."""
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+FOLDERS = ("common", "mesher", "simplify", "tools", "tests", "benchmarks")
+RULES = (
+    (re.compile(r"^\s*///?<? ?(What|Of|The same|Those)\b"), "a comment opens with '{}'; begin with the verb or the subject"),
+    (re.compile(r"\b((?:most|least|fewest|poorest)_[a-z]+)"), "'{}' is a word of our own; the field says min, max or worst"),
+    (re.compile(r"\b(GTEST_SKIP|DISABLED_)"), "{}: a test that does not run shows nothing"),
+)
+
+
+def opens_sentence(lines, number):
+    """Whether a comment's line begins a sentence, and does not go on with that of the line before."""
+    before = lines[number - 1].strip() if number > 0 else ""
+    return not before.startswith("//") or before.rstrip().endswith((".", ":", ";", "//", "///", "?", "!"))
+
+
+def findings(path):
+    lines = path.read_text(encoding="utf-8").splitlines()
+    for number, line in enumerate(lines):
+        for rule, text in RULES:
+            found = rule.search(line)
+            if found and (rule is not RULES[0][0] or opens_sentence(lines, number)):
+                yield f"{path.relative_to(ROOT)}:{number + 1}: " + text.format(found.group(1))
+
+
+def main():
+    files = [path for folder in FOLDERS for path in sorted((ROOT / folder).rglob("*")) if path.suffix in (".h", ".cpp")]
+    wrong = [line for path in files for line in findings(path)]
+    if len(files) < 100:
+        wrong.append(f"only {len(files)} files found in {ROOT}")
+    print("\n".join(wrong) if wrong else f"{len(files)} files are worded well")
+    return 1 if wrong else 0
+
+
+sys.exit(main())
