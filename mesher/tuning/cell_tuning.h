@@ -108,7 +108,7 @@ struct CellTuning {
     static constexpr double max_closed_share = 0.01;
   };
 
-  /// What cells resolve of surfaces and their patches.
+  /// Resolution of surfaces and their patches.
   struct Patches {
     /// In diagonals: a surface whose points are all this close to a plane encloses nothing, in cells of any
     /// size.
