@@ -221,15 +221,21 @@ void find_lost_patches(const TetMesh& mesh, PrepareRun& run) {
        .places = places});
 }
 
-/// Whether the comparison with the input rules out changes of a material.
-enum class Change : std::uint8_t { none, none_by_estimate, possible };
+/// Whether a material has changed, by its comparison with the input; the worst last.
+enum class Change : std::uint8_t {
+  none,
+  none_by_estimate,  ///< as an estimate says
+  by_estimate,       ///< not as an estimate says
+  possible           ///< it has changed, or nothing is known
+};
 
 Change change_of(const PrepareReport& report, MaterialTag tag) {
   const auto f = std::find_if(report.solids.begin(), report.solids.end(),
                               [&](const SolidComparison& m) { return m.tag == tag; });
-  if (f == report.solids.end() || !f->same() || !f->counted || f->against == SolidComparison::Against::voxels)
+  if (f == report.solids.end() || !f->counted || f->against == SolidComparison::Against::voxels)
     return Change::possible;
-  return f->certain ? Change::none : Change::none_by_estimate;
+  if (f->certain) return f->same() ? Change::none : Change::possible;
+  return f->same() ? Change::none_by_estimate : Change::by_estimate;
 }
 
 /// The worst change of the materials beside a thin part: of its own material, or of all for a gap.
@@ -249,14 +255,14 @@ Change change_beside(const PrepareReport& report, const ThinPartReport& thin) {
 void find_thin_part(const ThinPartReport& thin, PrepareReport& report) {
   const Change change = change_beside(report, thin);
   if (change == Change::none) return;
-  const bool by_estimate = change == Change::none_by_estimate;
   report.diagnostics.push_back(
-      {.code = by_estimate ? DiagnosticCode::thin_parts_uncertain : DiagnosticCode::thin_parts,
+      {.code = change == Change::possible ? DiagnosticCode::thin_parts : DiagnosticCode::thin_parts_uncertain,
        .what = (thin.name.empty() ? "a gap" : "'" + thin.name + "'") + " is thinner than " +
                (thin.refined ? "the smallest cells can hold" : "two cells") + " at " +
                std::to_string(thin.places) + " places, the first at " + place_text(thin.first) +
-               (by_estimate ? ": by the distances nothing is torn or joined there"
-                            : ": parts may be torn or joined there; a higher resolution keeps them"),
+               (change == Change::none_by_estimate
+                    ? ": nothing is known to be torn or joined there"
+                    : ": parts may be torn or joined there; a higher resolution keeps them"),
        .places = {thin.first}});
 }
 

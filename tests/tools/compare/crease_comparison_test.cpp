@@ -112,7 +112,7 @@ TEST(CreaseComparison, IsSaidOfPartsAndNotOfScans) {
   // Few edges turn far, and most of them meet no other one.
   TriangleMesh scan = read_surface(f / "ball.off");
   Random random(3);
-  for (Vec3& p : scan.points) p *= 1 + 0.034 * (random.uniform() - 0.5);
+  for (Vec3& p : scan.points) p *= 1 + 0.025 * (random.uniform() - 0.5);
   write_surface(scan, f / "scan.off");
   a = run("mesh " + (f / "scan.off") + " --resolution 8 -o " + (f / "o.vtu") + " --stats " + (f / "s.json"));
   stats = nlohmann::json::parse(contents(f / "s.json"));

@@ -163,7 +163,7 @@ TEST(SolidComparison, AMeshAsAClosedSurfaceSaysIsRightWhateverTheDistancesSay) {
   const TemporaryFolder f;
   write_surface(dented_ball(), f / "ball.obj");
   const Answer a = run("mesh " + (f / "ball.obj") + " -o " + (f / "o.vtu") +
-                       " --uniform --resolution 18 --stats " + (f / "s.json"));
+                       " --uniform --resolution 26 --stats " + (f / "s.json"));
   EXPECT_EQ(a.status, 0) << a.err;
   EXPECT_NE(a.err.find("triangles that intersect"), std::string::npos) << a.err;
   EXPECT_EQ(a.err.find("instead of"), std::string::npos) << a.err;
@@ -185,7 +185,7 @@ TEST(SolidComparison, ADifferenceFromAnEstimateIsANoteAndNoStatus) {
     write_box(later, first, Vec3(0.5, -1, -1), Vec3(7, 11, 11));
   }
   const std::string call = "mesh " + (f / "body.obj") + " " + (f / "later.obj") + " -o " + (f / "o.vtu") +
-                           " --uniform --resolution 18 --stats " + (f / "s.json");
+                           " --uniform --resolution 20 --stats " + (f / "s.json");
   for (const char* strict : {"", " --strict"}) {
     const Answer a = run(call + strict);
     EXPECT_EQ(a.status, 0) << a.err;
