@@ -41,10 +41,13 @@ def whole_labels(values: Any, count: int) -> Optional[np.ndarray]:
 
 
 def text_labels(values: Any, count: int) -> Optional[np.ndarray]:
-    """As str; None where they are not one text for each cell."""
+    """The values as str, or None unless they are one text for each cell."""
     if values is None or np.ma.is_masked(values):
         return None
-    array = np.asarray(values)
+    try:
+        array = np.asarray(values)
+    except ValueError:  # rows of several lengths
+        return None
     if array.shape != (count,):
         return None
     if array.dtype.kind == "S":
