@@ -29,6 +29,10 @@ def main():
     results, optional_file = sys.argv[1:]
     optional = optional_packages(optional_file)
     wrong = 0
+    names = {case.get("name") for case in xml.etree.ElementTree.parse(results).getroot().iter("testcase")}
+    for test in sorted(set(optional) - names):
+        print(f"FAILED: tools/optional names {test}, which is no test")
+        wrong += 1
     for test in skipped_tests(results):
         package, text = optional.get(test, (None, None))
         if package is None:

@@ -9,14 +9,15 @@ import unittest
 SCRIPT = pathlib.Path(__file__).with_name("skipped.py")
 OPTIONAL = "# packages\nno-such-package solvers.one a solver\nbash shells.one a shell\n"
 RESULTS = """<testsuite><testcase name="good" status="run"/><testcase name="bad" status="fail"/>
+<testcase name="solvers.one" status="run"/><testcase name="shells.one" status="run"/>
 <testcase name="{}" status="notrun"><skipped message="SKIP_RETURN_CODE=77"/></testcase></testsuite>"""
 
 
-def listed(skipped):
+def listed(skipped, optional_packages=OPTIONAL):
     with tempfile.TemporaryDirectory() as folder:
         results, optional = pathlib.Path(folder, "tests.xml"), pathlib.Path(folder, "optional")
         results.write_text(RESULTS.format(skipped))
-        optional.write_text(OPTIONAL)
+        optional.write_text(optional_packages)
         done = subprocess.run([sys.executable, SCRIPT, results, optional], capture_output=True, text=True, check=False)
     return done.returncode, done.stdout
 
@@ -29,6 +30,11 @@ class Skipped(unittest.TestCase):
         status, text = listed("shells.one")
         self.assertEqual(status, 1)
         self.assertIn("although bash is installed", text)
+
+    def test_of_no_test(self):
+        status, text = listed("solvers.one", OPTIONAL + "bash shells.two another shell\n")
+        self.assertEqual(status, 1)
+        self.assertIn("shells.two, which is no test", text)
 
     def test_without_leave(self):
         status, text = listed("python")

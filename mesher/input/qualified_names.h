@@ -19,9 +19,12 @@ struct NamesOfBody {
 
 /// Chooses the names that are used, no two alike. A name that only one body has stays as it is. A name that
 /// is in `taken` or that several bodies have is qualified by its body, "heater:minY", with a suffix, "_2", if
-/// that is taken as well. \param what a plural that says what is named \param bodies their used names are
-/// filled in \param taken the chosen names are added \param findings a finding is added for each body with
-/// names other than its file's
+/// that is taken as well.
+///
+/// \param what a plural that says what is named
+/// \param bodies their used names are filled in
+/// \param taken the chosen names are added
+/// \param findings a finding is added for each body with names other than its file's
 void qualify_names(const std::string& what, std::vector<NamesOfBody>& bodies, UniqueNames& taken,
                    std::vector<Diagnostic>& findings);
 

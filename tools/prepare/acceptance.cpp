@@ -30,6 +30,7 @@ void decide_severities(const AcceptanceOptions& acceptance, PrepareReport& repor
   for (Diagnostic& d : report.diagnostics) {
     d.severity = kind_of(d.code).severity;
     const char* reason = reason_to_accept(d, acceptance, on_purpose);
+    if (kind_of(d.code).yields != Yields::never) d.done.clear();  // a former call's reason
     if (!reason) continue;
     d.severity = Severity::note;
     d.done = reason;

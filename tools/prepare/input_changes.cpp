@@ -259,7 +259,8 @@ void find_thin_part(const ThinPartReport& thin, PrepareReport& report) {
       {.code = change == Change::possible ? DiagnosticCode::thin_parts : DiagnosticCode::thin_parts_uncertain,
        .what = (thin.name.empty() ? "a gap" : "'" + thin.name + "'") + " is thinner than " +
                (thin.refined ? "the smallest cells can hold" : "two cells") + " at " +
-               std::to_string(thin.places) + " places, the first at " + place_text(thin.first) +
+               std::to_string(thin.places) + (thin.places == 1 ? " place, at " : " places, the first at ") +
+               place_text(thin.first) +
                (change == Change::none_by_estimate
                     ? ": nothing is known to be torn or joined there"
                     : ": parts may be torn or joined there; a higher resolution keeps them"),

@@ -34,9 +34,12 @@ PrepareRun::PrepareRun(Task what, const PrepareOptions& of, Progress& shown, Pre
       options(of),
       memory_limit(of.limits.memory.value_or(0) * gigabyte),
       progress(shown),
+      deadline_before(shown.deadline()),
       report(to) {
   reserve_time(min_reserve * seconds_left());
 }
+
+PrepareRun::~PrepareRun() { progress.set_deadline(deadline_before); }
 
 double PrepareRun::seconds_left() const {
   if (!options.limits.seconds) return std::numeric_limits<double>::infinity();

@@ -79,13 +79,13 @@ struct MeshField {
 /// A tetrahedral mesh of one or more materials: the plain value that all parts of the library exchange.
 ///
 /// A tet (a, b, c, d) is positive when (b-a) x (c-a) . (d-a) > 0. Readers return what the file contains;
-/// meshes made by mesher/ and simplify/ satisfy the invariants of mesh_check.h.
+/// meshes made by mesher/ and simplify/ satisfy the invariants of mesh_quality.h.
 struct TetMesh {
   std::vector<Vec3> points;                           ///< input units
   std::vector<Tet> tets;                              ///< indices into points
   std::vector<MaterialTag> materials;                 ///< one tag for each tet
   std::map<MaterialTag, std::string> material_names;  ///< only materials that have a name
-  /// Result of find_interfaces() (interfaces.h) for this mesh, or empty. Readers leave it empty unless a file
+  /// Result of find_interfaces() (mesh_quality.h) for this mesh, or empty. Readers leave it empty unless a file
   /// has groups of faces; mesher/ and simplify/ fill it. Code that changes the numbers of points, tets or
   /// materials clears or recomputes it.
   std::vector<InterfaceTriangle> interfaces = {};

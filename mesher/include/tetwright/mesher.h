@@ -146,7 +146,7 @@ struct DenseMesh {
 /// Writes a .vdb file with a level set for each material (not for the outside), of the same name: the signed
 /// distance from the material's interfaces, which is half the difference between its own distance and the
 /// smallest other one.
-/// \param files if given, the file appears when these are committed (see atomic_file.h)
+/// \param files if given, the file appears when these are committed (see files.h)
 /// \throws OutputError
 void write_fields(const MaterialField& field, const std::string& path, OutputFiles* files = nullptr);
 

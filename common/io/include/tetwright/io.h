@@ -301,7 +301,7 @@ std::optional<SurfaceWithFields> read_surface_with_fields(const std::string& pat
 /// Writes a file whole or not at all; coordinates round-trip bit by bit. A tet mesh is written in
 /// written_tet_format(), to several files that differ in extension if the format has several.
 /// \param path "-" is standard output
-/// \param files the file appears when these are committed (see atomic_file.h), and writing can be cancelled;
+/// \param files the file appears when these are committed (see files.h), and writing can be cancelled;
 ///   null: at once
 /// \param format an extension, "ply" or ".ply", used instead of the path's; for tet meshes the name of a
 ///   format

@@ -83,7 +83,7 @@ struct Input {
   std::string material;  ///< empty: named after the input
 };
 
-/// Read or move out the value of an input; files are read as by the readers of formats.h.
+/// Read or move out the value of an input; files are read as by the readers of io.h.
 ///
 /// \param dropped may be null; receives the items that were not kept
 /// \param waited time spent waiting for a stream, seconds, is added to it

@@ -46,6 +46,10 @@ struct PrepareRun {
   /// \param to may have findings already
   /// \pre `of`, `shown` and `to` outlive the run.
   PrepareRun(Task what, const PrepareOptions& of, Progress& shown, PrepareReport& to);
+  /// Gives `shown` back the deadline that it had before.
+  ~PrepareRun();
+  PrepareRun(const PrepareRun&) = delete;
+  PrepareRun& operator=(const PrepareRun&) = delete;
 
   /// Seconds until the time limit; 0 if it has passed, infinite if there is none.
   double seconds_left() const;
@@ -58,6 +62,7 @@ struct PrepareRun {
   MemoryLimit memory_limit;
   Stopwatch since_start;
   Progress& progress;
+  const Progress::Clock::time_point deadline_before;
   double seconds_waited = 0;  ///< waiting for streams
   PrepareReport& report;
   std::optional<MidsideNodes> midside;  ///< of the result, with order 2
