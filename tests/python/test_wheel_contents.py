@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The parts of tools/python/wheel that need no build of their own; tools/python/try_wheel tries whole wheels."""
+"""Tests the parts of tools/python/wheel that need no build of their own; tools/python/try_wheel tries whole wheels."""
 import base64
 import hashlib
 import os
@@ -58,6 +58,13 @@ def test_libraries_of_the_folder_are_taken_before_the_systems(tmp_path):
     name = next(n for n in libraries if wheel_contents.stem(n) == "tbb")
     shutil.copy(libraries[name], tmp_path)
     assert wheel_contents.needed_libraries(program, tmp_path)[name] == tmp_path / name
+
+
+def test_a_file_that_would_take_a_library_from_the_system_is_refused(tmp_path):
+    wheel_contents.check_linkage(tmp_path)
+    shutil.copy(os.environ["TETWRIGHT_PROGRAM"], tmp_path)
+    with pytest.raises(SystemExit, match=r"would take lib\w+"):
+        wheel_contents.check_linkage(tmp_path)
 
 
 def test_versions_are_those_of_the_systems_libraries_alone():

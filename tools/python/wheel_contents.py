@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes a wheel of a build: `wheel` calls it. Everything that program and module need but glibc and g++'s runtime
-library goes into it, with its licence; the names and versions of symbols inside say which glibc it is for."""
+"""Packs the program and a module into a wheel; `tools/python/wheel` builds both and calls it.
+
+The wheel holds all shared libraries that they need, except glibc and g++'s runtime library, and the licences of these
+libraries. Its platform tag follows from the versions of symbols that the files need."""
 import base64
 import hashlib
 import os
@@ -14,15 +16,15 @@ import tempfile
 import tomllib
 import zipfile
 
-# The libraries that every Linux with a new enough glibc has, as PEP 600 has it.
+# Libraries that a wheel may take from the system (PEP 600).
 OF_SYSTEM = {"libc.so.6", "libm.so.6", "libpthread.so.0", "libdl.so.2", "librt.so.1", "libgcc_s.so.1", "libstdc++.so.6",
              "ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1"}
-# The libraries that may be inside: their licences let us, and none of them opens connections.
+# Libraries that a wheel may hold: their licences allow it, and none of them opens connections.
 INSIDE = {"Imath", "aec", "blosc", "boost_iostreams", "bz2", "deflate", "hdf5_serial", "log4cplus", "lz4", "lzma", "openvdb",
           "pugixml", "snappy", "sz", "tbb", "tbbmalloc", "z", "zip", "zstd"}
-# Debian's packages whose code is compiled into ours.
+# Debian's packages whose headers or scripts are compiled into the program and the module.
 HEADERS = ["libcli11-dev", "libeigen3-dev", "libjs-three", "nlohmann-json3-dev"]
-# The first glibc that distributions had together with these versions of g++'s runtime library.
+# The oldest glibc that distributions combine with these versions of g++'s runtime library.
 GLIBC_BESIDE = {"GLIBCXX": {"3.4.19": "2.17", "3.4.29": "2.34", "3.4.30": "2.35", "3.4.33": "2.39"},
                 "CXXABI": {"1.3.7": "2.17", "1.3.13": "2.34", "1.3.15": "2.39"},
                 "GCC": {"4.8.0": "2.17", "7.0.0": "2.34", "12.0.0": "2.35", "14.0.0": "2.39"}}
@@ -39,13 +41,13 @@ def output_of(*command, **environment):
 
 
 def stem(library):
-    """Its name without "lib" and version: libImath-3_1.so.29 is Imath."""
+    """Strips "lib" and versions from a file name: libImath-3_1.so.29 is Imath."""
     return re.sub(r"-[0-9][0-9_.]*$", "", library.removeprefix("lib").split(".so")[0])
 
 
 def needed_libraries(file, first_folder=""):
-    """From the names of all libraries that the file needs, also by way of others, to their paths. Those in the folder
-    are taken before the system's."""
+    """Maps the names of all libraries that the file needs, directly or not, to their paths. Libraries in the folder take
+    precedence over the system's."""
     libraries = {}
     for line in output_of("ldd", file, LD_LIBRARY_PATH=str(first_folder)).splitlines():
         name, arrow, path = line.strip().partition(" => ")
@@ -68,7 +70,7 @@ def compiled_files(folder):
 
 
 def symbol_versions(file):
-    """Those that it needs of the system's libraries, such as GLIBC_2.34."""
+    """Returns the versions of symbols that the file needs of the system's libraries, such as GLIBC_2.34."""
     versions = set()
     library = None
     for line in output_of("objdump", "-p", file).splitlines():
@@ -83,7 +85,7 @@ def symbol_versions(file):
 
 
 def platform_tag(versions, machine):
-    """The oldest manylinux whose systems have all of these versions of symbols."""
+    """Returns the tag of the oldest systems that have all of these versions of symbols."""
     glibc = "2.17"
     for version in versions:
         library, _, number = version.rpartition("_")
@@ -98,33 +100,34 @@ def platform_tag(versions, machine):
         else:
             beside = [g for v, g in GLIBC_BESIDE[library].items() if numbers(number) <= numbers(v)]
             if not beside:
-                sys.exit(f"which glibc comes with {version} is not known; add it to GLIBC_BESIDE in tools/python/wheel_contents.py")
+                sys.exit(f"which glibc comes with {version} is not known; add it to GLIBC_BESIDE in "
+                         "tools/python/wheel_contents.py")
             needed = beside[0]
         glibc = max(glibc, ".".join(needed.split(".")[:2]), key=numbers)
     return f"manylinux_{glibc.replace('.', '_')}_{machine}"
 
 
 def licence_of_package(package):
-    """The source that a package of this system is of, with its version, and its licence."""
+    """Returns the source package with its version, and the licence, of an installed package."""
     return (output_of("dpkg-query", "-W", "-f", "${source:Package} ${source:Version}", package),
             pathlib.Path(f"/usr/share/doc/{package}/copyright").read_text(errors="replace"))
 
 
 def licence_of_library(path, parts):
-    """The package that a library is of, its source and its licence."""
+    """Returns the package of a library, its source and its licence."""
     if parts in path.parents:
         for file in (parts / "libraries" / "licences").iterdir():
             if stem(path.name).startswith(file.name.removeprefix("lib")):
                 return file.name, file.read_text().split(",")[0], file.read_text()
     real = path.resolve()
-    # Debian 12 knows some files of /usr/lib as of /lib.
+    # Debian 12 lists some files of /usr/lib under /lib.
     owners = [line.split(":")[0] for line in output_of("dpkg-query", "-S", "*/" + real.name).splitlines()
               if str(real).endswith(line.split(": ")[1])]
     return owners[0], *licence_of_package(owners[0])
 
 
 def write_licences(licences, folder):
-    """Of each package its licence, and the common ones that these name."""
+    """Writes the licence of each package, and the common licences that these refer to."""
     common = set()
     for package, text in licences.items():
         (folder / package).mkdir(parents=True)
@@ -137,33 +140,33 @@ def write_licences(licences, folder):
 
 
 def add_libraries(libraries, folder):
-    """Copies them under names of their own, so that another one of the same name in the process is not taken for
-    them, and returns from their names to these."""
+    """Copies libraries into the folder and returns their new names. A hash in the name keeps the loader from taking another
+    library of the process for one of these."""
     folder.mkdir()
     new_names = {}
     for name, path in sorted(libraries.items()):
         before, so, after = name.partition(".so")
         digest = hashlib.sha256(path.read_bytes()).hexdigest()[:8]
-        # oneTBB looks for its allocator by name.
+        # oneTBB loads its allocator by name.
         new_names[name] = name if stem(name) == "tbbmalloc" else f"{before}-{digest}{so}{after}"
         shutil.copyfile(path, folder / new_names[name])
     return new_names
 
 
 def settle(file, new_names, run_path):
-    """Makes a file of ours find its libraries in the wheel."""
+    """Makes a file find its libraries in the wheel."""
     file.chmod(0o755)
     subprocess.run(["strip", "--strip-unneeded", file], check=True)
     replaced = [word for needed in output_of("patchelf", "--print-needed", file).split() if needed in new_names
                 for word in ("--replace-needed", needed, new_names[needed])]
-    # One call for each: patchelf 0.14 forgets the new names if it sets the path as well.
+    # Each change is a call of its own: patchelf 0.14 loses the new names if it also sets the path.
     for change in (["--set-rpath", run_path], replaced, ["--set-soname", file.name] if ".so." in file.name else []):
         if change:
             subprocess.run(["patchelf", *change, file], check=True)
 
 
 def check_linkage(folder):
-    """All that files of the wheel need must be in it, or be the system's."""
+    """Ends the program if a file would take a library from outside the folder that is not in OF_SYSTEM."""
     for file in compiled_files(folder):
         for name, path in needed_libraries(file).items():
             if folder not in path.resolve().parents:
@@ -171,7 +174,7 @@ def check_linkage(folder):
 
 
 def metadata(source):
-    """METADATA of the wheel, from pyproject.toml."""
+    """Returns name, version and METADATA of the wheel, as pyproject.toml has them."""
     project = tomllib.loads((source / "pyproject.toml").read_text())["project"]
     known = {"name": "Name", "version": "Version", "description": "Summary", "requires-python": "Requires-Python"}
     if unknown := set(project) - set(known) - {"license", "readme", "dependencies"}:
@@ -183,7 +186,7 @@ def metadata(source):
 
 
 def write_wheel(folder, dist_info, file):
-    """A zip file with RECORD; the same bytes of the same contents."""
+    """Writes the wheel with its RECORD. Equal contents give equal bytes."""
     record = []
     with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         def add(name, content, mode):
@@ -211,15 +214,16 @@ def make(build, python, parts, output):
         found = needed_libraries(file, parts / "libraries" / "lib")
         check_inside(found, file)
         libraries |= found
-    # oneTBB loads it by itself if it lies beside it.
+    # oneTBB loads its allocator itself if both are in one folder.
     libraries["libtbbmalloc.so.2"] = libraries["libtbb.so.12"].with_name("libtbbmalloc.so.2")
 
     name, version, described = metadata(source)
     dist_info = f"{name}-{version}.dist-info"
     with tempfile.TemporaryDirectory() as folder_name:
         folder = pathlib.Path(folder_name).resolve()
-        package = shutil.copytree(source / "tools/python/tetwright", folder / "tetwright", ignore=shutil.ignore_patterns("__pycache__"))
-        shutil.copytree(source / "tools/python/wheel_program", folder / "tetwright_program", ignore=shutil.ignore_patterns("__pycache__"))
+        no_caches = shutil.ignore_patterns("__pycache__")
+        package = shutil.copytree(source / "tools/python/tetwright", folder / "tetwright", ignore=no_caches)
+        shutil.copytree(source / "tools/python/wheel_program", folder / "tetwright_program", ignore=no_caches)
         new_names = add_libraries(libraries, folder / "tetwright.libs")
         shutil.copy(module, package / f"_core.cpython-{cpython}-{machine}-linux-gnu.so")
         shutil.copy(program, folder / "tetwright_program")
@@ -245,7 +249,8 @@ def make(build, python, parts, output):
         shutil.copyfile(source / "LICENSE", information / "licenses" / "LICENSE")
         (information / "licenses" / "bundled.txt").write_text("\n".join(listing) + "\n")
         (information / "METADATA").write_text(described)
-        (information / "WHEEL").write_text(f"Wheel-Version: 1.0\nGenerator: {name} ({version})\nRoot-Is-Purelib: false\nTag: {tag}\n")
+        (information / "WHEEL").write_text("Wheel-Version: 1.0\nGenerator: tools/python/wheel\nRoot-Is-Purelib: false\n"
+                                           f"Tag: {tag}\n")
         (information / "entry_points.txt").write_text("[console_scripts]\ntetwright = tetwright_program:main\n")
         (information / "top_level.txt").write_text("tetwright\ntetwright_program\n")
 

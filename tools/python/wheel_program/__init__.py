@@ -6,6 +6,7 @@ import sys
 
 
 def main():
-    for ignored in (signal.SIGPIPE, signal.SIGXFSZ):  # by Python, and so by the program, if they were left so
-        signal.signal(ignored, signal.SIG_DFL)
+    # Python ignores these signals, and the program would inherit that.
+    for number in (signal.SIGPIPE, signal.SIGXFSZ):
+        signal.signal(number, signal.SIG_DFL)
     os.execv(os.path.join(os.path.dirname(__file__), "tetwright"), ["tetwright", *sys.argv[1:]])
