@@ -85,9 +85,9 @@ struct TetMesh {
   std::vector<Tet> tets;                              ///< indices into points
   std::vector<MaterialTag> materials;                 ///< one tag for each tet
   std::map<MaterialTag, std::string> material_names;  ///< only materials that have a name
-  /// Result of find_interfaces() (mesh_quality.h) for this mesh, or empty. Readers leave it empty unless a file
-  /// has groups of faces; mesher/ and simplify/ fill it. Code that changes the numbers of points, tets or
-  /// materials clears or recomputes it.
+  /// Result of find_interfaces() (mesh_quality.h) for this mesh, or empty. Readers leave it empty unless a
+  /// file has groups of faces; mesher/ and simplify/ fill it. Code that changes the numbers of points, tets
+  /// or materials clears or recomputes it.
   std::vector<InterfaceTriangle> interfaces = {};
   /// Regions of the patches of the interfaces; only patches that belong to one.
   std::map<InterfacePatch, SurfaceRegion> patch_groups = {};
