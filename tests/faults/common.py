@@ -16,8 +16,9 @@ class Program:
         self.path, self.folder, self.keep = path, folder, keep
         self.faults = []
 
-    def start(self, arguments, **options):
-        return subprocess.Popen([str(self.path), *map(str, arguments)], stdin=subprocess.DEVNULL,
+    def start(self, arguments, prefix=(), **options):
+        """Starts the program, by the command `prefix` if there is one."""
+        return subprocess.Popen([*prefix, str(self.path), *map(str, arguments)], stdin=subprocess.DEVNULL,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", **options)
 
     def run(self, arguments, **options):
