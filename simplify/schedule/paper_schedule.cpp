@@ -147,6 +147,7 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
     RoundRecorder::Round round(engine.recorder(), "simplify", error);
     IterationReport& it = round.report();
     it.percent = percent;
+    it.tets_by_quality = tets_by_quality(mesh);
     const auto before = static_cast<double>(it.tets_before);
     const double log_now = portable_log(std::max(before / target, 1.0));
     rules.acceptance.worse_probability =

@@ -7,6 +7,7 @@
 #include "simplify/mesh/editable_mesh.h"
 #include "simplify/operations/objective.h"
 #include "simplify/schedule/block_runner.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright {
 
@@ -16,6 +17,10 @@ namespace tetwright {
 
 /// The quality below which `percent` of the tets lie; 1 for all tets, 0 for an empty mesh.
 float quality_cutoff(const EditableMesh& mesh, double percent);
+/// Number of tets by Quality(t), worst first, in equal bins from 0 to 1.
+///
+/// \pre the objective in force is Objective::Kind::paper, which stores Quality(t)^3
+decltype(IterationReport::tets_by_quality) tets_by_quality(const EditableMesh& mesh);
 /// Share of the tets whose shape is worse than the shape_quality_bound() of a solid angle (steradians),
 /// whatever objective rates them.
 ///

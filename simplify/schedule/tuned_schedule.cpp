@@ -88,6 +88,7 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
     RoundRecorder::Round round(engine.recorder(), "simplify", error);
     IterationReport& it = round.report();
     it.percent = percent;
+    it.tets_by_quality = tets_by_quality(mesh);
     rules.count.max = it.tets_before;
     const double log_now = portable_log(static_cast<double>(it.tets_before) / target);
     rules.acceptance.worse_probability =

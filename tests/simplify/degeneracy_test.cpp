@@ -81,9 +81,9 @@ const Case cases[] = {
 };
 
 /// Number of findings of each kind.
-std::map<MeshFault, std::size_t> counts(const TetMesh& mesh) {
-  std::map<MeshFault, std::size_t> out;
-  for (const MeshFinding& f : check_mesh(mesh)) out[f.fault] = f.count;
+std::map<DiagnosticCode, std::size_t> counts(const TetMesh& mesh) {
+  std::map<DiagnosticCode, std::size_t> out;
+  for (const MeshFinding& f : check_mesh(mesh)) out[f.code] = f.count;
   return out;
 }
 

@@ -96,6 +96,7 @@ TEST_P(Determinism, AnyNumberOfThreadsGivesTheSameBytes) {
     ASSERT_EQ(report.iterations.size(), alone.iterations.size());
     for (std::size_t i = 0; i < report.iterations.size(); ++i) {
       EXPECT_EQ(report.iterations[i].tets_after, alone.iterations[i].tets_after);
+      EXPECT_EQ(report.iterations[i].tets_by_quality, alone.iterations[i].tets_by_quality);
       EXPECT_EQ(report.iterations[i].counts.counts, alone.iterations[i].counts.counts);
       EXPECT_EQ(report.iterations[i].conflicts, alone.iterations[i].conflicts);
     }

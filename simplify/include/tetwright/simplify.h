@@ -150,6 +150,9 @@ struct ImproveOptions {
 struct IterationReport {
   std::string kind;  ///< "simplify", "close" (the end of simplify()) or "improve"
   std::size_t tets_before = 0, tets_after = 0;
+  /// Number of tets before the iteration by Quality(t), worst first, in equal bins from 0 to 1; all 0 unless
+  /// the kind is "simplify".
+  std::array<std::size_t, 8> tets_by_quality{};
   /// Quality(t) below which tets are worked on; in the closing, the solid angle in steradians.
   double cutoff = 0;
   double percent = 0;    ///< percentage of tets worked on

@@ -18,14 +18,14 @@ one may be the material, other volumes than tets are refused, and what is left o
 
 What ends a call early is an exception, a subclass of `tetwright.Error` with the program's message. What falls short of
 what was asked is a `ShortfallWarning` and in `TetMesh.shortfall`; `TetMesh.diagnostics` has the codes of all notes and
-shortfalls. Calls release the interpreter's lock, and Ctrl-C cancels them. Several may run at a time, each with its own
+shortfalls, and `diagnostic_kinds()` their causes and remedies. Calls release the interpreter's lock, and Ctrl-C cancels them. Several may run at a time, each with its own
 `threads`.
 """
 from ._commands import check, improve, mesh, prepare, read, simplify
 from ._core import (Error, InputError, InternalError, NothingToMeshError, OutputError, UsageError,
                     version as __version__)
-from ._mesh import CheckResult, Diagnostic, Interfaces, ShortfallWarning, TetMesh
+from ._mesh import CheckResult, Diagnostic, DiagnosticKind, Interfaces, ShortfallWarning, TetMesh, diagnostic_kinds
 
 __all__ = ["prepare", "mesh", "simplify", "improve", "check", "read", "TetMesh", "Interfaces", "CheckResult", "Diagnostic",
-           "ShortfallWarning", "Error", "UsageError", "InputError", "NothingToMeshError", "OutputError",
+           "DiagnosticKind", "diagnostic_kinds", "ShortfallWarning", "Error", "UsageError", "InputError", "NothingToMeshError", "OutputError",
            "InternalError", "__version__"]
