@@ -44,6 +44,13 @@ std::string mark_button(std::size_t number, const Vec3& place) {
          place_text(place) + "\">" + n + "</button>";
 }
 
+/// Cause and remedy, as the guide has them, without its marks for code.
+std::string explanation(const DiagnosticKind& kind) {
+  std::string text = std::string(kind.cause) + " " + kind.remedy;
+  std::erase(text, '`');
+  return text;
+}
+
 }  // namespace
 
 std::string figures_table(std::span<const ChartMesh> meshes, double threshold) {
@@ -71,17 +78,6 @@ std::string materials_table(const PrepareReport& run) {
   }
   return out + "</tbody></table>";
 }
-
-namespace {
-
-/// Cause and remedy, as the guide has them, without its marks for code.
-std::string explanation(const DiagnosticKind& kind) {
-  std::string text = std::string(kind.cause) + " " + kind.remedy;
-  std::erase(text, '`');
-  return text;
-}
-
-}  // namespace
 
 std::string entries_list(const std::vector<PageEntry>& entries, std::size_t& first_mark) {
   std::string out = "<ul class=\"entries\">";
