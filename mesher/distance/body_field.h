@@ -19,7 +19,7 @@ struct BodyField {
   std::shared_ptr<const LevelSetField> field;
   RefinementRegions finer;  ///< cells to be split for thin walls and gaps of one surface, narrow patches and
                             ///< requested regions
-  /// Body and wall, for walls and gaps that the mesh still shows changed.
+  /// Body and wall, for each wall or gap that stays changed in the mesh.
   std::vector<std::pair<std::size_t, ChangedWall>> changed;
   double filling_tets = 0, filling_tets_thickened = 0;  ///< of all bodies, see ThinWallPlan
 };

@@ -57,7 +57,7 @@ class FieldSampler {
   FieldSampler& operator=(const FieldSampler&) = delete;
 
   virtual NearestRegion nearest(const Vec3& point) = 0;
-  /// At a voxel corner, given in voxels.
+  /// The nearest region at a voxel corner, given in voxels.
   virtual NearestRegion nearest_at_voxel(int x, int y, int z) = 0;
   /// Signed distances of `regions`, lattice units.
   virtual void values(const Vec3& point, std::span<const RegionIndex> regions, float* out) = 0;
@@ -101,8 +101,8 @@ class WallChanges {
   virtual std::shared_ptr<const MaterialField> with_true_walls() const = 0;
   /// True where distances may be changed.
   virtual bool contains(const Vec3& point) const = 0;
-  /// The thickness, lattice units, of a thin wall with parallel sides that has a side near the point; else
-  /// infinity.
+  /// The thickness, lattice units, of the thin wall with parallel sides that has a side near the point;
+  /// infinity if there is none.
   virtual double parallel_thickness(const Vec3& point) const = 0;
 
  protected:

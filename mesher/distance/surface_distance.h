@@ -19,21 +19,21 @@ struct SurfacePlace {
 };
 
 /// Exact distances from the triangles of a surface, its exact inside, and the distance from one wall to the
-/// next. Unlike distances on voxels these resolve walls and gaps of any thinness.
+/// next. Unlike distances on voxels, these resolve walls and gaps of any thickness.
 ///
 /// Distances ignore triangles without area. Immutable after construction; all functions may be called
 /// concurrently. Built in O(n log n); about 200 bytes per triangle.
 class SurfaceDistance {
  public:
-  /// All coordinates and results are in one unit.
+  /// Coordinates and results may be in any common unit.
   /// \param closed number of triangles of closed components, which come first
   /// \param caps caps of the surface's holes, which count for distances only
   /// \param intersects_itself parts of the surface lie inside others and are not walls
   SurfaceDistance(std::span<const Vec3> points, std::span<const Triangle> triangles, std::size_t closed,
                   const TriangleMesh& caps, bool intersects_itself);
 
-  /// The closest point within `at_most`; among equally close ones that on the triangle that faces `point`
-  /// most.
+  /// The closest point within `at_most`. Among equally close points, the one whose triangle faces `point`
+  /// most directly.
   std::optional<SurfacePlace> nearest(const Vec3& point, double at_most) const;
 
   /// True where the winding numbers of the closed components (exact) and of the open ones (by a tree) add up

@@ -10,7 +10,7 @@
 
 namespace tetwright {
 
-/// Cells that the octree must split beyond what the interface alone requires.
+/// Cells that the octree must split in addition to those that the interface requires.
 struct RefinementRegions {
   int refinement = 0;  ///< levels below a voxel
   /// The cells to be split: one ascending list for each level of a lattice refined that far, and possibly one

@@ -9,7 +9,7 @@
 
 namespace tetwright {
 
-/// The largest cell wanted at a point; both in input units. May be called concurrently.
+/// The max cell size at a point; both in input units. May be called concurrently.
 using MaxCell = std::function<double(const Vec3&)>;
 
 /// The cells of a field's octree that must be split so that none is larger than `max_cell`: inside, by up to
