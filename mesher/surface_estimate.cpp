@@ -74,7 +74,7 @@ class SampledSurface {
             frame_.to_grid(surface_.points[t[2]])};
   }
 
-  /// Takes points spread evenly over the area.
+  /// Samples points spread evenly over the area.
   void take_samples() {
     double sum = 0;
     int next = 0;

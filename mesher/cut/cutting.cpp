@@ -72,7 +72,7 @@ template <int N>
 Eigen::Matrix<double, N, 1> kept_off_the_ends(const Eigen::Matrix<double, N, 1>& shares, double smallest) {
   Eigen::Matrix<double, N, 1> excess = (shares.array() - smallest).max(0.0);
   const double sum = excess.sum();
-  // All equal if nothing is left to distribute, or if they are not numbers.
+  // Make all equal if nothing is left to distribute or if the sum is not finite.
   if (!(sum > 0) || !std::isfinite(sum))
     excess.setConstant(1), excess /= N;
   else

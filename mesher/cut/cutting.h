@@ -17,7 +17,7 @@ struct CutMesh {
 };
 
 /// The smallest solid angle among the pieces of a tet that become part of the mesh, as the tangent of half
-/// the angle. 1, which exceeds that of any tet, if there is no such piece.
+/// the angle. Returns 1, which no tet reaches, if there is no such piece.
 /// \pre the tet has a point near an interface
 double worst_piece_tangent(const LabelledLattice& lattice, const Tet& tet);
 

@@ -26,7 +26,7 @@ struct BodyField {
 
 /// Refinement of one body for reasons other than thin walls.
 struct BodyCells {
-  NarrowPatches narrow;  ///< dropped where the body has thin walls, which then choose the cells alone
+  NarrowPatches narrow;  ///< ignored for bodies with thin walls, which alone determine their cells
   NarrowPatches asked;   ///< MesherOptions::refinement_regions
 };
 

@@ -12,7 +12,7 @@ namespace tetwright {
 
 namespace {
 
-/// A cell of 1/2^depth voxels that holds a sheet.
+/// A cell of 1/2^depth voxels that contains part of a sheet.
 struct SheetCell {
   int depth;
   MortonKey key;  ///< in cells of its own size

@@ -63,7 +63,7 @@ class DepthFinder {
   }
 
  private:
-  /// Calls `use(part)` for those of a box's eight parts that may contain part of the band.
+  /// Calls `use(octant)` for each octant of a box that may contain part of the band.
   template <class Use>
   void for_each_part(const GridBox& box, LevelSetSampler& sampler, Use&& use) const {
     for (int k = 0; k < 8; ++k) {

@@ -24,7 +24,7 @@ constexpr double cells_per_area = 2 * half_cube_diagonal;
 
 std::array<int, 3> sum(const Voxel& a, int dx, int dy, int dz) { return {a[0] + dx, a[1] + dy, a[2] + dz}; }
 
-/// The voxels that may hold a surface, by the distances of their corners.
+/// The voxels that may contain a surface, judging by the distances at their corners.
 std::vector<MortonKey> surface_voxels(const LevelSet& level_set) {
   const std::vector<GridLeaf<const float>> leaves = level_set.grid().leaves();
   std::vector<MortonKey> keys = parallel_collect<MortonKey>(
@@ -45,8 +45,8 @@ std::vector<MortonKey> surface_voxels(const LevelSet& level_set) {
   return keys;
 }
 
-/// False if the distances on voxels imply that the surface in a voxel, if any, has nothing else within half
-/// of `limit` on either side.
+/// False if the distances on voxels rule out any other surface within half of `limit` on either side of the
+/// surface in a voxel.
 bool may_be_thin(LevelSetSampler& sampler, const Vec3& middle, double limit) {
   if (limit > level_set_band) return true;
   Vec3 slope;
@@ -66,7 +66,7 @@ Vec3 middle_of(const Voxel& cell, int depth) {
 
 /// Walls and gaps near a cell of 1/2^depth voxels.
 struct CellWalls {
-  bool near = false;     ///< the surface comes near the cell
+  bool near = false;     ///< the surface is near the cell
   bool thin = false;     ///< something there is below its limit
   bool gap = false;      ///< the thin part is a gap, not a wall
   double thickness = 0;  ///< of the thinnest

@@ -36,7 +36,7 @@ struct LocalThickness {
   std::vector<MortonKey> exact;  ///< voxels whose distances come from the triangles regardless of thickness
 };
 
-/// Measures a surface. Takes little time where nothing is thin.
+/// Measures a surface. Fast where nothing is thin.
 /// \param level_set of the surface
 /// \param limits voxels
 /// \param exact voxels whose cells are smaller for other reasons, ascending
@@ -53,7 +53,7 @@ void follow_cells(LocalThickness& measured, const RefinementRegions& finer);
 struct RefinementBudget {
   int max_depth = default_wall_refinement;
   int max_possible = max_wall_refinement;  ///< allowed by the lattice
-  /// Go deeper than max_depth, up to max_wall_refinement, where that adds at most `base_tets`.
+  /// Exceed max_depth, up to max_wall_refinement, in regions where that adds at most `base_tets`.
   bool deeper_where_cheap = true;
   double base_tets = 0;  ///< dense tets without refinement
   double max_tets = 0;   ///< limit for all regions together

@@ -64,7 +64,8 @@ class FieldSampler {
   virtual void values_at_voxel(int x, int y, int z, std::span<const RegionIndex> regions, float* out) = 0;
   /// The two regions of the smallest distances, ascending; nothing if only one is within the band.
   virtual std::optional<RegionSet> two_nearest(const Vec3& point) = 0;
-  /// The sheets of the field, with this sampler's cache; null if the field does not know sheets.
+  /// A sampler for the sheets of the field that uses this sampler's cache; null if the field cannot find
+  /// sheets.
   virtual SheetSampler* sheets() { return nullptr; }
 
   /// Half the signed distance of region a minus that of region b: negative in a, zero on their interface,
@@ -109,7 +110,7 @@ class WallChanges {
   ~WallChanges() = default;
 };
 
-/// The segmented volume that a field is made of. Its regions are cut off at the frame's box, the volume's
+/// The segmented volume from which a field is made. Its regions are cut off at the frame's box, the volume's
 /// border; the distances themselves ignore the box. All functions may be called concurrently.
 class VoxelVolume {
  public:
@@ -144,7 +145,7 @@ class MaterialField : public ReferenceSurface {
   virtual std::vector<LeafOrigin> band_leaves(RegionIndex region) const = 0;
   /// The thin walls and gaps where distances are changed; null if there are none.
   virtual const WallChanges* wall_changes() const { return nullptr; }
-  /// The volume that the field is made of; null for surfaces.
+  /// The volume from which the field is made; null for surfaces.
   virtual const VoxelVolume* volume() const { return nullptr; }
 
   const GridFrame& voxels() const { return voxels_; }

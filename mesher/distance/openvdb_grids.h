@@ -54,7 +54,7 @@ struct GridLeaf {
 };
 
 /// Distances at grid points, stored as an OpenVDB grid of floats: leaves near the surface, one value for
-/// whole tiles elsewhere. Active grid points are those of the narrow band.
+/// whole tiles elsewhere. The active grid points are those in the narrow band.
 ///
 /// Const functions may be called concurrently, and so may writes to different leaves.
 class DistanceGrid {

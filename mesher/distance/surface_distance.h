@@ -48,7 +48,7 @@ class SurfaceDistance {
   ///   neither the flanks of a convex edge nor noise count
   double thickness(const SurfacePlace& place, Side side, double facing, double at_most) const;
 
-  /// The closest point, nearer than `below`, on walls that face `normal`, see thickness().
+  /// The closest point, within `below`, on walls that face `normal` (see thickness()).
   /// \param in_front only walls that `point` is in front of count
   std::optional<SurfacePlace> nearest_facing(const Vec3& point, const Vec3& normal, double facing,
                                              double below, bool in_front = false) const;

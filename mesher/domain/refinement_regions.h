@@ -19,7 +19,7 @@ struct RefinementRegions {
   int coarsest_interface_level = 2;  ///< see OctreeOptions
 };
 
-/// A region that is somewhere too thin for its cells.
+/// A region that is too thin for its cells somewhere.
 struct ThinPart {
   RegionIndex region;
   std::size_t places;  ///< number of voxels, or of finest cells for a sheet between two level sets

@@ -107,7 +107,7 @@ std::vector<Index> Islands::find_runs() const {
   return starts;
 }
 
-/// Unites the runs of the voxels in [begin, end), which are whole rows, with those `shift` voxels before
+/// Unites the runs of the voxels in [begin, end), which are whole rows, with the runs `shift` voxels before
 /// them.
 void Islands::unite_across(std::size_t begin, std::size_t end, std::size_t shift) {
   if (begin >= end) return;
@@ -194,7 +194,7 @@ void Islands::join(Index a, Index b, Index min_voxels) {
   if (a == b) return;
   const auto total = static_cast<Index>(
       std::min<std::uint64_t>(std::uint64_t{voxels_[a]} + voxels_[b], std::numeric_limits<Index>::max()));
-  // Swapping successors joins two rings. Large islands no longer need one.
+  // Swapping successors joins two rings. Large islands need no ring.
   if (total < min_voxels) std::swap(next_[a], next_[b]);
   sets_.unite(a, b);
   voxels_[sets_.root(a)] = total;
@@ -229,7 +229,7 @@ std::vector<MergedIsland> Islands::merge(Index min_voxels) {
   }
   faces_.assign(on_interface + std::size_t{1}, 0);
 
-  // The smallest island is on top, among equal ones that with the lowest voxel.
+  // The smallest island is on top; ties go to the lowest voxel.
   using Entry = std::pair<Index, Index>;  // voxels, island
   std::vector<Entry> entries;
   entries.reserve(small_.size());

@@ -138,7 +138,7 @@ void check_choice(const LabelVolume& volume, const std::string& file, const Labe
                              "; is another one outside? see --outside-label");
 }
 
-/// Refuses the name of label `tag`, citing its line if it comes from a file.
+/// Throws an error about the name of label `tag`, citing its line if it comes from a file.
 [[noreturn]] void refuse_name(const LabelChoice& choice, MaterialTag tag, const std::string& message) {
   const auto line = choice.name_lines.find(tag);
   if (line == choice.name_lines.end()) throw UsageError(message + " with --label-names");

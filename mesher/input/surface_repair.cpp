@@ -72,8 +72,8 @@ struct Cleaned {
   std::vector<char> two_sided;        ///< by triangle: wound both ways in the file
 };
 
-/// Merges equal points, drops unused ones and triangles with equal corners, and keeps one of each set of
-/// triangles with the same corners: wound like the majority, in the group of the first one in the file.
+/// Merges equal points, and drops unused points and triangles with equal corners. Keeps one of each set of
+/// triangles with the same corners, oriented like the majority, in the group of the first one in the file.
 Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<Diagnostic>& findings) {
   if (surface.triangles.empty()) throw InputError(file, 0, "there are no triangles");
   for (const Vec3& p : surface.points)

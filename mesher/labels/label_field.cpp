@@ -73,7 +73,8 @@ struct LabelField::Shared {
   /// Voxels per cell of the frame, along each axis; negative along a reversed axis.
   Vec3 voxels_per_cell;
   Vec3 first_node;  ///< the frame's origin, in nodes
-  /// For cells larger than a voxel, whose corners may be farther than the band from an interface; else empty.
+  /// For cells larger than a voxel, whose corners may be farther than the band from an interface; otherwise
+  /// empty.
   DistanceTransform depths;
 };
 
@@ -169,7 +170,7 @@ class LabelField::Sampler final : public FieldSampler {
     Place p{};
     std::array<int, 3> brick, cell;
     for (int a = 0; a < 3; ++a) {
-      // Beyond the border everything continues unchanged. NaN becomes 0.
+      // Beyond the border, values at the border continue. NaN becomes 0.
       const int nodes = bricks_.counts[a] * brick_cells;
       const double along = std::min(std::max(0.0, at[a]), static_cast<double>(nodes));
       const int whole = std::min(static_cast<int>(along), nodes - 1);

@@ -150,7 +150,7 @@ Index LatticePoints::find(MortonKey key, Index hint) const {
 
 LatticePoints lattice_points(const Octree& octree) {
   LatticePoints points;
-  // The lowest bit below the key marks centres; corners come from up to eight leaves.
+  // The lowest bit, below the key, marks centres. Up to eight leaves emit the same corner.
   std::vector<std::uint64_t> marked = parallel_collect<std::uint64_t>(
       0, octree.size(), LatticeGrains::leaves,
       [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& out) {

@@ -100,8 +100,8 @@ struct CutTuning {
     static constexpr double max_snap = 0.5;
     /// New points keep at least this fraction of the edge from its ends.
     static constexpr double min_split = 0.2;
-    /// A point surrounded by crease points only gets the patch beyond them if that is closer than this,
-    /// cells: the accuracy of a level set near creases.
+    /// Max distance, cells, of the patch beyond the creases at which a point that has only crease points
+    /// around it is assigned to that patch: the accuracy of a level set near creases.
     static constexpr double island_reach = 0.35;
     /// Creases separated only by patches narrower than this, cells, are merged.
     static constexpr double narrow_reach = 0.3;

@@ -84,8 +84,8 @@ struct DistanceTuning {
     static constexpr int max_shrinks = 16;
     /// The ball has stopped shrinking when its radius changes by less than this fraction.
     static constexpr double min_shrink = 1e-6;
-    /// Squared distances count as equal within this fraction: rounding of coordinates leaves less, down to a
-    /// thousandth of a voxel.
+    /// Squared distances count as equal within this fraction: differences from rounding of coordinates are
+    /// smaller, for distances down to a thousandth of a voxel.
     static constexpr double tie = 1e-9;
     /// Distance in front of and behind a surface point at which its sides are tested, voxels.
     static constexpr double side_distance = 1e-4;
@@ -127,9 +127,9 @@ struct DistanceTuning {
     /// is not refined. One with fewer cells too thin for counted_depth than the second is not refined beyond
     /// that depth.
     static constexpr std::size_t min_thin_voxels = 4, min_deep_cells = 64;
-    /// Dense tets for each finest cell that holds a surface (1.7 cells for each squared cell of area): a wall
-    /// has such cells on both sides and little else, a gap has a thick part on both sides. Fitted to plates
-    /// and gaps.
+    /// Dense tets per finest cell that contains a surface (1.7 cells per squared cell of area). A wall has
+    /// such cells on both sides and little else; a gap has a thick part on both sides. Fitted to plates and
+    /// gaps.
     static constexpr double tets_per_wall_cell = 8, tets_per_gap_cell = 17;
     /// Number of tets that fill a wall, per squared thickness of its area. A plate of 100 x 100 x 1
     /// simplified to 7,000 tets has 0.5 % of them below 0.1 sr, simplified to 8,000 none (computed areas are

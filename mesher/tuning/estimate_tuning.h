@@ -85,8 +85,8 @@ struct EstimateTuning {
     static constexpr double tets_per_outer_face = 1;
     /// Tets per cell that is split where labels are thin, by whether its centre is in a label.
     static constexpr double dense_per_thin_cell = 96, lattice_per_thin_cell_outside = 30;
-    /// Smoothing reduces the area of interfaces to this share, which cells smaller than this, voxels,
-    /// resolve.
+    /// Smoothing reduces the area of interfaces to `smooth_share`; only cells below `small_cell`, voxels,
+    /// resolve that.
     static constexpr double small_cell = 0.75, smooth_share = 0.87;
   };
 

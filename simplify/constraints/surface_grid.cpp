@@ -202,7 +202,8 @@ bool SurfaceGrid::hits_standing(const MeshTriangle& t, std::span<const std::uint
   for_cells(t, [&](const Cell3& c) {
     if (hit) return;
     for (const Entry& e : cells_[slot(c)].entries) {
-      // Test a pair that shares several cells only in the one with the low corner of their common box.
+      // Test a pair that shares several cells only in the cell with the low corner of the intersection of
+      // their boxes.
       if (std::max(low.x, e.low.x) != c.x || std::max(low.y, e.low.y) != c.y ||
           std::max(low.z, e.low.z) != c.z)
         continue;

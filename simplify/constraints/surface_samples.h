@@ -56,7 +56,7 @@ class InputSurface {
     std::optional<Vec3> place;
   };
   /// The faces with a distance above `limit`, working coordinates. Parallel.
-  /// \pre `mesh` is the one that this surface was made for.
+  /// \pre This surface was made for `mesh`.
   std::vector<FarFace> far_faces(const EditableMesh& mesh, double limit) const;
 
  private:

@@ -41,7 +41,7 @@ class Reservations {
     return true;
   }
   /// Claims a write set for the next winner. It may include vertices claimed by earlier winners: none of
-  /// these is in the read set, so the data read is what it would be after they commit.
+  /// these is in the read set, so their commits do not change the data that was read.
   void claim(std::span<const Index> write_set) {
     for (Index v : write_set) words_[v] = next_;
     ++next_;

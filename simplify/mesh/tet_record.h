@@ -34,7 +34,7 @@ class FaceLink {
   constexpr PatchId patch() const { return static_cast<PatchId>(~word_); }
   constexpr bool operator==(const FaceLink&) const = default;
 
-  /// Number of tets that fit beside the flag and the codes for outside.
+  /// Max number of tets, given the bits for the flag and the codes for outside.
   static constexpr std::size_t max_tets = std::size_t{1} << 30;
 
  private:

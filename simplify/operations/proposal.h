@@ -51,7 +51,7 @@ struct Proposal {
   };
   std::vector<RatedTet> rated;
 
-  /// Collapse: a tet's new link, in place of one to a removed tet.
+  /// Collapse: a tet's new link, replacing one to a removed tet.
   struct Relink {
     Index tet;
     std::uint8_t face;

@@ -21,9 +21,9 @@ namespace tetwright {
 /// \pre Gradients are computed.
 bool find_place(Workspace& ws, const BlockRules& rules, int dimension, float limit, Placement& found);
 
-/// Moves the centre of the gathered star towards a centroid (section 4 of the paper): of all neighbours
-/// within a material, of those on the same interface, of the two on a junction curve. Tries the whole, half
-/// and quarter step. Modifies the star.
+/// Moves the centre of the gathered star towards a centroid (section 4 of the paper): within a material of
+/// all neighbours, on an interface of the neighbours on it, on a junction curve of the two neighbours along
+/// it. Tries the whole, half and quarter step. Modifies the star.
 ///
 /// \return done (proposed), material_rule (a corner, or frozen), quality, surface_error, self_intersection or
 ///   volume.

@@ -47,7 +47,7 @@ class PointTree {
   Index new_node(Index parent);
   void free_node(Index node);
   Index leaf_of(const Vec3& position) const;
-  /// Halves a leaf until each part has at most `max_points` points or coinciding ones.
+  /// Halves a leaf until each part has at most `max_points` points or only coincident points.
   void halve(const EditableMesh& mesh, Index node, std::size_t max_points);
   /// Merges two sibling leaves with few points, and removes an empty leaf.
   void shrink(Index node);

@@ -37,8 +37,9 @@ struct MesherOptions {
   /// Additional points around which cells are halved, input units: up to max_refinement times, limited so
   /// that the number of tets at most doubles.
   std::vector<RefinementRegion> refinement_regions;
-  /// The largest cell wanted at a point, input units. Cells inside, and with keep_outside all cells, are
-  /// split until they are no larger; at surfaces down to a finest cell. Empty: no limit. Not with `uniform`.
+  /// The max cell size at a point, input units. Cells inside (with keep_outside, all cells) are split until
+  /// they are no larger; at surfaces no further than to a finest cell. Empty: no limit. Not allowed with
+  /// `uniform`.
   std::function<double(const Vec3&)> max_cell;
   /// Determines which edges of the surfaces stay sharp.
   FeatureAngle feature_angle;
@@ -78,7 +79,7 @@ struct ClosedGapReport {
   Vec3 place = Vec3::Zero();  ///< where it is narrowest, input units
 };
 
-/// The solid expected of a material: certain if the surfaces have no flaw, else an estimate.
+/// The expected solid of a material: certain if the surfaces have no flaw, otherwise an estimate.
 struct ExpectedSolid {
   std::string name;
   MaterialTag tag = 0;
@@ -110,7 +111,7 @@ struct MesherReport {
   int resolution = 0;     ///< finest cells along the longest side
   int refinement = 0;     ///< how many times cells were halved beyond `resolution` where sheets are thin
   std::size_t cells = 0;  ///< leaves of the octree
-  std::size_t lattice_tets = 0;       ///< before cutting, without those far outside
+  std::size_t lattice_tets = 0;       ///< before cutting, without tets far outside
   std::size_t isolated_vertices = 0;  ///< components and cavities of one lattice point, omitted
   std::vector<ThinPartReport> thin_parts;
   ThickenedWallsReport thickened;
@@ -184,7 +185,7 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
 /// Meshes a segmented volume: a dense tet mesh with the invariants of mesh_surfaces() and a material for each
 /// label. Where a label is thinner than two cells, cells are halved up to three times (not with `uniform`);
 /// the report lists labels that are still too thin. `options.voxel_size` should not exceed the smallest
-/// spacing unless a coarser mesh is wanted.
+/// spacing unless a coarser mesh is intended.
 ///
 /// \param progress may be null
 /// \throws InputError if nothing is left of a label, and otherwise as mesh_surfaces() does
@@ -214,7 +215,7 @@ double cell_size_for_target(const LabelInput& labels, std::size_t target_tets, c
 int resolution_for_target(const MesherInput& input, std::size_t target_tets, const FeatureAngle& angle);
 
 /// Sets the resolution, max_cell and refinement regions of `options` so that dense cells are small enough for
-/// the edge lengths required: `target_length`, and at most `max_edge`. With `max_edge` alone the resolution
+/// the edge lengths required: `target_length`, and at most `max_edge`. With `max_edge` only, the resolution
 /// of `options` is a lower bound; `target_length` replaces it.
 /// \param target_length may be null
 /// \param max_edge input units, may be infinite

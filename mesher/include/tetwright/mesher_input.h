@@ -26,7 +26,7 @@ inline constexpr RegionIndex outside_region = 0;
 /// Tag and name of the outside as a material of a mesh that keeps it.
 inline constexpr MaterialTag outside_tag = 0;
 inline constexpr const char* outside_name = "outside";
-/// Marks a point on an interface, in place of its region.
+/// Marks a point on an interface, instead of its region.
 inline constexpr RegionIndex on_interface = 0xffff;
 
 /// How many times cells are halved where walls and gaps of a surface are thin: by default, and at most.
@@ -66,7 +66,7 @@ enum class NestedRule {
   automatic,  ///< oriented against the encloser: a cavity, or a body in a cavity; oriented alike: no effect
   cavity,     ///< solids and cavities alternate from the outside to the inside
   solid,      ///< no cavities
-  material    ///< closed ones become surfaces of their own
+  material    ///< closed ones become separate materials
 };
 
 /// A surface from which signed distances can be computed: inside is where the generalised winding number is
@@ -103,9 +103,10 @@ struct SurfaceRepair {
 ///   triangles (of either orientation) are removed;
 /// - triangles are oriented consistently and split into components, inner walls are removed
 ///   (surface_components.h);
-/// - components that nothing encloses are turned outwards together with those they enclose; enclosed ones are
-///   oriented according to `nested` (surface_nesting.h). Only a component that does not intersect the other
-///   one counts as enclosed. An open component whose outside is unclear is not turned.
+/// - components that are not enclosed are oriented outwards, and the components that they enclose are
+///   reversed with them; enclosed ones are then oriented according to `nested` (surface_nesting.h). Only a
+///   component that does not intersect the other one counts as enclosed. An open component whose outside is
+///   unclear is not reversed.
 ///
 /// Holes and self-intersections are kept, since the winding number handles them. A cavity that two
 /// overlapping components both enclose is filled, because the winding number there is 1 + 1 - 1.
@@ -276,8 +277,8 @@ std::vector<NamedSurface> read_level_sets(const std::string& file);
 
 /// Reads the labels of a file that has no level set but one grid of int32 or int64. The volume is the
 /// bounding box of the active voxels; inactive voxels in it have the values that OpenVDB gives them, usually
-/// the background. Index coordinates are those of voxel centres. Memory grows with the file and by 4 bytes
-/// per voxel.
+/// the background. Index coordinates refer to voxel centres. Memory grows with the file and by 4 bytes per
+/// voxel.
 ///
 /// \param max_voxels 2^31 or fewer
 /// \return nothing for a file with a level set or without such a grid
