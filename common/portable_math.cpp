@@ -64,7 +64,7 @@ double portable_cbrt(double x) {
   if (x == 0) return x;
   double a = std::fabs(x);
   double scale = 1;
-  if (a < 0x1p-1000) {  // subnormals have no exponent field
+  if (a < 0x1p-1000) {  // a subnormal's exponent field is 0
     a *= 0x1p300;
     scale = 0x1p-100;
   }

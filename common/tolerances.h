@@ -9,8 +9,8 @@ namespace tetwright::tolerance {
 // Files.
 
 /// Directions of a volume count as coplanar if the parallelepiped of their unit vectors has a volume below
-/// this. The gantry tilt of a scanner makes it far less flat; rounding of directions stored as floats is far
-/// smaller.
+/// this: far flatter than any scanner's gantry tilt makes it, but far above the rounding of directions stored
+/// as floats.
 inline constexpr double coplanar_directions = 1e-5;
 /// A NIfTI quaternion whose vector part has a squared length above 1 minus this (the rounding of three
 /// floats) is treated as a half turn: its real part is 0, and the vector is normalised.
@@ -40,9 +40,9 @@ inline constexpr double smallest_distance = 1e-6;
 /// Lattice units: minimum difference between the distance of a point's own region and all other distances, so
 /// that its own region is also the nearest by value.
 inline constexpr float smallest_lead = 1e-6F;
-/// Offset of grid points when solid angles are summed: on a surface, rounding of several angles could add up
-/// to any value. The three components differ, so that no point stays on a plane along the axes or their
-/// diagonals.
+/// Offset of grid points, always in the same direction, when solid angles are summed: on a surface, rounding
+/// of several angles could add up to any value. The three components differ, so that no point stays on a
+/// plane along the axes or their diagonals.
 inline constexpr double aside[3] = {1.1e-5, 1.9e-5, 2.7e-5};
 /// Grid points farther than this from the projection of a triangle are certainly outside it: the coordinates
 /// of its crossings are rounded.
