@@ -58,7 +58,7 @@ std::ptrdiff_t SolidShape::handles() const {
 SolidShape solid_shape(std::span<const Vec3> points, std::span<const Triangle> triangles) {
   SolidShape shape;
   DisjointSets chained(triangles.size()), fans(3 * triangles.size());
-  std::vector<Index> edges(triangles.size(), 0);  // of a component, counted at its triangles
+  std::vector<Index> edges(triangles.size(), 0);  // edge counts, each at one of its triangles
   const std::vector<Side> sides = sorted_sides(triangles);
   for (std::size_t i = 0, j; i < sides.size(); i = j) {
     for (j = i + 1; j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high;) ++j;

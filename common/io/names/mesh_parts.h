@@ -42,9 +42,8 @@ struct MeshParts {
 
 /// Constraints of a format on names and numbers.
 struct NameRules {
-  std::function<std::string(const std::string&)>
-      form;                  ///< converts a name to a form that the format can hold
-  bool ignore_case = false;  ///< true: names that differ only in case are equal
+  std::function<std::string(const std::string&)> form;  ///< converts a name to one that the format can hold
+  bool ignore_case = false;                             ///< true: names that differ only in case are equal
   /// Maximum number of a material or a surface; numbers start at 1, see positive_numbers(). 0: tags and the
   /// numbers of BoundaryGroups are written unchanged.
   std::int64_t max_number = 0;
