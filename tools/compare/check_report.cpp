@@ -5,7 +5,7 @@ namespace tetwright {
 
 namespace {
 
-/// Codes are in the order of faults.
+/// Diagnostic code of a fault; codes and faults are in the same order.
 DiagnosticCode code_of(MeshFault fault) {
   const auto first = static_cast<int>(DiagnosticCode::materials_missing);
   return static_cast<DiagnosticCode>(first + static_cast<int>(fault) -
