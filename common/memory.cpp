@@ -28,8 +28,8 @@ double limit_in(const std::filesystem::path& file) {
   return end != text.c_str() && *end == 0 && value > 0 ? value : no_limit;
 }
 
-/// Minimum limit in the files called `name` in the folder of `group` under `mount` and in all its ancestors.
-/// In a container the group may have its name on the host: then only the mount itself has the file.
+/// Minimum of the limits in the files called `name` in the folder of `group` under `mount` and in all its
+/// ancestors. In a container `group` may be the name on the host; only the mount itself then has the file.
 double smallest_limit(const std::filesystem::path& mount, std::filesystem::path group, const char* name) {
   double smallest = limit_in(mount / name);
   for (group = group.relative_path(); !group.empty(); group = group.parent_path())
@@ -37,12 +37,12 @@ double smallest_limit(const std::filesystem::path& mount, std::filesystem::path 
   return smallest;
 }
 
-/// Whether a list "a,b,c" contains the controller.
+/// Whether the comma-separated list contains the controller.
 bool lists_controller(const std::string& list, const std::string& controller) {
   return ("," + list + ",").find("," + controller + ",") != std::string::npos;
 }
 
-/// Limit of the control groups of the process. A line of /proc/self/cgroup reads "number:controllers:path";
+/// Limit of the process's control groups. Each line of /proc/self/cgroup reads "number:controllers:path";
 /// version 2 has the number 0 and no controllers.
 double control_group_limit(const std::filesystem::path& root) {
   const std::filesystem::path mount = root / "sys/fs/cgroup";

@@ -9,7 +9,7 @@
 
 namespace tetwright {
 
-/// Formats a number for messages, with at most six significant digits ("%.6g"). Files use append_number() of
+/// Formats a number for messages with at most six significant digits ("%.6g"). Files use append_number() of
 /// number_text.h, which round-trips.
 inline std::string short_number(double value) {
   char text[32];
@@ -30,7 +30,7 @@ inline std::string printable(std::string text) {
   return text;
 }
 
-/// Formats a value from a file or the command line for messages: in quotes, cut after 40 characters, with '?'
+/// Formats a value from a file or the command line for messages: quoted, truncated to 40 characters, with '?'
 /// for everything but printable ASCII.
 inline std::string in_quotes(std::string_view value) {
   constexpr std::size_t longest = 40;

@@ -8,7 +8,7 @@
 
 namespace tetwright {
 
-/// Appends a number as text; a double as the shortest text that reads back to the same bits.
+/// Appends a number as text. A double is written as the shortest text that reads back to the same bits.
 template <class Number>
 void append_number(std::string& out, Number value) {
   char buffer[32];

@@ -3,8 +3,9 @@
 
 namespace tetwright {
 
-/// Elementary functions computed with + - * / and sqrt only, so that they give the same bits on every machine
-/// and with every compiler (libm's differ in the last place). Relative error below 4e-15 on the ranges named.
+/// Elementary functions computed with only + - * / and sqrt, so that they give the same bits on every machine
+/// and with every compiler (results of libm differ in the last digit). Relative error below 4e-15 on the
+/// stated ranges.
 
 /// Arc tangent of any finite value or infinity, radians.
 double portable_atan(double x);

@@ -8,11 +8,11 @@
 namespace tetwright {
 
 /// SplitMix64 (Steele, Lea & Flood 2014): the same numbers from the same seed on every machine and compiler,
-/// which the standard library's distributions and shuffles do not promise.
+/// which the standard library's distributions and shuffles do not guarantee.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
-  /// An independent stream for each combination of the three.
+  /// An independent stream for each combination of the three arguments.
   Random(std::uint64_t seed, std::uint64_t stream, std::uint64_t substream)
       : state_(mix(mix(mix(seed) ^ stream) ^ substream)) {}
 
@@ -23,7 +23,7 @@ class Random {
   std::uint32_t below(std::uint32_t n) {
     return static_cast<std::uint32_t>((static_cast<std::uint64_t>(n) * (next() >> 32)) >> 32);
   }
-  /// Fisher-Yates.
+  /// Fisher-Yates shuffle.
   template <class T>
   void shuffle(std::span<T> items) {
     for (std::size_t i = items.size(); i > 1; --i)

@@ -10,8 +10,8 @@
 
 namespace tetwright {
 
-/// Makes names unique: each in the form that a format can hold, with the suffix "_2", "_3" and so on if that
-/// is taken.
+/// Makes names unique: converts each to a form that the format can hold, and appends "_2", "_3" and so on if
+/// the result is taken.
 class UniqueNames {
  public:
   /// \param form converts a name to one that the format can hold
@@ -21,12 +21,12 @@ class UniqueNames {
 
   std::string add(const std::string& name);
 
-  /// \return whether this name has been given
+  /// \return whether this name was added
   bool has(const std::string& name) const { return used_.contains(key(form_(name))); }
 
-  /// Adds the name of a pair of materials, with the largest suffix of those with its name, so that readers
-  /// can distinguish it from the input's.
-  /// \pre the names of the input are added already
+  /// Adds the name of a pair of materials, with the largest suffix among equal names, so that readers can
+  /// distinguish it from names of the input.
+  /// \pre all names of the input have been added
   std::string add_pair(const std::string& name);
 
  private:
@@ -36,7 +36,7 @@ class UniqueNames {
   bool ignore_case_;
   std::set<std::string> used_;
   std::map<std::string, std::size_t> next_;  ///< the next suffix to try
-  /// Largest suffix of names of pairs, and of the input's names that resemble them.
+  /// Largest suffix among names of pairs and those names of the input that resemble them.
   std::map<std::string, std::int64_t> last_of_pairs_;
 };
 

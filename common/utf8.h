@@ -10,11 +10,12 @@ namespace tetwright {
 /// First part of a text.
 struct Utf8Part {
   std::size_t size;  ///< bytes
-  bool valid;        ///< true: one character; false: bytes that begin none, up to the first that shows it
+  bool valid;        ///< true: one character; false: bytes that begin none, up to the first that proves it
 };
 
-/// First part of `text`, which must not be empty. Overlong forms, surrogates and values beyond the last code
-/// point are invalid.
+/// Returns the first part of `text`. Overlong forms, surrogates and values beyond the last code point are
+/// invalid.
+/// \pre `text` is not empty
 Utf8Part first_utf8_part(std::string_view text);
 
 /// Replaces each invalid part by the replacement character (U+FFFD), as `--stats` does.

@@ -10,17 +10,17 @@
 
 namespace tetwright {
 
-/// A triangle's use of an edge.
+/// Use of an edge by a triangle.
 struct EdgeUse {
   std::uint64_t key;  ///< both endpoints, the smaller one in the upper 32 bits
   std::uint32_t group;
   Index triangle;
-  bool ascending;  ///< whether the triangle runs from the smaller end to the larger one
+  bool ascending;  ///< true if the triangle traverses the edge from the smaller endpoint to the larger
 
   bool same_edge(const EdgeUse& o) const { return key == o.key && group == o.group; }
 };
 
-/// Lists the uses of all edges, sorted by edge, then group, then triangle.
+/// Lists the edge uses of all triangles, sorted by edge, then group, then triangle.
 /// \param groups empty, or one for each triangle
 std::vector<EdgeUse> edge_uses(std::span<const Triangle> triangles, std::span<const std::uint32_t> groups);
 

@@ -11,8 +11,8 @@ namespace tetwright {
 
 namespace {
 
-/// Gives triangles without area the normal of a neighbour across their longest edge whose neighbour has one;
-/// otherwise patches would be connected across them.
+/// Gives each triangle without area the normal of a neighbour that has one, across the longest possible edge.
+/// Otherwise patches would be connected across such triangles.
 void take_normals_beside(std::span<const Vec3> points, const std::vector<EdgeUse>& uses,
                          std::vector<Vec3>& normals) {
   const auto is_flat = [&](Index t) { return normals[t].isZero(0); };

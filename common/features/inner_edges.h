@@ -14,7 +14,7 @@ namespace tetwright {
 struct InnerEdge {
   std::array<Index, 2> ends, triangles;
   double length;
-  double turn;  ///< angle between the normals, radians, 0 to pi; 0 where there is no normal
+  double turn;  ///< angle between the normals, radians, 0 to pi; 0 if a normal is undefined
 };
 
 /// Edges shared by two consistently oriented triangles of a group, ascending by their endpoints. A triangle

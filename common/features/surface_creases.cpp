@@ -30,7 +30,7 @@ namespace {
 
 constexpr double corner_turn = 45 * 3.14159265358979323846 / 180;
 
-/// The creases at each point, and where they turn.
+/// Crease segments at each point; finds the corners among the points.
 class CreasePoints {
  public:
   CreasePoints(std::span<const Vec3> points, const std::vector<SurfaceCreases::Segment>& segments)
@@ -59,7 +59,7 @@ class CreasePoints {
         turns.push_back({angle, p});
     std::stable_sort(turns.begin(), turns.end(),
                      [](const Turn& x, const Turn& y) { return x.angle > y.angle; });
-    std::set<Index> beside;  // a sharper one
+    std::set<Index> beside;  // points within `reach` of a sharper corner
     for (const Turn& t : turns) {
       if (beside.contains(t.point)) continue;
       corners.push_back(t.point);
@@ -79,7 +79,9 @@ class CreasePoints {
     bool is_plain() const { return count == 2 && !mixed; }
   };
 
-  /// The first point at least `reach` from a point, or the end of the crease; visits those before it.
+  /// Follows a crease from `from` by way of `towards`. Calls `visit` for each point nearer than `reach` to
+  /// `from`.
+  /// \return the first point at least `reach` away, or the end of the crease
   template <class Visit>
   Index walk(Index from, Index towards, double reach, const Visit& visit) const {
     Index last = from, now = towards;
@@ -141,7 +143,7 @@ void CreaseCurves::add(const SurfaceCreases& creases, std::span<const Vec3> surf
 
 namespace {
 
-/// The faces of each pair of materials, and their patches.
+/// Faces of each pair of materials, with their patches.
 std::map<MaterialPair, std::pair<std::vector<Triangle>, std::vector<std::uint16_t>>> faces_by_pair(
     const TetMesh& mesh) {
   std::map<MaterialPair, std::pair<std::vector<Triangle>, std::vector<std::uint16_t>>> by_pair;

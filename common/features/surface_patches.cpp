@@ -18,13 +18,14 @@ namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180;
 
-// Angles and fractions tuned on 11 parts, 6 prints and 13 scans, and 55 more files.
+// Angles and fractions were tuned on 11 parts, 6 prints, 13 scans and 55 further files.
 constexpr double automatic_angle = 35;   ///< degrees
-constexpr double low_share = 15.0 / 35;  ///< of the angle: edges that turn less are never borders
-constexpr double min_sharp_share = 0.5;  ///< sharp fraction of a border's length below which it vanishes
-constexpr double max_loose_low = 0.09;   ///< parts have up to 0.07, scans that pass the other test 0.10
-constexpr double max_loose_high = 0.2;   ///< parts have up to 0.10, scans that pass the other test 0.43
-/// A staircase has many patches of few triangles each, or its sharp edges are those of equal boxes.
+constexpr double low_share = 15.0 / 35;  ///< times the angle: edges that turn less are never borders
+constexpr double min_sharp_share = 0.5;  ///< borders with a smaller sharp fraction are removed
+constexpr double max_loose_low = 0.09;   ///< parts: up to 0.07; scans that pass the other test: 0.10
+constexpr double max_loose_high = 0.2;   ///< parts: up to 0.10; scans that pass the other test: 0.43
+/// A surface is a staircase if its many patches have few triangles each, or if its sharp edges are those of
+/// equal boxes.
 constexpr std::size_t min_staircase_patches = 256;
 constexpr std::size_t max_staircase_triangles = 4;
 constexpr double same_length = 1e-3, right_angle = 90 * degree, same_angle = 1 * degree;
@@ -38,7 +39,7 @@ std::vector<double> triangle_areas(std::span<const Vec3> points, std::span<const
   return areas;
 }
 
-/// Points between two groups.
+/// Flags the points on edges between two groups.
 std::vector<std::uint8_t> points_between(const std::vector<EdgeUse>& uses, std::size_t point_count) {
   std::vector<std::uint8_t> between(point_count, 0);
   for (std::size_t i = 0; i + 1 < uses.size(); ++i)
@@ -47,8 +48,8 @@ std::vector<std::uint8_t> points_between(const std::vector<EdgeUse>& uses, std::
   return between;
 }
 
-/// Loose ends: points other than `ends` at which a chain of edges that turn by more than the angle ends, over
-/// the number of these edges: at most 2.
+/// Ratio of loose ends to edges that turn by more than the angle, at most 2. A loose end is a point other
+/// than `ends` at which exactly one such edge ends.
 double loose_ends(const std::vector<InnerEdge>& edges, const std::vector<std::uint8_t>& ends, double angle) {
   std::vector<std::uint32_t> degrees(ends.size(), 0);
   std::size_t sharp = 0;
@@ -62,7 +63,8 @@ double loose_ends(const std::vector<InnerEdge>& edges, const std::vector<std::ui
   return sharp == 0 ? 0 : static_cast<double>(loose) / static_cast<double>(sharp);
 }
 
-/// Whether all edges that turn by more than the angle turn by 90 degrees and have at most three lengths.
+/// Whether all edges that turn by more than the angle turn by 90 degrees and have at most three different
+/// lengths.
 bool are_of_boxes(const std::vector<InnerEdge>& edges, double angle) {
   std::vector<double> lengths;
   for (const InnerEdge& e : edges) {
@@ -76,7 +78,7 @@ bool are_of_boxes(const std::vector<InnerEdge>& edges, double angle) {
   return true;
 }
 
-/// Merges parts of a surface across their least sharp borders.
+/// Merges parts of a surface across their weakest borders.
 class PatchMerger {
  public:
   PatchMerger(std::vector<double> areas, const std::vector<InnerEdge>& edges, double angle)
@@ -108,8 +110,8 @@ class PatchMerger {
     for (Index t = 0; t < sets_.size(); ++t) roots += sets_.is_root(t);
     return roots;
   }
-  /// Merges parts below `min_area`, the smallest first, with the neighbour across the weakest border. Returns
-  /// their number.
+  /// Merges parts below `min_area`, smallest first, with the neighbour across the weakest border.
+  /// \return the number of parts merged
   std::size_t merge_small(double min_area) {
     std::set<std::pair<double, Index>> small;
     const auto list = [&](Index part) {
@@ -138,7 +140,7 @@ class PatchMerger {
     }
     return dropped;
   }
-  /// Part of each triangle: the index of one of its triangles.
+  /// Part of each triangle, as the index of one of its triangles.
   std::vector<Index> parts() {
     std::vector<Index> parts(sets_.size());
     for (std::size_t t = 0; t < parts.size(); ++t) parts[t] = sets_.root(static_cast<Index>(t));
@@ -187,11 +189,11 @@ class PatchMerger {
 
   DisjointSets sets_;
   std::vector<double> areas_;                         ///< of each part, by its root
-  std::map<Index, std::map<Index, Border>> borders_;  ///< from each part, to each neighbour
+  std::map<Index, std::map<Index, Border>> borders_;  ///< of each part, by neighbour
   std::set<Queued> queue_;
 };
 
-/// Groups as parts, as if no edge were a crease.
+/// Makes each group one part, as if no edge were a crease.
 std::vector<Index> whole_groups(std::span<const std::uint32_t> groups) {
   std::map<std::uint32_t, Index> firsts;
   std::vector<Index> parts(groups.size());
@@ -200,7 +202,7 @@ std::vector<Index> whole_groups(std::span<const std::uint32_t> groups) {
   return parts;
 }
 
-/// Result of find_patches() except the patch numbers, and the part of each triangle, as the index of one of
+/// Result of find_patches() before patches are numbered, and the part of each triangle as the index of one of
 /// its triangles.
 struct FoundParts {
   SurfacePatches found;
@@ -234,7 +236,7 @@ FoundParts find_parts(std::span<const Vec3> points, std::span<const Triangle> tr
   }
   PatchMerger merger(triangle_areas(points, triangles), edges, sharp);
   merger.merge_weak();
-  // Before small parts are merged, which depends on the size of cells.
+  // Decided before small parts are merged, since merging depends on the cell size.
   const std::size_t count = merger.count();
   if (automatic && count >= min_staircase_patches &&
       (count > max_patches || count * max_staircase_triangles > triangles.size() ||
@@ -262,7 +264,7 @@ SurfacePatches find_patches(std::span<const Vec3> points, std::span<const Triang
                             const PatchOptions& options, std::span<const std::uint32_t> groups,
                             const std::string& file) {
   FoundParts found = find_parts(points, triangles, options, groups);
-  // Numbered in the order of their first triangles.
+  // Number the patches in the order of their first triangles.
   std::vector<std::uint32_t> numbers(triangles.size(), no_index);
   std::uint32_t count = 0;
   for (std::size_t t = 0; t < triangles.size(); ++t) {

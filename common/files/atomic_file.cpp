@@ -32,11 +32,11 @@ constexpr std::string_view standard_stream = "-";
                     (error ? std::strerror(error) : ""));
 }
 
-/// Target of a chain of links; it need not exist.
+/// Follows a chain of links to its target, which need not exist.
 std::string link_target(const std::string& path) {
   fs::path target = path;
   std::error_code error;
-  // The system's own limit on links.
+  // 40 is the system's own limit on links.
   for (int i = 0; i < 40 && fs::is_symlink(fs::symlink_status(target, error)); ++i) {
     const fs::path next = fs::read_symlink(target, error);
     if (error) fail(path, "the link can't be followed", error.value());
@@ -78,7 +78,7 @@ class FileSizeSignalIgnored {
 /// Names of the temporary files, readable by a signal handler.
 struct TemporaryName {
   std::atomic<bool> taken{false};
-  /// Set after `path` is filled in.
+  /// Set once `path` is complete.
   std::atomic<bool> valid{false};
   std::array<char, 4001> path;
 };
@@ -97,8 +97,9 @@ void sleep_a_moment() noexcept {
   nanosleep(&moment, nullptr);
 }
 
-/// Marks its thread as changing folders, for which abandon_output_files() waits. The signals whose handlers
-/// might call that are blocked in this thread, which would wait for itself.
+/// Marks the thread as creating or renaming files; abandon_output_files() waits until it is done. Signals
+/// whose handlers may call abandon_output_files() are blocked in this thread, since the handler would wait
+/// for itself.
 class FolderChange {
  public:
   FolderChange() {
@@ -127,12 +128,12 @@ constexpr const char* temporary_ending = ".tmp";
 
 std::string temporary_beginning(int process) { return ".tetwright-" + std::to_string(process) + "-"; }
 
-/// A file that is removed again unless it is renamed.
+/// A temporary file, removed in the destructor unless it was renamed.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& folder) {
     static std::atomic<unsigned> number{0};
-    // Other processes may write into the same folder; a crashed one may have had this process's number.
+    // Other processes may write into this folder, and a crashed one may have had the same process number.
     for (int attempt = 0; attempt < 100 && file_ < 0; ++attempt) {
       path_ = folder + "/" + temporary_beginning(getpid()) + std::to_string(number++) + temporary_ending;
       const FolderChange change;
@@ -191,10 +192,10 @@ class TemporaryFile {
   TemporaryName* name_ = nullptr;
 };
 
-/// Bytes written between two checks for cancellation. Some systems reject more than 2 GiB at once anyway.
+/// Bytes written between two checks for cancellation. Some systems reject more than 2 GiB in one call.
 constexpr std::size_t piece_size = std::size_t{1} << 26;
 
-/// Writes to standard output. The reader of a pipe gets the bytes at once: they cannot be taken back.
+/// Writes to standard output. The reader of a pipe receives the bytes at once, so they cannot be withdrawn.
 void write_to_stdout(std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(STDOUT_FILENO, bytes.data(), std::min(bytes.size(), piece_size));
@@ -204,7 +205,7 @@ void write_to_stdout(std::string_view bytes) {
   }
 }
 
-/// Syncs new names in a folder to disk; if the folder cannot be synced, the files are there all the same.
+/// Syncs new names in a folder to disk. A failure is ignored: the files exist all the same.
 void sync_folder(const std::string& path) {
   const int folder = open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder < 0) return;
@@ -212,11 +213,12 @@ void sync_folder(const std::string& path) {
   close(folder);
 }
 
-/// Reads all bytes up to the end, about `size` of them.
+/// Reads all bytes up to the end of a file.
+/// \param size expected number of bytes
 std::string read_all(int file, const std::string& path, std::size_t size) {
   std::string bytes;
   std::size_t used = 0;
-  // One more than the size, so that the end is reached without growing; a pipe's size is 0.
+  // One byte more than the size, so that the end is detected without growing the buffer; a pipe's size is 0.
   bytes.resize(size + 1);
   for (;;) {
     if (used == bytes.size()) bytes.resize(bytes.size() * 2 + 4096);
@@ -348,7 +350,7 @@ void remove_temporary_files(const std::string& path, int process) noexcept try {
     if (name.starts_with(beginning) && name.ends_with(temporary_ending)) fs::remove(entry.path(), error);
   }
 } catch (...) {
-  // The files only take space.
+  // Failure is harmless: the files only take space.
 }
 
 bool abandon_output_files() noexcept {
@@ -361,7 +363,7 @@ bool abandon_output_files() noexcept {
 
 std::string read_whole_file(const std::string& path) {
   int file = -1;
-  // Opening a pipe waits for its writer; signals that the host handles do not interrupt this.
+  // Opening a pipe waits for its writer; a signal that the host handles must not end the wait.
   do file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   while (file < 0 && errno == EINTR);
   if (file < 0) throw InputError("cannot read " + path + ": " + std::strerror(errno));
@@ -372,7 +374,7 @@ std::string read_whole_file(const std::string& path) {
   struct stat status;
   if (fstat(file, &status) != 0) throw InputError("cannot read " + path + ": " + std::strerror(errno));
   if (S_ISDIR(status.st_mode)) throw InputError("cannot read " + path + ": it is a folder");
-  // A device need not have an end.
+  // A device may have no end.
   if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode))
     throw InputError("cannot read " + path + ": it is neither a regular file nor a pipe");
   return read_all(file, path, static_cast<std::size_t>(status.st_size));

@@ -14,7 +14,7 @@
 
 namespace tetwright {
 
-/// An axis-aligned box; empty at first.
+/// An axis-aligned box, initially empty.
 struct Box3 {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
   Vec3 high = Vec3::Constant(-std::numeric_limits<double>::infinity());
@@ -45,13 +45,13 @@ struct Box3 {
   }
 };
 
-/// A bounding volume hierarchy over items in an order of the caller's: neighbours in the order should be
-/// neighbours in space (morton_order(), median_order()). The tree stores positions in that order and boxes,
+/// A bounding volume hierarchy over items in an order chosen by the caller. Neighbours in the order should be
+/// neighbours in space (morton_order(), median_order()). The tree stores boxes and positions in that order,
 /// never the items.
 ///
-/// A node of L > 1 leaves is split into L / 2 and the remaining leaves, so that its shape depends on the
-/// number of items alone. Nodes are in depth-first order: the first child of node k is k + 1, and `next` is
-/// the first node that is not below k. Built in O(n); 64 bytes for each node. Immutable after construction;
+/// A node of L > 1 leaves is split into L / 2 and the remaining leaves, so that its shape depends only on the
+/// number of items. Nodes are in depth-first order: the first child of node k is k + 1, and `next` is the
+/// first node after the subtree of k. Built in O(n); 64 bytes for each node. Immutable after construction;
 /// all functions may be called concurrently.
 class BoxTree {
  public:
@@ -75,11 +75,11 @@ class BoxTree {
   bool is_leaf(const Node& node) const { return node.end - node.begin <= leaf_size_; }
   Range all() const { return {0, nodes_.empty() ? 0 : nodes_[0].end}; }
 
-  /// Visits the items of `range`, nearest boxes first. Leaves farther away than the best so far are skipped,
-  /// those at the same distance are not.
+  /// Visits the items of `range`, nearest boxes first. Skips leaves farther away than the best distance so
+  /// far, but not those at an equal distance.
   /// \param visit `visit(position, best)` returns the minimum of `best` and the squared distance of the item
   ///   from `p`
-  /// \return the best squared distance; `squared_limit` if nothing is nearer
+  /// \return the smallest squared distance, or `squared_limit` if no item is nearer
   template <class Visit>
   double nearest(const Vec3& p, double squared_limit, const Range& range, const Visit& visit) const {
     double best = squared_limit;
@@ -150,7 +150,7 @@ class BoxTree {
   }
 
   /// Calls `visit(leaf)` for the leaf `own` (an index into nodes()) and each later leaf whose box intersects
-  /// its box: over all leaves, each pair once.
+  /// its box. Calling this for every leaf visits each pair once.
   template <class Visit>
   void for_each_later_intersecting_leaf(std::size_t own, const Visit& visit) const {
     const Node& leaf = nodes_[own];
@@ -165,7 +165,7 @@ class BoxTree {
     }
   }
 
-  /// Number of leaves for a number of items.
+  /// Number of leaves for `items` items.
   static std::size_t leaf_count(std::size_t items, std::size_t leaf_size) {
     return (items + leaf_size - 1) / leaf_size;
   }

@@ -11,7 +11,8 @@ namespace tetwright {
 
 namespace {
 
-/// Its cube and derived values are far below the largest double. Single precision fields hold 1e38.
+/// Cubes of coordinates and values derived from them stay far below the largest double. Single-precision
+/// fields hold up to 1e38.
 constexpr double max_coordinate = 1e50;
 
 }  // namespace

@@ -8,12 +8,12 @@
 namespace tetwright {
 
 /// Checks that areas and volumes, which involve squares and cubes of coordinates, neither overflow nor
-/// vanish.
-/// \param longest_side of the bounding box, input units
+/// underflow to 0.
+/// \param longest_side longest side of the bounding box, input units
 /// \param largest_coordinate maximum absolute value of a coordinate, input units
 /// \param what "surface" or "mesh"
-/// \param file named in messages
-/// \throws InputError if they would
+/// \param file file name for messages
+/// \throws InputError if a coordinate or the size is out of range
 void require_measurable(double longest_side, double largest_coordinate, const char* what,
                         const std::string& file);
 

@@ -9,8 +9,8 @@ namespace tetwright {
 
 namespace {
 
-/// Squared sine of a triangle's angle below which products of its edges are useless for weights: at 1e-8 the
-/// rounding of 1e-16 is 1e-8 of them.
+/// Squared sine of a triangle's angle below which products of its edges are too inaccurate for weights: at
+/// 1e-8, rounding of 1e-16 is a relative error of 1e-8.
 constexpr double needle_squared = 1e-8;
 
 Vec3 closest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -36,7 +36,7 @@ Vec3 closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   for (const Vec3& q : {closest_on_segment(p, b, c), closest_on_segment(p, c, a)})
     if ((p - q).squaredNorm() < (p - best).squaredNorm()) best = q;
   if (!needle) return best;
-  // The weights above would be noise; these have the rounding of a cross product.
+  // The weights above would be mostly rounding error; these are as accurate as a cross product.
   const std::array<double, 3> w = weights_in_triangle(p, a, b, c);
   const Vec3 within = w[0] * a + w[1] * b + w[2] * c;
   return (p - within).squaredNorm() < (p - best).squaredNorm() ? within : best;

@@ -28,7 +28,7 @@ TwoParts two_sum(double a, double b) {
   return {x, (a - av) + (b - bv)};
 }
 
-/// Dekker's product; std::fma is not used, since without hardware support it is far slower.
+/// Dekker's product. std::fma is far slower without hardware support.
 TwoParts two_product(double a, double b) {
   constexpr double splitter = 0x1p27 + 1;
   const auto split = [](double v) {
@@ -42,7 +42,7 @@ TwoParts two_product(double a, double b) {
   return {x, p.low * q.low - error};
 }
 
-/// Adds one double (Shewchuk's Grow-Expansion), leaving out zeros.
+/// Adds one double (Shewchuk's Grow-Expansion) and drops zeros.
 void grow(Expansion& e, double b) {
   double q = b;
   std::size_t out = 0;
@@ -86,21 +86,21 @@ Expansion plus(Expansion a, const Expansion& b) {
 
 int sign(const Expansion& e) { return e.empty() ? 0 : e.back() > 0 ? 1 : -1; }
 
-/// Exponent of the power of two that scales the largest coordinate to about 2^100: products neither overflow
-/// nor, short of absurd ranges, underflow.
+/// Exponent of the power of two that scales the largest coordinate to about 2^100. Products then do not
+/// overflow, and underflow only for absurd ranges of coordinates.
 int safe_exponent(std::initializer_list<const Vec3*> points) {
   double largest = 0;
   for (const Vec3* p : points) largest = std::max(largest, p->cwiseAbs().maxCoeff());
   return largest > 0 ? 100 - std::ilogb(largest) : 0;
 }
 
-/// Scales by 2^exponent, which itself may exceed the largest double.
+/// Scales by 2^exponent, which may exceed the largest double.
 Vec3 scaled(const Vec3& p, int exponent) {
   return {std::ldexp(p.x(), exponent), std::ldexp(p.y(), exponent), std::ldexp(p.z(), exponent)};
 }
 
 int orient3d_exact(const Vec3& a0, const Vec3& b0, const Vec3& c0, const Vec3& d0) {
-  // Flat along an axis is common (boxes, lattices) and needs no arithmetic.
+  // Flat along an axis: common in boxes and lattices, and needs no arithmetic.
   for (int k = 0; k < 3; ++k)
     if (a0[k] == b0[k] && a0[k] == c0[k] && a0[k] == d0[k]) return 0;
   const int s = safe_exponent({&a0, &b0, &c0, &d0});
@@ -134,8 +134,8 @@ int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
                            std::fabs(by) * (std::fabs(czdx) + std::fabs(cxdz)) +
                            std::fabs(bz) * (std::fabs(cxdy) + std::fabs(cydx));
   const double bound = orient3d_bound * permanent;
-  // Outside these limits the filter does not hold: products may have lost bits to underflow below, to
-  // overflow (infinity, or NaN from one) above.
+  // The filter holds only within these limits: below, products may have lost bits to underflow; above, they
+  // may have overflowed (infinity or NaN).
   if (permanent > 0x1p-900 && permanent < 0x1p1000) {
     if (det > bound) return 1;
     if (det < -bound) return -1;

@@ -7,8 +7,8 @@
 
 namespace tetwright {
 
-/// Six times the signed volume of the tet (a, b, c, d), rounded: (b-a) x (c-a) . (d-a). Positive for a
-/// positive tet.
+/// Rounded value of six times the signed volume of the tet (a, b, c, d): (b-a) x (c-a) . (d-a). Positive for
+/// a positive tet.
 inline double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const double bx = b.x() - a.x(), by = b.y() - a.y(), bz = b.z() - a.z();
   const double cx = c.x() - a.x(), cy = c.y() - a.y(), cz = c.z() - a.z();
@@ -21,7 +21,7 @@ inline double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const 
 /// differences underflows, which needs coordinates more than 2^300 apart in size within one tet.
 int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-/// Sign (-1, 0, 1) of the exact (b-a) x (c-a) in the plane of the coordinates `u` and `v` (0 to 2).
+/// Sign (-1, 0, 1) of the exact (b-a) x (c-a) in the plane of the coordinates `u` and `v`, each 0 to 2.
 int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v);
 
 }  // namespace tetwright

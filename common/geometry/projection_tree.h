@@ -12,19 +12,19 @@
 
 namespace tetwright {
 
-/// Triangles, segments and points (triangles with equal corners) of several kinds, for nearest-point queries:
-/// a tree of boxes in Morton order, four items to a leaf.
+/// Triangles, segments and points (triangles with coinciding corners) of several kinds, for nearest-point
+/// queries: a tree of boxes in Morton order, four items to a leaf.
 class ProjectionTree {
  public:
-  /// Key that items and queries share; the caller defines its numbers.
+  /// Key that a query and the items it considers have in common; its numbers are defined by the caller.
   using Kind = std::array<std::uint32_t, 3>;
   struct Item {
-    Triangle corners;  ///< indices into the points given
+    Triangle corners;  ///< indices into points()
     Kind kind;
   };
   struct Hit {
     Vec3 point;        ///< on the item
-    std::size_t item;  ///< of items()
+    std::size_t item;  ///< index into items()
   };
   ProjectionTree() = default;
   ProjectionTree(std::vector<Vec3> points, std::vector<Item> items);
@@ -39,8 +39,8 @@ class ProjectionTree {
     return closest_point(p, corner(items_[item], 0), corner(items_[item], 1), corner(items_[item], 2));
   }
 
-  /// Nearest point on the items for which `accepts(item)` holds, if it is nearer than `max_distance`. May be
-  /// called concurrently.
+  /// Nearest point of the items for which `accepts(item)` holds, or std::nullopt if none is nearer than
+  /// `max_distance`. May be called concurrently.
   template <class Accepts>
   std::optional<Hit> nearest_of(const Vec3& p, double max_distance, const Accepts& accepts) const {
     std::optional<Hit> found;
@@ -55,17 +55,17 @@ class ProjectionTree {
     });
     return found;
   }
-  /// Whether an item is at most `max_distance` away: faster than finding the nearest. May be called
+  /// Whether an item is within `max_distance`; faster than finding the nearest one. May be called
   /// concurrently.
   bool any_within(const Vec3& p, double max_distance) const {
     return tree_.nearest(p, max_distance * max_distance, tree_.all(), [&](std::size_t i, double best) {
       const Item& item = items_[i];
       if (best < 0 || squared_distance(p, corner(item, 0), corner(item, 1), corner(item, 2)) > best)
         return best;
-      return -1.0;  // nothing is nearer: ends the search
+      return -1.0;  // nothing can be nearer: ends the search
     }) < 0;
   }
-  /// Nearest point on the items of a kind, if it is nearer than `max_distance`.
+  /// Nearest point of the items of a kind, or std::nullopt if none is nearer than `max_distance`.
   std::optional<Vec3> nearest(const Vec3& p, const Kind& kind, double max_distance) const {
     const auto hit = nearest_of(p, max_distance, [&](const Item& item) { return item.kind == kind; });
     if (!hit) return {};

@@ -16,8 +16,8 @@ namespace {
 /// Terms of a tet's solid angles: tan(omega_k / 2) = det / denominator[k].
 struct SolidAngleTerms {
   double det;                         ///< six times the volume
-  std::array<double, 4> denominator;  ///< for each vertex; negative for an angle above pi
-  double longest_squared;             ///< of the six edges
+  std::array<double, 4> denominator;  ///< by vertex; negative for an angle above pi
+  double longest_squared;             ///< maximum of the squared edge lengths
 };
 
 SolidAngleTerms terms(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
@@ -41,8 +41,8 @@ SolidAngleTerms terms(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
   return t;
 }
 
-/// Denominator of the smallest angle: all four share the numerator. It is positive, since that angle is acute
-/// enough (four angles of a tet sum to less than 2 pi).
+/// Denominator of the smallest solid angle; all four angles share the numerator. It is positive, since the
+/// smallest solid angle is below pi: the four angles of a tet sum to less than 2 pi.
 double max_denominator(const SolidAngleTerms& t) {
   return std::max(std::max(t.denominator[0], t.denominator[1]), std::max(t.denominator[2], t.denominator[3]));
 }
@@ -50,8 +50,8 @@ double smallest_angle(const SolidAngleTerms& t) {
   return 2 * portable_atan2_upper(t.det, max_denominator(t));
 }
 
-/// Smallest solid angle to nine digits, enough for decisions: a full arc tangent would take most of the time.
-/// The tangent of half the angle is at most the regular tet's, 0.283, so that a short series suffices.
+/// Smallest solid angle to nine digits, which is enough for decisions; a full arc tangent would take most of
+/// the time. The tangent of half the angle is at most the regular tet's, 0.283, so a short series suffices.
 double min_angle_for_comparison(const SolidAngleTerms& t) {
   const double x = t.det / max_denominator(t), s = x * x;
   return 2 * x *
@@ -59,8 +59,8 @@ double min_angle_for_comparison(const SolidAngleTerms& t) {
           s * (1.0 / 3 - s * (1.0 / 5 - s * (1.0 / 7 - s * (1.0 / 9 - s * (1.0 / 11 - s * (1.0 / 13)))))));
 }
 
-/// Whether a rounded determinant is positive for certain: with edges of length at most l its error is below
-/// 40 l^3 2^-53 (differences, two products and two sums for each of three terms of size 2 l^3).
+/// Whether the exact determinant is positive for certain. With edges of length at most l the rounding error
+/// is below 40 l^3 2^-53 (differences, two products and two sums for each of three terms of size 2 l^3).
 bool surely_positive(double det, double longest_cubed) { return det > 40 * 0x1p-53 * longest_cubed; }
 
 }  // namespace
@@ -91,10 +91,10 @@ std::array<double, 6> dihedral_angles(const std::array<Vec3, 4>& p) {
   }
   std::array<double, 6> angles;
   for (int e = 0; e < 6; ++e) {
-    // The two faces at an edge are opposite the two vertices that are not on it.
+    // The two faces at an edge lie opposite the two vertices that are not on it.
     const auto& other = tet_edges[5 - e];
     const Vec3 &n = normal[other[0]], &m = normal[other[1]];
-    // The inner angle is pi minus that between the outward normals.
+    // The dihedral angle is pi minus the angle between the outward normals.
     const double across = n.cross(m).norm(), along = -n.dot(m);
     angles[e] = across == 0 && along == 0 ? std::numeric_limits<double>::quiet_NaN()
                                           : portable_atan2_upper(across, along) * (180 / std::numbers::pi);
@@ -133,11 +133,12 @@ namespace {
 /// Sine of a regular tet's dihedral angle, 2 sqrt(2) / 3.
 constexpr double regular_sine = 0.94280904158206336;
 
-/// Smallest sine of the six dihedral angles of a tet of 6 * volume `det`: 3 V l / (2 A B) at an edge of
-/// length l between faces of areas A and B.
+/// Smallest sine of the six dihedral angles of a tet. At an edge of length l between faces of areas A and B
+/// it is 3 V l / (2 A B).
+/// \param det six times the volume V
 double min_sine(double det, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 ab = b - a, ac = c - a, ad = d - a, bc = c - b, bd = d - b, cd = d - c;
-  // Squared double areas of the faces opposite a, b, c, d.
+  // Squares of twice the areas of the faces opposite a, b, c, d.
   const double fa = bc.cross(bd).squaredNorm(), fb = ac.cross(ad).squaredNorm(),
                fc = ab.cross(ad).squaredNorm(), fd = ab.cross(ac).squaredNorm();
   const double min_factor =

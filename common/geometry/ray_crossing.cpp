@@ -7,10 +7,10 @@ namespace tetwright {
 
 namespace {
 
-/// Side of the line a -> b (in xy) on which the shifted point lies: 0 only if a and b coincide.
+/// Side of the line a -> b (in xy) on which the shifted point lies; 0 only if a and b coincide.
 int shifted_side(const Vec3& a, const Vec3& b, const Vec3& point) {
   if (const int side = orient2d(a, b, point, 0, 1)) return side;
-  // The derivative of the orientation by the shift (e, e^2): -dy e + dx e^2.
+  // Derivative of the orientation along the shift (e, e^2): -dy e + dx e^2.
   if (b.y() != a.y()) return b.y() > a.y() ? -1 : 1;
   if (b.x() != a.x()) return b.x() > a.x() ? 1 : -1;
   return 0;

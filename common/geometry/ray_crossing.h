@@ -5,13 +5,13 @@
 
 namespace tetwright {
 
-/// Crossings of a vertical line (parallel to z) through a point with a triangle, decided exactly.
+/// Exact crossings of a triangle with the vertical line (parallel to z) through a point.
 ///
 /// Lines through edges and vertices are decided as if shifted to (x + e, y + e^2) for an infinitely small e >
-/// 0 (simulation of simplicity, Edelsbrunner & Muecke 1990): every line meets the triangles around an edge or
-/// vertex consistently, so that the crossings of a closed surface always cancel.
+/// 0 (simulation of simplicity, Edelsbrunner & Muecke 1990). Every line then meets the triangles around an
+/// edge or vertex consistently, and the crossings of a closed surface always cancel.
 
-/// Crossing of the upward line through `point`, whose z does not matter.
+/// Crossing of the upward line through `point`, whose z is ignored.
 /// \return 1 if the line enters the solid (the normal points down), -1 if it leaves, 0 if it misses the
 ///   triangle
 int vertical_crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& point);

@@ -22,14 +22,15 @@ namespace tetwright {
 namespace {
 
 constexpr std::size_t max_pieces = std::size_t{1} << 22;
-/// Maximum depth of bisection. Ties between items that do not meet, such as duplicates, would never end.
+/// Maximum depth of bisection. Without it, ties between items that do not meet, such as duplicates, would be
+/// bisected forever.
 constexpr int max_levels = 150;
-/// Period in levels at which pieces are cut in the middle of their longest edge, so that they shrink.
+/// Every so many levels a piece is cut at the middle of its longest edge, so that pieces shrink.
 constexpr int halving_period = 4;
-constexpr int bisections = 40;  ///< steps to locate where another item becomes the nearest
-/// A cut nearer to an end of an edge than this fraction is moved to the middle.
+constexpr int bisections = 40;  ///< steps to find where another item becomes the nearest
+/// A cut nearer to an end of the edge than this fraction is moved to the midpoint.
 constexpr double min_cut = 0.01;
-constexpr std::size_t max_cuts = 4096;  ///< of one triangle, by triangles_beyond()
+constexpr std::size_t max_cuts = 4096;  ///< for each triangle, in triangles_beyond()
 constexpr std::size_t grain = 256;
 constexpr std::size_t rms_points = 100000;
 
@@ -40,7 +41,7 @@ struct Measured {
   std::uint32_t item = 0;
 };
 
-/// A triangle, or a part of one, and an upper bound of the distance of its points.
+/// A triangle or a part of one, with an upper bound of the distance of its points.
 struct Piece {
   std::array<Measured, 3> corners;
   double upper;
@@ -51,7 +52,8 @@ double distance_to(const ProjectionTree& to, std::uint32_t item, const Vec3& p) 
   return std::sqrt(squared_distance(p, to.corner(t, 0), to.corner(t, 1), to.corner(t, 2)));
 }
 
-/// Measures a point; `guess` is an item that may be near.
+/// Measures the distance of a point.
+/// \param guess an item that may be near
 Measured measure(const ProjectionTree& to, const Vec3& at, std::uint32_t guess) {
   Measured m{at, distance_to(to, guess, at), guess};
   if (const auto hit = to.nearest_of(at, m.distance, [](const ProjectionTree::Item&) { return true; }))
@@ -59,7 +61,7 @@ Measured measure(const ProjectionTree& to, const Vec3& at, std::uint32_t guess) 
   return m;
 }
 
-/// Measures points whose neighbours in the list are neighbours in space.
+/// Measures points; neighbours in the list should be neighbours in space.
 std::vector<Measured> measure_all(const ProjectionTree& to, const std::vector<Vec3>& points) {
   std::vector<Measured> out(points.size());
   parallel_for(0, (points.size() + grain - 1) / grain, 1, [&](std::size_t first, std::size_t last) {
@@ -100,7 +102,7 @@ double distance_between(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Ve
   return (a0 + on_segment((b0 + on_b * b - a0).dot(a), aa) * a - b0 - on_b * b).norm();
 }
 
-/// Distance of the edge between two corners from the common corners of their items; infinite if there are
+/// Distance of the edge between two corners from the common corners of their items; infinite if they have
 /// none.
 double passing_distance(const ProjectionTree& to, const Measured& a, const Measured& b) {
   const SharedCorners shared(to.items()[a.item], to.items()[b.item]);
@@ -109,13 +111,13 @@ double passing_distance(const ProjectionTree& to, const Measured& a, const Measu
                           to.points()[shared.points[shared.count - 1]]);
 }
 
-/// Upper bound of the distance of a triangle's points from the items nearest to its corners; infinite if two
-/// of these items do not meet, or three have no common corner.
+/// Upper bound of the distance of a triangle's points from the items nearest to its corners. Infinite if two
+/// of these items do not meet, or if three have no common corner.
 ///
 /// The triangle is mapped to the items piecewise linearly: each corner to its nearest point, a point of each
 /// edge between different items to a common point of the two, and, for three items, an inner point to a
-/// common corner of all. Each piece has its image in one item, which is convex, and the distance from the
-/// image is largest in a corner of a piece.
+/// common corner of all. The image of each piece lies in one item, which is convex, and the distance between
+/// a point and its image is largest at a corner of a piece.
 double upper_bound_over_joints(const ProjectionTree& to, const std::array<Measured, 3>& corners) {
   double upper = 0;
   bool all_differ = true;
@@ -159,7 +161,7 @@ double upper_bound(const ProjectionTree& to, const std::array<Measured, 3>& corn
   return std::min(upper, upper_bound_over_joints(to, corners));
 }
 
-/// Parameter on the edge between two corners at which both corners' items are equally near.
+/// Parameter on the edge between two corners at which the items of both are equally near.
 double transition(const ProjectionTree& to, const Measured& a, const Measured& b) {
   double low = 0, high = 1;
   for (int i = 0; i < bisections; ++i) {
@@ -170,8 +172,8 @@ double transition(const ProjectionTree& to, const Measured& a, const Measured& b
   return low;
 }
 
-/// Bisects a piece, preferably where the nearest item changes: parts with a single nearest item are settled,
-/// while halving alone would refine every edge of the other surface down to the accuracy.
+/// Bisects a piece, preferably where the nearest item changes: a part with a single nearest item is settled.
+/// Halving alone would refine around every edge of the other surface down to the accuracy.
 std::array<Piece, 2> cut(const ProjectionTree& to, const Piece& piece, bool halve) {
   const auto& c = piece.corners;
   int edge = 0;
@@ -179,7 +181,7 @@ std::array<Piece, 2> cut(const ProjectionTree& to, const Piece& piece, bool halv
   for (int k = 0; k < 3; ++k) {
     const Measured &a = c[k], &b = c[(k + 1) % 3];
     const double length = (b.at - a.at).norm();
-    // Excess of the distance of the other corner's item over the nearest one.
+    // Distance of the other corner's item minus the distance of the nearest one.
     const double jump = a.item == b.item ? -1
                                          : std::max(distance_to(to, b.item, a.at) - a.distance,
                                                     distance_to(to, a.item, b.at) - b.distance);
@@ -207,7 +209,7 @@ double rms_of(const ProjectionTree& from, const ProjectionTree& to) {
   if (!(total > 0)) return 0;
   std::vector<Vec3> points;
   points.reserve(rms_points + 1);
-  double due = 0.5;  // the first point at half of a point's area
+  double due = 0.5;  // points due; 0.5 puts the first one after half of a point's share of the area
   for (const ProjectionTree::Item& item : from.items()) {
     const Vec3& a = from.corner(item, 0);
     for (due += area(item) / total * rms_points; due >= 1; --due) {
@@ -220,7 +222,8 @@ double rms_of(const ProjectionTree& from, const ProjectionTree& to) {
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, points.size())));
 }
 
-/// A point of the triangle farther than `limit`, if one is found.
+/// Finds a point of the triangle farther away than `limit`; std::nullopt if none is found within max_cuts
+/// cuts.
 std::optional<Measured> beyond(const ProjectionTree& to, const Piece& triangle, double limit,
                                double accuracy) {
   for (const Measured& corner : triangle.corners)
@@ -253,7 +256,7 @@ SurfaceDeviation surface_deviation(const ProjectionTree& from, const ProjectionT
     result.lower = m.distance;
     result.place = m.at;
   };
-  // Corners in the order of the triangles.
+  // Number the corners in the order of the triangles.
   std::vector<Index> number(from.points().size(), no_index);
   std::vector<Vec3> points;
   for (const ProjectionTree::Item& item : from.items())
@@ -269,7 +272,7 @@ SurfaceDeviation surface_deviation(const ProjectionTree& from, const ProjectionT
     return std::max(result.lower * (1 + relative_deviation_accuracy), result.lower + accuracy);
   };
 
-  double settled = result.lower;  // upper bound over the triangles that were discarded
+  double settled = result.lower;  // upper bound over the discarded triangles
   const std::size_t blocks = (from.items().size() + grain - 1) / grain;
   std::vector<double> block_settled(blocks, 0);
   const double limit = enough();

@@ -13,33 +13,34 @@ namespace tetwright {
 
 namespace {
 
-/// Slightly the fastest of 4, 8 and 12 in benchmarks/mesher/surface_tree_benchmark.cpp.
+/// Slightly faster than 4 and 12 in benchmarks/mesher/surface_tree_benchmark.cpp.
 constexpr std::size_t triangles_in_leaf = 8;
 
-/// Distance in radii of a node from which the series is used. 2 leaves errors up to 0.006, 3 up to 0.001 in
+/// Distance in node radii beyond which the series is used. At 2 the error is up to 0.006, at 3 up to 0.001 in
 /// twice the time (surfaces of 200,000 triangles, points near them).
 constexpr double far_radii = 2;
 
-/// Sum of angles in (-pi, pi) as a product of complex numbers, which needs only one arc tangent.
+/// Sum of angles in (-pi, pi) as a product of complex numbers, which needs a single arc tangent.
 class AngleSum {
  public:
-  /// Adds the angle of (re, im); nothing for im = 0, whatever re is.
+  /// Adds the angle of (re, im); adds nothing if im = 0, for any re.
   void add(double re, double im) {
     if (im == 0) return;
     const double shrink = 1 / (std::fabs(re) + std::fabs(im));
     re *= shrink, im *= shrink;
     const double next_re = re_ * re - im_ * im, next_im = re_ * im + im_ * re;
-    // Two angles above 0 whose sum is below 0 passed pi; one of exactly -pi is kept as pi.
+    // If two positive angles have a negative sum, it wrapped around pi; an angle of exactly -pi is kept as
+    // pi.
     if (im_ >= 0 && im > 0 && next_im < 0) ++turns_;
     if (im_ < 0 && im < 0 && next_im >= 0) --turns_;
     re_ = next_re, im_ = next_im;
-    // Each factor shrinks the product by sqrt(1/2) at most.
+    // A factor shrinks the product to no less than sqrt(1/2) of its size.
     if (++factors_ % 1024 == 0) {
       const double grow = 1 / (std::fabs(re_) + std::fabs(im_));
       re_ *= grow, im_ *= grow;
     }
   }
-  /// The sum in full turns.
+  /// Sum of the angles, in full turns.
   double turns() const {
     const double angle = portable_atan2_upper(std::fabs(im_), re_);
     return static_cast<double>(turns_) + (im_ < 0 ? -angle : angle) / (2 * std::numbers::pi);
@@ -51,8 +52,8 @@ class AngleSum {
   std::uint32_t factors_ = 0;
 };
 
-/// Adds half the solid angle under which p sees a triangle, positive from behind (van Oosterom & Strackee
-/// 1983, eq. 8).
+/// Adds half the solid angle that a triangle subtends at p, positive if p is behind it (van Oosterom &
+/// Strackee 1983, eq. 8).
 void add_half_solid_angle(const Vec3& ta, const Vec3& tb, const Vec3& tc, const Vec3& p, AngleSum& sum) {
   const Vec3 a = ta - p, b = tb - p, c = tc - p;
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
@@ -105,7 +106,7 @@ struct Moments {
     add(cubic, product(n, square), 1.0 / 12);
   }
 
-  /// Adds moments about another centre, `shift` from this one.
+  /// Adds moments about another centre, which is at `shift` from this one.
   void add_moments(const Moments& m, const Vec3& shift) {
     normal += m.normal;
     add(quadratic, m.quadratic);
@@ -116,7 +117,7 @@ struct Moments {
   }
 };
 
-/// Harmonic part, the only one that the derivatives of 1 / r see.
+/// Harmonic part of a polynomial: derivatives of 1 / r depend on no other.
 Quadratic traceless(Quadratic q) {
   const double third = (q[0] + q[3] + q[5]) / 3;
   q[0] -= third, q[3] -= third, q[5] -= third;
@@ -147,7 +148,7 @@ double value(const Cubic& c, const Vec3& v) {
 SurfaceTree::SurfaceTree(std::span<const Vec3> points, std::span<const Triangle> triangles) {
   const std::size_t n = triangles.size();
   if (n == 0) return;
-  // Scale the longest side to about 1: products of up to nine lengths must neither overflow nor vanish.
+  // Scale the longest side to about 1, so that products of up to nine lengths neither overflow nor underflow.
   Vec3 low = points[triangles[0][0]], high = low;
   for (const Triangle& t : triangles)
     for (Index v : t) low = low.cwiseMin(points[v]), high = high.cwiseMax(points[v]);
@@ -179,7 +180,7 @@ void SurfaceTree::make_series() {
     for (std::size_t i = first; i < last; ++i) {
       const BoxTree::Node& node = nodes[i];
       Series& series = series_[i];
-      const Vec3 origin = node.box.low;  // differences keep their digits far from the origin
+      const Vec3 origin = node.box.low;  // differences keep their digits even far from the origin
       Vec3 sum = Vec3::Zero();
       double area = 0;
       for (std::uint32_t t = node.begin; t < node.end; ++t) {

@@ -8,15 +8,15 @@
 
 namespace tetwright {
 
-/// A triangle prepared for distance queries of many points: squared_distance() with the terms that depend on
-/// the triangle alone precomputed.
+/// A triangle prepared for distance queries of many points: squared_distance() with precomputed terms that
+/// depend only on the triangle.
 class TriangleDistance {
  public:
   TriangleDistance(const Vec3& a, const Vec3& b, const Vec3& c) : a_(a), ab_(b - a), ac_(c - a) {
     const double d00 = ab_.squaredNorm(), d01 = ab_.dot(ac_), d11 = ac_.squaredNorm();
     const double det = d00 * d11 - d01 * d01;
     if (det > 0) {
-      // Dual vectors: dots with them are the barycentric coordinates of b and c.
+      // Dual vectors: their dot products are the barycentric coordinates of b and c.
       to_b_ = (d11 * ab_ - d01 * ac_) / det;
       to_c_ = (d00 * ac_ - d01 * ab_) / det;
       const Vec3 across = ab_.cross(ac_);
@@ -36,8 +36,8 @@ class TriangleDistance {
     if (height2 >= at_most) return at_most;
     const double v = to_b_.dot(ap), w = to_c_.dot(ap);
     if (v >= 0 && w >= 0 && v + w <= 1 && !normal_.isZero(0)) return height2;
-    // Along the edges. An edge with the point on the triangle's side need not be examined: another one is as
-    // near.
+    // Distance along the edges. An edge that has the point on the triangle's side can be skipped: another one
+    // is at least as near.
     double best = at_most;
     const auto segment = [&](const Vec3& from, const Vec3& along, const Vec3& share) {
       const double s = std::clamp(share.dot(from), 0.0, 1.0);

@@ -12,10 +12,10 @@ namespace {
 
 using TriangleCorners = std::array<Vec3, 3>;
 
-/// The three coordinate planes, as pairs of coordinates.
+/// The three coordinate planes, as pairs of coordinate axes.
 constexpr std::array<std::pair<int, int>, 3> planes{{{0, 1}, {1, 2}, {2, 0}}};
 
-/// Coordinate plane onto which three points project as a proper triangle; -1 if they are collinear.
+/// Coordinate plane onto which three points project as a nondegenerate triangle; -1 if they are collinear.
 int proper_plane(const Vec3& a, const Vec3& b, const Vec3& c) {
   for (int k = 0; k < 3; ++k)
     if (orient2d(a, b, c, planes[k].first, planes[k].second) != 0) return k;
@@ -24,12 +24,13 @@ int proper_plane(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 bool within(double x, double a, double b) { return std::min(a, b) <= x && x <= std::max(a, b); }
 
-/// Whether r, on the line through p and q, is between them, all projected onto the plane (u, v).
+/// Whether r lies between p and q, projected onto the plane (u, v).
+/// \pre r is collinear with p and q
 bool between(const Vec3& r, const Vec3& p, const Vec3& q, int u, int v) {
   return within(r[u], p[u], q[u]) && within(r[v], p[v], q[v]);
 }
 
-/// Whether the closed segments ab and pq meet, projected onto the plane (u, v); a segment may be a point.
+/// Whether the closed segments ab and pq meet, projected onto the plane (u, v); a segment may be degenerate.
 bool segments_meet_2d(const Vec3& a, const Vec3& b, const Vec3& p, const Vec3& q, int u, int v) {
   const int oa = orient2d(p, q, a, u, v), ob = orient2d(p, q, b, u, v);
   if (oa == 0 && between(a, p, q, u, v)) return true;
@@ -47,7 +48,8 @@ bool segments_meet_3d(const Vec3& a, const Vec3& b, const Vec3& p, const Vec3& q
   if (plane < 0) plane = proper_plane(p, q, a);
   if (plane < 0) plane = proper_plane(p, q, b);
   if (plane >= 0) return segments_meet_2d(a, b, p, q, planes[plane].first, planes[plane].second);
-  // All collinear, and every coordinate is monotone along the line: they meet where all three intervals do.
+  // All four points are collinear and every coordinate is monotone along the line: the segments meet if all
+  // three coordinate intervals overlap.
   for (int k = 0; k < 3; ++k)
     if (std::max(a[k], b[k]) < std::min(p[k], q[k]) || std::max(p[k], q[k]) < std::min(a[k], b[k]))
       return false;
@@ -55,11 +57,12 @@ bool segments_meet_3d(const Vec3& a, const Vec3& b, const Vec3& p, const Vec3& q
 }
 
 /// Whether the closed segment pq meets the closed triangle t, which may be degenerate (a segment or a point).
-/// `side_p` and `side_q` are the sides of t's plane on which p and q lie.
+/// \param side_p, side_q sides of t's plane on which p and q lie
 bool segment_meets_triangle(const Vec3& p, const Vec3& q, int side_p, int side_q, const TriangleCorners& t) {
   if (side_p * side_q > 0) return false;
   if (side_p != 0 || side_q != 0) {
-    // The line crosses the plane in one point, inside t unless it passes two edges on different sides.
+    // The line crosses the plane in one point, which is inside t unless the line passes two edges on
+    // different sides.
     const int x = orient3d(p, q, t[0], t[1]), y = orient3d(p, q, t[1], t[2]);
     if (x * y < 0) return false;
     const int z = orient3d(p, q, t[2], t[0]);
@@ -72,7 +75,7 @@ bool segment_meets_triangle(const Vec3& p, const Vec3& q, int side_p, int side_q
   const auto [u, v] = planes[plane];
   for (int k = 0; k < 3; ++k)
     if (segments_meet_2d(p, q, t[k], t[(k + 1) % 3], u, v)) return true;
-  // No edge is met: the whole segment is inside or outside.
+  // The segment meets no edge, so it is entirely inside or outside.
   const int x = orient2d(t[0], t[1], p, u, v), y = orient2d(t[1], t[2], p, u, v),
             z = orient2d(t[2], t[0], p, u, v);
   return x == y && y == z;
@@ -103,7 +106,7 @@ bool meet_unconnected(const TriangleCorners& f, const TriangleCorners& g) {
   if (all_on_one_side(g_side)) return false;
   const std::array<int, 3> f_side = sides(g, f);
   if (all_on_one_side(f_side)) return false;
-  // Two triangles that meet do so at an edge of one of them.
+  // If two triangles meet, an edge of one meets the other.
   for (int k = 0; k < 3; ++k) {
     const int next = (k + 1) % 3;
     if (segment_meets_triangle(f[k], f[next], f_side[k], f_side[next], g)) return true;
@@ -112,7 +115,8 @@ bool meet_unconnected(const TriangleCorners& f, const TriangleCorners& g) {
   return false;
 }
 
-/// The triangles share one vertex; f_other and g_other are the ends of the edges opposite it.
+/// Whether triangles that share one vertex meet elsewhere.
+/// \param f_other, g_other endpoints of the edges opposite the shared vertex
 bool meet_beside_vertex(const TriangleCorners& f, const TriangleCorners& g,
                         const std::array<const Vec3*, 2>& f_other,
                         const std::array<const Vec3*, 2>& g_other) {
@@ -124,14 +128,14 @@ bool meet_beside_vertex(const TriangleCorners& f, const TriangleCorners& g,
          segment_meets_triangle(*g_other[0], *g_other[1], g0, g1, f);
 }
 
-/// The triangles share the edge ab; p and q are the vertices opposite it.
+/// Whether triangles that share the edge ab meet elsewhere; p and q are the vertices opposite it.
 bool meet_beside_edge(const Vec3& a, const Vec3& b, const Vec3& p, const Vec3& q) {
   if (orient3d(a, b, p, q) != 0) return false;
   for (const auto& [u, v] : planes) {
     const int side = orient2d(a, b, p, u, v);
     if (side != 0) return side == orient2d(a, b, q, u, v);
   }
-  // abp is degenerate. Beyond the shared edge it can only meet another degenerate triangle on the same line.
+  // abp is degenerate. Beyond the shared edge it can meet only a degenerate triangle on the same line.
   if (proper_plane(a, b, q) >= 0 || proper_plane(a, p, q) >= 0) return false;
   for (int k = 0; k < 3; ++k) {
     const auto [low, high] = std::minmax(a[k], b[k]);
@@ -143,7 +147,7 @@ bool meet_beside_edge(const Vec3& a, const Vec3& b, const Vec3& p, const Vec3& q
 }  // namespace
 
 bool triangles_intersect(const MeshTriangle& f, const MeshTriangle& g) {
-  // Shared vertices, each id once, and the other vertices of each triangle.
+  // Shared vertices, each id once, and the remaining vertices of each triangle.
   std::array<const Vec3*, 3> shared{}, f_other{}, g_other{};
   std::size_t shared_count = 0, f_count = 0, g_count = 0;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -37,10 +37,10 @@ namespace {
 struct SurfaceFormat {
   const char* extension;
   TriangleMesh (*read)(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped);
-  void (*write)(const TriangleMesh& mesh, const ByteSink& sink);  ///< null: the format is only read
-  /// Null: the format has no fields of points. Returns nothing for a tet mesh.
+  void (*write)(const TriangleMesh& mesh, const ByteSink& sink);  ///< null: the format can only be read
+  /// Null: the format has no point fields. Returns std::nullopt for a tet mesh.
   std::optional<SurfaceWithFields> (*read_with_fields)(std::string_view bytes, const std::string& name);
-  /// Converts a name of a group of triangles to one that the format can hold; null: it writes none.
+  /// Converts the name of a group of triangles to a form that the format can hold; null: it writes no names.
   std::string (*group_name)(const std::string& name) = nullptr;
 };
 
@@ -62,7 +62,7 @@ constexpr std::array<SurfaceFormat, 7> surface_formats{
      {".vtp", read_vtp, write_vtp, always_surface<read_vtp_with_fields>, printable_name},
      {".3mf", read_3mf, nullptr, nullptr},
      {".glb", read_glb, nullptr, nullptr}}};
-/// Formats of tet meshes that may hold a surface instead.
+/// Tet mesh formats that may hold a surface instead.
 constexpr std::array<SurfaceFormat, 3> shared_formats{
     {{".msh", read_msh_surface, nullptr, read_msh_surface_with_fields},
      {".mesh", read_medit_surface, nullptr, nullptr},
@@ -76,7 +76,7 @@ LabelVolume read_alone(std::string_view bytes, const std::string& name, const Fi
 struct VolumeFormat {
   const char* extension;
   LabelVolume (*read)(std::string_view bytes, const std::string& name, const FileReader& others);
-  std::string (*write)(const LabelVolume& volume) = nullptr;  ///< null: the format is only read
+  std::string (*write)(const LabelVolume& volume) = nullptr;  ///< null: the format can only be read
   const char* header = nullptr;                               ///< extension of the header file
   bool one_file = true;                                       ///< false: the voxels are in another file
 };
@@ -103,7 +103,7 @@ bool is_one_file(const SurfaceFormat&) { return true; }
 bool is_one_file(const TetFormat& format) { return format.read != nullptr; }
 bool is_one_file(const VolumeFormat& format) { return format.one_file; }
 
-/// Format of a file's extension; null if there is none.
+/// Format of the file's extension, or null.
 template <class Formats>
 const typename Formats::value_type* find_format(const Formats& formats, const std::string& path,
                                                 FileUse use) {
@@ -135,8 +135,8 @@ TetFormatInfo info_of(const TetFormat& format) {
           format.patch_names, format.fields,    format.second_order};
 }
 
-/// A format of several files replaces the path's extension by its own; the extension of another format would
-/// promise a file that is not written.
+/// A format of several files replaces the path's extension by its own ones. The path must not have the
+/// extension of another format, since no such file would be written.
 void check_names_format(const std::string& path, const std::string& name) {
   const std::string extension = extension_of(path);
   bool several = false;
@@ -153,7 +153,7 @@ void check_names_format(const std::string& path, const std::string& name) {
                      own + ", or in no extension");
 }
 
-/// Format of this name, or of the path's extension if the name is empty.
+/// Format with this name, or of the path's extension if the name is empty.
 const TetFormat& need_written_format(const std::string& path, const std::string& name) {
   if (name.empty()) return need_format(tet_formats(), path, FileKind::tet_mesh, FileUse::write);
   std::string known;
@@ -168,7 +168,7 @@ const TetFormat& need_written_format(const std::string& path, const std::string&
   throw UsageError("there is no format " + in_quotes(name) + " for a tet mesh; known are " + known);
 }
 
-/// Format of this name, an extension with or without its dot, or of the path's extension if the name is
+/// Format with this name, an extension with or without its dot, or of the path's extension if the name is
 /// empty.
 template <class Formats>
 const typename Formats::value_type& need_written_format(const Formats& formats, const std::string& path,
@@ -187,7 +187,7 @@ const SurfaceFormat& need_surface_format(const std::string& path) {
   return shared ? *shared : need_format(surface_formats, path, FileKind::surface, FileUse::read);
 }
 
-/// Returns the format, which must have one file.
+/// Checks that the format consists of one file, and returns it.
 template <class Format>
 const Format& streamed(const Format& format, const std::string& name) {
   if (is_one_file(format)) return format;
@@ -196,7 +196,7 @@ const Format& streamed(const Format& format, const std::string& name) {
                    streamed_extensions());
 }
 
-/// Returns the mesh after require_measurable().
+/// Checks the mesh by require_measurable(), and returns it.
 ReadTetMesh measurable(ReadTetMesh read, const std::string& name) {
   require_measurable(read.mesh, name);
   return read;
@@ -208,7 +208,7 @@ NameRules names_of_groups(const SurfaceFormat& format) {
   };
 }
 
-/// Writes a file as one of `files`, or on its own if that is null.
+/// Writes a file as one of `files`, or separately if that is null.
 void write_into(OutputFiles* files, const std::string& path,
                 const std::function<void(const ByteSink&)>& content) {
   if (files)
@@ -398,7 +398,7 @@ void write_tet_mesh(const MeshToWrite& mesh, const std::string& path, OutputFile
   const TetFormat& format = need_written_format(path, name);
   const std::vector<std::string> paths = files_of_tet_mesh(path, name);
   const std::string first = std::filesystem::path(paths.front()).filename().string();
-  std::optional<OutputFiles> own;  // several files appear together
+  std::optional<OutputFiles> own;  // makes the mesh's files appear together
   if (!files) files = &own.emplace();
   for (std::size_t i = 0; i < paths.size(); ++i)
     files->write(paths[i], [&](const ByteSink& sink) { format.write[i].write(mesh, first, sink); });

@@ -32,7 +32,7 @@ using Fields = std::vector<MeshField>;
                    quoted_list(names) + (several ? "; name one \"size\"" : "; add one named \"size\""));
 }
 
-/// Selects the field as read_mesh_sizes() describes.
+/// Selects the field as described for read_mesh_sizes().
 MeshField take_field(Fields fields, const std::string& file) {
   std::vector<MeshField*> scalars, floating;
   for (MeshField& field : fields) {
@@ -54,7 +54,7 @@ MeshField take_field(Fields fields, const std::string& file) {
   fail_without_field(file, fields, scalars.size() > 1);
 }
 
-/// Returns the field after checking its values where an element uses the point.
+/// Checks the field's values at points that an element uses, and returns the field.
 template <class Elements>
 MeshField checked_lengths(Fields fields, const Elements& elements, const std::string& file) {
   MeshField field = take_field(std::move(fields), file);

@@ -20,7 +20,7 @@ BoundaryGroups::BoundaryGroups(const TetMesh& mesh) {
     else
       pairs.insert(t.pair());
   }
-  // Formats hold signed 32-bit numbers.
+  // Group numbers in files are signed 32-bit integers.
   constexpr std::int64_t max_number = std::numeric_limits<std::int32_t>::max();
   std::set<std::int64_t> taken;
   for (const SurfaceRegion& group : of_user)

@@ -12,23 +12,23 @@
 
 namespace tetwright {
 
-/// Groups in which files list the faces of the boundary and of interfaces: the regions of the input, and the
-/// pairs of materials for faces in no region.
+/// Groups in which files list the faces of the boundary and the interfaces: the regions of the input, and
+/// pairs of materials for faces without a region.
 class BoundaryGroups {
  public:
   struct Group {
     std::int64_t number;               ///< above 0, unique
-    SurfaceRegion surface_region;      ///< of the input; none for a pair
+    SurfaceRegion surface_region;      ///< region of the input; none for a pair
     std::optional<MaterialPair> pair;  ///< for faces in no region
   };
 
-  /// Regions keep their numbers where these are free and from 1 to 2^31 - 1. Pairs get the smallest free
-  /// numbers, in ascending order (outside before any tag), then regions without a number.
+  /// Regions keep their numbers if these are free and from 1 to 2^31 - 1. Pairs then get the smallest free
+  /// numbers in ascending order (outside before any tag), followed by regions without a number.
   explicit BoundaryGroups(const TetMesh& mesh);
 
   /// Pairs in ascending order, then regions; only groups that have faces.
   const std::vector<Group>& all() const { return groups_; }
-  /// Number of the group that a face of the mesh belongs to.
+  /// Number of the group that contains a face of the mesh.
   std::int64_t number_of(const InterfaceTriangle& face) const {
     return groups_[of_patch_.at({face.pair(), face.patch})].number;
   }

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double min_jacobian = 0.1;
 
-/// Maximum displacement of a midside node over the length of its edge; beyond it the node would follow
-/// another sheet.
+/// Maximum displacement of a midside node, relative to the length of its edge; beyond it the node might
+/// follow another sheet.
 constexpr double max_move = 0.25;
 
 /// Fractions of the displacement onto the surface that are tried.
@@ -25,7 +25,7 @@ constexpr std::array<double, 4> shares{1, 0.5, 0.25, 0};
 
 using Edge = std::array<Index, 2>;
 
-/// Patches of the triangles at an edge, with the number of triangles of each.
+/// Patches at an edge, with the number of triangles of each.
 using PatchesAtEdge = std::map<InterfacePatch, int>;
 
 std::map<Edge, PatchesAtEdge> patches_at_edges(const TetMesh& mesh) {
@@ -36,7 +36,7 @@ std::map<Edge, PatchesAtEdge> patches_at_edges(const TetMesh& mesh) {
   return edges;
 }
 
-/// Whether an edge lies within one patch.
+/// Whether both triangles at an edge belong to one patch.
 bool is_smooth(const PatchesAtEdge& at) { return at.size() == 1 && at.begin()->second == 2; }
 
 }  // namespace
@@ -56,7 +56,7 @@ SurfaceToFollow follow(const ReferenceSurface& reference) {
 }
 
 SurfaceToFollow follow_interfaces(const TetMesh& mesh) {
-  // Kinds: number of a patch, or creases.
+  // A kind is the number of a patch, or `crease`.
   constexpr ProjectionTree::Kind crease{0, 0, 0};
   auto numbers = std::make_shared<std::map<InterfacePatch, std::uint32_t>>();
   std::vector<ProjectionTree::Item> items;
@@ -81,19 +81,20 @@ SurfaceToFollow follow_interfaces(const TetMesh& mesh) {
 }
 
 double min_scaled_jacobian(const std::array<Vec3, 4>& corners, const std::array<Vec3, 6>& midside) {
-  // Bezier points: the corners, and 2 m - (a + b) / 2 for each edge.
+  // Bezier control points: the corners, and 2 m - (a + b) / 2 for each edge ab with midside node m.
   std::array<std::array<Vec3, 4>, 4> bezier;
   for (std::size_t i = 0; i < 4; ++i) bezier[i][i] = corners[i];
   for (std::size_t e = 0; e < 6; ++e) {
     const auto& [a, b] = tet_midside_edges[e];
     bezier[a][b] = bezier[b][a] = 2 * midside[e] - 0.5 * (corners[a] + corners[b]);
   }
-  // Derivatives along the three edges from corner 0 are linear; these are their values at the corners.
+  // The derivatives along the three edges from corner 0 are linear functions; compute their values at the
+  // corners.
   const auto derivative = [&](std::size_t direction, std::size_t at) {
     return Vec3(2 * (bezier[at][direction + 1] - bezier[at][0]));
   };
-  // The determinant has degree 3: its coefficient for a multiset of three corners is the mean over their
-  // assignments to the derivatives.
+  // The determinant has degree 3. Its coefficient for a multiset of three corners is the mean over all
+  // assignments of the corners to the three derivatives.
   double smallest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = i; j < 4; ++j)
@@ -148,8 +149,8 @@ CurvingReport curve_midside_nodes(const TetMesh& mesh, const SurfaceToFollow& su
     return std::any_of(nodes.of_tets[t].begin(), nodes.of_tets[t].end(),
                        [&](Index node) { return shares[share[node]] > 0; });
   };
-  // All nodes of invalid tets step back at once, so that the order of tets does not matter; each round moves
-  // at least one node, each node at most three times.
+  // All nodes of invalid tets step back in the same round, so the result does not depend on the order of
+  // tets. Each round moves at least one node, each node at most three times.
   for (bool moved = true; moved;) {
     std::set<Index> back;
     for (std::size_t t = 0; t < mesh.tets.size(); ++t)

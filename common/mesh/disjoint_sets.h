@@ -17,7 +17,7 @@ class DisjointSets {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  /// The smaller root wins, so that the result does not depend on the order of the calls.
+  /// Makes the smaller root the root of both, so that the result does not depend on the order of the calls.
   void unite(Index a, Index b) {
     a = root(a);
     b = root(b);

@@ -17,8 +17,8 @@ namespace tetwright {
 /// A face of a tet with its vertices in ascending order.
 struct SortedFace {
   Triangle vertices;
-  /// Whether the tet's outward order of the face (tet_faces) is an even permutation of `vertices`. Two
-  /// positive tets on opposite sides of a face differ in it.
+  /// True if the tet's outward order of the face (tet_faces) is an even permutation of `vertices`. The value
+  /// differs between two positive tets on opposite sides of a face.
   bool even;
 };
 
@@ -36,20 +36,21 @@ inline SortedFace sorted_face(const Tet& tet, int face) {
   return s;
 }
 
-/// Faces of a set of tets in one bucket for each smallest vertex: equal faces share a bucket, which is sorted
-/// when it is visited. Takes four Codes for each tet; sorting all faces would take eight times as much.
+/// Faces of a set of tets, in one bucket for each smallest vertex. Equal faces are in the same bucket, which
+/// is sorted when it is visited. Takes four Codes for each tet; sorting all faces would take eight times as
+/// much.
 ///
 /// `Code` numbers a face as 4 * tet + face: std::uint32_t for fewer than 2^30 tets, otherwise std::uint64_t.
 template <class Code>
 class FaceBuckets {
  public:
-  /// A tet with this face.
+  /// A tet that has the face.
   struct Use {
     Index tet;
-    std::uint8_t face;  ///< opposite this vertex of the tet
+    std::uint8_t face;  ///< index of the tet's vertex opposite the face
     bool even;          ///< SortedFace::even
   };
-  /// Buffers reused by visits; one for each thread.
+  /// Buffers reused between visits; one for each thread.
   struct Workspace {
     struct Entry {
       Index middle, largest;

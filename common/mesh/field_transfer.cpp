@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t sample_grain = 1024;
 
-/// Copies of `fields` with another number of points or tets, without values.
+/// Copies `fields` for another number of points or tets, without values.
 std::vector<MeshField> empty_fields(const std::vector<MeshField>& fields, std::size_t count) {
   std::vector<MeshField> result;
   result.reserve(fields.size());
@@ -43,7 +43,8 @@ void interpolate(const std::vector<MeshField>& from, const Tet& t, const TetWeig
     for (std::size_t k = 0; k < components; ++k) {
       const auto value = [&](int i) { return from[f].values[t[i] * components + k]; };
       double sum = value(main);
-      // Differences keep equal values bit by bit; terms of weight 0 are skipped, since 0 * NaN is NaN.
+      // Interpolating differences reproduces equal values bit by bit. Terms of weight 0 are skipped, since 0
+      // * NaN is NaN.
       if (!from[f].integer)
         for (int i = 0; i < 4; ++i)
           if (i != main && weights[i] > 0) sum += weights[i] * (value(i) - value(main));

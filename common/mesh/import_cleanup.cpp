@@ -26,7 +26,7 @@ int sign(const TetMesh& mesh, const Tet& t) {
   return orient3d(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]);
 }
 
-/// Power of two that scales coordinates to at most 1, so that no volume overflows.
+/// Power of two that scales coordinates to at most 1, so that volumes do not overflow.
 double scale_of(const TetMesh& mesh) {
   double largest = 0;
   for (const Vec3& p : mesh.points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
@@ -49,7 +49,7 @@ bool all_positive(const TetMesh& mesh) {
   return fine.load();
 }
 
-/// Moves the kept entries of `values` to the front, in their order.
+/// Moves the kept entries of `values` to the front and preserves their order.
 template <class T, class Stays>
 void compact(std::vector<T>& values, std::size_t components, const Stays& stays) {
   std::size_t kept = 0;
@@ -66,7 +66,7 @@ void compact(std::vector<MeshField>& fields, const Stays& stays) {
   for (MeshField& field : fields) compact(field.values, static_cast<std::size_t>(field.components), stays);
 }
 
-/// Tet of each point, or no_index; empty if a point has two.
+/// Tet of each point, or no_index; empty if some point has two tets.
 std::vector<Index> owners_in_soup(const TetMesh& mesh) {
   std::vector<Index> owners(mesh.points.size(), no_index);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
@@ -77,12 +77,13 @@ std::vector<Index> owners_in_soup(const TetMesh& mesh) {
   return owners;
 }
 
-/// Merges the points of a soup; returns the number of points removed.
+/// Merges the points of a soup.
+/// \return the number of points removed
 std::size_t merge_soup(TetMesh& mesh) {
   if (mesh.tets.size() < 2) return 0;
   std::vector<Index> owners = owners_in_soup(mesh);
   if (owners.empty()) return 0;
-  // From here on each entry is the point that its point merges into.
+  // From here on, entry p is the point into which p is merged.
   std::vector<Index>& target = owners;
   std::size_t merged = 0;
   {
@@ -97,7 +98,7 @@ std::size_t merge_soup(TetMesh& mesh) {
   const auto stays = [&](std::size_t p) { return target[p] == p; };
   compact(mesh.points, 1, stays);
   compact(mesh.point_fields, stays);
-  // A target's index never exceeds its point's, so that targets are renumbered first.
+  // A target's index is at most its point's index, so targets are renumbered before they are looked up.
   Index next = 0;
   for (std::size_t p = 0; p < target.size(); ++p) target[p] = target[p] == p ? next++ : target[target[p]];
   parallel_for(0, mesh.tets.size(), element_grain, [&](std::size_t begin, std::size_t end) {
@@ -113,7 +114,8 @@ bool repeats_vertex(const Tet& t) {
   return std::any_of(tet_edges.begin(), tet_edges.end(), [&](const auto& e) { return t[e[0]] == t[e[1]]; });
 }
 
-/// Removes tets with a repeated vertex; returns their number.
+/// Removes tets with a repeated vertex.
+/// \return their number
 std::size_t remove_repeating(TetMesh& mesh) {
   const auto count = std::count_if(mesh.tets.begin(), mesh.tets.end(), repeats_vertex);
   if (count == 0) return 0;
@@ -124,9 +126,10 @@ std::size_t remove_repeating(TetMesh& mesh) {
   return static_cast<std::size_t>(count);
 }
 
-/// Neighbour across face f of tet t at index 4 t + f: no_index unless exactly one other tet has the face,
-/// otherwise twice that tet, plus one if the two list the face in the same sense, on which consistently
-/// oriented neighbours differ. Peak memory 32 bytes a tet and 8 a point.
+/// Neighbours across faces: entry 4 t + f is for face f of tet t. It is no_index unless exactly one other tet
+/// has the face; otherwise twice that tet's index, plus one if both tets list the face in the same sense.
+/// Consistently oriented neighbours list it in opposite senses. Peak memory 32 bytes for each tet and 8 for
+/// each point.
 std::vector<Index> link_faces(const TetMesh& mesh) {
   using Buckets = FaceBuckets<Index>;
   std::vector<Index> across(4 * mesh.tets.size(), no_index);
@@ -146,14 +149,15 @@ std::vector<Index> link_faces(const TetMesh& mesh) {
   return across;
 }
 
-/// Orients the tets; returns how many were reoriented.
+/// Orients the tets.
+/// \return the number of tets reoriented
 std::size_t orient(TetMesh& mesh) {
   std::vector<Tet>& tets = mesh.tets;
   const std::vector<Index> across = link_faces(mesh);
   const double scale = scale_of(mesh);
   enum : std::uint8_t { unseen, as_is, turned };
   std::vector<std::uint8_t> state(tets.size(), unseen);
-  std::vector<Index> part;  // tets connected by faces, in the order reached
+  std::vector<Index> part;  // face-connected tets, in the order reached
   std::size_t count = 0;
   for (std::size_t seed = 0; seed < tets.size(); ++seed) {
     if (state[seed] != unseen) continue;
@@ -186,8 +190,8 @@ std::size_t orient(TetMesh& mesh) {
   return count;
 }
 
-/// Recomputes the interfaces if they have patches, otherwise clears them. Returns the number of faces with a
-/// patch that are lost.
+/// Recomputes the interfaces if they have patches; clears them otherwise.
+/// \return the number of lost faces with a patch
 std::size_t renew_interfaces(TetMesh& mesh) {
   std::map<Triangle, InterfacePatch> before;
   const auto key = [](Triangle ids) {
@@ -198,7 +202,7 @@ std::size_t renew_interfaces(TetMesh& mesh) {
   std::size_t lost = 0;
   for (const InterfaceTriangle& t : mesh.interfaces) {
     if (t.patch == 0) continue;
-    // Both sides of a merged face may have a patch.
+    // Both copies of a merged face may have a patch.
     const InterfacePatch own{t.pair(), t.patch};
     const auto [known, added] = before.emplace(key(t.ids), own);
     lost += !added && known->second != own && groups.contains(own);
@@ -207,7 +211,7 @@ std::size_t renew_interfaces(TetMesh& mesh) {
   mesh.patch_groups.clear();
   if (before.empty()) return lost;
   mesh.interfaces = find_interfaces(mesh);
-  // Boundary faces may now lie between materials, beside patches with the same number.
+  // Boundary faces may have become interface faces, next to patches with the same number.
   std::map<std::pair<InterfacePatch, InterfacePatch>, std::uint16_t> numbers;
   std::set<InterfacePatch> taken;
   std::map<MaterialPair, std::uint32_t> next_free;
@@ -222,7 +226,7 @@ std::size_t renew_interfaces(TetMesh& mesh) {
       while (free <= max_patch && !taken.insert({t.pair(), static_cast<std::uint16_t>(free)}).second) ++free;
       number->second = free <= max_patch ? static_cast<std::uint16_t>(free) : 0;
     }
-    if (number->second == 0) continue;  // counted as lost
+    if (number->second == 0) continue;  // counts as lost
     t.patch = number->second;
     if (const auto group = groups.find(old); group != groups.end())
       mesh.patch_groups[{t.pair(), t.patch}] = group->second;
@@ -236,7 +240,7 @@ std::size_t renew_interfaces(TetMesh& mesh) {
 ImportCleanupReport make_coherent(TetMesh& mesh) {
   ImportCleanupReport report;
   bool fine = all_positive(mesh);
-  // A soup of positive tets has four points a tet.
+  // A soup of positive tets has four points for each tet.
   if (!fine || mesh.points.size() >= 4 * mesh.tets.size()) report.merged_points = merge_soup(mesh);
   if (!fine) {
     report.removed_tets = remove_repeating(mesh);

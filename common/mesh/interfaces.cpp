@@ -9,11 +9,11 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t face_grain = 1 << 14;  // faces to a task, some nanoseconds each
+constexpr std::size_t face_grain = 1 << 14;  // faces for each task; a face takes a few nanoseconds
 
-/// A face of a tet, listed from its smallest id on so that the normal points out.
+/// A face of a tet with the normal pointing out, starting at its smallest id.
 Triangle outward_face(const Tet& tet, const Triangle& ids) {
-  // Valid even if a broken tet has a point twice.
+  // Valid even if an invalid tet has a repeated vertex.
   const Index opposite = tet[0] ^ tet[1] ^ tet[2] ^ tet[3] ^ ids[0] ^ ids[1] ^ ids[2];
   const auto k = static_cast<std::size_t>(std::find(tet.begin(), tet.end(), opposite) - tet.begin());
   Triangle face{tet[tet_faces[k][0]], tet[tet_faces[k][1]], tet[tet_faces[k][2]]};

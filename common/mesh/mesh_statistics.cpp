@@ -13,7 +13,7 @@ namespace tetwright {
 
 namespace {
 
-/// Fixed, so that rounding of sums does not depend on the number of threads.
+/// Fixed, so that rounding of the sums does not depend on the number of threads.
 constexpr std::size_t statistics_grain = 1 << 14;
 
 struct PartStatistics {
@@ -32,12 +32,13 @@ std::uint8_t angle_bin(double angle) {
                                             static_cast<std::size_t>(angle / QualityHistogram::angle_step)));
 }
 
-/// `degrees` is a number from 0 to 180.
+/// \param degrees 0 to 180
 std::size_t dihedral_bin(double degrees) {
   return std::min(DihedralHistogram::bins - 1, static_cast<std::size_t>(degrees / DihedralHistogram::step));
 }
 
-/// Lower ends of the bins after the first, relative to the mean. Half steps are sqrt(2), without a logarithm.
+/// Lower ends of all bins but the first, relative to the mean volume. Half steps are factors of sqrt(2); no
+/// logarithm is needed.
 std::array<double, QualityHistogram::volume_bins - 1> volume_limits() {
   std::array<double, QualityHistogram::volume_bins - 1> limits;
   for (std::size_t i = 0; i < limits.size(); ++i)
@@ -46,12 +47,12 @@ std::array<double, QualityHistogram::volume_bins - 1> volume_limits() {
   return limits;
 }
 
-/// Six times the volume, so that integer values add up without rounding.
+/// Six times the volume: integer coordinates then add up without rounding.
 double volume_six_times(const TetMesh& mesh, const Tet& t) {
   return orient3d_value(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]);
 }
 
-/// Histogram by smallest solid angle and by volume over the mean volume.
+/// Histogram by smallest solid angle and by volume relative to the mean.
 QualityHistogram histogram(const TetMesh& mesh, const std::vector<std::uint8_t>& bin_of_angle, double mean) {
   const auto limits = volume_limits();
   std::vector<QualityHistogram> parts(thread_count());
@@ -123,7 +124,7 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
       const std::array<Vec3, 4> x{mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]};
       const double volume = volume_six_times(mesh, v);
       double angle = orient3d(x[0], x[1], x[2], x[3]) > 0 ? min_solid_angle(x[0], x[1], x[2], x[3]) : 0.0;
-      // Coordinates beyond 1e100 overflow: such a tet is useless, too.
+      // Coordinates beyond 1e100 overflow; such a tet is useless, so its angle counts as 0.
       if (!std::isfinite(angle)) angle = 0;
       if (!material || tag != mesh.materials[t]) {
         tag = mesh.materials[t];
@@ -135,7 +136,7 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
       part.sum_angle += angle;
       part.below += angle < threshold;
       for (double dihedral : dihedral_angles(x)) {
-        // NaN where a face is degenerate: both comparisons are false.
+        // NaN at a degenerate face: both comparisons are false.
         if (dihedral < part.min_dihedral) part.min_dihedral = dihedral;
         if (dihedral > part.max_dihedral) part.max_dihedral = dihedral;
         if (!std::isnan(dihedral)) ++part.dihedrals.counts[dihedral_bin(dihedral)];

@@ -27,7 +27,7 @@ MidsideNodes straight_midside_nodes(const TetMesh& mesh) {
   std::sort(nodes.edges.begin(), nodes.edges.end());
   nodes.edges.erase(std::unique(nodes.edges.begin(), nodes.edges.end()), nodes.edges.end());
   nodes.edges.shrink_to_fit();
-  // Where the edges of each smaller point begin.
+  // First edge of each smaller endpoint.
   std::vector<Index> starts(mesh.points.size() + 1, 0);
   for (const auto& edge : nodes.edges) ++starts[edge[0] + std::size_t{1}];
   for (std::size_t p = 0; p < mesh.points.size(); ++p) starts[p + 1] += starts[p];

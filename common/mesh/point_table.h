@@ -12,9 +12,9 @@
 
 namespace tetwright {
 
-/// Finds points by coordinates, where -0 equals 0 and NaN equals nothing: a hash table of indices that
-/// compares the points themselves. 8 to 16 bytes for each distinct point. Concurrent find() is safe, add() is
-/// not.
+/// Finds points by coordinates, where -0 equals 0 and NaN equals nothing. A hash table of indices that
+/// compares the points themselves; 8 to 16 bytes for each distinct point. find() may be called concurrently,
+/// add() must not.
 /// \pre added points do not change during its lifetime
 class PointTable {
  public:
@@ -24,7 +24,7 @@ class PointTable {
   /// \return the first index added with the coordinates of point `i`: `i` itself if they are new
   Index add(Index i) {
     const Vec3& p = points_[i];
-    if (p.hasNaN()) return i;  // would be inserted again and again, and never found
+    if (p.hasNaN()) return i;  // NaN would be inserted repeatedly and never found
     const std::size_t slot = slot_of(p);
     if (slots_[slot] != no_index) return slots_[slot];
     slots_[slot] = i;
@@ -38,8 +38,8 @@ class PointTable {
  private:
   static constexpr std::size_t smallest = 1 << 10;  // 4 KB
 
-  /// Finalizer of splitmix64 (Steele et al. 2014) after each coordinate: neighbours on a grid differ in a few
-  /// high bits and must hash far apart.
+  /// Applies the finalizer of splitmix64 (Steele et al. 2014) after each coordinate: neighbours on a grid
+  /// differ in few high bits but must hash far apart.
   static std::uint64_t hash(const Vec3& p) {
     std::uint64_t h = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -51,8 +51,8 @@ class PointTable {
     return h;
   }
 
-  /// Slot of these coordinates, or the empty slot for them: there is one, since at most half of the slots are
-  /// full.
+  /// Slot of these coordinates, or an empty slot if they are absent. An empty slot exists, since at most half
+  /// of the slots are full.
   std::size_t slot_of(const Vec3& p) const {
     const std::size_t mask = slots_.size() - 1;
     std::size_t slot = hash(p) & mask;

@@ -13,11 +13,11 @@ namespace tetwright {
 
 namespace {
 
-/// A side of a triangle, from its corner `corner` to the next one.
+/// An edge of a triangle, from corner `corner` to the next one.
 struct Side {
-  Index low, high;  ///< ids of its ends
+  Index low, high;  ///< ids of the endpoints
   Index corner;     ///< 3 * triangle + index of the corner
-  bool turned;      ///< runs from high to low
+  bool turned;      ///< true if it runs from high to low
   auto operator<=>(const Side&) const = default;
 };
 
@@ -58,7 +58,7 @@ std::ptrdiff_t SolidShape::handles() const {
 SolidShape solid_shape(std::span<const Vec3> points, std::span<const Triangle> triangles) {
   SolidShape shape;
   DisjointSets chained(triangles.size()), fans(3 * triangles.size());
-  std::vector<Index> edges(triangles.size(), 0);  // by one of their triangles
+  std::vector<Index> edges(triangles.size(), 0);  // edge counts, each at one of its triangles
   const std::vector<Side> sides = sorted_sides(triangles);
   for (std::size_t i = 0, j; i < sides.size(); i = j) {
     for (j = i + 1; j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high;) ++j;
@@ -77,9 +77,9 @@ SolidShape solid_shape(std::span<const Vec3> points, std::span<const Triangle> t
 
   std::vector<Index> shell_of(triangles.size());
   std::vector<std::ptrdiff_t> euler;
-  std::vector<Index> fan_points;  // once for each fan
+  std::vector<Index> fan_points;  // each point once for each of its fans
   for (Index t = 0; t < triangles.size(); ++t) {
-    const Index root = chained.root(t);  // the first of them
+    const Index root = chained.root(t);  // first triangle of the component
     if (root == t) {
       shell_of[t] = static_cast<Index>(shape.shells.size());
       shape.shells.push_back({.place = points[triangles[t][0]]});

@@ -10,7 +10,7 @@ namespace tetwright {
 
 namespace {
 
-/// One side of a triangle: the corners at its ends are 3 * triangle + their index in it.
+/// An edge of a triangle; each end has the corner 3 * triangle + its index in the triangle.
 struct ChainSide {
   Index low, high;
   std::uint64_t low_corner, high_corner;
@@ -24,7 +24,7 @@ struct ChainSide {
 SurfaceChains surface_chains(std::span<const Triangle> triangles) {
   std::vector<ChainSide> sides;
   sides.reserve(3 * triangles.size());
-  // The fans of a vertex that a broken triangle has twice are at its first occurrence.
+  // If an invalid triangle repeats a vertex, the vertex's fans are at its first occurrence.
   const auto corner = [&](std::size_t t, Index v) -> std::uint64_t {
     return 3 * t + static_cast<std::size_t>(std::find(triangles[t].begin(), triangles[t].end(), v) -
                                             triangles[t].begin());

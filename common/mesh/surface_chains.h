@@ -19,10 +19,10 @@ struct SurfaceEdge {
 struct SurfaceChains {
   std::vector<SurfaceEdge> edges;  ///< in lexicographic order
   std::size_t points = 0;          ///< vertices in use
-  std::size_t components = 0;      ///< of triangles connected by shared edges
+  std::size_t components = 0;      ///< edge-connected components of the triangles
   std::vector<Index>
-      touching_points;           ///< ascending; points where fans of triangles without a common edge touch
-  std::size_t surplus_fans = 0;  ///< fans around points beyond one for each point
+      touching_points;           ///< points where fans of triangles without a common edge meet, ascending
+  std::size_t surplus_fans = 0;  ///< fans around points, beyond the first of each point
 
   /// Euler characteristic: points - edges + triangles.
   std::ptrdiff_t euler(std::size_t triangles) const {

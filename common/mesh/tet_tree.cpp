@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t tree_grain = 1024;
 
-/// A box has 48 bytes: with fewer tets to a leaf the boxes would take more memory than the mesh.
+/// A box takes 48 bytes: with fewer tets in each leaf the boxes would take more memory than the mesh.
 constexpr std::size_t leaf_tets = 8;
 
 /// Corners of a tet.
@@ -28,7 +28,7 @@ Box3 box_of(const TetCorners& corners) {
   return box;
 }
 
-/// Weights of a point contained in the tet or its mirror image; nothing for other points and flat tets.
+/// Weights of a point inside the tet or its mirror image; std::nullopt for other points and for flat tets.
 std::optional<TetWeights> weights_inside(const TetCorners& c, const Vec3& p) {
   const double volume = orient3d_value(c[0], c[1], c[2], c[3]);
   const double edges =
@@ -79,7 +79,7 @@ TetTree::TetTree(const TetMesh& mesh, Order order) : mesh_(mesh), tets_(mesh.tet
 }
 
 BoxTree::Range TetTree::of(MaterialTag material) const {
-  // std::ranges is avoided, since clang 14 cannot compile its subranges.
+  // std::ranges is not used, since clang 14 cannot compile its subranges.
   const auto begin = std::partition_point(tets_.begin(), tets_.end(),
                                           [&](Index t) { return mesh_.materials[t] < material; });
   const auto end =

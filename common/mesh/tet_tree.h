@@ -14,7 +14,7 @@ namespace tetwright {
 /// Barycentric weights, one for each vertex of a tet: none negative, with sum 1 up to rounding.
 using TetWeights = std::array<double, 4>;
 
-/// A tet found for a point, and the point's weights in it.
+/// Tet found for a point, with the point's weights in it.
 struct FoundTet {
   Index tet = no_index;
   TetWeights weights{};
@@ -28,19 +28,20 @@ class TetTree {
  public:
   enum class Order {
     place,          ///< all tets in Morton order
-    material_place  ///< grouped by material, so that a search may be restricted to one
+    material_place  ///< grouped by material, so that a search can be restricted to one
   };
 
   TetTree(const TetMesh& mesh, Order order);
 
-  /// All tets, as positions in the tree's order.
+  /// All tets, as a range of positions in the tree's order.
   BoxTree::Range all() const { return tree_.all(); }
-  /// Tets of a material, or all tets if it has none. Only with Order::material_place.
+  /// Tets of a material, or all tets if there are none. Requires Order::material_place.
   BoxTree::Range of(MaterialTag material) const;
 
   /// Finds the tet of the range that contains `p`, the first in the tree's order.
   /// \return this tet; if there is none, the tet nearest to `p`, with the smallest index among equals, and
-  ///   the weights of its nearest point; no_index without tets or if all are farther away than `max_distance`
+  ///   the weights of its nearest point; no_index if there are no tets or all are farther away than
+  ///   `max_distance`
   FoundTet find(const Vec3& p, const BoxTree::Range& range,
                 double max_distance = std::numeric_limits<double>::infinity()) const;
 

@@ -11,7 +11,7 @@ namespace tetwright {
 
 namespace {
 
-/// Materials as 0, 1, ... in ascending order of their tags.
+/// Ranks of the materials: 0, 1, ... in ascending order of their tags.
 struct Ranks {
   explicit Ranks(const std::vector<MaterialTag>& materials) {
     for (std::size_t t = 0; t < materials.size(); ++t)
@@ -29,14 +29,15 @@ struct Ranks {
   std::vector<Index> of_tet;
 };
 
-/// Numbers of simplices of the domain and of each material.
+/// Number of simplices of the domain and of each material.
 struct Counts {
   explicit Counts(std::size_t materials) : of_material(materials, 0) {}
   Topology::Count domain = 0;
   std::vector<Topology::Count> of_material;
 };
 
-/// Counts the points (`edges` false) or edges of the domain and of each material.
+/// Counts the points or edges of the domain and of each material.
+/// \param edges true: edges, false: points
 Counts count_simplices(const TetMesh& mesh, const Ranks& ranks, bool edges) {
   // One bucket for each smaller vertex, filled by counting, with the other vertex and the material.
   struct Entry {
@@ -87,7 +88,8 @@ Counts count_simplices(const TetMesh& mesh, const Ranks& ranks, bool edges) {
   return sum;
 }
 
-/// Components of the domain (`materials` 0) or of each material.
+/// Components of the domain or of each material.
+/// \param materials number of materials; 0: the domain
 std::vector<Topology::Count> count_components(const TetMesh& mesh, const std::vector<MeshFace>& faces,
                                               const std::vector<Index>* ranks, std::size_t materials) {
   DisjointSets sets(mesh.tets.size());
@@ -106,7 +108,7 @@ Topology::Surface surface_of(const std::vector<Triangle>& triangles) {
 }
 
 Topology::Curves curves_of(const std::vector<SurfaceEdge>& edges) {
-  // Points of the curves, once for each of their edges.
+  // Endpoints of the curves' edges: each point once for each of its edges.
   std::vector<Index> ends;
   Topology::Count count = 0;
   for (const SurfaceEdge& e : edges)
@@ -176,7 +178,7 @@ Topology topology(const TetMesh& mesh, const std::vector<MeshFace>& faces) {
   const std::size_t materials = ranks.tags.size();
   const Counts points = count_simplices(mesh, ranks, false), edges = count_simplices(mesh, ranks, true);
 
-  // Faces and tets of each material; triangles of its boundary and of each interface.
+  // Count the faces and tets of each material, and list the triangles of its boundary and of each interface.
   Counts face_counts(materials), tet_counts(materials);
   face_counts.domain = std::ssize(faces);
   tet_counts.domain = std::ssize(mesh.tets);

@@ -13,8 +13,8 @@ namespace tetwright {
 
 namespace {
 
-/// Maximum number of threads of parallel work of this thread; 0 without a ThreadLimit. Loops pass it on to
-/// the threads that run their bodies.
+/// Maximum number of threads of parallel work started by this thread; 0 without a ThreadLimit. Loops pass it
+/// on to the threads that run their bodies.
 thread_local unsigned thread_limit = 0;
 
 /// Sets thread_limit during its lifetime.
@@ -30,18 +30,18 @@ class LimitHere {
 };
 
 /// The thread sanitizer cannot see how TBB synchronises its threads, since the library is not instrumented.
-/// These two atomics state TBB's guarantees: everything before a loop happens before each body, and each body
-/// happens before everything after the loop. There are two, and no body acquires at its end, so that no order
-/// among bodies is claimed. They are global, so that a body reads nothing of its caller's before it has
-/// acquired.
+/// These two atomics express TBB's guarantees: everything before a loop happens before each body, and each
+/// body happens before everything after the loop. They are separate, and no body acquires at its end, so that
+/// no order among bodies is claimed. They are global, since a body must not read data of its caller before it
+/// has acquired.
 std::atomic<unsigned> loop_started{0};
 std::atomic<unsigned> body_ended{0};
 
-/// Releases at the end of a body, even by an exception.
+/// Releases at the end of a body, even if it throws.
 struct BodyEnd {
   ~BodyEnd() { body_ended.fetch_add(1, std::memory_order_release); }
 };
-/// Acquires in the caller at the end of the loop, even by an exception.
+/// Acquires in the caller at the end of the loop, even if it throws.
 struct LoopEnd {
   ~LoopEnd() { (void)body_ended.load(std::memory_order_acquire); }
 };
@@ -53,7 +53,7 @@ void run_loop(std::size_t count, const std::function<void(std::size_t)>& body) {
     unsigned limit;
   };
   const Loop loop{body, thread_count()};
-  // Even an idle slot of an arena wakes a thread for every loop.
+  // Even an idle slot of an arena would wake a thread for every loop.
   const auto threads = static_cast<unsigned>(std::min<std::size_t>(count, loop.limit));
   loop_started.fetch_add(1, std::memory_order_release);
   const LoopEnd loop_end;
@@ -69,7 +69,7 @@ void run_loop(std::size_t count, const std::function<void(std::size_t)>& body) {
       &loop);
 }
 
-/// `threads` within what is sensible; 0: those of the machine.
+/// Limits a number of threads to max_threads(); 0: that of the machine.
 unsigned sensible_threads(unsigned threads) {
   return threads ? std::min(threads, max_threads()) : hardware_threads();
 }

@@ -12,7 +12,7 @@
 namespace tetwright {
 
 /// Sorts by `less`; the result does not depend on the number of threads. Needs memory for a second copy.
-/// \pre `less` is a total order in which equal items are indistinguishable
+/// \pre `less` is a total order in which equivalent items are indistinguishable
 template <class T, class Less = std::less<>>
 void parallel_sort(std::vector<T>& items, const Less& less = {}) {
   constexpr std::size_t min_chunk = 1 << 13;  // starting a task for fewer items costs more than it saves
@@ -45,8 +45,9 @@ void parallel_sort_unique(std::vector<T>& items) {
   items.erase(std::unique(items.begin(), items.end()), items.end());
 }
 
-/// Calls `body(begin, end, out)` for parts of [begin, end) whose bounds depend on `grain` alone, each with a
-/// vector of its own, and returns the concatenation of the vectors in the order of the parts.
+/// Calls `body(begin, end, out)` for parts of [begin, end) whose bounds depend only on `grain`, each with a
+/// separate output vector.
+/// \return the concatenation of the vectors in the order of the parts
 template <class T, class Body>
 std::vector<T> parallel_collect(std::size_t begin, std::size_t end, std::size_t grain, Body&& body) {
   if (begin >= end) return {};
@@ -57,7 +58,7 @@ std::vector<T> parallel_collect(std::size_t begin, std::size_t end, std::size_t 
   });
   std::size_t size = 0;
   for (const std::vector<T>& part : parts) size += part.size();
-  // Reserved memory is not resident until it is written, and each part is freed once it has been copied.
+  // Reserved memory is not resident until it is written, and each part is freed once it is copied.
   std::vector<T> all;
   all.reserve(size);
   for (std::vector<T>& part : parts) {

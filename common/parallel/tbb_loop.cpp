@@ -13,9 +13,9 @@ namespace tetwright {
 
 namespace {
 
-/// Keeps TBB's threads until the process ends, which stops them wherever they are. Otherwise the last of them
-/// would destroy the library's data during exit, and waiting for the threads takes minutes while other
-/// programs keep all processors busy.
+/// Keeps TBB's threads until the process ends, which stops them at any point. Otherwise the last thread would
+/// destroy the library's data during exit, and waiting for the threads takes minutes while other programs
+/// keep all processors busy.
 struct KeptThreads {
   KeptThreads() : handle(tbb::attach{}) {}
   ~KeptThreads() {}  // the handle is never released
@@ -29,8 +29,7 @@ void keep_threads() { static const KeptThreads kept_threads; }
 
 }  // namespace
 
-// TBB uses the minimum of several such settings, so that one for fewer threads would hold for all threads of
-// the process.
+// TBB applies the minimum of all such settings: a lower one would limit all threads of the process.
 struct TbbThreads::Impl {
   explicit Impl(unsigned threads) {
     if (threads > tbb_concurrency()) control.emplace(tbb::global_control::max_allowed_parallelism, threads);

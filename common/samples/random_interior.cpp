@@ -14,21 +14,22 @@ namespace tetwright {
 namespace {
 
 constexpr std::uint64_t skin_seed = 1, interior_seed = 2, walk_seed = 3;
-/// Maximum displacement of a skin point from the grid, in cells; from a quarter on, squares could fold.
+/// Maximum displacement of a skin point from the grid, in cells; at a quarter or more, squares could fold
+/// over.
 constexpr double skin_jitter = 0.22;
-/// Maximum steps of a walk to the tet that contains a point, before all tets are searched: the body is not
-/// convex, so that a walk may end at the skin.
+/// Maximum number of steps of a walk to the tet that contains a point. All tets are searched after that,
+/// since the body is not convex and a walk may end at the skin.
 constexpr int max_steps = 2000;
 
-/// Maps a point on the surface of the cube from -1 to 1 to the skin. sqrt alone gives the same bits
-/// everywhere.
+/// Maps a point on the surface of the cube [-1, 1]^3 to the skin. Uses only sqrt, so that the bits are the
+/// same on every machine.
 Vec3 on_blob(const Vec3& p, double thickness) {
   const Vec3 u = p / std::sqrt(p.x() * p.x() + p.y() * p.y() + p.z() * p.z());
   const double radius = 1 + 0.3 * u.x() * u.y() + 0.25 * u.z() * u.z() * u.x() - 0.2 * u.y() * u.y();
   return {1.4 * radius * u.x(), radius * u.y(), thickness * radius * u.z()};
 }
 
-/// The cube's surface in squares, each cut along a diagonal chosen at random, oriented outwards.
+/// The cube's surface as squares, each split along a diagonal chosen at random, oriented outwards.
 class Skin {
  public:
   Skin(Index cells, double thickness) : n_(cells), thickness_(thickness) {
@@ -49,7 +50,7 @@ class Skin {
     at[(axis + 2) % 3] = v;
     const auto [entry, is_new] = ids_.try_emplace(at, static_cast<Index>(points.size()));
     if (is_new) {
-      // Points on the cube's edges move along them; its corners stay.
+      // Points on the cube's edges move along their edge; its corners do not move.
       Vec3 p;
       for (int k = 0; k < 3; ++k) {
         const Index c = at[static_cast<std::size_t>(k)];
@@ -76,7 +77,7 @@ class Skin {
   std::map<std::array<Index, 3>, Index> ids_;
 };
 
-/// Whether p lies inside the circumsphere of a positive tet, up to rounding: a wrong decision leaves a tet
+/// Whether p lies inside the circumsphere of a positive tet, up to rounding. A wrong decision leaves a tet
 /// that is Delaunay up to rounding.
 bool in_sphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& p) {
   const Vec3 ap = a - p, bp = b - p, cp = c - p, dp = d - p;
@@ -92,7 +93,7 @@ bool in_sphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const
 /// Incremental insertion of points (Bowyer 1981, Watson 1981). No cavity reaches across the skin.
 class Insertion {
  public:
-  /// Begins with the skin joined to the origin, which sees all of it.
+  /// Starts with the skin connected to the origin, from which all of it is visible.
   explicit Insertion(Skin&& skin) : points(std::move(skin.points)) {
     const auto origin = static_cast<Index>(points.size());
     points.push_back(Vec3::Zero());
@@ -111,10 +112,10 @@ class Insertion {
   };
   static constexpr Tet dead{no_index, no_index, no_index, no_index};
   std::vector<Vec3> points;
-  std::vector<Cell> tets;  ///< tets with the points `dead` are deleted
+  std::vector<Cell> tets;  ///< deleted tets have the points `dead`
 
-  /// Inserts a point, or returns false and leaves it out if it lies on a face, or would lie on one of a tet
-  /// that must stay.
+  /// Inserts a point. Returns false and leaves it out if it lies on a face, or would lie on a face of a tet
+  /// that must be kept.
   bool insert(const Vec3& p) {
     const Index first = locate(p);
     if (first == no_index) return false;
@@ -127,12 +128,12 @@ class Insertion {
   }
 
  private:
-  /// Faces at the apex with only one tet so far, by their other two points.
+  /// Faces at the apex that have only one tet so far, by their other two points.
   using OpenFaces = std::map<std::pair<Index, Index>, std::pair<Index, int>>;
 
   const Vec3& at(Index t, int k) const { return points[tets[t].points[static_cast<std::size_t>(k)]]; }
 
-  /// Orientation of the tet of p and a face: positive if p is on the inner side.
+  /// Orientation of the tet formed by p and a face: positive if p is on the inner side.
   int side(Index t, int face, const Vec3& p) const {
     const auto& f = tet_faces[static_cast<std::size_t>(face)];
     return -orient3d(at(t, f[0]), at(t, f[1]), at(t, f[2]), p);
@@ -144,7 +145,7 @@ class Insertion {
     return true;
   }
 
-  /// Tet with p inside; no_index if p lies on a face.
+  /// Tet that contains p in its interior; no_index if p lies on a face.
   Index locate(const Vec3& p) {
     Index t = last_;
     for (int step = 0; step < max_steps; ++step) {
@@ -181,8 +182,8 @@ class Insertion {
       }
   }
 
-  /// Removes tets from the cavity that have a hull face hidden from p; returns whether there were any. Near
-  /// the skin the mesh is not Delaunay, and elsewhere rounding may have decided.
+  /// Removes tets from the cavity that have a hull face not visible from p, and returns whether there were
+  /// any. They occur near the skin, where the mesh is not Delaunay, and elsewhere where rounding decided.
   bool drop_hidden_faces(const Vec3& p) {
     const std::size_t before = cavity_.size();
     std::erase_if(cavity_, [&](Index t) {
@@ -198,7 +199,7 @@ class Insertion {
     return cavity_.size() < before;
   }
 
-  /// Whether the cavity still contains the tet of p and none of its points is lost.
+  /// Whether the cavity still contains the tet of p and no point is lost with it.
   bool contains_all_of(Index first) {
     if (mark_[first] != round_) return false;
     std::vector<Index> inner, outer;
@@ -222,7 +223,7 @@ class Insertion {
     struct HullFace {
       Triangle ids;
       Index outside;
-      int back;  ///< this face of `outside`
+      int back;  ///< index of this face in `outside`
     };
     std::vector<HullFace> hull;
     for (const Index t : cavity_)
@@ -236,7 +237,7 @@ class Insertion {
         hull.push_back(
             {{tets[t].points[ids[0]], tets[t].points[ids[1]], tets[t].points[ids[2]]}, next, back});
       }
-    // Usually there are more new tets than old ones, but not always.
+    // There are usually, but not always, more new tets than old ones.
     for (; cavity_.size() < hull.size() && !free_.empty(); free_.pop_back()) cavity_.push_back(free_.back());
     for (; cavity_.size() < hull.size(); tets.push_back({}))
       cavity_.push_back(static_cast<Index>(tets.size()));
@@ -256,7 +257,7 @@ class Insertion {
     }
   }
 
-  /// Links a tet (apex, a, b, c) to the others at the apex, across the edges of its outer face.
+  /// Links a tet (apex, a, b, c) to the other tets at the apex, across the edges of its outer face.
   void join(Index t, OpenFaces& open) {
     for (int f = 1; f < 4; ++f) {
       const Index a = tets[t].points[static_cast<std::size_t>(f % 3 + 1)];
@@ -270,13 +271,14 @@ class Insertion {
   }
 
   std::vector<Index> cavity_, free_;
-  std::vector<std::uint32_t> mark_;  ///< by tet: round in which it was in the cavity
+  std::vector<std::uint32_t> mark_;  ///< by tet: last round in which it was in the cavity
   std::uint32_t round_ = 0;
   Index last_ = 0;
   Random walk_{walk_seed};
 };
 
-/// Random points, uniform over the body: in the tets of a fan over the skin, chosen by volume.
+/// Random points, uniform over the body: tets of a fan over the skin are chosen in proportion to their
+/// volumes.
 class Interior {
  public:
   explicit Interior(const Skin& skin) : skin_(skin) {
@@ -289,7 +291,7 @@ class Interior {
   Vec3 next() {
     const auto chosen = std::upper_bound(sums_.begin(), sums_.end(), random_.uniform() * sums_.back());
     const auto i = std::min(static_cast<std::size_t>(chosen - sums_.begin()), sums_.size() - 1);
-    // The gaps between three sorted random numbers are uniform over a tet.
+    // The gaps between three sorted uniform numbers are uniform barycentric coordinates.
     std::array<double, 3> w{random_.uniform(), random_.uniform(), random_.uniform()};
     std::sort(w.begin(), w.end());
     const Triangle& s = skin_.triangles[i];

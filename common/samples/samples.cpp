@@ -21,7 +21,7 @@ struct SineCosine {
   double sine, cosine;
 };
 
-/// Sine and cosine of an angle in full turns (0 to 1), computed with + - * / only, so that samples have the
+/// Sine and cosine of an angle in full turns (0 to 1), computed with only + - * /, so that samples have the
 /// same bits on every machine.
 SineCosine sine_cosine(double turns) {
   // Power series for an eighth of the angle, which is then doubled three times.
@@ -90,8 +90,8 @@ TriangleMesh torus() {
   });
 }
 
-/// A tube along the trefoil (sin t + 2 sin 2t, cos t - 2 cos 2t, -sin 3t). The curve's normal and binormal
-/// (Frenet) span its cross-sections and turn smoothly: the curve has no inflection.
+/// A tube along the trefoil (sin t + 2 sin 2t, cos t - 2 cos 2t, -sin 3t). Its cross-sections are spanned by
+/// the curve's Frenet normal and binormal, which turn smoothly since the curve has no inflection.
 TriangleMesh knot() {
   return closed_grid(256, 24, [](double u, double v) {
     const auto times = [&](double k) { return sine_cosine(k * u - std::floor(k * u)); };
@@ -108,7 +108,7 @@ TriangleMesh knot() {
   });
 }
 
-/// The cube from -1 to 1, each face divided into n x n squares.
+/// The cube [-1, 1]^3, each face divided into n x n squares.
 TriangleMesh cube(Index n) {
   TriangleMesh mesh;
   std::map<std::array<Index, 3>, Index> ids;
@@ -156,7 +156,7 @@ TriangleMesh open_sphere() {
     return mesh.points[t[0]].z() + mesh.points[t[1]].z() + mesh.points[t[2]].z() > 3 * 0.875;
   };
   std::erase_if(mesh.triangles, in_hole);
-  // Points of the hole alone are removed, so that every point is on the surface.
+  // Remove the points that only the removed triangles used, so that every point is on the surface.
   std::vector<Index> numbers(mesh.points.size(), no_index);
   std::vector<Vec3> points;
   for (Triangle& t : mesh.triangles)
@@ -171,7 +171,7 @@ TriangleMesh open_sphere() {
   return mesh;
 }
 
-/// A box of cells of edge `scale`, each divided into the six tets around its diagonal (Kuhn 1960).
+/// A box of cubes with edge length `scale`, each divided into the six tets around its diagonal (Kuhn 1960).
 TetMesh box_of_tets(const std::array<Index, 3>& cells, double scale,
                     const std::function<MaterialTag(const Vec3&)>& material) {
   TetMesh mesh;
@@ -220,7 +220,7 @@ TetMesh layers() {
   return mesh;
 }
 
-/// Twice the offset of a voxel from the middle of an axis of 48 voxels: a whole number.
+/// Offset of a voxel from the middle of an axis of 48 voxels, doubled so that it is an integer.
 constexpr int organs_size = 48;
 using Doubled = std::array<std::int64_t, 3>;
 
@@ -261,7 +261,7 @@ LabelVolume organs() {
       for (int i = 0; i < organs_size; ++i)
         volume.labels.push_back(
             organ_at({2 * i - (organs_size - 1), 2 * j - (organs_size - 1), 2 * k - (organs_size - 1)}));
-  // Noise as in real segmentations: runs of up to three voxels of any label.
+  // Noise as in real segmentations: runs of up to three voxels with any label.
   Random random(1);
   constexpr int islands = 60;
   for (int n = 0; n < islands; ++n) {

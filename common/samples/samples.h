@@ -12,18 +12,19 @@
 namespace tetwright {
 
 /// Names of the built-in samples.
-/// - Surfaces about the origin, closed and oriented outwards: sphere, torus, cube, two_spheres, knot; and
+/// - Surfaces around the origin, closed and oriented outwards: sphere, torus, cube, two_spheres, knot; and
 ///   open_sphere, a sphere with a hole.
 /// - Tet meshes, all tets positive: tet_cube, two_materials (two halves of a box), layers (four materials on
-///   top of each other); random_interior, random_interior_small and random_interior_large (a coarse skin with
-///   34,000, 1,000 and 200,000 tets between random points, two in five of them slivers and the like).
+///   top of each other); random_interior, random_interior_small and random_interior_large (a coarse skin
+///   filled with 34,000, 1,000 and 200,000 tets between random points, two in five of them slivers and
+///   similar).
 /// - A segmented volume: organs (a body with a skin one voxel thick, a spine, two organs that touch, noise).
 std::vector<std::string> sample_names();
 
 using Sample = std::variant<TriangleMesh, TetMesh, LabelVolume>;
 
-/// Makes a sample, with the same bits on every machine.
-/// \throws UsageError, which lists the names, for an unknown one
+/// Makes a sample; its bits are the same on every machine.
+/// \throws UsageError listing the names if the name is unknown
 Sample make_sample(const std::string& name);
 
 }  // namespace tetwright

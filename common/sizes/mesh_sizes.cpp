@@ -17,7 +17,7 @@ namespace tetwright {
 
 namespace {
 
-/// Weighted sum of lengths. Differences keep equal lengths bit by bit.
+/// Weighted sum of lengths. Interpolating differences reproduces equal lengths bit by bit.
 template <std::size_t n>
 double interpolated(const std::array<Index, n>& corners, const std::array<double, n>& weights,
                     const std::vector<double>& lengths) {
@@ -27,7 +27,7 @@ double interpolated(const std::array<Index, n>& corners, const std::array<double
   return sum;
 }
 
-/// Whether an element uses each point.
+/// Flags the points that an element uses.
 template <class Elements>
 std::vector<char> used_points(const Elements& elements, std::size_t points) {
   std::vector<char> used(points, 0);
@@ -36,7 +36,7 @@ std::vector<char> used_points(const Elements& elements, std::size_t points) {
   return used;
 }
 
-/// Points of a mesh, and the lengths at those that are used.
+/// Lengths at the points of a mesh, and which points are used.
 class PointLengths {
  public:
   PointLengths(std::vector<double> lengths, std::vector<char> used)
@@ -82,7 +82,7 @@ class TetMeshSizes : public SizeSource {
  private:
   const TetMesh mesh_;
   const PointLengths of_points_;
-  const double reach_;  ///< distance outside the tets
+  const double reach_;  ///< maximum distance outside the tets
   const TetTree tree_;  ///< refers to mesh_
 };
 

@@ -11,18 +11,18 @@ namespace tetwright {
 
 namespace {
 
-/// Approximate number of nodes: 8 MB, sampled in a second or two.
+/// Approximate number of nodes: 8 MB, sampled in one or two seconds.
 constexpr double nodes_wanted = 1 << 21;
-/// Maximum number of nodes along an axis: a flat or slender box does not benefit from more.
+/// Maximum number of nodes along an axis; more do not help in a flat or slender box.
 constexpr double max_nodes_along = 512;
 constexpr int margin = 1;  ///< nodes around the box
-/// Maximum number of passes in both directions. Each carries a size any distance along the directions of a
-/// node's neighbours; more than a few change nothing.
+/// Maximum number of passes in both directions. Each pass propagates a size any distance along the directions
+/// of a node's neighbours; further passes change hardly anything.
 constexpr int max_passes = 8;
-/// Search radius for known nodes, in nodes.
+/// Search radius for known nodes, in grid spacings.
 constexpr int max_reach = 6;
 constexpr std::size_t place_grain = 1024;
-/// Paths along a node's 26 neighbours are up to this factor longer than a straight line (Borgefors 1986).
+/// Paths along a node's 26 neighbours are longer than a straight line by up to this factor (Borgefors 1986).
 constexpr double max_detour = 1.13;
 
 }  // namespace
@@ -31,7 +31,7 @@ SizeField::SizeField(const SizeSource& source, const Vec3& low, const Vec3& high
     : limits_(limits) {
   const Vec3 sides = high - low;
   const double longest = sides.maxCoeff();
-  // Flat boxes count as one node thick.
+  // Flat boxes are treated as one node thick.
   const Vec3 solid = sides.cwiseMax(longest / max_nodes_along);
   spacing_ = std::max(portable_cbrt(solid.prod() / nodes_wanted), longest / max_nodes_along);
   low_ = low - Vec3::Constant(margin * spacing_);
@@ -63,7 +63,7 @@ void SizeField::sample(const SizeSource& source) {
 }
 
 double SizeField::growth(double distance, const SizeSource& source) const {
-  // A surface may pass between nodes: lengths do not grow within the cells that it crosses, or the
+  // A surface may pass between nodes. The length must not grow within the cells that it crosses, or the
   // interpolated length would exceed the target.
   const double cell = source.fills_space() ? 0 : std::sqrt(3.0) * spacing_;
   return limits_.grading * std::max(0.0, distance - cell);
@@ -75,7 +75,7 @@ void SizeField::lower_at_values(const SizeSource& source) {
     std::array<int, 3> first;
     for (int a = 0; a < 3; ++a) {
       const double at = (place[a] - low_[a]) / spacing_;
-      // Outside the grid: the next node is nearer to nodes within it.
+      // Skip a value outside the grid: the grid's nodes are nearer to others.
       if (!(at >= 0 && at < static_cast<double>(size_[static_cast<std::size_t>(a)] - 1))) return;
       first[static_cast<std::size_t>(a)] = static_cast<int>(at);
     }

@@ -150,7 +150,7 @@ std::string level_sets_to_vdb(std::span<const NamedGrid> grids, const GridFrame&
 
 /// The labels of a stored grid of int32 or int64.
 /// \param stored must hold its bytes, which are consumed
-/// \throws InputError as read_label_grid() of vdb_files.h
+/// \throws InputError as read_label_grid()
 LabelVolume labels_from_vdb(VdbGrid& stored, std::size_t max_voxels, const std::string& file);
 
 }  // namespace tetwright

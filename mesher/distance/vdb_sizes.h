@@ -9,7 +9,7 @@
 namespace tetwright {
 
 /// Reads edge lengths from a grid of floats or doubles in a .vdb file: the grid with the first possible name
-/// in size_names (common/sizes/size_source.h), else the only such grid not of the class "level set". Memory
+/// in size_names (tetwright/sizes.h), else the only such grid not of the class "level set". Memory
 /// grows with the file.
 ///
 /// Lengths are given at the centres of active voxels, positioned by the grid's transform, and interpolated

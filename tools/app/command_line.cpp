@@ -45,7 +45,7 @@ constexpr std::array<CommandEntry, 7> commands{{
     {Command::sample, "Writes a built-in sample", add_sample},
 }};
 
-/// Refuses a call without a command or with an unknown one.
+/// Rejects a call without a command or with an unknown one.
 void check_command(int argc, char** argv) {
   if (argc > 1 && argv[1][0] == '-') return;
   std::vector<std::string> names;
@@ -60,12 +60,12 @@ void check_command(int argc, char** argv) {
                    "' (commands: " + comma_separated(names) + ")");
 }
 
-/// Names the nearest option for the first argument that looks like an option but is unknown; empty if
-/// there is none.
+/// Text that suggests the nearest option for the first argument that looks like an option but is unknown;
+/// empty if there is no such argument.
 std::string unknown_option(const CLI::App& app) {
   const CLI::App* chosen = app.get_subcommands().empty() ? &app : app.get_subcommands().front();
   for (const std::string& argument : app.remaining(true)) {
-    if (argument == "--") break;  // what follows are names
+    if (argument == "--") break;  // all following arguments are names
     if (!argument.starts_with('-') || argument.size() < 2) continue;
     const std::string typed = argument.substr(0, argument.find('='));
     std::vector<std::string> names;
@@ -77,7 +77,7 @@ std::string unknown_option(const CLI::App& app) {
   return "";
 }
 
-/// Refuses `--option=` without a value, for which the parser would take the next argument.
+/// Rejects `--option=` without a value, for which the parser would take the next argument.
 void check_values(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
@@ -86,7 +86,7 @@ void check_values(int argc, char** argv) {
   }
 }
 
-/// Refuses more than one MESH or NAME. The parser's own message counts them and does not name them.
+/// Rejects more than one MESH or NAME. The parser's own message gives their number, not their names.
 void check_one_positional(const CLI::App& app) {
   for (const CLI::App* chosen : app.get_subcommands())
     for (const CLI::Option* positional : chosen->get_options())
@@ -96,12 +96,13 @@ void check_one_positional(const CLI::App& app) {
                          positional->results()[1] + "' is too many");
 }
 
-/// Runs the parser, which sets the options; returns false if help or the version was printed.
+/// Runs the parser, which sets the options.
+/// \return false if help or the version was printed
 bool parse_arguments(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    std::cout << app.help();  // of the command, if one was named
+    std::cout << app.help();  // help of the command, if one was given
     return false;
   } catch (const CLI::CallForVersion&) {
     std::cout << "tetwright " << TETWRIGHT_VERSION << "\n";

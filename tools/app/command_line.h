@@ -9,27 +9,27 @@
 
 namespace tetwright {
 
-/// NAME=VALUE on the command line.
+/// NAME=VALUE, as given on the command line.
 struct NamedValue {
   std::string name, value;
 };
 
-/// The name of standard input in messages.
+/// Name of standard input in messages.
 inline constexpr const char* standard_input = "stdin";
 
-/// Display of progress.
+/// How progress is displayed.
 enum class ProgressStyle { automatic, bar, json, none };
 
 enum class Command { prepare, mesh, simplify, improve, check, batch, sample };
 
-/// The files that a command writes. "-": standard output, for streams only; empty: none.
+/// Files that a command writes. "-": standard output, for formats that can be streamed; empty: not written.
 struct OutputOptions {
-  std::string mesh;             ///< the mesh; of `sample`: the sample of any kind
-  std::string format;           ///< format of `mesh`; empty: by its extension
-  std::string boundary;         ///< the boundary and interfaces as a surface
-  std::string boundary_format;  ///< --output-format if `boundary` is standard output
-  bool no_boundary = false;     ///< leaves triangles out of `mesh`
-  std::string distances;        ///< the signed distances that were meshed, .vdb
+  std::string mesh;             ///< the mesh; for the command `sample` a sample of any kind
+  std::string format;           ///< format of `mesh`; empty: from its extension
+  std::string boundary;         ///< boundary and interfaces as a surface
+  std::string boundary_format;  ///< value of --output-format if `boundary` is standard output
+  bool no_boundary = false;     ///< true: write no triangles to `mesh`
+  std::string distances;        ///< .vdb file of the signed distances that were meshed
   std::string report;           ///< .html
   std::string stats;            ///< .json
 };
@@ -44,27 +44,27 @@ struct ConsoleOptions {
 
 struct CheckOptions {
   std::string before;                 ///< mesh that must have the same topology; empty: none
-  std::vector<std::string> surfaces;  ///< to compare the mesh with
+  std::vector<std::string> surfaces;  ///< surfaces with which the mesh is compared
   bool json = false;
 };
 
 struct BatchOptions {
-  std::string results;  ///< file; empty: beside the jobs
+  std::string results;  ///< file; empty: next to the file of jobs
   unsigned jobs = 0;    ///< concurrent jobs; 0: one for each thread
-  bool retry = false;   ///< reruns jobs that did not end with status 0
+  bool retry = false;   ///< true: rerun jobs that did not end with status 0
 };
 
-/// The parsed command line, with the defaults that --help shows.
+/// A parsed command line; the initial values are the defaults that --help shows.
 struct CommandLine {
   Command command = Command::prepare;
   std::string call;       ///< the call as typed, for the log
   std::string arguments;  ///< `call` without the program's name; each starts with a space
-  /// The result stays in memory of a host program, so that -o is optional. Set before parsing.
+  /// The result stays in the memory of a host program, so that -o is optional. Set this before parsing.
   bool in_memory = false;
-  std::vector<std::string> inputs;    ///< standard_input for "-"; of `sample`: its name
-  std::string input_format;           ///< extension for standard input, ".ply"; empty: not used
-  std::vector<NamedValue> materials;  ///< after the positional inputs: name and file
-  PrepareOptions options;             ///< of commands that make meshes; `check` uses a few
+  std::vector<std::string> inputs;    ///< standard_input for "-"; for `sample` its name
+  std::string input_format;           ///< extension for standard input, such as ".ply"; empty: not used
+  std::vector<NamedValue> materials;  ///< inputs after the positional ones: name and file
+  PrepareOptions options;             ///< options of commands that make meshes; `check` uses some of them
   OutputOptions outputs;
   ConsoleOptions console;
   CheckOptions check;
@@ -73,7 +73,7 @@ struct CommandLine {
 
 /// Whether the command makes a mesh.
 bool makes_mesh(Command command);
-/// The task of a command.
+/// Task of a command.
 ///
 /// \pre makes_mesh(command)
 Task task_of(Command command);
@@ -81,11 +81,12 @@ Task task_of(Command command);
 /// Parses the arguments.
 ///
 /// \return false if it printed the help or the version instead
-/// \throws UsageError with one line that names the remedy: for unknown commands and options (with the nearest
-/// known one), values out of range (with option, value and range), and options that do not go together
+/// \throws UsageError with one line that includes the remedy: for unknown commands and options (with the
+///   nearest known one), for values out of range (with option, value and range), and for options that cannot
+///   be combined
 bool parse_command_line(int argc, char** argv, CommandLine& out);
 
-/// The names on the command line, such as "prepare", "tuned" and "solid-angle".
+/// Names on the command line, such as "prepare", "tuned" and "solid-angle".
 const char* name_of(Command command);
 const char* name_of(Schedule schedule);
 const char* name_of(ProgressStyle style);

@@ -15,7 +15,7 @@ namespace tetwright {
 
 namespace {
 
-/// The simplifier numbers the four corners of its tets in 32 bits.
+/// The simplifier numbers the four corners of each tet with 32 bits.
 constexpr std::uint64_t max_target_tets = std::uint64_t{1} << 30;
 constexpr std::uint64_t max_rounds = 10'000;
 constexpr std::uint64_t max_threads_option = 1024;
@@ -23,7 +23,7 @@ constexpr std::uint64_t max_jobs = 64;
 /// More voxels than any volume has.
 constexpr std::uint64_t max_min_voxels = 1'000'000'000'000'000'000;
 
-/// Adds an option whose value is the name of one of `values`.
+/// Adds an option whose value is one of the names in `values`.
 template <class Value>
 void add_choice(CLI::App& app, const char* option, Value& to, std::initializer_list<Value> values,
                 const char* description) {

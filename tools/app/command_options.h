@@ -9,7 +9,7 @@ namespace tetwright {
 
 struct CommandLine;
 
-/// Add a command's options and arguments, with their help, to its parser, which sets `line`.
+/// Adds the options and arguments of a command, with their help, to its parser. The parser sets `line`.
 ///
 /// \pre `line` outlives `app`.
 void add_prepare(CLI::App& app, CommandLine& line);

@@ -12,7 +12,7 @@ namespace tetwright {
 
 namespace {
 
-/// Whether the error means that no thread could be started: oneTBB throws a plain std::runtime_error.
+/// Whether the error means that no thread could be started; oneTBB throws a plain std::runtime_error.
 bool no_thread(const std::exception& error) {
   return dynamic_cast<const std::system_error*>(&error) || typeid(error) == typeid(std::runtime_error);
 }

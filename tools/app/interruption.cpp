@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::array<int, 3> ending_signals{SIGHUP, SIGINT, SIGTERM};
 
-/// Determined in advance, since isatty() is not async-signal-safe everywhere.
+/// Determined in advance, since isatty() need not be async-signal-safe.
 bool stderr_is_terminal = false;
 
 std::atomic<const char*> line_to_say{nullptr};
@@ -29,7 +29,7 @@ void say(const char* text) {
 /// Async-signal-safe.
 void end_at_once(int) {
   const bool output_is_there = abandon_output_files();
-  if (stderr_is_terminal) say("\r\x1b[K");  // in place of a progress bar
+  if (stderr_is_terminal) say("\r\x1b[K");  // erases a progress bar
   if (const char* line = line_to_say)
     say(line);
   else if (output_is_there)
@@ -49,14 +49,14 @@ void handle_interruptions() {
   sigset_t ending;
   sigemptyset(&ending);
   for (const int signal : ending_signals) sigaddset(&ending, signal);
-  action.sa_mask = ending;  // a second signal does not interrupt the handler of the first
+  action.sa_mask = ending;  // a second signal must not interrupt the handler of the first
   for (const int signal : ending_signals) {
     struct sigaction before {};
     if (signal == SIGHUP && sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_IGN)
       continue;
     sigaction(signal, &action, nullptr);
   }
-  // The parent process may have blocked them.
+  // The parent process may have blocked these signals.
   sigprocmask(SIG_UNBLOCK, &ending, nullptr);
   stderr_is_terminal = isatty(STDERR_FILENO) != 0;
 }

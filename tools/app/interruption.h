@@ -4,11 +4,11 @@
 namespace tetwright {
 
 /// Makes SIGHUP, SIGINT and SIGTERM end the process immediately with status 130 and one line on stderr that
-/// says whether the output was written. Unfinished files are removed; existing files are kept. A signal
-/// during the renaming of finished files takes effect once all are renamed.
+/// tells whether the output was written. Unfinished files are removed; existing files are kept. A signal that
+/// arrives while finished files are renamed takes effect once all are renamed.
 ///
-/// The stack is not unwound: nothing has to poll for signals, and waiting for a pipe ends as well. A SIGHUP
-/// that the parent process ignores stays ignored, as nohup requires.
+/// The stack is not unwound: no code has to poll for signals, and waiting for a pipe is interrupted too. A
+/// SIGHUP that the parent process ignores stays ignored, as nohup requires.
 ///
 /// \pre Called first in main(), before threads start.
 void handle_interruptions();

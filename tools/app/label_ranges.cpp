@@ -11,7 +11,8 @@ namespace tetwright {
 
 namespace {
 
-/// Removes a label from the beginning of the text; returns false if there is none.
+/// Removes a label from the beginning of the text.
+/// \return false if there is none
 bool take_label(std::string_view& text, MaterialTag& label) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), label);
   if (error != std::errc()) return false;

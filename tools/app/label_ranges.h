@@ -17,10 +17,10 @@ using LabelRange = std::pair<MaterialTag, MaterialTag>;
 /// \throws UsageError that names `option` and `text`
 MaterialTag parse_label(const std::string& option, const std::string& text);
 
-/// Parses labels and ranges of labels, such as "1,5-9,-3--1": a minus after a number makes a range, before a
-/// number it is a sign.
+/// Parses labels and ranges of labels, such as "1,5-9,-3--1". A minus after a number denotes a range; before
+/// a number it is a sign.
 ///
-/// \throws UsageError that names `option` and the wrong part
+/// \throws UsageError that names `option` and the invalid part
 std::vector<LabelRange> parse_label_ranges(const std::string& option, const std::string& text);
 
 }  // namespace tetwright

@@ -24,7 +24,7 @@ struct CloseFile {
 std::unique_ptr<std::FILE, CloseFile> log_stream;
 std::mutex log_mutex;
 
-/// "2026-01-31T12:34:56.789Z".
+/// Current time as "2026-01-31T12:34:56.789Z".
 std::string utc_now() {
   const auto now = std::chrono::system_clock::now();
   const std::time_t seconds = std::chrono::system_clock::to_time_t(now);

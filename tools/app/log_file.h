@@ -5,7 +5,7 @@
 
 namespace tetwright {
 
-/// Opens the file that log_line() appends to; creates it if missing.
+/// Opens the file to which log_line() appends, creating it if it is missing.
 ///
 /// \throws OutputError if it cannot be written
 void open_log(const std::string& path);

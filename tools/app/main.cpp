@@ -25,16 +25,16 @@ int main(int argc, char** argv) {
   tetwright::handle_interruptions();
   using tetwright::ExitStatus;
 #ifdef __GLIBC__
-  // Large blocks are returned to the system when they are freed. By default glibc raises the threshold to the
-  // size of the blocks that were freed, and then keeps later ones in its heaps: gigabytes between the stages.
+  // Return large blocks to the system when they are freed. By default glibc raises the threshold to the size
+  // of freed blocks and then keeps later blocks in its heaps, which would be gigabytes between stages.
   // Setting the threshold, here to its initial value, keeps it constant. glibc still uses its heaps while
   // more than 65,536 large blocks are allocated.
   mallopt(M_MMAP_THRESHOLD, 128 << 10);
 #endif
-  // A full disk or a closed pipe must end in an error message, not in a signal.
+  // A full disk or a closed pipe must lead to an error message, not to a signal.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
-  // For exceptions that the handlers below cannot catch: nearly always the system could not start a thread,
+  // For exceptions that the handlers below cannot catch. Nearly always the system could not start a thread,
   // which oneTBB reports as a std::runtime_error.
   std::set_terminate([] {
     (void)tetwright::abandon_output_files();

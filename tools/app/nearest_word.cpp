@@ -9,7 +9,7 @@ namespace tetwright {
 
 std::size_t typing_errors(std::string_view a, std::string_view b) {
   const std::size_t columns = b.size() + 1;
-  // errors[i * columns + j]: between the first i characters of a and the first j of b.
+  // errors[i * columns + j]: typing errors between the first i characters of a and the first j of b.
   std::vector<std::size_t> errors((a.size() + 1) * columns);
   for (std::size_t i = 0; i <= a.size(); ++i)
     for (std::size_t j = 0; j <= b.size(); ++j) {
@@ -28,7 +28,7 @@ std::size_t typing_errors(std::string_view a, std::string_view b) {
 }
 
 std::string nearest_word(std::string_view typed, std::span<const std::string> words) {
-  // Bounds the cost: arguments may have any length, and no known name is longer.
+  // Bounds the cost, since arguments may have any length. No known name is longer.
   constexpr std::size_t max_compared = 64;
   std::string nearest;
   std::size_t min_errors = std::numeric_limits<std::size_t>::max();

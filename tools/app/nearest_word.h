@@ -8,11 +8,12 @@
 
 namespace tetwright {
 
-/// Min number of insertions, removals, replacements and swaps of neighbours that turn one word into the other
-/// (optimal string alignment, Damerau 1964). Time and memory grow with the product of the lengths.
+/// Minimum number of insertions, deletions, replacements and swaps of adjacent characters that turn one word
+/// into the other (optimal string alignment, Damerau 1964). Time and memory are proportional to the product
+/// of the lengths.
 std::size_t typing_errors(std::string_view a, std::string_view b);
 
-/// The first word with the fewest typing errors; empty if there are no words.
+/// First of the words with the fewest typing errors; empty if there are no words.
 std::string nearest_word(std::string_view typed, std::span<const std::string> words);
 
 }  // namespace tetwright

@@ -16,7 +16,7 @@ namespace tetwright {
 
 namespace {
 
-/// Refuses "-" for options that need a file.
+/// Rejects "-" for options that require a file.
 void check_no_stream(const CommandLine& out) {
   const auto check = [](const char* option, const std::string& file) {
     if (file == "-")
@@ -73,7 +73,7 @@ void complete_output_stream(CommandLine& out) {
                      " -) has no extension; give --output-format");
   if (out.outputs.boundary == "-")
     out.outputs.boundary_format = std::exchange(out.outputs.format, {});
-  else if (out.command != Command::sample)  // samples are of several kinds
+  else if (out.command != Command::sample)  // a sample may be of any kind
     check_tet_stream(out);
 }
 

@@ -7,14 +7,14 @@
 
 namespace tetwright {
 
-/// Checks that the format of the output has ten-node tets.
+/// Checks that the format of the output supports tets of ten nodes.
 ///
-/// \throws UsageError if not
+/// \throws UsageError if it does not
 void check_holds_second_order(const std::string& output, const std::string& format);
 
 /// Resolves the streams of a parsed command line and checks its options.
 ///
-/// \throws UsageError if options do not go together, or an input is missing
+/// \throws UsageError if options cannot be combined, or an input is missing
 void complete_command_line(CommandLine& out);
 
 }  // namespace tetwright

@@ -61,7 +61,7 @@ CLI::Option* add_length(CLI::App& app, const std::string& name, std::optional<Le
 CLI::Option* add_feature_angle(CLI::App& app, FeatureAngle& to) {
   static const std::string name = "--feature-angle";
   const auto parse = [](const std::string& text) -> FeatureAngle {
-    // Below 1 degree every facet of a curved surface would be a patch.
+    // Below 1 degree every facet of a curved surface would become a patch.
     constexpr Range angle{1, 179, true, "an angle from 1 to 179 degrees, auto or off"};
     if (text == "auto") return {FeatureAngle::Rule::automatic, 0};
     if (text == "off") return {FeatureAngle::Rule::off, 0};

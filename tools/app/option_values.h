@@ -13,39 +13,43 @@
 
 namespace tetwright {
 
-/// The numbers that an option accepts.
+/// Range of numbers that an option accepts.
 struct Range {
   double low, high;
   bool low_included;
-  const char* text;  ///< for messages
+  const char* text;  ///< description for messages
 
   bool contains(double x) const { return (low_included ? x >= low : x > low) && x <= high; }
 };
 inline constexpr double max_number = std::numeric_limits<double>::max();
 inline constexpr Range positive{0, max_number, false, "a number above 0"};
 inline constexpr Range not_negative{0, max_number, true, "a number of at least 0"};
-/// Steradians, up to the solid angle at a vertex of the regular tet: the max of a tet's min solid angle.
+/// Steradians. The upper bound is the solid angle at a vertex of the regular tet, the maximum for a tet's
+/// smallest angle.
 inline constexpr Range solid_angle{0, 0.5513, true, "a solid angle from 0 to 0.5513, the regular tet's"};
 
 /// Parses a number.
 ///
-/// \throws CLI::ValidationError unless all of the text is a number within the range; none contains nan or inf
+/// \throws CLI::ValidationError unless the whole text is a number within the range; no range contains nan or
+///   inf
 double parse_number(const std::string& option, const std::string& text, const Range& range);
 
 /// Parses a whole number from `low` to `high`. CLI11's own conversion reads a leading 0 as octal and lets
 /// negative numbers wrap around.
 ///
-/// \throws CLI::ValidationError unless all of the text is such a number
+/// \throws CLI::ValidationError unless the whole text is such a number
 std::uint64_t parse_whole_number(const std::string& option, const std::string& text, std::uint64_t low,
                                  std::uint64_t high);
 
-/// Splits NAME=VALUE. Messages call VALUE by `value`.
+/// Splits NAME=VALUE.
+///
+/// \param value how messages refer to VALUE
 NamedValue split_named(const std::string& text, const char* option, const char* value);
 
-/// Formats a default for the help, "0.05".
+/// Formats a default value for the help, such as "0.05".
 std::string short_text(double value);
 
-/// Formats a list for help and messages, "a, b".
+/// Formats a list for help and messages, such as "a, b".
 std::string comma_separated(const std::vector<std::string>& names);
 
 /// Adds an option whose value is the result of `parse`.
@@ -58,7 +62,7 @@ CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& to, const
       ->type_name(type);
 }
 
-/// The type of an option's value, without std::optional.
+/// Type of an option's value, without std::optional.
 template <class Value>
 struct PlainOf {
   using Type = Value;

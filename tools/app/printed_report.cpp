@@ -14,7 +14,7 @@ namespace tetwright {
 
 namespace {
 
-/// printf into a string of at most 63 bytes.
+/// printf() into a string of at most 63 bytes.
 std::string text(const char* format, ...) {
   char buffer[64];
   va_list arguments;
@@ -24,7 +24,7 @@ std::string text(const char* format, ...) {
   return buffer;
 }
 
-/// "volume 40 x 30 x 20 voxels of 1 x 1 x 2.5, space unknown; 2 labels: 1 'bone', 2 'skin'".
+/// Line such as "volume 40 x 30 x 20 voxels of 1 x 1 x 2.5, space unknown; 2 labels: 1 'bone', 2 'skin'".
 std::string volume_line(const VolumeReport& v) {
   constexpr std::size_t max_labels = 8;
   const Vec3 spacing = v.spacing();
@@ -38,7 +38,7 @@ std::string volume_line(const VolumeReport& v) {
   return printable(line);
 }
 
-/// "features of 'part': 12 patches, since edges turn like those of a part".
+/// Line such as "features of 'part': 12 patches, since edges turn like those of a part".
 std::string feature_line(const FeatureReport& f) {
   using Verdict = SurfacePatches::Verdict;
   const auto loose = [&] {

@@ -9,10 +9,10 @@
 
 namespace tetwright {
 
-/// Prints the table of the meshes before and after to stdout.
+/// Prints the table of the meshes before and after the run to stdout.
 void print_report(const CommandLine& line, const PrepareReport& run);
 
-/// Prints notes to stderr, one line each.
+/// Prints notes to stderr, each on its own line.
 void print_notes(const std::vector<std::string>& notes);
 
 /// Prints "tetwright: TEXT" as one line to stderr and appends it to the log. Control characters, as in file

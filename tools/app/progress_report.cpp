@@ -51,7 +51,7 @@ void ProgressReport::show(double fraction) {
 
 void ProgressReport::draw_bar(double fraction, double seconds) {
   constexpr int width = 30;
-  // Before these the remaining time cannot be estimated.
+  // Earlier the remaining time cannot be estimated.
   constexpr double min_fraction = 0.05, min_seconds = 2;
   const int full = static_cast<int>(fraction * width);
   char left[40] = "";

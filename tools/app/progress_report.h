@@ -9,8 +9,8 @@
 
 namespace tetwright {
 
-/// Shows progress on stderr: a bar on a terminal, redrawn at most ten times a second, or lines of JSON, one
-/// for each stage and percent. Logs the stages. The destructor clears the bar.
+/// Shows progress on stderr: either a bar on a terminal, redrawn at most ten times a second, or lines of
+/// JSON, one for each stage and percent. Logs the stages. The destructor erases the bar.
 class ProgressReport : public Progress {
  public:
   explicit ProgressReport(ProgressStyle style) : style_(style) {}
@@ -34,7 +34,7 @@ class ProgressReport : public Progress {
   bool drawn_ = false;
 };
 
-/// The requested style; by default a bar if stderr is a terminal.
+/// The requested style; the default is a bar if stderr is a terminal.
 ProgressStyle progress_style(const CommandLine& line);
 
 }  // namespace tetwright

@@ -34,7 +34,8 @@ void hand_on(int signal) {
   if (const pid_t id = child) kill(id, signal);
 }
 
-/// While it exists, signals wait, or are handed on to the child; then they are handled as before.
+/// During its lifetime, signals are forwarded to the child or stay pending. The previous handling is then
+/// restored.
 class SignalsOfChild {
  public:
   SignalsOfChild() {
@@ -63,7 +64,7 @@ class SignalsOfChild {
     hands_on_ = true;
     sigprocmask(SIG_SETMASK, &mask_before_, nullptr);
   }
-  /// In the child.
+  /// Restores the signal mask in the child.
   void restore_mask() const { sigprocmask(SIG_SETMASK, &mask_before_, nullptr); }
 
  private:
@@ -98,7 +99,7 @@ namespace {
 
 ProcessEnd run_and_wait(const std::function<int()>& work) {
   SignalsOfChild signals;
-  // Where the parent process ignores it the system tells nobody how a child ended.
+  // If the parent process ignores SIGCHLD, the system does not report how a child ended.
   std::signal(SIGCHLD, SIG_DFL);
   [[maybe_unused]] const pid_t parent = getpid();
   const pid_t id = fork();
@@ -107,7 +108,7 @@ ProcessEnd run_and_wait(const std::function<int()>& work) {
                       "; free some memory or processes");
   if (id == 0) {
 #ifdef __linux__
-    // The parent may have ended before.
+    // The parent may have ended before the call.
     if (prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && getppid() != parent) _exit(0);
 #endif
     signals.restore_mask();
@@ -127,7 +128,7 @@ ProcessEnd run_and_wait(const std::function<int()>& work) {
 }  // namespace
 
 ProcessEnd run_in_child_process(const std::function<int()>& work) {
-  std::fflush(nullptr);  // what is not written yet would be written by both
+  std::fflush(nullptr);  // otherwise both processes would write the buffered output
   last_signal = 0;
   const ProcessEnd end = run_and_wait(work);
   if (const int signal = last_signal; signal != 0 && end.signal != 0 && end.signal != signal)

@@ -8,18 +8,18 @@
 
 namespace tetwright {
 
-/// Progress of a job. While it is `recorded`, its result may or may not be in the file yet.
+/// Progress of a job. In the state `recorded` the result may or may not be in the file yet.
 enum class JobState : unsigned char { waiting, running, recorded, ended };
 
-/// Progress of all jobs, in memory shared with child processes, so that it outlives the child that runs them.
-/// All functions are safe to call concurrently from threads and processes.
+/// Progress of all jobs, in memory shared with child processes, so that it outlives the child that runs the
+/// jobs. All functions may be called concurrently from threads and processes.
 class JobStates {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// All jobs are waiting.
+  /// Sets all jobs to `waiting`.
   ///
-  /// \throws OutputError if there is no memory
+  /// \throws OutputError if there is not enough memory
   explicit JobStates(std::size_t count);
   ~JobStates();
   JobStates(const JobStates&) = delete;
@@ -44,17 +44,17 @@ class JobStates {
   std::size_t count_;
 };
 
-/// End of a process: its exit status, or the signal that ended it, else 0.
+/// How a process ended: its exit status, or the signal that ended it and otherwise 0.
 struct ProcessEnd {
   int id = 0;
   int status = 0;
   int signal = 0;
 };
 
-/// Forks a child process for the work and waits for its end. The child exits without destructors of global
-/// objects, since it lacks threads that libraries may have started. On Linux it is killed when this process
-/// ends. SIGHUP, SIGINT and SIGTERM are forwarded to it; a signal that arrives while it dies of another cause
-/// takes effect here afterwards.
+/// Forks a child process, runs the work in it and waits for its end. The child exits without destructors of
+/// global objects, since threads that libraries have started do not exist in it. On Linux it is killed when
+/// this process ends. SIGHUP, SIGINT and SIGTERM are forwarded to it; a signal that arrives while the child
+/// dies of another cause takes effect in this process afterwards.
 ///
 /// \param work returns the child's exit status; must not throw
 /// \throws OutputError if no process can be started or waited for

@@ -15,7 +15,7 @@ namespace tetwright {
 
 namespace {
 
-/// 1e3 becomes 1000, as options that take whole numbers expect it.
+/// Formats a number as an argument: 1e3 becomes 1000, as options with whole numbers require.
 std::string number_text(const nlohmann::json& number) {
   if (!number.is_number_float()) return number.dump();
   const auto value = number.get<double>();
@@ -39,7 +39,7 @@ Job parse_job(const std::string& file, std::size_t line, const std::string& text
     if (!json.contains("args") || !json["args"].is_array() || json["args"].empty())
       refuse("\"args\" is not a list of arguments");
     for (const nlohmann::json& argument : json["args"]) {
-      // Scripts need not turn numbers into text.
+      // Numbers are accepted, so that scripts need not convert them to text.
       if (argument.is_string())
         job.arguments.push_back(argument.get<std::string>());
       else if (argument.is_number())

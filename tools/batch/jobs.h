@@ -6,7 +6,7 @@
 
 namespace tetwright {
 
-/// One line of a file of jobs: {"id": "case-7", "args": ["prepare", "case-7.nrrd", "-o", "case-7.vtu"]}.
+/// A line of a file of jobs: {"id": "case-7", "args": ["prepare", "case-7.nrrd", "-o", "case-7.vtu"]}.
 struct Job {
   std::string id;  ///< from the line, or its line number
   std::vector<std::string> arguments;
@@ -14,7 +14,7 @@ struct Job {
 
 /// Reads a file of jobs; skips empty lines.
 ///
-/// \throws InputError with the line if it is no such object or repeats an id
+/// \throws InputError with the line if it is not such an object or repeats an id
 std::vector<Job> read_jobs(const std::string& file);
 
 }  // namespace tetwright

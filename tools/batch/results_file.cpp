@@ -19,7 +19,7 @@ namespace tetwright {
 
 namespace {
 
-/// With what each line of results begins: keys are sorted.
+/// Start of each line of results, whose keys are sorted.
 constexpr std::string_view line_beginning = R"({"args":[)";
 
 bool is_beginning_of_line(std::string_view text) {
@@ -58,7 +58,7 @@ void ResultsFile::reload() {
     const std::string line = text.substr(begin, end - begin);
     ++number;
     if (!read_line(line)) {
-      // The beginning of a line is what a kill has left.
+      // A kill may have left the beginning of a line.
       if (end < text.size() || !is_beginning_of_line(line))
         throw InputError(path_, number,
                          "it is no result of a batch; give --results another file, or remove this one");

@@ -11,14 +11,14 @@
 
 namespace tetwright {
 
-/// The results of a batch, one line of JSON for each ended job, in the order of their ends:
-/// {"id", "args", "status", "seconds", "messages", "stats"}. A line is appended whole and synced to disk
-/// after the job's files are in place. A kill can leave a partial last line, which the next read cuts off.
+/// Results of a batch: one line of JSON for each job that has ended, in the order in which they ended: {"id",
+/// "args", "status", "seconds", "messages", "stats"}. A line is appended in one piece and synced to disk
+/// after the job's files are in place. A kill can leave a partial last line, which the next read removes.
 class ResultsFile {
  public:
   /// Opens or creates the file, and locks it against other batches.
   ///
-  /// \throws InputError with the line number if a line is no such result
+  /// \throws InputError with the line number if a line is not such a result
   /// \throws OutputError if the file cannot be written or is in use
   explicit ResultsFile(const std::string& path);
   ~ResultsFile();
@@ -27,9 +27,9 @@ class ResultsFile {
 
   /// Reads the lines that a child process, which shares the file, has appended.
   ///
-  /// \throws Error as the constructor
+  /// \throws Error in the cases of the constructor
   void reload();
-  /// The last exit status of a job with this id and these arguments; -1 if it has not ended.
+  /// Last exit status of a job with this id and these arguments; -1 if it has not ended.
   int status_of(const Job& job) const;
   /// Appends the line of an ended job. Thread-safe.
   ///
@@ -37,7 +37,8 @@ class ResultsFile {
   void append(const Job& job, int status, const std::string& line);
 
  private:
-  /// Returns false if the line is no result.
+  /// Reads a line of results.
+  /// \return false if it is not a result
   bool read_line(const std::string& text);
   void write_whole(const std::string& text);
 

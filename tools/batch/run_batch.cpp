@@ -36,7 +36,7 @@ namespace {
 struct Ended {
   ExitStatus status = ExitStatus::done;
   std::vector<std::string> messages;
-  nlohmann::json stats;  ///< as --stats writes; for `check` its report; null if there are none
+  nlohmann::json stats;  ///< content of --stats; for `check` its report; null if there is none
   double seconds = 0;
 };
 
@@ -65,18 +65,18 @@ CommandLine parse(const Job& job) {
   return line;
 }
 
-/// Refuses jobs that write one file, or a file of the batch, or read what another one writes: they have no
-/// order.
+/// Rejects jobs that write the same file, a file of the batch, or a file that another job reads: the order of
+/// jobs is undefined.
 void check_jobs_are_independent(const CommandLine& batch, const std::vector<Job>& jobs) {
   const std::string& file = batch.inputs.front();
-  std::map<std::string, std::string> written;  // and by which job
+  std::map<std::string, std::string> written;  // file, and the job that writes it
   std::vector<std::pair<std::string, std::string>> read;
   for (const Job& job : jobs) {
     CommandLine line;
     try {
       line = parse(job);
     } catch (const UsageError&) {
-      continue;  // its result will say so
+      continue;  // the job's result will report the error
     }
     for (const std::string& path : written_files(line)) {
       for (const std::string& of_batch : {file, results_file_of(batch), batch.console.log_file})
@@ -116,7 +116,7 @@ void carry_out(CommandRun& run, Ended& ended) {
   ended.status = run.status;
 }
 
-/// Runs one job. Exceptions become its status, so that other jobs go on.
+/// Runs one job. Exceptions become its status, so that other jobs continue.
 ///
 /// \param memory limit, bytes
 Ended run_job(const Job& job, unsigned threads, double memory) {
@@ -126,7 +126,7 @@ Ended run_job(const Job& job, unsigned threads, double memory) {
     CommandLine line = parse(job);
     if (line.options.limits.threads == 0) line.options.limits.threads = threads;
     check_stats_path(line);
-    ProgressReport progress(ProgressStyle::none);  // knows its stage, for messages and the log
+    ProgressReport progress(ProgressStyle::none);  // keeps the stage for messages and the log
     with_threads(line.options.limits.threads, [&] {
       const MemoryLimit share(memory);
       CommandRun run(line, progress);
@@ -149,7 +149,7 @@ Ended run_job(const Job& job, unsigned threads, double memory) {
 }
 
 std::string result_line(const Job& job, const Ended& ended) {
-  // Messages may have bytes of names that are not UTF-8; they are replaced.
+  // Messages may contain bytes of names that are not UTF-8; they are replaced.
   return nlohmann::json{{"id", job.id},
                         {"args", job.arguments},
                         {"status", static_cast<int>(ended.status)},
@@ -159,7 +159,8 @@ std::string result_line(const Job& job, const Ended& ended) {
       .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// Whether another attempt may succeed: after no room for the output, a time limit, a bug or an interruption.
+/// Whether another attempt may succeed: after an output error, a time limit, an internal error or an
+/// interruption.
 bool worth_another_attempt(int status) {
   return status == static_cast<int>(ExitStatus::output_failed) ||
          status == static_cast<int>(ExitStatus::internal_error) ||
@@ -177,7 +178,7 @@ std::vector<const Job*> unfinished_jobs(const std::vector<Job>& jobs, const Resu
   return left;
 }
 
-/// "died of signal 11 (Segmentation fault)"
+/// Text such as "died of signal 11 (Segmentation fault)".
 std::string death_text(const ProcessEnd& end) {
   if (end.signal == 0) return "ended with status " + std::to_string(end.status);
   return "died of signal " + std::to_string(end.signal) + " (" + strsignal(end.signal) + ")";
@@ -204,13 +205,15 @@ Ended ended_by(const ProcessEnd& end, double seconds) {
   return ended;
 }
 
-/// Appends the result of a job to the file and prints it.
+/// Appends the results of jobs to the file and prints them.
 class Recorder {
  public:
   Recorder(const std::vector<const Job*>& jobs, JobStates& states, ResultsFile& results, CommandRun& run)
       : jobs_(jobs), states_(states), results_(results), run_(run) {}
 
-  /// Throws OutputError. May be called concurrently.
+  /// May be called concurrently.
+  ///
+  /// \throws OutputError if the result cannot be written
   void record(std::size_t job, const Ended& ended) {
     const std::lock_guard lock(mutex_);
     states_.set(job, JobState::recorded);
@@ -239,10 +242,10 @@ class Recorder {
   JobStates& states_;
   ResultsFile& results_;
   CommandRun& run_;
-  std::mutex mutex_;  // of all that record() does
+  std::mutex mutex_;  // guards everything in record()
 };
 
-/// Jobs that run at the same time.
+/// Runs jobs concurrently.
 class Batch {
  public:
   Batch(const std::vector<const Job*>& jobs, JobStates& states, Recorder& recorder)
@@ -253,7 +256,7 @@ class Batch {
     const unsigned all = thread_count();
     const auto workers = static_cast<unsigned>(std::min(at_once, list.size()));
     if (workers == 0) return;
-    // Share of the memory for each worker: a job does not see the others.
+    // Memory is divided among the workers: a job does not know of the others.
     const double memory = available_memory() / workers;
     std::atomic<std::size_t> next{0};
     std::vector<std::thread> threads;
@@ -262,7 +265,7 @@ class Batch {
     try {
       for (unsigned w = 0; w < workers; ++w) threads.emplace_back([&] { work(list, next, each, memory); });
     } catch (const std::exception& e) {
-      // The threads that did start run all jobs.
+      // The threads that were started run all jobs.
       if (threads.empty())
         throw OutputError(std::string("cannot start a thread: ") + e.what() +
                           "; free some memory or processes");
@@ -293,16 +296,16 @@ class Batch {
   JobStates& states_;
   Recorder& recorder_;
   std::atomic<bool> stop_{false};
-  std::mutex mutex_;  // of the failure
+  std::mutex mutex_;  // guards the failure
   std::exception_ptr failure_;
 };
 
-/// Removes the temporary files that a dead process left for a job's outputs.
+/// Removes the temporary files that a dead process left next to a job's outputs.
 void remove_temporary_files_of(const Job& job, int process) {
   try {
     for (const std::string& path : written_files(parse(job))) remove_temporary_files(path, process);
   } catch (const UsageError&) {
-    // It has written nothing.
+    // The job has written nothing.
   }
 }
 
@@ -313,8 +316,8 @@ std::vector<std::size_t> jobs_that_are(JobState state, const JobStates& states) 
   return found;
 }
 
-/// Runs all waiting jobs in a child process. The suspects, which ran when a child died, come first, one at a
-/// time.
+/// Runs all waiting jobs in a child process. Suspects, which were running when a child died, run first, one
+/// at a time.
 void carry_out_waiting(const std::vector<const Job*>& jobs, JobStates& states,
                        const std::vector<std::size_t>& suspects, Recorder& recorder, CommandRun& run) {
   Batch batch(jobs, states, recorder);
@@ -351,7 +354,8 @@ void run_batch(CommandRun& run) {
     results.reload();
     const std::vector<std::size_t> running = jobs_that_are(JobState::running, states),
                                    recorded = jobs_that_are(JobState::recorded, states);
-    // A process that ends itself within a job, as where no thread can be started, has died of it, too.
+    // A process that ends with an error during a job, for example because no thread can be started, counts as
+    // killed by that job.
     const bool interrupted = end.status == static_cast<int>(ExitStatus::interrupted);
     if (end.signal == 0 && (running.empty() || interrupted)) {
       run.status = static_cast<ExitStatus>(end.status);

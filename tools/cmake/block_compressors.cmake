@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Defines the target tetwright::block_compressors, liblz4 and liblzma, for the build and for those who use the installed
-# library: Debian's packages of them have no CMake configuration.
+# Defines the target tetwright::block_compressors, liblz4 and liblzma, for the build and for users of the installed
+# library: Debian's packages have no CMake configuration.
 if(NOT TARGET tetwright::block_compressors)
   add_library(tetwright::block_compressors INTERFACE IMPORTED GLOBAL)
   foreach(name lz4 lzma)

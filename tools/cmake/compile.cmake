@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-# How targets of ours are compiled.
+# Compiler options of the project's targets.
 
-# The options of all of them.
+# Options of all targets.
 add_library(tetwright_options INTERFACE)
-# Headers that are not public, and those that are, for programs that compile sources of the libraries.
+# Internal and public headers, for programs that compile sources of the libraries.
 target_include_directories(tetwright_options INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/common/include
   ${PROJECT_SOURCE_DIR}/simplify/include ${PROJECT_SOURCE_DIR}/mesher/include)
 target_compile_options(tetwright_options INTERFACE
   -Wall -Wextra -Wnon-virtual-dtor -Wconversion -Wno-sign-conversion
-  # g++ 12 sees overlapping and overlong copies in std::string that are not there (GCC bug 105651).
+  # g++ 12 wrongly reports overlapping and overlong copies in std::string (GCC bug 105651).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict$<SEMICOLON>-Wno-stringop-overflow$<SEMICOLON>-Wno-stringop-overread$<SEMICOLON>-Wno-array-bounds>
-  # The same bytes on every machine: no fused multiply-add behind our back.
+  # No implicit fused multiply-add, so that results have the same bytes on every machine.
   -ffp-contract=off)
 if(NOT TETWRIGHT_UNITY)
-  target_compile_options(tetwright_options INTERFACE -Wshadow)  # in a unity build it would warn of names in other files
+  target_compile_options(tetwright_options INTERFACE -Wshadow)  # in a unity build it would warn about names in other files
 else()
-  # g++ takes the source files for headers, in which anonymous namespaces would be a mistake.
+  # g++ treats the source files as headers, in which anonymous namespaces would be an error.
   target_compile_options(tetwright_options INTERFACE
     $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess$<SEMICOLON>-Wno-subobject-linkage> "$<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>")
 endif()
@@ -25,22 +25,23 @@ endif()
 if(TETWRIGHT_SANITIZE)
   target_compile_options(tetwright_options INTERFACE
     -fsanitize=${TETWRIGHT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all
-    # g++ sees values that might be uninitialised in instrumented code of its own library, and has no ignore list.
+    # g++ reports possibly uninitialised values in instrumented code of its own library, and has no ignore list.
     $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized$<SEMICOLON>-fno-sanitize=alignment>
     $<$<CXX_COMPILER_ID:Clang>:-fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/tests/sanitize_ignorelist.txt>)
   target_link_options(tetwright_options INTERFACE -fsanitize=${TETWRIGHT_SANITIZE})
 endif()
 
 # tetwright_compile_together(TARGET BATCH [GROUP [HEADER...]]): compiles BATCH files of the target at a time (0: all),
-# with a precompiled header that the targets of a GROUP share. All of a group must be compiled with the same options; the
-# first one makes the header. Most of a compiler's time goes into headers and templates that the files of a folder
-# share; names in anonymous namespaces are unique within a target for this. Does nothing without TETWRIGHT_UNITY.
+# with a precompiled header shared by the targets of a GROUP. All targets of a group must be compiled with the same
+# options; the first one creates the header. Most of the compile time is spent on headers and templates that the files of
+# a folder share. Names in anonymous namespaces must therefore be unique within a target. Does nothing without
+# TETWRIGHT_UNITY.
 function(tetwright_compile_together target batch)
   if(NOT TETWRIGHT_UNITY)
     return()
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch}
-    # Else each shared library defines a macro of its own, and the header is not valid for another.
+    # Otherwise each shared library defines a different macro, which makes the header invalid for the others.
     DEFINE_SYMBOL "")
   if(ARGC EQUAL 2)
     return()
@@ -58,9 +59,9 @@ function(tetwright_compile_together target batch)
   endif()
 endfunction()
 
-# tetwright_library(TARGET [FUZZED] [FOLDER...]): a library that is installed, as tetwright::NAME. Its public headers are in
-# include/ of its folder, or of these folders in it. FUZZED: with TETWRIGHT_FUZZ it tells
-# the fuzzer which way it went.
+# tetwright_library(TARGET [FUZZED] [FOLDER...]): a library that is installed, as tetwright::NAME. Its public headers are
+# in include/ of its folder, or of the given subfolders. FUZZED: with TETWRIGHT_FUZZ it is instrumented, so that the
+# fuzzer sees its coverage.
 function(tetwright_library target)
   string(REPLACE tetwright_ "" name ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Defines the target tetwright::hdf5, for the build and for those who use the installed library: the C library of HDF5
-# without MPI, which Debian keeps in a folder of its own.
+# Defines the target tetwright::hdf5, for the build and for users of the installed library: the C library of HDF5 without
+# MPI, which Debian installs in a separate folder.
 if(NOT TARGET tetwright::hdf5)
   find_path(TETWRIGHT_HDF5_INCLUDE hdf5.h PATH_SUFFIXES hdf5/serial REQUIRED)
   find_library(TETWRIGHT_HDF5_LIBRARY NAMES hdf5_serial hdf5 REQUIRED)

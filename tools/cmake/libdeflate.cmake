@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Defines the target tetwright::libdeflate, for the build and for those who use the installed library: Debian's
-# package of libdeflate has no CMake configuration.
+# Defines the target tetwright::libdeflate, for the build and for users of the installed library: Debian's
+# package has no CMake configuration.
 if(NOT TARGET tetwright::libdeflate)
   find_path(TETWRIGHT_LIBDEFLATE_INCLUDE libdeflate.h REQUIRED)
   find_library(TETWRIGHT_LIBDEFLATE_LIBRARY deflate REQUIRED)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Defines the target tetwright::libzip, for the build and for those who use the installed library: the CMake
-# configuration in Debian's package wants libzip's programs, which are in other packages.
+# Defines the target tetwright::libzip, for the build and for users of the installed library: the CMake
+# configuration in Debian's package requires libzip's programs, which are in other packages.
 if(NOT TARGET tetwright::libzip)
   find_path(TETWRIGHT_LIBZIP_INCLUDE zip.h REQUIRED)
   find_library(TETWRIGHT_LIBZIP_LIBRARY zip REQUIRED)

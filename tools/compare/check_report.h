@@ -11,12 +11,12 @@
 
 namespace tetwright {
 
-/// Findings of `check` in a mesh.
+/// Results of `check` for a mesh.
 struct CheckReport {
   std::vector<MeshFinding> findings;
-  /// False if indices or coordinates are unsound, so that there are no statistics and no topology.
+  /// False if indices or coordinates are invalid; there are then no statistics and no topology.
   bool measurable = true;
-  std::optional<Topology> topology, topology_before;             ///< of the mesh, and of that of --before
+  std::optional<Topology> topology, topology_before;             ///< of the mesh, and of the mesh of --before
   std::optional<std::vector<std::string>> topology_differences;  ///< from the mesh of --before, if given
   std::optional<SurfaceComparison> surface;                      ///< with --surface
   double tolerance = 0;                                          ///< input units; 0: none
@@ -26,7 +26,7 @@ struct CheckReport {
   bool topology_kept() const { return !topology_differences || topology_differences->empty(); }
 };
 
-/// The findings and unmet requests as diagnostics.
+/// Findings and unmet requests as diagnostics.
 std::vector<Diagnostic> diagnostics_of(const CheckReport& check);
 
 }  // namespace tetwright

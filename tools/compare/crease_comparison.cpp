@@ -16,11 +16,13 @@ namespace {
 
 constexpr double max_crease_share = 0.005, max_corner_share = 0.001;
 constexpr double places_to_diagonal = 2000;
-/// How near to each other the largest distance and its bound are: a share of it, or of the diagonal.
+/// Allowed gap between the largest sampled distance and its bound: a fraction of the distance, or of the
+/// diagonal.
 constexpr double bound_share = 0.01, bound_diagonals = 1e-9;
 
-/// A bound of the distance of any place between p and q from the items, at most `known`, or a little more
-/// than that, where no place is farther than `known`. The distance from one item is convex along the way.
+/// Upper bound on the distance of the points between p and q from the items. At most about `accuracy` above
+/// the maximum of `known` and the largest distance. The distance from a single item is convex along the
+/// segment.
 double bound_between(const Vec3& p, const Vec3& q, const ProjectionTree& items, double known,
                      double accuracy) {
   double bound = 0;

@@ -26,7 +26,7 @@ std::vector<std::pair<Index, Index>> edges_of(const TetMesh& mesh) {
   return edges;
 }
 
-/// Returns the length that the field wants, and no more than the source itself: the field is kept on a grid.
+/// Target length of the field, but at most that of the source, since the field is sampled on a grid.
 double wanted_at(const Vec3& place, const SizeField& target_length, const SizeSource& source) {
   const SizeLimits& limits = target_length.limits();
   const double of_field = target_length.at(place);

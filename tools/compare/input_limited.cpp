@@ -16,7 +16,7 @@ namespace tetwright {
 
 namespace {
 
-/// Farther from a crease or a corner, as a share of the diagonal, is not on it.
+/// A point farther than this from a crease or corner, as a fraction of the diagonal, is not on it.
 constexpr double on_crease_share = 1e-3;
 constexpr int bisection_steps = 60;
 
@@ -32,9 +32,10 @@ std::array<Index, 2> edge_of(const Tet& t, std::size_t e) {
   return {low, high};
 }
 
-/// The largest solid angle that the smallest one of a tet can be which has an edge of 1 in such a wedge.
+/// Maximum of the smallest solid angle over all tets that have an edge of length 1 on such a wedge.
 double best_solid_angle(double wedge) {
-  // The farther the other edge is, the larger are the angles at this one, and the smaller those at the other.
+  // The farther the opposite edge, the larger the angles at this edge and the smaller those at the opposite
+  // edge.
   double low = 0, high = 100, best = 0;
   for (int step = 0; step < bisection_steps; ++step) {
     const double far = (low + high) / 2, y = far * std::cos(wedge / 2), z = far * std::sin(wedge / 2);
@@ -46,7 +47,7 @@ double best_solid_angle(double wedge) {
   return best;
 }
 
-/// Creases and corners as places.
+/// Finds points on creases and at corners.
 class InputCreases {
  public:
   InputCreases(const CreaseCurves& creases, const TetMesh& mesh) {
@@ -74,7 +75,7 @@ class InputCreases {
 }  // namespace
 
 double narrowest_wedge(double solid_angle) {
-  double low = 0, high = std::acos(1.0 / 3);  // that of the regular tet
+  double low = 0, high = std::acos(1.0 / 3);  // dihedral angle of the regular tet
   for (int step = 0; step < bisection_steps; ++step) {
     const double wedge = (low + high) / 2;
     (best_solid_angle(wedge) < solid_angle ? low : high) = wedge;
@@ -85,7 +86,7 @@ double narrowest_wedge(double solid_angle) {
 std::size_t input_limited_tets(const TetMesh& mesh, const CreaseCurves& creases, double threshold) {
   if (creases.segments.empty()) return 0;
   const InputCreases input(creases, mesh);
-  // For each material, radians and steradians.
+  // Angles for each material: radians at edges, steradians at points.
   std::map<EdgeOfMaterial, double> wedges;
   std::map<PointOfMaterial, double> cones;
   std::vector<Index> bad;

@@ -10,7 +10,7 @@ namespace {
 struct GroupFaces {
   std::size_t triangles = 0;
   double area = 0, largest = -1;
-  Vec3 place = Vec3::Zero();  ///< the centre of the largest triangle
+  Vec3 place = Vec3::Zero();  ///< centre of the largest triangle
 
   void add(const std::vector<Vec3>& points, const Triangle& t) {
     const Vec3 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];

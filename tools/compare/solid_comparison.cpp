@@ -11,17 +11,17 @@ namespace tetwright {
 
 namespace {
 
-/// Relative change of a volume from which on a solid counts as another one.
+/// Relative change of a volume at which a solid counts as a different one.
 constexpr double same_volume = 0.01;
-/// Max relative difference in volume of shells that may stand for each other.
+/// Maximum relative difference in volume between matching shells.
 constexpr double alike_volume = 0.1;
-/// Max relative difference in volume of labels; for labels of few voxels, how far the surface of a cube of
-/// that volume may move, voxels.
+/// Maximum relative difference in volume of labels. For labels of few voxels: how far the surface of a cube
+/// of the same volume may move, in voxels.
 constexpr double label_volume = 0.02, label_shift = 0.06, cube_sides = 6;
 
 using Solids = std::unordered_map<MaterialTag, std::vector<Triangle>>;
 
-/// The faces of each material to others and to outside, wound outwards.
+/// Faces of each material to other materials and to outside, oriented outwards.
 Solids solids_of(const TetMesh& mesh) {
   Solids solids;
   for (const InterfaceTriangle& t : mesh.interfaces) {
@@ -31,7 +31,7 @@ Solids solids_of(const TetMesh& mesh) {
   return solids;
 }
 
-/// The shells that count, the largest first.
+/// Shells with at least the minimum volume, largest first.
 std::vector<SolidShell> shells_of(const SolidShape& solid, double min_volume) {
   std::vector<SolidShell> shells = solid.shells;
   std::erase_if(shells, [&](const SolidShell& s) { return std::fabs(s.volume) < min_volume; });
@@ -68,12 +68,12 @@ void add_volume(SolidComparison& f) {
   f.difference += (f.difference.empty() ? "" : ", ") + std::string(text);
 }
 
-/// Whether one may stand for the other.
+/// Whether the shells may match each other.
 bool alike(const SolidShell& a, const SolidShell& b) {
   return a.handles == b.handles && std::fabs(a.volume - b.volume) <= alike_volume * std::fabs(a.volume);
 }
 
-/// A shell, the largest first, that only one of the solids has.
+/// A point of the largest shell that only one of the solids has.
 std::optional<Vec3> first_difference(const std::vector<SolidShell>& expected,
                                      const std::vector<SolidShell>& result) {
   std::vector<char> found(result.size(), 0);
@@ -92,7 +92,7 @@ bool is_within(double volume, double meant, double slack) {
   return is_same_volume(volume, meant) || std::fabs(volume - meant) <= slack;
 }
 
-/// Compares a material with one `shape` of those that it may be meant to have.
+/// Compares a material with `shape`, one of the shapes that may be intended for it.
 SolidComparison compare(const ExpectedSolid& expected, const SolidShape& shape, const SolidShape& result) {
   SolidComparison f;
   f.name = expected.name;
@@ -102,7 +102,7 @@ SolidComparison compare(const ExpectedSolid& expected, const SolidShape& shape, 
                                 is = shells_of(result, expected.min_volume);
   f.expected = numbers_of(shape, was);
   f.result = numbers_of(result, is);
-  // A material may touch itself in an edge where others meet: then its counts mean nothing.
+  // A material may touch itself in an edge where others meet; its counts are then meaningless.
   f.counted = shape.manifold && result.manifold;
   if (f.counted) {
     add_difference(f.difference, f.result.components, f.expected.components, "component", "components");
@@ -127,7 +127,7 @@ SolidComparison compare(const ExpectedSolid& expected, const SolidShape& result)
   return !f.same() && by_surface.same() ? by_surface : f;
 }
 
-/// "12 components instead of 2 to 4".
+/// Adds a difference such as "12 components instead of 2 to 4".
 void add_components(SolidComparison& f, const char* one, const char* many) {
   add_difference(f.difference, f.result.components, f.expected.components, one, many);
   if (f.max_components > f.expected.components) f.difference += " to " + std::to_string(f.max_components);
@@ -143,7 +143,7 @@ SolidComparison compare(const LabelMaterial& label, double voxel_volume, const S
   f.max_components = label.parts.by_faces;
   const std::vector<SolidShell> shells = shells_of(result, 0);
   f.result = numbers_of(result, shells);
-  // A label may touch itself in an edge where others meet: then its count means nothing.
+  // A label may touch itself in an edge where others meet; its count is then meaningless.
   if (result.manifold && !f.same_counts()) {
     add_components(f, "component", "components");
     f.place = label.parts.smallest_place;

@@ -14,25 +14,25 @@ namespace tetwright {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// An open edge that is nearer to another one than this fraction of its length is one side of a crack.
+/// An open edge that is closer to another open edge than this fraction of its length is one side of a crack.
 constexpr double crack_share = 0.25;
-/// Fractions of the diagonal: the largest piece of a cap, and the smallest pieces that are cut further, where
-/// some place of them is on a cap and where none is.
+/// Fractions of the diagonal: the maximum size of a piece of a cap, and the sizes below which pieces are not
+/// cut further if a sampled point is on a cap, and if none is.
 constexpr double cap_piece = 0.02, cut_piece = 5e-4, cap_free_piece = 5e-3;
-/// The rounding of two distances of the same point, of the distance and of the diagonal.
+/// Rounding of two distances of the same point: relative to the distance, and to the diagonal.
 constexpr double same_distance = 1e-9, same_place = 1e-12;
 
 using Corners = std::array<Vec3, 3>;
 
 double area_of(const Corners& c) { return (c[1] - c[0]).cross(c[2] - c[0]).norm() / 2; }
 
-/// Distance of the nearest item; infinite if there is none.
+/// Distance from the nearest item; infinite if there is none.
 double distance_from(const ProjectionTree& tree, const Vec3& p) {
   const auto on = tree.nearest(p, {}, infinity);
   return on ? (*on - p).norm() : infinity;
 }
 
-/// Puts triangles together to a tree.
+/// Collects triangles for a tree.
 struct TreeBuilder {
   std::vector<Vec3> points;
   std::vector<ProjectionTree::Item> items;
@@ -112,7 +112,7 @@ CapFinder::Parts CapFinder::split(const TetMesh& mesh) const {
         parts.cap_area += area_of(piece);
         continue;
       }
-      // Both distances are 1-Lipschitz.
+      // Both distances are 1-Lipschitz, which bounds their change within the piece.
       const bool small = longest <= (beyond > 0 ? cut_piece : cap_free_piece) * diagonal_;
       if (small || !rims_.any_within(centre, distance_from(surfaces_, centre) + 2 * radius)) {
         kept_pieces.push_back(piece);

@@ -26,15 +26,18 @@ namespace tetwright {
 
 namespace {
 
-/// Creases of a mesh are looked for where those of its surface were found: find_patches(), automatic.
+/// Angle of the creases of a mesh. Creases of its surface are found by find_patches(), automatic, which uses
+/// the same angle.
 constexpr double crease_degrees = 35;
-/// An edge that turns that far counts as the counterpart of a crease: none is lost for a degree.
+/// Minimum turn of an edge that counts as the counterpart of a crease: an edge must not be missed because it
+/// turns slightly less than a crease.
 constexpr double counterpart_degrees = crease_degrees / 2;
 
-/// Max fraction of the mesh's area that caps over holes cover; with more the surface is no scan of this body.
+/// Maximum fraction of the mesh's area that caps over holes may cover; beyond it the surface is not a scan of
+/// this body.
 constexpr double max_cap_share = 0.5;
 
-/// The tets that stand for something: without the outside, and turned if all of them are inverted.
+/// Tets without the outside; reoriented if all of them are inverted.
 TetMesh compared_tets(const TetMesh& mesh, SurfaceComparison& c) {
   TetMesh part;
   part.points = mesh.points;
@@ -60,7 +63,7 @@ TetMesh compared_tets(const TetMesh& mesh, SurfaceComparison& c) {
   return part;
 }
 
-/// The surfaces of a mesh that are compared: of one surface its boundary, as that of one material.
+/// Part of the mesh to be compared. For a single surface, its boundary as that of one material.
 TetMesh compared_part(const TetMesh& mesh, bool with_interfaces, SurfaceComparison& c) {
   TetMesh part = compared_tets(mesh, c);
   std::vector<InterfaceTriangle> all =
@@ -93,7 +96,7 @@ ProjectionTree tree_of(const std::vector<TriangleMesh>& surfaces) {
   return {std::move(points), std::move(items)};
 }
 
-/// The surfaces as `prepare` takes them: equal points joined, triangles wound alike.
+/// Surfaces as `prepare` uses them: equal points merged, triangles oriented consistently.
 MesherInput repaired(const std::vector<TriangleMesh>& surfaces, const std::vector<std::string>& names) {
   std::vector<MaterialSurface> materials;
   for (std::size_t i = 0; i < surfaces.size(); ++i)
@@ -104,7 +107,7 @@ MesherInput repaired(const std::vector<TriangleMesh>& surfaces, const std::vecto
   return make_mesher_input(std::move(materials));
 }
 
-/// Nothing where the surface is not closed. `mesh` has its boundary as that of one material.
+/// Returns std::nullopt unless the surface is closed. `mesh` has its boundary as that of one material.
 std::optional<SolidComparison> compare_solid(const TetMesh& mesh, const MesherInput::Body& body) {
   const RepairedSurface& surface = body.surface;
   if (surface.closed < surface.triangles.size()) return {};
@@ -115,7 +118,7 @@ std::optional<SolidComparison> compare_solid(const TetMesh& mesh, const MesherIn
   return compare_solids({expected}, mesh).front();
 }
 
-/// The distance of the mesh from open surfaces, and of its caps.
+/// Measures the distance of the mesh from open surfaces, and of its caps.
 void compare_open(const CapFinder::Parts& parts, const ProjectionTree& surfaces, double accuracy,
                   SurfaceComparison& c) {
   c.from_mesh = surface_deviation(parts.kept, surfaces, accuracy);
@@ -123,7 +126,7 @@ void compare_open(const CapFinder::Parts& parts, const ProjectionTree& surfaces,
   c.caps = {surface_deviation(parts.caps, surfaces, accuracy), parts.cap_area, parts.cap_area / parts.area};
 }
 
-/// The edges that turn by more than `counterpart_degrees`, whether or not they are creases.
+/// Edges that turn by more than `counterpart_degrees`, whether or not they are creases.
 CreaseCurves counterparts(std::span<const Vec3> points, std::span<const Triangle> triangles) {
   SurfaceCreases sharp;
   for (const InnerEdge& e : inner_edges(points, triangles, edge_uses(triangles, {})))
@@ -133,7 +136,7 @@ CreaseCurves counterparts(std::span<const Vec3> points, std::span<const Triangle
   return curves;
 }
 
-/// The creases of both sides, those of the mesh only where the surfaces have any.
+/// Compares the creases of both; those of the mesh only if the surfaces have any.
 void compare_creases_of(TetMesh& mesh, const MesherInput& surfaces, const OpenEdges& open,
                         const CapFinder& caps, SurfaceComparison& c) {
   CreaseCurves expected;
@@ -145,7 +148,7 @@ void compare_creases_of(TetMesh& mesh, const MesherInput& surfaces, const OpenEd
     surface_points.insert(surface_points.end(), s.points.begin(), s.points.end());
     c.intersecting |= s.intersects_itself;
     const SurfacePatches patches = find_patches(s.points, s.triangles, {}, {}, body.file);
-    // Where parts meet there are creases that no edge shows, and others run within the solid.
+    // Where parts intersect there are creases that are not edges, and some creases are inside the solid.
     if (s.intersects_itself)
       c.creases_left_out |= patches.any();
     else if (patches.any())
@@ -204,7 +207,7 @@ std::string corners_text(const CreaseComparison& c) {
          " from points of the mesh, at " + place_text(c.corner_place);
 }
 
-/// "75 %".
+/// Text such as "75 %".
 std::string share_text(double share) {
   char text[40];
   std::snprintf(text, sizeof text, "%.3g %%", 100 * share);
@@ -314,7 +317,7 @@ std::string tolerance_line(const SurfaceComparison& c, double tolerance) {
     if (!(b.upper <= tolerance)) far += (far.empty() ? ": " : "; ") + b.what;
   std::string line = (far.empty() ? "within the tolerance of " : "not within the tolerance of ") +
                      short_number(tolerance) + far;
-  // Caps stand for nothing of the surface, however far from it they are.
+  // Caps have no counterpart in the surface, however far from it they are.
   if (c.caps) line += "; caps, " + share_text(c.caps->share) + " of the mesh's area, are left out";
   return line;
 }

@@ -1,8 +1,8 @@
-# bash completion: commands and options as tetwright itself lists them, and files.
+# bash completion: commands and options as listed by tetwright itself, and files.
 _tetwright() {
   local cur=${COMP_WORDS[COMP_CWORD]} command=${COMP_WORDS[1]}
   COMPREPLY=()
-  local IFS=$'\n'  # names of files may have blanks
+  local IFS=$'\n'  # file names may contain blanks
   if [ "$COMP_CWORD" = 1 ]; then
     local commands
     commands=$(tetwright --help 2>/dev/null | sed -n '/^Subcommands:/,/^$/s/^  \([a-z][a-z]*\) .*/\1/p')

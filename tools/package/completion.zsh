@@ -1,5 +1,5 @@
 #compdef tetwright
-# zsh completion: commands and options as tetwright itself lists them, and files.
+# zsh completion: commands and options as listed by tetwright itself, and files.
 local -a commands options
 if (( CURRENT == 2 )); then
   commands=(${(f)"$(tetwright --help 2>/dev/null | sed -n '/^Subcommands:/,/^$/s/^  \([a-z][a-z]*\)  *\(.*\)/\1:\2/p')"})

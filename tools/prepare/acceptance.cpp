@@ -7,7 +7,7 @@ namespace tetwright {
 
 namespace {
 
-/// Why a shortfall is a note; null if it is none.
+/// Reason for which a shortfall becomes a note; null if it does not.
 const char* reason_to_accept(const Diagnostic& d, const AcceptanceOptions& acceptance, bool on_purpose) {
   const Yields yields = kind_of(d.code).yields;
   if (yields == Yields::never) return nullptr;
@@ -30,7 +30,7 @@ void decide_severities(const AcceptanceOptions& acceptance, PrepareReport& repor
   for (Diagnostic& d : report.diagnostics) {
     d.severity = kind_of(d.code).severity;
     const char* reason = reason_to_accept(d, acceptance, on_purpose);
-    if (kind_of(d.code).yields != Yields::never) d.done.clear();  // a former call's reason
+    if (kind_of(d.code).yields != Yields::never) d.done.clear();  // removes the reason of an earlier call
     if (!reason) continue;
     d.severity = Severity::note;
     d.done = reason;

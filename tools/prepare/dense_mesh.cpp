@@ -13,7 +13,7 @@ namespace tetwright {
 
 namespace {
 
-/// The options that do not depend on the kind of input.
+/// Options that do not depend on the kind of input.
 MesherOptions common_options(const PrepareRun& run) {
   const CellOptions& cells = run.options.cells;
   MesherOptions options;
@@ -23,19 +23,19 @@ MesherOptions common_options(const PrepareRun& run) {
   options.keep_outside = cells.keep_outside;
   options.feature_angle = run.options.feature_angle;
   if (cells.resolution) options.resolution = *cells.resolution;
-  // Measured: the simplifier's tets with all that belongs to them.
+  // Measured: the simplifier's tets with all data that belong to them.
   constexpr double simplifier_bytes = 110;
   options.later_bytes_per_tet =
       run.task == Task::prepare ? simplifier_bytes : run.options.limits.later_bytes_per_tet;
   return options;
 }
 
-/// Enlarges cells whose size was not requested until the mesh fits into memory by estimate.
+/// Enlarges cells whose size was not requested until the estimated memory is available.
 template <class Scan>
 void fit_memory(const Scan& input, MesherOptions& options, PrepareRun& run) {
   constexpr double growth = 1.25;
-  constexpr double estimate_margin = 1.25;      // estimates are mostly within this
-  constexpr double min_fitted_resolution = 16;  // fewer cells show nothing of a body
+  constexpr double estimate_margin = 1.25;      // most estimates are within this factor
+  constexpr double min_fitted_resolution = 16;  // a body is not recognisable with fewer cells
   const double available = available_memory() / estimate_margin;
   const MesherEstimate wanted = estimate_mesh(input, options);
   if (static_cast<double>(wanted.bytes) <= available) return;
@@ -48,7 +48,7 @@ void fit_memory(const Scan& input, MesherOptions& options, PrepareRun& run) {
       larger.voxel_size *= growth;
     else
       larger.resolution = static_cast<int>(larger.resolution / growth);
-    if (longest_side(input) / cell(larger) < min_fitted_resolution) return;  // refused with its numbers
+    if (longest_side(input) / cell(larger) < min_fitted_resolution) return;  // rejected later, with numbers
   } while (static_cast<double>(estimate_mesh(input, larger).bytes) > available);
   run.report.coarser = {cell(options), cell(larger), static_cast<double>(wanted.bytes)};
   options = larger;
@@ -87,7 +87,7 @@ Box3 box_of(const LabelInput& labels) {
   Box3 box;
   for (int k = 0; k < 8; ++k) {
     const Vec3 corner((k & 1) * labels.size[0], (k >> 1 & 1) * labels.size[1], (k >> 2) * labels.size[2]);
-    // Voxels reach half a spacing beyond their centres.
+    // Voxels extend half a spacing beyond their centres.
     box.add(labels.origin + labels.directions * (corner - Vec3::Constant(0.5)));
   }
   return box;
@@ -113,7 +113,7 @@ DenseMesh mesh_input(const LabelInput& labels, PrepareRun& run) {
   return dense;
 }
 
-/// The points of tets that are not outside.
+/// Points of tets that are not outside.
 std::vector<Vec3> inner_points(const TetMesh& mesh) {
   std::vector<std::uint8_t> used(mesh.points.size(), 0);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
@@ -134,17 +134,17 @@ DenseMesh make_dense_mesh(ScanInput input, PrepareRun& run) {
     if (run.options.order < 2) dense.reference.reset();
     if (!run.options.keep.field) dense.field.reset();
   }
-  // The outside has the sizes of the nearest place where the field has none.
+  // If the field does not cover the outside, the nearest sizes are used there.
   require_sizes_at(run, run.options.cells.keep_outside ? inner_points(dense.mesh) : dense.mesh.points);
   run.report.features = dense.report.features;
   run.report.creases = std::move(dense.report.creases);
   run.report.mesher = std::move(dense.report);
   run.report.seconds_mesh = watch.seconds();
-  // Fraction of the meshing time that comparing and writing the mesh take: 5 s of 20 (4.3 million tets of
+  // Fraction of the meshing time needed to compare and write the mesh: 5 s of 20 (4.3 million tets of
   // dragon_vrip_res2.ply, --resolution 200).
   constexpr double finishing_share = 0.25;
   run.reserve_time(finishing_share * run.report.seconds_mesh);
-  input = {};  // gigabytes of a large volume
+  input = {};  // frees gigabytes of a large volume
   run.report.dense = mesh_statistics(dense.mesh, run.options.shapes.bound());
   return dense;
 }

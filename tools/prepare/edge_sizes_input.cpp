@@ -21,7 +21,7 @@ void read_sizes(PrepareRun& run, const Box3& box) {
                      short_number(sizes.limits.min_edge) + "; give a larger one, or leave one of them out");
   if (!asked.field) return;
   sizes.source = asked.field->source ? asked.field->source : read_size_field(asked.field->name);
-  if (!(diagonal > 0)) return;  // nothing to mesh, which is said elsewhere
+  if (!(diagonal > 0)) return;  // nothing to mesh; reported elsewhere
   sizes.target_length =
       std::make_shared<const SizeField>(*sizes.source, box.low, box.high, wanted_within(sizes.limits));
 }

@@ -13,8 +13,8 @@ namespace tetwright {
 
 namespace {
 
-/// --only-below says which tets to work on, not what to reach. Tets that stay below it are a finding and no
-/// shortfall.
+/// Reports tets that stay below the bound of --only-below. They are a finding, not a shortfall: the option
+/// selects the tets to work on, and does not set a goal.
 void report_tets_below(const TetMesh& mesh, PrepareRun& run) {
   const double bound = run.options.shapes.only_below.value_or(0);
   if (bound == 0) return;

@@ -12,7 +12,7 @@ namespace tetwright {
 
 namespace {
 
-/// Max number of lost labels that a note names.
+/// Maximum number of lost labels named in a note.
 constexpr std::size_t max_lost_named = 5;
 
 /// Reports requested labels that the mesh lacks.
@@ -45,7 +45,7 @@ void find_lost_labels(PrepareRun& run) {
                                 .places = places});
 }
 
-/// "its surface is open", for any flaw but SurfaceFlaw::none.
+/// Text such as "its surface is open", for any flaw except SurfaceFlaw::none.
 const char* flaw_text(SurfaceFlaw flaw) {
   static constexpr const char* texts[] = {
       "", "its surface or one that carves it is open", "its surface or one that carves it touches itself",
@@ -53,7 +53,7 @@ const char* flaw_text(SurfaceFlaw flaw) {
   return texts[static_cast<std::size_t>(flaw)];
 }
 
-/// Notes materials that differ from an estimate of their solid.
+/// Adds notes about materials that differ from an estimate of their solid.
 void find_uncertain_changes(PrepareReport& report) {
   for (const SolidComparison& f : report.solids)
     if (!f.same() && !f.certain)
@@ -79,7 +79,7 @@ void find_changed_solids(const TetMesh& mesh, PrepareRun& run) {
   std::string text;
   std::vector<Vec3> places;
   std::size_t same = 0;
-  bool dense_was_same = report.simplify.has_value();  // but for its counts, which simplifying keeps
+  bool dense_was_same = report.simplify.has_value();  // except for its counts, which simplification preserves
   for (const SolidComparison& f : report.solids) {
     if (f.same() || !f.certain) {
       ++same;
@@ -115,7 +115,7 @@ void find_changed_solids(const TetMesh& mesh, PrepareRun& run) {
                                 .places = places});
 }
 
-/// Reports walls thickened and gaps closed by large cells, and those that were changed on purpose.
+/// Reports walls thickened and gaps closed by large cells, and those changed on request.
 void find_thin_walls(PrepareRun& run) {
   const PrepareOptions& options = run.options;
   PrepareReport& report = run.report;
@@ -162,7 +162,7 @@ void find_thin_walls(PrepareRun& run) {
                                 .places = places});
 }
 
-/// Reports creases and corners that moved from those of the input.
+/// Reports creases and corners that moved away from those of the input.
 void find_changed_creases(const TetMesh& mesh, PrepareRun& run) {
   PrepareReport& report = run.report;
   if (report.creases.segments.empty()) return;
@@ -194,7 +194,7 @@ void find_changed_creases(const TetMesh& mesh, PrepareRun& run) {
        .places = places});
 }
 
-/// Reports named or numbered patches that the mesh lacks.
+/// Reports named or numbered patches that are missing in the mesh.
 void find_lost_patches(const TetMesh& mesh, PrepareRun& run) {
   PrepareReport& report = run.report;
   compare_patches(mesh, report.patches);
@@ -221,12 +221,12 @@ void find_lost_patches(const TetMesh& mesh, PrepareRun& run) {
        .places = places});
 }
 
-/// Whether a material has changed, by its comparison with the input; the worst last.
+/// Whether a material has changed, according to its comparison with the input; the worst value is last.
 enum class Change : std::uint8_t {
   none,
-  none_by_estimate,  ///< as an estimate says
-  by_estimate,       ///< not as an estimate says
-  possible           ///< it has changed, or nothing is known
+  none_by_estimate,  ///< equal to an estimate
+  by_estimate,       ///< different from an estimate
+  possible           ///< changed, or unknown
 };
 
 Change change_of(const PrepareReport& report, MaterialTag tag) {
@@ -238,7 +238,7 @@ Change change_of(const PrepareReport& report, MaterialTag tag) {
   return f->same() ? Change::none_by_estimate : Change::by_estimate;
 }
 
-/// The worst change of the materials beside a thin part: of its own material, or of all for a gap.
+/// Worst change of the materials at a thin part: of the part's material, or of all materials for a gap.
 Change change_beside(const PrepareReport& report, const ThinPartReport& thin) {
   std::optional<Change> worst;
   for (const auto& [tag, material] : report.dense->materials) {
@@ -251,7 +251,7 @@ Change change_beside(const PrepareReport& report, const ThinPartReport& thin) {
   return worst.value_or(Change::possible);
 }
 
-/// Notes a thin part unless the comparison shows that its material was kept.
+/// Adds a note about a thin part unless the comparison shows that its material is unchanged.
 void find_thin_part(const ThinPartReport& thin, PrepareReport& report) {
   const Change change = change_beside(report, thin);
   if (change == Change::none) return;
@@ -267,7 +267,7 @@ void find_thin_part(const ThinPartReport& thin, PrepareReport& report) {
        .places = {thin.first}});
 }
 
-/// Notes parts that are small or thin for the cells.
+/// Adds notes about parts that are small or thin relative to the cells.
 void find_small_parts(PrepareReport& report) {
   for (const FeatureReport& f : report.features)
     if (f.found.dropped > 0)

@@ -9,7 +9,7 @@ namespace tetwright {
 
 namespace {
 
-// One line must hold them; smaller shares do not help the reader.
+// They must fit on one line, and smaller percentages do not help the reader.
 constexpr std::size_t max_rules = 3;
 constexpr double min_share = 0.05;
 
@@ -25,7 +25,7 @@ std::vector<Operation> all_operations() {
   return all;
 }
 
-/// The refusals in the last iteration that has any: of the block loop, or else of the improvement after it.
+/// Refusals in the last iteration that has any: of the block loop, or of the improvement after it.
 std::string last_refusals(const SimplifyReport& report, bool of_loop,
                           const std::vector<Operation>& operations) {
   for (auto it = report.iterations.rbegin(); it != report.iterations.rend(); ++it) {

@@ -14,7 +14,7 @@ namespace tetwright {
 
 namespace {
 
-/// The boundary and the interfaces of a mesh as a surface.
+/// Boundary and interfaces of a mesh as a surface.
 TriangleMesh surface_of(const TetMesh& mesh) {
   TriangleMesh surface;
   std::vector<Index> number(mesh.points.size(), no_index);
@@ -29,7 +29,7 @@ TriangleMesh surface_of(const TetMesh& mesh) {
   return surface;
 }
 
-/// Makes the current surface of the mesh the reference, if KeepOptions::reference.
+/// Makes the current surface of the mesh the reference, if KeepOptions::reference is set.
 void refer_to(const TetMesh& mesh, const char* name, const PrepareRun& run, Prepared& result) {
   if (!run.options.keep.reference) return;
   result.reference = std::make_shared<const TriangleMesh>(surface_of(mesh));
@@ -39,11 +39,11 @@ void refer_to(const TetMesh& mesh, const char* name, const PrepareRun& run, Prep
 Prepared mesh_from_scans(std::vector<Input> inputs, PrepareRun& run) {
   Prepared result;
   DenseMesh dense = make_dense_mesh(read_scan(std::move(inputs), run), run);
-  // The shapes of a segmented volume are compared with its dense mesh.
+  // The result for a segmented volume is compared with its dense mesh.
   if (!dense.surface) refer_to(dense.mesh, "the dense mesh", run, result);
   result.mesh = simplify_to_target(std::move(dense.mesh), dense.reference.get(), dense.surface.get(), run);
   make_second_order(result.mesh, follow(*dense.reference), run);
-  dense.reference.reset();  // memory that comparing and writing the mesh need
+  dense.reference.reset();  // frees memory for comparing and writing the mesh
   if (dense.surface && run.options.keep.reference) {
     result.reference = std::move(dense.surface);
     result.reference_name = "the input";
@@ -114,7 +114,7 @@ Prepared carry_out(std::vector<Input> inputs, PrepareRun& run) {
                     "'), and nothing was written; give more time" +
                     (of_scans ? ", or larger cells by --resolution" : ""));
   }
-  // No deadline for comparing and returning the mesh.
+  // Comparing and returning the mesh has no deadline.
   run.progress.set_deadline(Progress::no_deadline);
   assess(result.mesh, run);
   result.midside = std::move(run.midside);

@@ -12,17 +12,17 @@ namespace tetwright {
 
 namespace {
 
-// Max relative deviation of the count from its target.
+// Maximum relative deviation of the number of tets from its target.
 constexpr double target_slack = 0.01;
 constexpr double improve_slack = 0.05;
 
 /// Relative change of a material's volume above which it is reported.
 constexpr double volume_note_share = 0.02;
 
-/// Share of tets below the bound, in percent, above which it is reported.
+/// Percentage of tets below the bound above which they are reported.
 constexpr double bad_note_percent = 0.1;
 
-/// Share of the edges that a size field must have within edge_length_factor.
+/// Minimum fraction of the edges that must be within edge_length_factor of a size field.
 constexpr double min_edges_within = 0.95;
 
 std::string number(double value) {
@@ -31,7 +31,7 @@ std::string number(double value) {
   return buffer;
 }
 
-/// Reports materials whose volume the simplification has changed.
+/// Reports materials whose volume was changed by simplification.
 void report_volumes(const TetMesh& mesh, const std::string& file, PrepareReport& report) {
   for (const auto& [tag, before] : report.dense->materials) {
     const auto after = report.result->materials.find(tag);
@@ -105,7 +105,7 @@ void find_count_and_shapes(PrepareRun& run) {
         report.result->min_solid_angle, rules_limiting_shapes(*report.simplify));
 }
 
-/// Reports work that --time-limit or memory has cut short.
+/// Reports work that was ended early by --time-limit or the memory limit.
 void find_limits(PrepareRun& run) {
   const PrepareOptions& options = run.options;
   PrepareReport& report = run.report;
@@ -136,7 +136,7 @@ void find_limits(PrepareRun& run) {
                                   .limited_by = "memory"});
 }
 
-/// Reports a tolerance that is not proven to hold.
+/// Reports a tolerance that is not proven to be met.
 void find_deviation(PrepareRun& run) {
   PrepareReport& report = run.report;
   if (!report.deviation) return;
@@ -155,7 +155,7 @@ void find_deviation(PrepareRun& run) {
   const SurfaceDeviation& worst = mesh ? d.from_mesh : d.from_surface;
   const bool stopped =
       (report.simplify && report.simplify->out_of_time) || (report.mesher && report.mesher->out_of_time);
-  // A volume is compared with the dense mesh's own surface.
+  // The result for a volume is compared with the dense mesh's own surface.
   const char* limit = worst.lower <= report.tolerance && stopped
                           ? "--time-limit, which ended measuring it: it may be held"
                       : report.mesher && !report.volume
@@ -211,7 +211,7 @@ void find_edge_lengths(const TetMesh& mesh, PrepareRun& run) {
                                 .limited_by = held});
 }
 
-/// Notes tets below the default bound, which are no shortfall.
+/// Adds a note about tets below the default bound, which is not a shortfall.
 void report_bad_shapes(PrepareRun& run) {
   const PrepareOptions& options = run.options;
   PrepareReport& report = run.report;

@@ -8,9 +8,9 @@ namespace tetwright {
 
 namespace {
 
-/// Max time limit, seconds, which keeps the clock from overflowing.
+/// Maximum time limit, seconds; larger ones would overflow the clock.
 constexpr double max_seconds = 1e9;
-/// Min fraction of the time limit reserved for comparing and writing the mesh.
+/// Minimum fraction of the time limit reserved for comparing and writing the mesh.
 constexpr double min_reserve = 0.1;
 
 }  // namespace

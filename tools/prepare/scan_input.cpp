@@ -18,7 +18,7 @@ namespace tetwright {
 
 namespace {
 
-/// Refuses files that cannot be scans by their extension.
+/// Rejects files whose extension shows that they are not scans.
 void check_input_kinds(const std::vector<Input>& inputs, Task task) {
   for (const Input& input : inputs) {
     const std::string& file = input.name;
@@ -41,8 +41,8 @@ void check_input_kinds(const std::vector<Input>& inputs, Task task) {
   }
 }
 
-/// Whether the input is a segmented volume, which must then be the only one, since it names all materials.
-/// The kind of a .vdb file is known only once it has been read: its labels are put into `vdb_labels`.
+/// Whether the input is a segmented volume, which must then be the only input, since it names all materials.
+/// The kind of a .vdb file is known only after reading; its labels are stored in `vdb_labels`.
 bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
                std::optional<LabelVolume>& vdb_labels) {
   bool volume = std::any_of(inputs.begin(), inputs.end(),
@@ -91,7 +91,7 @@ LabelChoice label_choice(const LabelOptions& options) {
   return choice;
 }
 
-/// Takes the names in the file itself. No two labels have one name there, nor that of the outside.
+/// Uses the names in the volume's file, made unique among labels and different from the outside's name.
 void take_names(const LabelVolume& volume, LabelChoice& choice) {
   UniqueNames unique(printable_name);
   (void)unique.add("outside");
@@ -100,7 +100,7 @@ void take_names(const LabelVolume& volume, LabelChoice& choice) {
 }
 
 LabelInput read_labels(std::optional<LabelVolume> vdb_labels, Input& input, PrepareRun& run) {
-  // Before the volume, which takes longer to read.
+  // Done before reading the volume, which takes longer.
   LabelChoice choice = label_choice(run.options.labels);
   LabelVolume volume = vdb_labels ? std::move(*vdb_labels) : take_label_volume(input, run.seconds_waited);
   if (run.options.labels.names_file.empty()) take_names(volume, choice);
@@ -111,7 +111,7 @@ LabelInput read_labels(std::optional<LabelVolume> vdb_labels, Input& input, Prep
   return labels;
 }
 
-/// The level set of an input that names its material.
+/// Reads the level set of an input that names its material; there must be only one.
 TriangleMesh read_one_level_set(const Input& input) {
   std::vector<NamedSurface> level_sets = read_level_sets(input.name);
   if (level_sets.size() > 1)
@@ -128,7 +128,7 @@ struct SplitFile {
   std::vector<std::size_t> surfaces;  ///< indices of its solids among all surfaces
 };
 
-/// Qualifies names of solids that other materials have, too.
+/// Qualifies names of solids that other materials also have.
 void name_solids(std::vector<SplitFile> files, const std::vector<Layer>& layers,
                  std::vector<MaterialSurface>& surfaces, std::vector<Diagnostic>& findings) {
   UniqueNames taken([](const std::string& name) { return name; });
@@ -146,8 +146,8 @@ void name_solids(std::vector<SplitFile> files, const std::vector<Layer>& layers,
     for (const std::size_t i : files[f].surfaces) surfaces[i].name = names[f].names.at(surfaces[i].name);
 }
 
-/// One material for each surface and level set, or with --split-solids for each solid of a surface, with tags
-/// from 1 in the order of the inputs.
+/// Reads one material for each surface and level set, or with --split-solids for each solid of a surface.
+/// Tags start at 1, in the order of the inputs.
 std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs, PrepareRun& run) {
   PrepareReport& report = run.report;
   const bool split_solids_asked = run.options.bodies.split_solids;

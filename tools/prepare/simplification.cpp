@@ -13,7 +13,7 @@ namespace tetwright {
 
 namespace {
 
-/// Fraction of the diagonal: a hundred times the accuracy of distances and of floats.
+/// Fraction of the diagonal: a hundred times the accuracy of distances and of single-precision numbers.
 constexpr double min_tolerance_share = 100 * tolerance::deviation_share;
 
 }  // namespace
@@ -43,7 +43,7 @@ TetMesh simplify_to_target(TetMesh mesh, const ReferenceSurface* reference, cons
   SimplifyOptions options;
   const PrepareOptions& asked = run.options;
   options.target_tets = asked.target.tets.value_or(0);
-  // Fewer tets than fill thin walls would be flat.
+  // Thin walls filled with fewer tets would have flat tets.
   if (run.report.mesher && options.target_tets > 0)
     options.target_tets =
         std::max(options.target_tets, std::min(run.report.mesher->filling_tets, mesh.tets.size()));
@@ -65,7 +65,7 @@ TetMesh simplify_to_target(TetMesh mesh, const ReferenceSurface* reference, cons
   options.name = run.report.inputs.front();
   run.report.simplify.emplace();
   TetMesh result = simplify(std::move(mesh), options, &*run.report.simplify, &run.progress);
-  // The deadline is for simplification only: all later steps finish this mesh.
+  // The deadline applies only to simplification; all later steps finish this mesh.
   run.progress.set_deadline(Progress::no_deadline);
   run.report.deviation = run.report.simplify->deviation;
   return result;

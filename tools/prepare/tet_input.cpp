@@ -21,7 +21,8 @@ void check_input_kind(const Input& input, Task task) {
                      " reads tet meshes (" + known_extensions(FileKind::tet_mesh) + ")");
 }
 
-/// Other programs list tets in the opposite orientation or repeat points for each tet.
+/// Repairs meshes of other programs, which may list tets in the opposite orientation or repeat points for
+/// each tet.
 void repair(TetMesh& mesh, const std::string& file, PrepareReport& report) {
   const ImportCleanupReport found = make_coherent(mesh);
   const auto add = [&](DiagnosticCode code, std::size_t count, const char* what, const char* done,
@@ -77,8 +78,8 @@ TetInput read_tets(Input from, PrepareRun& run) {
   run.progress.throw_if_stopped();
   run.report.creases = mesh_creases(input.mesh);
   run.report.seconds_read = watch.seconds();
-  // Comparing and writing a mesh take as long as reading it (5 s each of the 4.3 million tets of
-  // dragon_vrip_res2.ply at --resolution 200); what simplifying leaves of it takes less.
+  // Comparing and writing a mesh take as long as reading it (5 s for each of these, for the 4.3 million tets
+  // of dragon_vrip_res2.ply at --resolution 200); a simplified mesh takes less.
   const double finishing = run.report.seconds_read - run.seconds_waited;
   run.reserve_time(run.task == Task::improve ? finishing : std::min(finishing, run.seconds_left() / 2));
   const TargetOptions& target = run.options.target;

@@ -17,7 +17,7 @@
 #include "tetwright/tet_mesh.h"
 #include "tools/app/commands/named_inputs.h"
 
-// Conversions from NumPy arrays. `name` names the input in messages. All throw InputError.
+// Conversions from NumPy arrays. `name` is the name of the input in messages. All functions throw InputError.
 namespace tetwright::python {
 
 namespace py = pybind11;
@@ -29,24 +29,24 @@ using Values = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Labels = py::array_t<MaterialTag, py::array::f_style | py::array::forcecast>;
 /// Name, whether the values are integers, and the values.
 using Fields = std::vector<std::tuple<std::string, bool, Values>>;
-/// Kind of item (plural), count, and whether it is restored from the rest.
+/// Kind of the items (plural), number, and whether they are restored from other data.
 using DroppedItems = std::vector<std::tuple<std::string, std::size_t, bool>>;
 /// Triangles of shape (m, 3), their group numbers of shape (m,) with 0 for none, and the names of named
 /// groups.
 using GroupedTriangles = std::tuple<Cells, Cells, std::map<std::int64_t, std::string>>;
 
-/// Points of shape (n, 3), all finite.
+/// Points of shape (n, 3); all coordinates must be finite.
 std::vector<Vec3> to_points(const Points& array, const std::string& name);
-/// Needs at least one triangle; point indices start at 0.
+/// A surface with at least one triangle; point indices start at 0.
 TriangleMesh to_surface(const std::string& name, const Points& points, const GroupedTriangles& triangles);
-/// Triangles listed beside the tets of a mesh with `points` points.
+/// Triangles listed in addition to the tets of a mesh with `points` points.
 FileTriangles to_triangles(const std::string& name, std::size_t points, const GroupedTriangles& triangles);
-/// Tets of shape (m, 4), at least one, and their materials of shape (m,); without these a cell field may give
-/// them, as in files. Point and cell fields have shape (n, components).
+/// A mesh of tets of shape (m, 4), at least one, and materials of shape (m,). Without materials a cell field
+/// may give them, as in files. Point and cell fields have shape (n, components).
 ReadTetMesh to_mesh(const std::string& name, const Points& points, const Cells& tets,
                     const std::optional<Tags>& materials, const std::map<MaterialTag, std::string>& names,
                     const Fields& point_fields, const Fields& cell_fields, const DroppedItems& dropped);
-/// Items of the host's object that its arrays lack.
+/// Contents of the host's object that are not in its arrays.
 std::vector<Dropped> to_dropped(const DroppedItems& items);
 /// Edge lengths of shape (n,) at the points of tets (m, 4) or triangles (m, 3).
 SizesObject to_sizes(const std::string& name, const Points& points, const Cells& cells,

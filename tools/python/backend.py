@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What pip calls, as pyproject.toml says: setuptools, with its setup.py in this folder instead of the root."""
+"""Build backend named in pyproject.toml: setuptools, with its setup.py in this folder instead of the root."""
 from setuptools import build_meta
 
 

@@ -24,7 +24,8 @@ namespace tetwright::python {
 
 namespace {
 
-/// A read-only view of items of `Row`, `columns` numbers each from `first` on; null `columns`: one axis.
+/// A read-only view of the items of `rows`, with `columns` numbers from `first` on in each; `columns` null:
+/// one-dimensional.
 template <class Number, class Row>
 py::array view(const std::vector<Row>& rows, const void* first, py::ssize_t columns,
                const py::object& owner) {
@@ -40,7 +41,7 @@ py::array view(const std::vector<Row>& rows, const void* first, py::ssize_t colu
 
 py::dict fields_of(const std::vector<MeshField>& fields, const py::object& owner) {
   py::dict all;
-  const std::vector<std::string> names = field_names_to_write(fields, {});  // no two alike
+  const std::vector<std::string> names = field_names_to_write(fields, {});  // unique names
   auto name = names.begin();
   for (const MeshField& f : fields) {
     const auto components = static_cast<py::ssize_t>(f.components);
@@ -54,7 +55,7 @@ py::dict fields_of(const std::vector<MeshField>& fields, const py::object& owner
   return all;
 }
 
-/// The other side of each interface triangle, and whether there is none but outside.
+/// Material on the other side of each interface triangle, and whether that side is outside.
 py::tuple other_sides(const TetMesh& mesh) {
   const auto count = static_cast<py::ssize_t>(mesh.interfaces.size());
   py::array_t<MaterialTag> other(count);
@@ -67,8 +68,8 @@ py::tuple other_sides(const TetMesh& mesh) {
   return py::make_tuple(other, boundary);
 }
 
-/// The number of the group of each interface triangle, and the names of these, as files have them: of all,
-/// and of those that are the user's.
+/// Group number of each interface triangle, and the names of the groups as in files: of all groups, and of
+/// those that come from the user.
 py::tuple groups_of(const TetMesh& mesh) {
   const BoundaryGroups groups(mesh);
   py::array_t<std::int64_t> numbers(static_cast<py::ssize_t>(mesh.interfaces.size()));
@@ -82,7 +83,7 @@ py::tuple groups_of(const TetMesh& mesh) {
   return py::make_tuple(numbers, names, of_patches);
 }
 
-/// For each interface triangle the tet on the side of its `material`.
+/// For each interface triangle, the tet on the side of its `material`.
 py::array_t<Index> tets_beside(const TetMesh& mesh) {
   py::array_t<Index> tets(static_cast<py::ssize_t>(mesh.interfaces.size()));
   py::ssize_t i = 0;
@@ -90,7 +91,7 @@ py::array_t<Index> tets_beside(const TetMesh& mesh) {
   return tets;
 }
 
-/// The fields of points and midside nodes.
+/// Fields at points and midside nodes.
 py::dict fields_of_all_nodes(const Mesh& mesh) {
   const MeshToWrite nodes(mesh.mesh, mesh.midside ? &*mesh.midside : nullptr);
   const auto owned = std::make_unique<std::vector<MeshField>>(nodes.node_fields());
@@ -102,7 +103,7 @@ py::dict fields_of_all_nodes(const Mesh& mesh) {
 void write_mesh_files(Mesh& mesh, const std::string& path, const std::string& format,
                       const std::string& boundary, bool no_boundary) {
   const py::gil_scoped_release release;
-  CommandLine line;  // for the program's rules
+  CommandLine line;  // required by the program's checks
   line.command = Command::improve;
   line.outputs.mesh = path;
   line.outputs.format = format;

@@ -14,7 +14,7 @@ namespace tetwright::python {
 
 namespace py = pybind11;
 
-/// A mesh that belongs to Python, and what the command that made it said.
+/// A mesh owned by Python, with the report of the command that made it.
 struct Mesh {
   TetMesh mesh;
   std::optional<MidsideNodes> midside;
@@ -22,10 +22,12 @@ struct Mesh {
   std::vector<std::string> notes, shortfall;
 };
 
-/// Throws UsageError where the call would write to standard output, which is the host's.
+/// Rejects calls that would write to standard output, which belongs to the host.
+///
+/// \throws UsageError if the call would
 void check_no_standard_output(const CommandLine& line);
 
-/// Defines Mesh in the module: read-only views of its arrays, which keep it alive, and write().
+/// Defines Mesh in the module, with write() and read-only views of its arrays; the views keep the mesh alive.
 void bind_mesh(py::module_& module);
 
 }  // namespace tetwright::python

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// tetwright._core: what the Python package calls. Python turns its objects into arrays, arrays.h these into
-// meshes, and mesh_object.h those of the results into views.
+// tetwright._core: the functions that the Python package calls. Python converts its objects to arrays,
+// arrays.h converts arrays to meshes, and mesh_object.h makes the arrays of results views.
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -34,10 +34,10 @@ namespace tetwright::python {
 
 namespace {
 
-/// How often a running call looks for Ctrl-C and reports its progress.
+/// Period at which a running call checks for Ctrl-C and reports its progress.
 constexpr std::chrono::milliseconds poll_interval{50};
 
-/// Progress of the thread that works, for the thread that called.
+/// Passes progress from the working thread to the calling thread.
 class SharedProgress : public Progress {
  public:
   void begin_stage(std::string_view name) override {
@@ -61,9 +61,9 @@ class SharedProgress : public Progress {
   double fraction_ = 0;
 };
 
-/// Calls `work` in a thread of its own, without the interpreter's lock, while this thread looks for signals
-/// and tells `callback(stage, fraction)` what has changed. An exception of either cancels the work and is
-/// raised once that has ended.
+/// Calls `work` in a separate thread, without the interpreter's lock, while this thread checks for signals
+/// and reports changes to `callback(stage, fraction)`. An exception of either cancels the work and is raised
+/// once the work has ended.
 void run_in_background(const std::function<void()>& work, SharedProgress& progress,
                        const py::object& callback) {
   std::mutex mutex;
@@ -130,7 +130,7 @@ CommandLine parse(std::vector<std::string> arguments) {
   return line;
 }
 
-/// Calls `work`; if that fails, writes the statistics that were asked for all the same.
+/// Calls `work`. If it fails, the requested statistics are written nevertheless.
 void with_stats_of_failure(CommandRun& run, const std::function<void()>& work) {
   try {
     work();
@@ -191,7 +191,7 @@ py::tuple check(std::vector<std::string> arguments, NamedInputs& inputs, const p
 
 // Exceptions.
 
-/// Python's class for each kind of error; borrowed, the module owns them.
+/// Python class for each kind of error; a borrowed reference, owned by the module.
 PyObject* error_class(ExitStatus status);
 
 struct ErrorClasses {

@@ -6,8 +6,8 @@
 
 namespace tetwright::python {
 
-/// The options of a command that makes or checks a mesh, such as "--threads", and what each takes as --help
-/// names it: "N", "NUMBER", "LENGTH", "FILE"; empty for a flag. Empty for other commands.
+/// Options of a command that makes or checks a mesh, such as "--threads", and the type of each value as
+/// --help shows it: "N", "NUMBER", "LENGTH", "FILE"; empty for a flag. Empty for other commands.
 std::map<std::string, std::string> option_types(const std::string& command);
 
 }  // namespace tetwright::python

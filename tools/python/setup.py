@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Builds the compiled part of the Python package with CMake, in the folder that TETWRIGHT_BUILD names or build/python.
-pip runs this from the root of the repository, by way of backend.py."""
+"""Builds the compiled module of the Python package with CMake, in the folder given by TETWRIGHT_BUILD or in
+build/python. pip runs this from the root of the repository, through backend.py."""
 import os
 import pathlib
 import shutil

@@ -10,7 +10,7 @@ namespace tetwright::python {
 
 namespace py = pybind11;
 
-/// Names of files need not be UTF-8, as Python's text is.
+/// Converts to Python text. Names of files need not be UTF-8, but Python's text is.
 inline py::str to_text(const std::string& text) {
   PyObject* made = PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "replace");
   if (!made) throw py::error_already_set();

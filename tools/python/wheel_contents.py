@@ -2,7 +2,7 @@
 """Packs the program and a module into a wheel; `tools/python/wheel` builds both and calls it.
 
 The wheel holds all shared libraries that they need, except glibc and g++'s runtime library, and the licences of these
-libraries. Its platform tag follows from the versions of symbols that the files need."""
+libraries. Its platform tag follows from the symbol versions that the files need."""
 import base64
 import hashlib
 import os
@@ -16,13 +16,13 @@ import tempfile
 import tomllib
 import zipfile
 
-# Libraries that a wheel may take from the system (PEP 600).
+# Libraries that a wheel may load from the system (PEP 600).
 OF_SYSTEM = {"libc.so.6", "libm.so.6", "libpthread.so.0", "libdl.so.2", "librt.so.1", "libgcc_s.so.1", "libstdc++.so.6",
              "ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1"}
 # Libraries that a wheel may hold: their licences allow it, and none of them opens connections.
 INSIDE = {"Imath", "aec", "blosc", "boost_iostreams", "bz2", "deflate", "hdf5_serial", "log4cplus", "lz4", "lzma", "openvdb",
           "pugixml", "snappy", "sz", "tbb", "tbbmalloc", "z", "zip", "zstd"}
-# Debian's packages whose headers or scripts are compiled into the program and the module.
+# Debian packages whose headers or scripts are compiled into the program and the module.
 HEADERS = ["libcli11-dev", "libeigen3-dev", "libjs-three", "nlohmann-json3-dev"]
 # The oldest glibc that distributions combine with these versions of g++'s runtime library.
 GLIBC_BESIDE = {"GLIBCXX": {"3.4.19": "2.17", "3.4.29": "2.34", "3.4.30": "2.35", "3.4.33": "2.39"},
@@ -70,7 +70,7 @@ def compiled_files(folder):
 
 
 def symbol_versions(file):
-    """Returns the versions of symbols that the file needs of the system's libraries, such as GLIBC_2.34."""
+    """Returns the symbol versions that the file needs from the system's libraries, such as GLIBC_2.34."""
     versions = set()
     library = None
     for line in output_of("objdump", "-p", file).splitlines():
@@ -85,7 +85,7 @@ def symbol_versions(file):
 
 
 def platform_tag(versions, machine):
-    """Returns the tag of the oldest systems that have all of these versions of symbols."""
+    """Returns the tag of the oldest systems that have all of these symbol versions."""
     glibc = "2.17"
     for version in versions:
         library, _, number = version.rpartition("_")
@@ -127,7 +127,7 @@ def licence_of_library(path, parts):
 
 
 def write_licences(licences, folder):
-    """Writes the licence of each package, and the common licences that these refer to."""
+    """Writes the licence of each package, and the common licences to which these refer."""
     common = set()
     for package, text in licences.items():
         (folder / package).mkdir(parents=True)
@@ -147,7 +147,7 @@ def add_libraries(libraries, folder):
     for name, path in sorted(libraries.items()):
         before, so, after = name.partition(".so")
         digest = hashlib.sha256(path.read_bytes()).hexdigest()[:8]
-        # oneTBB loads its allocator by name.
+        # The name must stay: oneTBB loads its allocator by name.
         new_names[name] = name if stem(name) == "tbbmalloc" else f"{before}-{digest}{so}{after}"
         shutil.copyfile(path, folder / new_names[name])
     return new_names
@@ -159,14 +159,14 @@ def settle(file, new_names, run_path):
     subprocess.run(["strip", "--strip-unneeded", file], check=True)
     replaced = [word for needed in output_of("patchelf", "--print-needed", file).split() if needed in new_names
                 for word in ("--replace-needed", needed, new_names[needed])]
-    # Each change is a call of its own: patchelf 0.14 loses the new names if it also sets the path.
+    # Make each change in a separate call: patchelf 0.14 loses the new names if it also sets the path.
     for change in (["--set-rpath", run_path], replaced, ["--set-soname", file.name] if ".so." in file.name else []):
         if change:
             subprocess.run(["patchelf", *change, file], check=True)
 
 
 def check_linkage(folder):
-    """Ends the program if a file would take a library from outside the folder that is not in OF_SYSTEM."""
+    """Exits if a file would load a library from outside the folder that is not in OF_SYSTEM."""
     for file in compiled_files(folder):
         for name, path in needed_libraries(file).items():
             if folder not in path.resolve().parents:
@@ -174,7 +174,7 @@ def check_linkage(folder):
 
 
 def metadata(source):
-    """Returns name, version and METADATA of the wheel, as pyproject.toml has them."""
+    """Returns name, version and METADATA of the wheel, as given by pyproject.toml."""
     project = tomllib.loads((source / "pyproject.toml").read_text())["project"]
     known = {"name": "Name", "version": "Version", "description": "Summary", "requires-python": "Requires-Python"}
     if unknown := set(project) - set(known) - {"license", "readme", "dependencies"}:

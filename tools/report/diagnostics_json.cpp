@@ -5,7 +5,7 @@ namespace tetwright {
 
 namespace {
 
-/// Name of an unmet request in "shortfall", which is older than the codes and equivalent to them.
+/// Name of an unmet request in "shortfall". These names are older than the codes and equivalent to them.
 const char* request_name(DiagnosticCode code) {
   switch (code) {
     case DiagnosticCode::target_missed:

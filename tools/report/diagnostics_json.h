@@ -8,13 +8,13 @@
 
 namespace tetwright {
 
-/// A point as its three coordinates, input units.
+/// Coordinates of a point as a list, input units.
 nlohmann::json place_json(const Vec3& p);
 
-/// "diagnostics" of --stats and of `check --json`: all of them, by their codes.
+/// Value of "diagnostics" in --stats and `check --json`: all diagnostics, by their codes.
 nlohmann::json diagnostics_json(const std::vector<Diagnostic>& all);
 
-/// "shortfall" of --stats: the requests that were not met.
+/// Value of "shortfall" in --stats: the requests that were not met.
 nlohmann::json shortfall_json(const std::vector<Diagnostic>& all);
 
 }  // namespace tetwright

@@ -23,7 +23,7 @@ nlohmann::json iteration_json(const IterationReport& it) {
     operations[name] = {{"tried", it.counts.tried(operation)},
                         {"done", it.counts.of(operation, Outcome::done)}};
     nlohmann::json reasons = nlohmann::json::object();
-    for (std::size_t r = 1; r < outcome_count; ++r)  // 0 is done
+    for (std::size_t r = 1; r < outcome_count; ++r)  // outcome 0 is `done`
       if (const auto n = it.counts.of(operation, static_cast<Outcome>(r)))
         reasons[std::string(outcome_names[r])] = n;
     rejections[name] = reasons;
@@ -40,7 +40,7 @@ nlohmann::json iteration_json(const IterationReport& it) {
           {"lock_conflicts", it.conflicts},
           {"repeats", it.repeats},
           {"batches", it.batches},
-          {"skipped", 0},  // a key of the schema: no item is given up
+          {"skipped", 0},  // a key of the schema; always 0
           {"seconds", it.seconds}};
 }
 
@@ -76,8 +76,8 @@ bool is_flat(const nlohmann::json& json) {
                       [](const nlohmann::json& item) { return item.is_structured(); });
 }
 
-/// The text of a document, an indented line for each value, but lists of plain values in one line: histograms
-/// have hundreds of numbers. Bytes that are not UTF-8 become replacement characters.
+/// Appends the text of a document: an indented line for each value, but one line for a list of plain values,
+/// since histograms have hundreds of numbers. Bytes that are not UTF-8 become replacement characters.
 void append_json(const nlohmann::json& json, std::size_t indent, std::string& out) {
   if (!json.is_structured() || json.empty() || (json.is_array() && is_flat(json))) {
     out += json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -112,7 +112,7 @@ std::string name_of(MaterialTag tag, const std::map<MaterialTag, std::string>& n
   return name == names.end() ? "" : name->second;
 }
 
-/// Null for the outside.
+/// The second region is null for outside.
 nlohmann::json pair_json(const MaterialPair& pair) {
   nlohmann::json other;
   if (pair.second) other = *pair.second;
@@ -145,8 +145,8 @@ nlohmann::json topology_json(const Topology& t, const std::map<MaterialTag, std:
   return j;
 }
 
-/// `names` are those of the materials that have one; `threshold` is the solid angle that the statistics were
-/// made with, steradians.
+/// \param names names of the materials that have one
+/// \param threshold solid angle with which the statistics were computed, steradians
 nlohmann::json mesh_json(const MeshStatistics& m, const std::map<MaterialTag, std::string>& names,
                          double threshold) {
   nlohmann::json materials = nlohmann::json::array();
@@ -280,7 +280,7 @@ nlohmann::json surface_json(const SurfaceComparison& c) {
     j["solid"] = {{"expected", solid_json(c.solid->expected)},
                   {"result", solid_json(c.solid->result)},
                   {"same", c.solid->same()}};
-  // A distance from nothing is null.
+  // A distance that is infinite for lack of a counterpart becomes null.
   if (c.creases) j["creases"] = creases_json(*c.creases);
   if (c.mesh_creases) j["mesh_creases"] = creases_json(*c.mesh_creases);
   return j;
@@ -297,7 +297,7 @@ nlohmann::json patches_json(const std::vector<PatchComparison>& all) {
   return j;
 }
 
-/// Adds to the statistics of the dense mesh how it was made.
+/// Adds how the dense mesh was made to its statistics.
 void add_mesher_json(const MesherReport& m, nlohmann::json& dense) {
   dense["cell_size"] = m.cell_size;
   dense["resolution"] = m.resolution;
@@ -357,7 +357,7 @@ std::vector<Diagnostic> diagnostics_of(const CommandRun& ended) {
 std::size_t peak_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux reports KiB
 }
 
 std::string stats_json(const CommandRun& ended) {

@@ -12,11 +12,11 @@ namespace tetwright {
 /// Peak resident memory of this process so far, bytes.
 std::size_t peak_bytes();
 
-/// The JSON text of --stats, with the keys of data/stats.schema.json. Bytes that are not UTF-8, as in file
-/// names, become replacement characters.
+/// JSON text of --stats, with the keys of data/stats.schema.json. Bytes that are not UTF-8, which file names
+/// may contain, become replacement characters.
 std::string stats_json(const CommandRun& run);
 
-/// The JSON text of `check --json`, with the statistics of the result.
+/// JSON text of `check --json`, with the statistics of the result.
 std::string check_json(const CommandRun& run, const CheckReport& check);
 
 }  // namespace tetwright

@@ -13,13 +13,13 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The call is wrong: unknown extension, impossible option value.
+/// An invalid call: unknown extension, impossible option value.
 class UsageError : public Error {
  public:
   using Error::Error;
 };
 
-/// An input cannot be read or makes no sense.
+/// An input cannot be read or is invalid.
 class InputError : public Error {
  public:
   using Error::Error;
@@ -28,7 +28,7 @@ class InputError : public Error {
       : Error(file + (line ? ": line " + std::to_string(line) : std::string()) + ": " + message) {}
 };
 
-/// The input is valid but leaves nothing to mesh.
+/// The input is valid but contains nothing to mesh.
 class NothingToMeshError : public Error {
  public:
   using Error::Error;
@@ -53,20 +53,20 @@ class OutOfTime : public Error {
   using Error::Error;
 };
 
-/// A broken invariant of this library: a bug here, not in the caller. The objects involved must not be used
-/// any more; the host program can go on.
+/// A broken invariant of this library: a bug in the library, not in the caller. The objects involved must not
+/// be used any more; the host program can continue.
 class InternalError : public std::logic_error {
  public:
   using std::logic_error::logic_error;
 };
 
 namespace detail {
-/// \throws InternalError naming the condition and the location in the source; never returns
+/// \throws InternalError naming the condition and its source location; never returns
 [[noreturn]] void check_failed(const char* condition, const char* file, int line);
 }  // namespace detail
 
 }  // namespace tetwright
 
-/// Checks an invariant of this library in every build: going on would return a wrong mesh.
+/// Checks an invariant of this library in every build: continuing would return a wrong mesh.
 #define TETWRIGHT_CHECK(condition) \
   ((condition) ? void(0) : ::tetwright::detail::check_failed(#condition, __FILE__, __LINE__))

@@ -21,27 +21,28 @@ void check_output_file(const std::string& path);
 /// exists. Hard links are not recognised.
 std::string real_path(const std::string& path);
 
-/// Receives the bytes of a file piece by piece.
+/// Receives the bytes of a file, piece by piece.
 using ByteSink = std::function<void(std::string_view)>;
 
-/// Files that appear together or not at all, each of them whole.
+/// Files that appear together or not at all, each of them complete.
 ///
-/// write() puts a file beside its target, under a temporary name, and syncs it to disk; commit() renames all
-/// of them over their targets. Until then the targets are untouched, and whatever ends the work (an
-/// exception, a full disk, cancellation, abandon_output_files()) leaves nothing behind. Only a rename that
-/// fails, or a machine that stops during commit(), can leave some files in place without the others, each of
-/// them whole. SIGKILL leaves the temporary files (".tetwright-*.tmp").
+/// write() writes a file beside its target under a temporary name and syncs it to disk; commit() renames all
+/// of them over their targets. Until then the targets are unchanged, and any abort (an exception, a full
+/// disk, cancellation, abandon_output_files()) leaves no temporary file behind. Only a failed rename, or a
+/// machine that stops during commit(), can leave some files replaced and others not, each of them complete.
+/// SIGKILL leaves the temporary files (".tetwright-*.tmp").
 ///
 /// "-" is standard output: its bytes are kept in memory and written by commit() before the first rename.
 ///
-/// A link stays, and its target is replaced; the permissions of an existing file are kept. SIGXFSZ is ignored
-/// during write(), for the whole process. Different objects may be used concurrently.
+/// If a target is a link, the link stays and the file that it points to is replaced; an existing file's
+/// permissions are kept. SIGXFSZ is ignored during write(), for the whole process. Different objects may be
+/// used concurrently.
 class OutputFiles {
  public:
   /// \param progress if it is cancelled, write() throws Interrupted before the next piece of at most 64 MB,
   ///   and commit() before its first rename; null: no cancellation
   explicit OutputFiles(const Progress* progress = nullptr);
-  /// Removes what was not committed.
+  /// Removes the files that were not committed.
   ~OutputFiles();
   OutputFiles(const OutputFiles&) = delete;
   OutputFiles& operator=(const OutputFiles&) = delete;
@@ -63,7 +64,7 @@ class OutputFiles {
   std::string to_stdout_;
 };
 
-/// Writes one file whole or not at all, as OutputFiles does.
+/// Writes one file completely or not at all, as OutputFiles does.
 void write_file_atomically(const std::string& path, std::string_view bytes);
 void write_file_atomically(const std::string& path, const std::function<void(const ByteSink&)>& content);
 
@@ -71,12 +72,12 @@ void write_file_atomically(const std::string& path, const std::function<void(con
 void remove_temporary_files(const std::string& path, int process) noexcept;
 
 /// Removes the files that were written but not committed, for handlers of signals and of std::terminate that
-/// end the process. Afterwards no other thread creates or renames a file, so that the process must end.
+/// end the process. After the call no other thread can create or rename a file, so the process must end.
 /// Async-signal-safe.
 ///
-/// The handler's signal should be blocked while a file is created or renamed; SIGHUP, SIGINT and SIGTERM are,
-/// in the thread that does so. Files beyond the 256th at a time, or with names beyond 4,000 bytes, are
-/// unknown to this function.
+/// The handler's signal must be blocked while a file is created or renamed; SIGHUP, SIGINT and SIGTERM are
+/// blocked in the thread that does so. Files beyond the 256th at a time, or with names longer than 4,000
+/// bytes, are unknown to this function.
 /// \return whether the process has ever committed a file
 bool abandon_output_files() noexcept;
 
@@ -84,11 +85,11 @@ bool abandon_output_files() noexcept;
 void sync_folder_of(const std::string& path);
 
 /// Reads a file or pipe to its end.
-/// \throws InputError if it cannot be read or is neither
+/// \throws InputError if it cannot be read, or is neither a file nor a pipe
 std::string read_whole_file(const std::string& path);
 
 /// Reads standard input to its end.
-/// \throws InputError
+/// \throws InputError if it cannot be read
 std::string read_standard_input();
 
 }  // namespace tetwright

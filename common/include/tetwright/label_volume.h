@@ -10,14 +10,14 @@
 
 namespace tetwright {
 
-/// A segmented volume: a label for each voxel of a regular grid, whose axes need be neither perpendicular nor
-/// right-handed.
+/// A segmented volume: a label for each voxel of a regular grid. The grid's axes need be neither
+/// perpendicular nor right-handed.
 ///
 /// Voxels are cell-centred: index (i, j, k) is the centre of a voxel, which extends half a step to each side.
 struct LabelVolume {
   std::array<int, 3> size{};   ///< voxels along each axis, 1 or more
   Vec3 origin = Vec3::Zero();  ///< centre of voxel (0, 0, 0), input units
-  /// Column a is the step from one voxel to the next along axis a, input units; of rank 3.
+  /// Column a is the step from one voxel to the next along axis a, input units. The matrix has rank 3.
   Eigen::Matrix3d directions = Eigen::Matrix3d::Identity();
   /// Coordinate system that the file names: "left-posterior-superior", "right-anterior-superior" and so on,
   /// or empty. Readers do not convert between them.
@@ -33,7 +33,7 @@ struct LabelVolume {
 };
 
 /// Checks the grid of a volume.
-/// \param file named in messages
+/// \param file file name for messages
 /// \throws InputError unless origin and directions are finite and the directions are invertible
 void check_geometry(const LabelVolume& volume, const std::string& file);
 

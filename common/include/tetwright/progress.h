@@ -10,8 +10,8 @@
 
 namespace tetwright {
 
-/// Progress reports and cancellation of long-running functions. The base class only cancels; a program
-/// derives a class that displays progress.
+/// Progress reports and cancellation of long-running functions. The base class only handles cancellation;
+/// derive a class to display progress.
 ///
 /// `begin_stage`, `update`, `finish` and `set_deadline` are called from the thread that called the
 /// long-running function; `cancel` may be called from any thread and from a signal handler.
@@ -28,7 +28,7 @@ class Progress {
   virtual void update(double /*fraction*/) {}
   /// Ends the last stage; the caller may print afterwards.
   virtual void finish() {}
-  /// The name of the current stage, empty before the first.
+  /// Name of the current stage, empty before the first.
   virtual std::string stage() const { return {}; }
 
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
@@ -36,7 +36,7 @@ class Progress {
 
   using Clock = std::chrono::steady_clock;
   static constexpr Clock::time_point no_deadline = Clock::time_point::max();
-  /// Sets the time at which the work ends, with its result so far or with OutOfTime.
+  /// Sets the time at which the work ends, returning its result so far or throwing OutOfTime.
   void set_deadline(Clock::time_point deadline) noexcept {
     deadline_.store(deadline, std::memory_order_relaxed);
   }
@@ -55,7 +55,7 @@ class Progress {
   }
 
  private:
-  // Relaxed: neither publishes other data; they only have to become visible eventually.
+  // Relaxed ordering: neither publishes other data; they only have to become visible eventually.
   std::atomic<bool> cancelled_{false};
   std::atomic<Clock::time_point> deadline_{no_deadline};
 };

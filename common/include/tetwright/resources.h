@@ -9,16 +9,16 @@
 
 namespace tetwright {
 
-/// Number of threads that the machine runs at a time.
+/// Number of threads that the machine can run at the same time.
 unsigned hardware_threads();
 
 /// Maximum number of threads of parallel work: 16, or four for each hardware thread if that is more. Further
-/// threads wait for each other and make the work slower.
+/// threads would wait for each other and slow the work down.
 unsigned max_threads();
 
 /// Limits parallel work started by the constructing thread to `threads` threads, at most max_threads(),
 /// during the object's lifetime. Other threads and loops of other libraries are not affected (see
-/// with_threads()). Destroy objects on the constructing thread, the last one first.
+/// with_threads()). Destroy objects on the constructing thread, in reverse order of construction.
 /// \param threads 0: hardware_threads()
 class ThreadLimit {
  public:
@@ -32,11 +32,11 @@ class ThreadLimit {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Maximum number of threads of a loop of this thread now.
+/// Current maximum number of threads of a loop started by the calling thread.
 unsigned thread_count();
 
-/// Calls `work` under a ThreadLimit of `threads` that also holds for loops of OpenVDB. Several threads may do
-/// so at a time, each with its own number. Rethrows an exception of `work`.
+/// Calls `work` under a ThreadLimit of `threads` that also applies to loops of OpenVDB. Several threads may
+/// call this at the same time, each with its own number. Rethrows an exception of `work`.
 void with_threads(unsigned threads, const std::function<void()>& work);
 
 /// Calls `body(begin, end)` for disjoint parts of [begin, end) of `grain` items each (the last may have
@@ -46,17 +46,17 @@ void parallel_for(std::size_t begin, std::size_t end, std::size_t grain,
                   const std::function<void(std::size_t, std::size_t)>& body);
 
 /// Calls `body(chunk, worker)` once for each chunk in [0, chunks), on at most thread_count() workers,
-/// numbered from 0, each of which takes the next chunk after finishing one. A worker runs on one thread at a
-/// time, so that its data needs no lock. With one thread the chunks run in order. After an exception no
-/// worker takes another chunk; the first exception is rethrown.
+/// numbered from 0. Each worker takes the next chunk after finishing one, and runs on one thread at a time,
+/// so its data needs no lock. With one thread the chunks run in order. After an exception no worker takes
+/// another chunk; the first exception is rethrown.
 void parallel_chunks(std::size_t chunks, const std::function<void(std::size_t, unsigned)>& body);
 
-/// Sum of `body(begin, end)` over parts of [begin, end) whose bounds depend on `grain` alone. The parts are
+/// Sum of `body(begin, end)` over parts of [begin, end) whose bounds depend only on `grain`. The parts are
 /// added in order, so that rounding is the same for any number of threads.
 double parallel_sum(std::size_t begin, std::size_t end, std::size_t grain,
                     const std::function<double(std::size_t, std::size_t)>& body);
 
-/// Memory that this process may use in total, bytes: the minimum of
+/// Total memory that this process may use, bytes: the minimum of
 /// - the memory of the machine,
 /// - the limits of the container (control groups of version 1 and 2: the process's own group and all its
 ///   ancestors),
@@ -67,7 +67,7 @@ double parallel_sum(std::size_t begin, std::size_t end, std::size_t grain,
 /// \param root folder in which /proc and /sys are looked up; a missing file sets no limit
 double available_memory(const std::filesystem::path& root = "/");
 
-/// Limits available_memory() on the constructing thread until destruction. Bytes; 0: no limit.
+/// Limits available_memory() on the constructing thread during the object's lifetime. Bytes; 0: no limit.
 class MemoryLimit {
  public:
   explicit MemoryLimit(double bytes);

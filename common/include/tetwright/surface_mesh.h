@@ -13,13 +13,13 @@
 
 namespace tetwright {
 
-/// A triangle surface as read from a file: no promise about orientation, closedness or unused points.
+/// A triangle surface as read from a file, which may be inconsistently oriented, open or have unused points.
 struct TriangleMesh {
   std::vector<Vec3> points;  ///< input units
   std::vector<Triangle>
-      triangles;  ///< indices into points; counter-clockwise seen from outside where it is closed
-  /// Regions that the file distinguishes, and the index of each triangle's region; both empty if it
-  /// distinguishes none. One entry may be no region.
+      triangles;  ///< indices into points; counter-clockwise seen from outside if the surface is closed
+  /// Regions that the file distinguishes, and the index of each triangle's region. Both are empty if it
+  /// distinguishes none. One entry may stand for no region.
   std::vector<SurfaceRegion> groups = {};
   std::vector<std::uint32_t> triangle_groups = {};
 };
@@ -35,7 +35,7 @@ using MaterialOrOutside = std::optional<MaterialTag>;
 /// Interfaces of the original mesh: a simplified mesh is measured against them and its points are projected
 /// onto them.
 ///
-/// `mesher/` implements it with its signed distance fields; `simplify/` depends on nothing else of them. All
+/// `mesher/` implements it with its signed distance fields, on which `simplify/` has no other dependency. All
 /// functions may be called concurrently.
 class ReferenceSurface {
  public:
@@ -53,8 +53,8 @@ class ReferenceSurface {
                                       double max_distance) const = 0;
 
   /// Whether the patches of the mesh's interfaces are known by number, with the creases and corners where
-  /// they meet. If so, the queries below are exact. Otherwise they find nothing, and borders of patches in
-  /// the mesh are preserved like its junction curves.
+  /// they meet. If so, the queries below are exact. Otherwise they return std::nullopt, and borders of
+  /// patches in the mesh are preserved like its junction curves.
   virtual bool has_patches() const { return false; }
   /// Nearest point of a patch of the interface between two regions within `max_distance` (input units).
   virtual std::optional<Vec3> onto_patch(const Vec3& /*point*/, MaterialOrOutside /*first*/,
@@ -62,17 +62,17 @@ class ReferenceSurface {
                                          double /*max_distance*/) const {
     return {};
   }
-  /// Nearest point of the creases between any patches within `max_distance` (input units).
+  /// Nearest point of any crease within `max_distance` (input units).
   virtual std::optional<Vec3> onto_crease(const Vec3& /*point*/, double /*max_distance*/) const { return {}; }
   /// Nearest corner within `max_distance` (input units).
   virtual std::optional<Vec3> onto_corner(const Vec3& /*point*/, double /*max_distance*/) const { return {}; }
 };
 
-/// Rule for which edges of a surface are creases.
+/// Rule that decides which edges of a surface are creases.
 struct FeatureAngle {
   enum class Rule : std::uint8_t {
-    automatic,  ///< as for 35 degrees, if the creases found look like those of a mechanical part
-    off,        ///< none
+    automatic,  ///< 35 degrees, if the creases found look like those of a mechanical part
+    off,        ///< no edges
     degrees     ///< edges at which the normal turns by more than `degrees`
   };
   Rule rule = Rule::automatic;
@@ -81,8 +81,8 @@ struct FeatureAngle {
 
 struct PatchOptions {
   FeatureAngle angle;
-  /// Patches below this area are merged with the neighbour whose border has the smallest sharp fraction;
-  /// square of the surface's unit.
+  /// Patches below this area are merged with the neighbour across the border with the smallest sharp
+  /// fraction; square of the surface's unit.
   double min_area = 0;
 };
 
@@ -91,9 +91,9 @@ struct SurfacePatches {
   enum class Verdict : std::uint8_t {
     off,           ///< not searched
     smooth,        ///< no edge turns far enough
-    scan,          ///< sharp edges whose chains end anywhere: noise
-    intersecting,  ///< not searched, since the surface intersects itself
-    meeting,       ///< not kept, since the surface meets another one, or itself where gaps are closed
+    scan,          ///< sharp edges end anywhere, as in noise
+    intersecting,  ///< not searched: the surface intersects itself
+    meeting,       ///< discarded: the surface meets another one, or itself where gaps are closed
     staircase,     ///< creases nearly everywhere, as on the faces of voxels
     part           ///< there are creases
   };
@@ -103,7 +103,7 @@ struct SurfacePatches {
   std::vector<std::uint16_t> patches;
   std::size_t count = 1;
   std::size_t dropped = 0;  ///< patches below PatchOptions::min_area, merged with neighbours
-  /// Loose ends: chain ends of edges that turn by more than 15 and 35 degrees, over the number of these
+  /// Number of loose ends of edges that turn by more than 15 and 35 degrees, divided by the number of these
   /// edges; 2 if no two of them meet.
   double loose_ends_low = 0, loose_ends_high = 0;
 
@@ -111,50 +111,50 @@ struct SurfacePatches {
 };
 
 /// Cuts a surface into patches. Regions grow across edges that turn little; two regions merge if less than
-/// half of the length of their border turns by more than the angle. Faceted cylinders and fillets thus stay
-/// whole, and creases that fade out within a patch disappear. A plain threshold would let patches leak
-/// through every edge that turns a little less.
+/// half of their border's length turns by more than the angle. Faceted cylinders and fillets thus stay whole,
+/// and creases that fade out within a patch disappear. A plain threshold would let patches leak through every
+/// edge that turns slightly less.
 ///
-/// Automatic: creases of a mechanical part end at other creases, those of noise end anywhere. A surface is a
-/// part unless there are more than 9 loose ends per 100 edges that turn by 15 degrees or 20 per 100 that turn
-/// by 35.
+/// Automatic: creases of a mechanical part end at other creases, sharp edges due to noise end anywhere. A
+/// surface is a part unless there are more than 9 loose ends per 100 edges that turn by 15 degrees, or more
+/// than 20 per 100 edges that turn by 35.
 ///
-/// Edges at which a group has other than two triangles are borders, as are edges between triangles of
+/// Edges at which a group does not have exactly two triangles are borders, as are edges between triangles of
 /// opposite orientation. Triangles without area belong to a neighbour's patch. O(n log n); the result does
 /// not depend on the number of threads.
-/// \param options min_area is the square of the surface's unit
+/// \param options min_area is in the square of the surface's unit
 /// \param groups empty, or a number for each triangle: patches never cross from one group to another, even if
 ///   the angle is off
-/// \param file named in messages
+/// \param file file name for messages
 /// \throws InputError if there are more than 65,535 patches (automatic: such a surface is a staircase)
 SurfacePatches find_patches(std::span<const Vec3> points, std::span<const Triangle> triangles,
                             const PatchOptions& options, std::span<const std::uint32_t> groups,
                             const std::string& file);
 
-/// Cuts the boundary and the interfaces of a tet mesh into patches, each pair of materials as a group of its
-/// own. Sets the patches of `mesh.interfaces`, computing the interfaces if they are empty. Patches are
-/// numbered from 0 for each pair, so that a mesh without creases equals one that was not searched. Patches
-/// set by readers (other than 0) stay separate.
+/// Cuts the boundary and the interfaces of a tet mesh into patches, each pair of materials as a separate
+/// group. Sets the patches of `mesh.interfaces`, which are computed if they are empty. Patches are numbered
+/// from 0 for each pair, so that a mesh without creases equals one that was not searched. Patches set by
+/// readers (other than 0) stay separate.
 /// \return count and verdict over all pairs
 SurfacePatches find_mesh_patches(TetMesh& mesh, const FeatureAngle& angle, const std::string& file);
 
-/// Creases and corners of a surface by its patches.
+/// Creases and corners of a surface, given its patches.
 struct SurfaceCreases {
   struct Segment {
     std::array<Index, 2> ends;             ///< points, ascending
-    std::array<std::uint16_t, 2> patches;  ///< patches that meet in it, ascending
+    std::array<std::uint16_t, 2> patches;  ///< adjacent patches, ascending
   };
   std::vector<Segment> segments;  ///< ascending by their ends
-  /// Points where other than two creases between the same two patches meet, or where a crease turns by more
-  /// than 45 degrees; ascending.
+  /// Points where the number of creases between the same two patches is not two, or where a crease turns by
+  /// more than 45 degrees; ascending.
   std::vector<Index> corners;
 };
 
-/// Creases: edges between triangles of different patches. An edge with more than two triangles has a segment
-/// for each pair of patches.
-/// \param corner_reach a crease's turn is measured between the chords to its nearest points at least this far
-///   away (0: the neighbouring points); only one such corner is kept within that distance, so that a zigzag
-///   from triangle to triangle has none
+/// Finds the creases, which are edges between triangles of different patches. An edge with more than two
+/// patches has a segment for each pair of them.
+/// \param corner_reach the turn of a crease is measured between the chords to the nearest points at least
+///   this far away along it (0: the neighbouring points). Only one such corner is kept within that distance,
+///   so that a zigzag from triangle to triangle has none
 SurfaceCreases find_creases(std::span<const Vec3> points, std::span<const Triangle> triangles,
                             std::span<const std::uint16_t> patches, double corner_reach = 0);
 
@@ -170,7 +170,8 @@ struct CreaseCurves {
 /// Creases of the boundary and the interfaces of a mesh, between the patches of each pair of materials.
 CreaseCurves mesh_creases(const TetMesh& mesh);
 
-/// Junction edges: other than two faces of a pair of materials meet, as where three regions do. No corners.
+/// Junction edges, where the number of faces of a pair of materials is not two, for example where three
+/// regions meet. No corners.
 CreaseCurves mesh_junctions(const TetMesh& mesh);
 
 }  // namespace tetwright

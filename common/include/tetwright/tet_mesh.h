@@ -29,8 +29,8 @@ using Tet = std::array<Index, 4>;
 /// Integer that identifies a material: any value, returned unchanged. Outside has no tag.
 using MaterialTag = std::int32_t;
 
-/// Face i of a positive tet lies opposite its vertex i; its three vertices are listed so that the normal
-/// points out.
+/// Face i of a positive tet lies opposite its vertex i; its vertices are ordered so that the normal points
+/// out.
 inline constexpr std::array<std::array<std::uint8_t, 3>, 4> tet_faces{
     {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
@@ -41,22 +41,22 @@ inline constexpr std::array<std::array<std::uint8_t, 2>, 6> tet_edges{
 /// A region of a surface, or of the boundary and the interfaces of a mesh, that a file distinguishes. Its
 /// faces stay together and are written under the same name.
 struct SurfaceRegion {
-  std::int64_t number = 0;  ///< in formats that number their groups; 0: none
-  std::string name;         ///< empty: only a number
+  std::int64_t number = 0;  ///< group number, in formats that have one; 0: none
+  std::string name;         ///< empty: the region has only a number
 
   /// False: no region.
   explicit operator bool() const { return number != 0 || !name.empty(); }
   auto operator<=>(const SurfaceRegion&) const = default;
 };
 
-/// The two regions at a face: the smaller tag first; std::nullopt for outside second.
+/// The two regions at a face: the smaller tag first; outside is std::nullopt and second.
 using MaterialPair = std::pair<MaterialTag, std::optional<MaterialTag>>;
 
 /// A face between two materials or between a material and outside.
 struct InterfaceTriangle {
   Triangle ids;                      ///< indices into points; the normal points out of `material`
-  MaterialTag material;              ///< on the side of the normal's tail
-  std::optional<MaterialTag> other;  ///< on the side of its tip: a larger tag, or nothing for outside
+  MaterialTag material;              ///< on the side that the normal points away from
+  std::optional<MaterialTag> other;  ///< on the other side: a larger tag, or std::nullopt for outside
   /// Patch of the interface; points where patches meet stay on the curve between them.
   std::uint16_t patch = 0;
 
@@ -67,7 +67,7 @@ struct InterfaceTriangle {
 /// A patch of the interface between two regions.
 using InterfacePatch = std::pair<MaterialPair, std::uint16_t>;
 
-/// Values that a file gives to each point or tet: `components` consecutive numbers each.
+/// Values of a file for each point or tet: `components` consecutive numbers for each.
 struct MeshField {
   std::string name;
   int components = 1;
@@ -76,7 +76,7 @@ struct MeshField {
   bool operator==(const MeshField&) const = default;
 };
 
-/// A tetrahedral mesh of one or more materials: the plain value that all parts of the library exchange.
+/// A tetrahedral mesh of one or more materials: a plain value, exchanged by all parts of the library.
 ///
 /// A tet (a, b, c, d) is positive when (b-a) x (c-a) . (d-a) > 0. Readers return what the file contains;
 /// meshes made by mesher/ and simplify/ satisfy the invariants of mesh_quality.h.
@@ -86,12 +86,12 @@ struct TetMesh {
   std::vector<MaterialTag> materials;                 ///< one tag for each tet
   std::map<MaterialTag, std::string> material_names;  ///< only materials that have a name
   /// Result of find_interfaces() (mesh_quality.h) for this mesh, or empty. Readers leave it empty unless a
-  /// file has groups of faces; mesher/ and simplify/ fill it. Code that changes the numbers of points, tets
-  /// or materials clears or recomputes it.
+  /// file has groups of faces; mesher/ and simplify/ fill it. Code that renumbers points or tets, or changes
+  /// materials, must clear or recompute it.
   std::vector<InterfaceTriangle> interfaces = {};
-  /// Regions of the patches of the interfaces; only patches that belong to one.
+  /// Region of each interface patch that belongs to one.
   std::map<InterfacePatch, SurfaceRegion> patch_groups = {};
-  /// Further data of the file for points and tets; materials are not among them.
+  /// Further data of the file for points and tets, without the materials.
   std::vector<MeshField> point_fields = {};
   std::vector<MeshField> cell_fields = {};
 };
@@ -106,14 +106,14 @@ inline std::array<Index, 2> ascending_edge(Index a, Index b) { return {std::min(
 
 /// Midside nodes that turn the tets of a mesh into second-order elements.
 struct MidsideNodes {
-  std::vector<std::array<Index, 2>> edges;     ///< ascending, each listed from its smaller point on
+  std::vector<std::array<Index, 2>> edges;     ///< in ascending order; smaller endpoint first
   std::vector<Vec3> points;                    ///< one for each edge, input units
   std::vector<std::array<Index, 6>> of_tets;   ///< indices into `points`, in the order of tet_midside_edges
-  std::vector<std::array<Index, 3>> of_faces;  ///< likewise, for the interfaces' edges 01, 12, 20
+  std::vector<std::array<Index, 3>> of_faces;  ///< likewise, for edges 01, 12, 20 of the interfaces
 };
 
-/// Extends fields of points to the midside nodes, which follow the points: means of both endpoints, rounded
-/// in integer fields.
+/// Extends point fields to the midside nodes, which are appended after the points: the mean of both
+/// endpoints, rounded in integer fields.
 std::vector<MeshField> fields_of_nodes(std::vector<MeshField> point_fields, const MidsideNodes& nodes);
 
 /// Places nodes halfway between the endpoints of each edge: straight elements. O(n log n).

@@ -33,7 +33,7 @@ void KindCounts::append_to(std::vector<Dropped>& dropped) const {
 
 std::string unsupported_cells(const KindCounts& cells, const std::string& first) {
   const std::string kinds = cells.text();
-  // A rejected tet has more nodes than those on its edges.
+  // A rejected curved tet has more nodes than corners and edge midpoints.
   const bool curved = kinds.find("tets") != std::string::npos;
   return kinds + ", the first of them " + first + "; only tets of 4 or 10 points can be read: " +
          (curved ? "save the mesh with linear elements, for example with gmsh -order 1, and convert other "

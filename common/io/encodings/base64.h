@@ -7,13 +7,13 @@
 
 namespace tetwright {
 
-/// Appends `bytes` in base64, padded.
+/// Appends `bytes` in base64 with padding.
 void append_base64(std::string& out, std::string_view bytes);
 
-/// Decodes base64 in pieces. White space is skipped. Padding is allowed anywhere, since a text may hold
-/// several encoded blocks. The text must outlive the reader.
+/// Decodes base64 in pieces. Skips white space. Accepts padding anywhere, since a text may consist of several
+/// encoded blocks. The text must outlive the reader.
 ///
-/// Not a library: a decoder for VTK must go on after padding and stop where it is told.
+/// No library is used: a decoder for VTK must continue after padding and stop at a given byte.
 class Base64Reader {
  public:
   explicit Base64Reader(std::string_view text) : text_(text) {}
@@ -22,7 +22,7 @@ class Base64Reader {
   /// \return the number of bytes, below `n` at the end of the text or before a character that is not base64
   std::size_t read(char* to, std::size_t n);
 
-  /// Upper bound of the number of bytes left.
+  /// Upper bound of the number of remaining bytes.
   std::size_t max_left() const { return ready_ + (text_.size() - position_) / 4 * 3 + 3; }
 
  private:
@@ -31,7 +31,7 @@ class Base64Reader {
   std::string_view text_;
   std::size_t position_ = 0;
   char buffer_[3] = {};
-  std::size_t ready_ = 0;  ///< bytes of buffer_ still to be returned by read(): the last of its `size_`
+  std::size_t ready_ = 0;  ///< bytes of buffer_ not yet returned by read(): the last of its `size_`
   std::size_t size_ = 0;
 };
 

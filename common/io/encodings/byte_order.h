@@ -10,7 +10,7 @@
 namespace tetwright {
 
 /// Loads a number from bytes that need not be aligned.
-/// \param swap the bytes are not in this machine's order
+/// \param swap true if the bytes are not in this machine's order
 template <class Number>
 Number load(const char* from, bool swap) {
   std::array<char, sizeof(Number)> bytes;
@@ -21,7 +21,7 @@ Number load(const char* from, bool swap) {
 
 inline constexpr bool little_endian_machine = std::endian::native == std::endian::little;
 
-/// Appends the number's bytes, little-endian.
+/// Appends the bytes of the number in little-endian order.
 template <class Number>
 void append_bytes(std::string& out, Number number) {
   auto bytes = std::bit_cast<std::array<char, sizeof(Number)>>(number);

@@ -15,16 +15,16 @@ namespace tetwright {
 
 namespace {
 
-/// Maximum compression of deflate: 1032 bytes become one (zlib, "Technical Details").
+/// Maximum compression ratio of deflate, 1032:1 (zlib, "Technical Details").
 constexpr std::uint64_t max_gzip_ratio = 1032;
 
-/// zlib counts bytes in 32 bits.
+/// zlib counts bytes with 32 bits.
 constexpr std::size_t max_at_once = std::size_t{1} << 30;
 
-/// Skipped bytes are inflated into a buffer of this size.
+/// Size of the buffer into which skipped bytes are inflated.
 constexpr std::uint64_t skip_size = std::uint64_t{1} << 16;
 
-/// Maximum size that is inflated at once: less memory than the labels of such a volume take.
+/// Maximum size that is inflated at once: less memory than the labels of such a volume need.
 constexpr std::size_t max_inflated_at_once = std::size_t{1} << 26;
 
 /// Trailer of a gzip member: checksum and size before compression, modulo 2^32.
@@ -39,27 +39,27 @@ struct ByteSource::State {
   std::size_t packed_size = 0;
   bool member_ended = false;
   std::string buffer;
-  /// All `inflated_size` bytes, if inflated at once; null: inflated on demand.
+  /// The whole data if it is inflated at once; null: inflated on demand.
   std::unique_ptr<char[]> inflated;
   std::size_t inflated_size = 0, inflated_taken = 0;
 
   State() {
-    // 15: the largest window; 32: gzip or zlib, by the header.
+    // 15: maximum window; 32: detect gzip or zlib from the header.
     if (inflateInit2(&stream, 15 + 32) != Z_OK) throw std::bad_alloc();
   }
   ~State() { inflateEnd(&stream); }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
-  /// Inflates a gzip file of one member if the size in its trailer is small enough; libdeflate takes a
-  /// quarter of zlib's time or less. Leaves everything else, including damaged data, to zlib.
+  /// Inflates a gzip file of one member at once if the size in its trailer is small enough; libdeflate takes
+  /// at most a quarter of zlib's time. Leaves all other data, including damaged data, to zlib.
   void inflate_at_once(std::string_view bytes);
 };
 
 void ByteSource::State::inflate_at_once(std::string_view bytes) {
   if (!bytes.starts_with("\x1f\x8b") || bytes.size() < gzip_trailer_size) return;
   const std::size_t size = load<std::uint32_t>(bytes.data() + bytes.size() - 4, !little_endian_machine);
-  // The trailer of a damaged file may contain anything.
+  // The trailer of a damaged file may contain any value.
   if (size > max_inflated_at_once || size / max_gzip_ratio > bytes.size()) return;
   const Decompressor decompressor(libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
   if (!decompressor) throw std::bad_alloc();
@@ -109,7 +109,7 @@ std::string_view ByteSource::inflate_next(std::size_t n) {
   s.stream.avail_out = static_cast<uInt>(n);
   while (s.stream.avail_out > 0) {
     if (s.member_ended) {
-      // Members follow each other directly; other bytes after the last are not part of the file.
+      // Members follow each other directly; other bytes after the last member are ignored.
       if (!bytes_.starts_with("\x1f\x8b") || inflateReset(&s.stream) != Z_OK) break;
       s.member_ended = false;
     }
@@ -128,7 +128,7 @@ std::string_view ByteSource::inflate_next(std::size_t n) {
                        (result == Z_NEED_DICT || !s.stream.msg ? "unknown dictionary" : s.stream.msg) +
                        "); copy or export the file again");
     else if (s.stream.avail_in == given && s.stream.avail_out == room)
-      break;  // cut short
+      break;  // truncated data
   }
   return {s.buffer.data(), n - s.stream.avail_out};
 }
@@ -155,7 +155,7 @@ void ByteSource::check_end() {
 
 std::uint64_t ByteSource::max_left() const {
   if (!packed()) return bytes_.size();
-  // One more, for bytes read but not yet returned.
+  // One more, for bytes that were read but not yet returned.
   const std::uint64_t max_size = (state_->packed_size + 1) * max_gzip_ratio;
   return max_size > taken_ ? max_size - taken_ : 0;
 }

@@ -33,16 +33,16 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// Stops the library from printing its stack of errors, of which each thread has one.
+/// Stops the library from printing its error stack. Each thread has its own stack.
 void be_quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
-/// The library shares open files of one name, even among threads.
+/// A unique name for each file: the library shares open files that have the same name, even between threads.
 std::string unique_name() {
   static std::atomic<std::uint64_t> number{0};
   return "tetwright-" + std::to_string(number++);
 }
 
-/// Access to a file in memory that is never written to disk.
+/// Access properties of a file in memory that is never written to disk.
 Handle in_memory() {
   constexpr std::size_t increment = std::size_t{1} << 20;
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -64,7 +64,7 @@ struct Hdf5Writer::File {
     const std::array<hsize_t, 2> size{values.size() / columns, columns};
     const Handle space(H5Screate_simple(2, size.data(), nullptr), H5Sclose);
     const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-    H5Pset_obj_track_times(creation.id(), false);  // reproducible bytes
+    H5Pset_obj_track_times(creation.id(), false);  // same bytes for the same content
     if (size[0] > 0) {
       const std::array<hsize_t, 2> chunk{
           std::clamp<hsize_t>(max_chunk_bytes / (sizeof(Number) * columns), 1, size[0]), columns};

@@ -10,7 +10,8 @@
 
 namespace tetwright {
 
-/// Writes an HDF5 file in memory, on the HDF5 library. Not safe for concurrent use, since the library is not.
+/// Writes an HDF5 file in memory with the HDF5 library. Not safe for concurrent use, since the library is
+/// not.
 class Hdf5Writer {
  public:
   Hdf5Writer();
@@ -21,7 +22,7 @@ class Hdf5Writer {
   void add(const std::string& name, std::span<const double> values, std::size_t columns);
   void add(const std::string& name, std::span<const std::int64_t> values, std::size_t columns);
   void add(const std::string& name, std::span<const std::int32_t> values, std::size_t columns);
-  /// Bytes of the file, identical for identical datasets.
+  /// Bytes of the file; equal datasets give equal bytes.
   std::string bytes();
 
  private:
@@ -32,12 +33,12 @@ class Hdf5Writer {
 /// Reads datasets of an HDF5 file in memory.
 class Hdf5Reader {
  public:
-  /// \throws InputError if the bytes are no HDF5 file
+  /// \throws InputError if the bytes are not an HDF5 file
   Hdf5Reader(std::string bytes, std::string name);
   ~Hdf5Reader();
 
-  /// Reads all numbers of a dataset ("/Mesh/geometry"), row by row; integers beyond 2^53 lose digits.
-  /// \throws InputError if it is missing, not numeric, or has more than `max_count` numbers
+  /// Reads all numbers of a dataset (such as "/Mesh/geometry"), row by row; integers beyond 2^53 are rounded.
+  /// \throws InputError if the dataset is missing, not numeric, or has more than `max_count` numbers
   std::vector<double> numbers(const std::string& dataset, std::size_t max_count) const;
 
  private:

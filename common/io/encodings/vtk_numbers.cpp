@@ -11,7 +11,7 @@ namespace tetwright {
 
 namespace {
 
-/// Checks that `n` items (a count from the file) of `bytes_each` fit into the rest of the file.
+/// Checks that `n` items of `bytes_each` bytes, a count from the file, fit into the rest of the file.
 void expect_bytes(const TextScanner& in, std::size_t n, std::size_t bytes_each, const std::string& what) {
   // The last word may lack trailing white space.
   if (n > (in.left() + 1) / bytes_each)
@@ -139,8 +139,8 @@ void skip_vtk_strings(TextScanner& in, bool binary, std::size_t n) {
       in.skip_line();
       continue;
     }
-    // The two highest bits of the first byte encode the number of bytes of the length: 8, 4, 2, 1; the other
-    // bits are its beginning.
+    // The two highest bits of the first byte encode the size of the length: 8, 4, 2 or 1 bytes. The other
+    // bits are the beginning of the length.
     const std::string_view head = in.take_bytes(1);
     const auto first = static_cast<unsigned char>(head[0]);
     const std::size_t more = first >> 6 == 0 ? 7 : first >> 6 == 1 ? 3 : first >> 6 == 2 ? 1 : 0;

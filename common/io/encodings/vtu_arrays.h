@@ -16,8 +16,8 @@
 
 namespace tetwright {
 
-/// Beginning of a VTK XML file of this dataset ("UnstructuredGrid", "PolyData"), for arrays that
-/// write_vtu_array() encodes.
+/// Beginning of a VTK XML file with a dataset ("UnstructuredGrid", "PolyData"), for arrays encoded by
+/// write_vtu_array().
 inline std::string vtu_head(const std::string& dataset) {
   return "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + dataset +
          "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt32\" "
@@ -45,8 +45,8 @@ void write_vtu_numbers(const ByteSink& sink, const char* type, const std::string
   sink("\n</DataArray>\n");
 }
 
-/// Writes names as an array of bytes, a line "NUMBER<tab>NAME" for each, since other readers do not know
-/// VTK's arrays of text.
+/// Writes names as an array of bytes with a line "NUMBER<tab>NAME" for each, since other readers do not
+/// support VTK's text arrays.
 inline void write_vtu_names(const ByteSink& sink, const char* array,
                             const std::vector<std::pair<std::int64_t, std::string>>& names) {
   std::string text;

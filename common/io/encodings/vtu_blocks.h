@@ -13,13 +13,14 @@ namespace tetwright {
 class BlockUnpacker {
  public:
   virtual ~BlockUnpacker() = default;
-  /// Whether the block is intact and fills `to` exactly.
+  /// Decompresses a block.
+  /// \return whether the block is intact and fills `to` exactly
   virtual bool unpack(std::string_view block, std::span<char> to) = 0;
   /// Maximum number of bytes that one compressed byte expands to.
   virtual std::uint64_t max_ratio() const = 0;
 };
 
-/// Decompressor for a VTKFile's attribute "compressor"; null for an unknown one.
+/// Decompressor for the attribute "compressor" of a VTKFile; null for an unknown one.
 /// \throws std::bad_alloc
 std::unique_ptr<BlockUnpacker> make_block_unpacker(std::string_view compressor);
 

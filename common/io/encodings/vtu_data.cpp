@@ -22,11 +22,11 @@ namespace tetwright {
 
 namespace {
 
-/// Bytes of an uncompressed array that are decoded at a time.
+/// Number of bytes of an uncompressed array that are decoded at a time.
 constexpr std::size_t piece_bytes = std::size_t{1} << 20;
 constexpr std::int64_t max_vtu_components = 1 << 16;
 
-/// Has the interface of Base64Reader, for bytes that are not encoded.
+/// Has the interface of Base64Reader, but for bytes that are not encoded.
 class RawReader {
  public:
   explicit RawReader(std::string_view bytes) : bytes_(bytes) {}
@@ -57,7 +57,7 @@ bool holds_numbers(pugi::xml_node array) {
 VtuData::VtuData(std::string_view bytes, std::string name)
     : name_(std::move(name)), file_size_(bytes.size()) {
   if (bytes.empty()) fail("the file is empty");
-  // Appended data may be raw bytes, which are not XML: only what precedes them is parsed.
+  // Appended data may be raw bytes, which are not XML: only the text before them is parsed.
   std::string_view xml = bytes;
   bool cut = false;
   if (const std::size_t element = bytes.find("<AppendedData"); element != std::string_view::npos) {
@@ -74,7 +74,7 @@ VtuData::VtuData(std::string_view bytes, std::string name)
   }
   const pugi::xml_parse_result result = document_.load_buffer(
       xml.data(), xml.size(), pugi::parse_minimal | pugi::parse_escapes, pugi::encoding_utf8);
-  // Without the appended data the elements around it are not closed, which the parser reports at the end.
+  // Without the appended data its enclosing elements are not closed, which the parser reports at the end.
   if (!result && !(cut && result.status == pugi::status_end_element_mismatch))
     fail("byte " + std::to_string(result.offset) + ": not XML: " + result.description() +
          "; the file is damaged or cut short");
@@ -225,10 +225,10 @@ void VtuData::decode_from(Source source, pugi::xml_node array, std::size_t max_b
   }
   if (packed_total > left) fail(array, cut_short());
   const std::unique_ptr<BlockUnpacker> unpacker = make_block_unpacker(compressor_);
-  // Compared before they are multiplied, to avoid overflow.
+  // Compare before multiplying, to avoid overflow.
   const std::uint64_t possible = packed_total * unpacker->max_ratio();
   check_size(last, possible);
-  // A single block may well be smaller than the block size.
+  // A single block may be smaller than the block size.
   if (blocks > 1 || last == 0) check_size(block_size, possible);
   if (block_size > 0 && blocks - 1 > possible / block_size) check_size(UINT64_MAX, possible);
   const std::uint64_t size = last > 0 ? (blocks - 1) * block_size + last : blocks * block_size;
@@ -260,7 +260,7 @@ void VtuData::decode(pugi::xml_node array, std::size_t max_bytes, const DecodedB
                 : decode_from(Base64Reader(data), array, max_bytes, out);
 }
 
-/// Number `place` of an array as the kind asked for.
+/// Converts the number at index `place` of an array to the requested type.
 template <class Value, class Stored>
 Value VtuData::checked(Stored stored, pugi::xml_node array, std::size_t place) const {
   if constexpr (std::is_integral_v<Value> && std::is_floating_point_v<Stored>) {
@@ -300,7 +300,7 @@ std::vector<Value> VtuData::values(pugi::xml_node array, std::size_t max_count) 
     return out;
   }
   const auto convert = [&]<class Stored>(Stored) {
-    std::string rest;  // of a number that two pieces share
+    std::string rest;  // part of a number that continues in the next piece
     decode(array, max_count > SIZE_MAX / 8 ? SIZE_MAX : max_count * sizeof(Stored),
            {[&](std::size_t size) {
               if (size % sizeof(Stored) != 0) fail(array, "its size is no multiple of that of its numbers");
@@ -395,7 +395,7 @@ void VtuData::texts(pugi::xml_node array, std::size_t count,
 void write_vtu_array(std::size_t size, const std::function<void(std::size_t begin, std::span<char>)>& fill,
                      const ByteSink& sink) {
   constexpr std::size_t block_size = std::size_t{1} << 18;
-  // Much faster than zlib's default of 6, for a few percent more bytes.
+  // Much faster than zlib's default level of 6; the output is a few percent larger.
   constexpr int level = 4;
   const std::size_t blocks = (size + block_size - 1) / block_size;
   std::vector<std::string> packed(blocks);
@@ -427,7 +427,8 @@ void write_vtu_array(std::size_t size, const std::function<void(std::size_t begi
   }
   std::string text;
   append_base64(text, header);
-  // The blocks are encoded as one stream: three bytes that become four characters may lie in two blocks.
+  // The blocks are encoded as one stream, since three bytes that become four characters may lie in two
+  // blocks.
   std::string data;
   for (std::string& p : packed) {
     data += p;

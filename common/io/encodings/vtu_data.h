@@ -15,58 +15,62 @@
 
 namespace tetwright {
 
-/// The longest text that VtuData::texts() takes, in bytes.
+/// Maximum length of a text that VtuData::texts() accepts, in bytes.
 inline constexpr std::size_t max_vtu_text = 1000;
 
-/// Whether a child of PointData or CellData is an array of numbers; others hold text.
+/// Whether a child of PointData or CellData is a numeric array; other children hold text.
 bool holds_numbers(pugi::xml_node array);
 
-/// The data arrays of a VTK XML file, in whatever encoding the file has. For vtu.cpp and vtp.cpp.
+/// Data arrays of a VTK XML file in any encoding. Used by vtu.cpp and vtp.cpp.
 class VtuData {
  public:
-  /// Parses the file; the bytes must outlive this object. Throws InputError if it is not VTK XML, or is
-  /// compressed by something other than zlib, LZ4 and LZMA.
+  /// Parses the file. The bytes must outlive this object.
+  /// \throws InputError if it is not VTK XML, or is compressed by anything but zlib, LZ4 and LZMA
   VtuData(std::string_view bytes, std::string name);
 
   const std::string& name() const { return name_; }
   /// The XML element VTKFile.
   pugi::xml_node root() const { return root_; }
 
-  /// The pieces of a grid, "UnstructuredGrid" or "PolyData", at least one. Throws InputError if the file
-  /// holds another one.
+  /// Pieces of a grid, "UnstructuredGrid" or "PolyData"; at least one.
+  /// \throws InputError if the file holds another grid
   std::vector<pugi::xml_node> pieces(const char* grid) const;
   /// The only piece of a grid.
   /// \throws InputError if there are several
   pugi::xml_node only_piece(const char* grid) const;
-  /// The number that an attribute of a piece gives.
+  /// Number in an attribute of a piece.
   std::size_t count(pugi::xml_node piece, const char* attribute) const;
-  /// The array of this name. Throws InputError if there is none.
+  /// Array with this name.
+  /// \throws InputError if there is none
   pugi::xml_node array(pugi::xml_node parent, const char* name) const;
-  /// The `n` points of a piece. Throws InputError if there are more or fewer, or one is not finite.
+  /// The `n` points of a piece.
+  /// \throws InputError if the number of points is not `n`, or one is not finite
   std::vector<Vec3> points(pugi::xml_node piece, std::size_t n) const;
-  /// Throws InputError unless both are equal.
+  /// \throws InputError unless both sizes are equal
   void expect_size(pugi::xml_node array, std::size_t size, std::size_t expected) const;
 
-  /// Reads the numbers of a DataArray. Throws InputError if there are more than `max_count` (which the caller
-  /// knows from the size of the file or from other arrays; no more memory is allocated), or if a number is
-  /// not of the kind asked for.
+  /// Reads the numbers of a DataArray.
+  /// \param max_count maximum number of values, known to the caller from the size of the file or from other
+  ///   arrays; no more memory is allocated
+  /// \throws InputError if there are more, or if a number is not of the requested type
   std::vector<double> numbers(pugi::xml_node array, std::size_t max_count) const;
   std::vector<std::int64_t> integers(pugi::xml_node array, std::size_t max_count) const;
-  /// Whole numbers from 0 to 2^32 - 1, in half the memory.
+  /// Reads integers from 0 to 2^32 - 1, in half the memory.
   std::vector<std::uint32_t> counts(pugi::xml_node array, std::size_t max_count) const;
-  /// Hands the texts of an array of type String to `take`, one after the other. Each ends with a zero; ascii
-  /// arrays have a number for each byte. Throws InputError unless there are `count` texts, none of which has
-  /// more than max_vtu_text bytes.
+  /// Passes the texts of an array of type String to `take`, one by one. In the file each text ends with a
+  /// zero byte; ascii arrays have a number for each byte.
+  /// \throws InputError unless there are `count` texts of at most max_vtu_text bytes each
   void texts(pugi::xml_node array, std::size_t count,
              const std::function<void(std::string_view text)>& take) const;
-  /// The arrays of numbers of PointData or CellData, which have a tuple for each of `n` items; of `chosen`
-  /// items alone, unless it is null. Integers that are rounded are counted in `rounded`, unless that is null.
-  /// Throws InputError for an array of another size.
+  /// Reads the numeric arrays of PointData or CellData, which have a tuple for each of `n` items.
+  /// \param chosen items whose values are returned; null: all
+  /// \param rounded counts the integers that were rounded; may be null
+  /// \throws InputError for an array of another size
   std::vector<MeshField> fields(pugi::xml_node data, std::size_t n,
                                 const std::vector<std::size_t>* chosen = nullptr,
                                 KindCounts* rounded = nullptr) const;
 
-  /// Throws InputError with the byte offset of `node`.
+  /// \throws InputError with the byte offset of `node`
   [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const;
   [[noreturn]] void fail(const std::string& message) const;
 
@@ -89,18 +93,18 @@ class VtuData {
   std::size_t file_size_;
   pugi::xml_document document_;
   pugi::xml_node root_;
-  std::string_view appended_;  ///< the data after the underscore
+  std::string_view appended_;  ///< data after the underscore
   bool appended_raw_ = false;
   bool swap_ = false;
-  bool wide_header_ = false;  ///< sizes are UInt64
+  bool wide_header_ = false;  ///< true: sizes are UInt64
   std::string compressor_;    ///< empty: uncompressed
 };
 
 /// Writes an array of `size` bytes as VTK encodes it inline for format="binary", header_type="UInt32" and
 /// compressor="vtkZLibDataCompressor". Blocks are compressed by zlib in parallel; the bytes written do not
-/// depend on the number of threads. `fill(begin, bytes)` is called concurrently and fills `bytes` with the
-/// bytes of the array that begin at `begin`, a multiple of 2^18. Needs memory for the compressed array and
-/// one block for each thread.
+/// depend on the number of threads. Needs memory for the compressed array and one block for each thread.
+/// \param fill `fill(begin, bytes)` fills `bytes` with the bytes of the array from offset `begin` on, a
+///   multiple of 2^18; called concurrently
 void write_vtu_array(std::size_t size, const std::function<void(std::size_t begin, std::span<char>)>& fill,
                      const ByteSink& sink);
 

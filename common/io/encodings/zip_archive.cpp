@@ -14,7 +14,7 @@ namespace tetwright {
 
 namespace {
 
-/// Text with numbers compresses by a factor of 3 to 20, a file meant to exhaust memory by a thousand.
+/// Numbers as text are compressed by a factor of 3 to 20; a file meant to exhaust memory by a thousand.
 constexpr std::uint64_t max_packing = 200, unsuspected_size = 1 << 26;
 
 std::string text_of(zip_error_t& error) {

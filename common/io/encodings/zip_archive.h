@@ -9,20 +9,20 @@ struct zip;
 
 namespace tetwright {
 
-/// Files of a ZIP archive in memory, by libzip.
+/// Files of a ZIP archive in memory; uses libzip.
 class ZipArchive {
  public:
   /// \param bytes must outlive this object
-  /// \param name used in messages
-  /// \throws InputError if the bytes are no archive
+  /// \param name file name for messages
+  /// \throws InputError if the bytes are not an archive
   ZipArchive(std::string_view bytes, std::string name);
 
-  /// Whether the archive has a file. The case of ASCII letters is ignored.
+  /// Whether the archive has a file with this path, ignoring the case of ASCII letters.
   bool has(const std::string& path) const;
 
   /// Content of a file.
-  /// \throws InputError if it is missing, encrypted or damaged, or so large for its compressed size that it
-  ///   can only be meant to exhaust memory
+  /// \throws InputError if it is missing, encrypted or damaged, or so large relative to its compressed size
+  ///   that it must be meant to exhaust memory
   std::string read(const std::string& path) const;
 
  private:

@@ -9,7 +9,7 @@
 
 namespace tetwright {
 
-/// Label of a group for messages: its name on one line, or its number if it has none, or "none".
+/// Label of a group for messages: its name on one line, its number if it has no name, or "none".
 inline std::string group_text(const SurfaceRegion& group) {
   if (!group) return "none";
   return group.name.empty() ? std::to_string(group.number) : printable_name(group.name);

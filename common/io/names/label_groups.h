@@ -16,8 +16,8 @@
 
 namespace tetwright {
 
-/// Whether a face property or cell field of this name tells parts of a surface apart: no format says which
-/// does, these are the names that programs write.
+/// Whether a face property or cell field with this name distinguishes parts of a surface. No format specifies
+/// such a field; these are the names that programs write.
 inline bool is_face_label(std::string_view name) {
   constexpr std::array<std::string_view, 19> names{
       "label",          "labels",     "patch",       "patch_id",  "f:patch_id", "PatchID", "group",
@@ -26,16 +26,16 @@ inline bool is_face_label(std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Numbers or names that label faces, as groups.
+/// Groups of faces, from the numbers or names that label the faces.
 class LabelGroups {
  public:
-  /// The index of a label's group. The label 0 is none.
+  /// Index of the group with this label. The label 0 is the group "none".
   std::uint32_t index_of(std::int64_t label) {
     const auto [known, added] = indices_.emplace(label, static_cast<std::uint32_t>(groups_.size()));
     if (added) groups_.push_back({label, {}});
     return known->second;
   }
-  /// Index of the group with this name. The empty name is none.
+  /// Index of the group with this name. The empty name is the group "none".
   std::uint32_t index_of_name(std::string_view name) {
     auto known = named_.find(name);
     if (known == named_.end()) {
@@ -52,8 +52,8 @@ class LabelGroups {
   std::vector<SurfaceRegion> groups_;
 };
 
-/// Numbers that label the groups in a file: their own, where these are above 0, of 32 bits and no two alike,
-/// else their places, from 1 on.
+/// Numbers that label the groups in a file: the groups' own numbers if all are above 0, have 32 bits and
+/// differ; otherwise their positions in the list, from 1 on.
 inline std::vector<std::int32_t> labels_of(const std::vector<SurfaceRegion>& groups) {
   std::vector<std::int32_t> own, places;
   for (const SurfaceRegion& group : groups) {

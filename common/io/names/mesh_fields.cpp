@@ -18,7 +18,8 @@ constexpr std::size_t max_name_size = 200;  // bytes
 
 bool is_whole(double value) { return value == std::floor(value) && std::fabs(value) < max_exact_whole; }
 
-/// Converts a field to materials; `file` is named in messages.
+/// Converts a field to materials.
+/// \param file file name for messages
 std::vector<MaterialTag> materials_of(const MeshField& field, const std::string& file) {
   std::vector<MaterialTag> materials(field.values.size());
   for (std::size_t t = 0; t < materials.size(); ++t) {
@@ -36,7 +37,7 @@ std::vector<MaterialTag> materials_of(const MeshField& field, const std::string&
   return materials;
 }
 
-/// Index of the cell field to use as the material; the size of the list if there is none.
+/// Index of the cell field to use as the material, or the number of fields if there is none.
 std::size_t field_by_rule(const std::vector<MeshField>& fields) {
   for (const char* name : {"material", "medit:ref", "gmsh:physical", "MaterialID", "attribute"})
     for (std::size_t f = 0; f < fields.size(); ++f)
@@ -88,8 +89,7 @@ std::vector<std::string> field_names_to_write(const std::vector<MeshField>& fiel
                                               std::vector<std::string> taken,
                                               std::string (*form)(const std::string& name)) {
   std::set<std::string> used(taken.begin(), taken.end());
-  std::map<std::string, std::size_t>
-      next;  // the next suffix to try, so that many equal names take linear time
+  std::map<std::string, std::size_t> next;  // next suffix to try, so that many equal names take linear time
   std::vector<std::string> names;
   for (const MeshField& field : fields) {
     const std::string plain = field_name(field.name), name = form ? form(plain) : plain;
@@ -142,11 +142,11 @@ void take_material(ReadTetMesh& read, const ReadTetMeshOptions& options, const s
   if (read.material_field.empty()) {
     fields.erase(fields.begin() + static_cast<std::ptrdiff_t>(taken));
   } else {
-    // The format's own materials become a field like any other.
+    // The format's own materials become an ordinary field.
     fields[taken] = {read.material_field, 1, true,
                      std::vector<double>(mesh.materials.begin(), mesh.materials.end())};
   }
-  // The file's names belong to its default material field.
+  // The file's names refer to its default material field.
   if (!options.material_field.empty() && name != "material") mesh.material_names.clear();
   mesh.materials = std::move(materials);
   read.material_field = name;

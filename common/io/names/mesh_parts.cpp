@@ -48,7 +48,7 @@ MeshParts names_of_parts(const TetMesh& mesh, const NameRules& rules) {
   const std::map<std::int64_t, std::int64_t> numbers = numbers_of(own);
   for (const BoundaryGroups::Group& g : groups.all())
     parts.surfaces.push_back({g.surface_region, rules.surface_numbers ? numbers.at(g.number) : 0, {}, {}});
-  // Names of the input come first.
+  // Names of the input take precedence.
   for (const bool of_user : {true, false})
     for (std::size_t i = 0; i < groups.all().size(); ++i) {
       const BoundaryGroups::Group& g = groups.all()[i];

@@ -15,7 +15,7 @@
 
 namespace tetwright {
 
-/// A face of a tet: the one opposite vertex `face`.
+/// The face of a tet opposite its vertex `face`.
 struct TetFace {
   Index tet;
   std::uint8_t face;
@@ -25,13 +25,13 @@ struct TetFace {
 struct MeshParts {
   struct Material {
     MaterialTag tag;
-    std::int64_t number;      ///< the format's number for the tag
+    std::int64_t number;      ///< number of the tag in the format
     std::string name;         ///< unique
     std::vector<Index> tets;  ///< ascending, at least one
   };
   struct Surface {
     SurfaceRegion group;  ///< region of the input, or none
-    /// Number in BoundaryGroups if the format can hold it; 0 if it has no numbers of surfaces.
+    /// Number in BoundaryGroups if the format can hold it; 0 if the format has no surface numbers.
     std::int64_t number;
     std::string name;                ///< unique
     std::vector<std::size_t> faces;  ///< indices into TetMesh::interfaces, ascending, at least one
@@ -43,14 +43,14 @@ struct MeshParts {
 /// Constraints of a format on names and numbers.
 struct NameRules {
   std::function<std::string(const std::string&)> form;  ///< converts a name to one that the format can hold
-  bool ignore_case = false;                             ///< names that differ only in case are equal
-  /// Maximum number of a material or a surface, from 1 on, see positive_numbers(); 0: tags and the numbers of
-  /// BoundaryGroups are written unchanged.
+  bool ignore_case = false;                             ///< true: names that differ only in case are equal
+  /// Maximum number of a material or a surface; numbers start at 1, see positive_numbers(). 0: tags and the
+  /// numbers of BoundaryGroups are written unchanged.
   std::int64_t max_number = 0;
-  bool surface_numbers = true;  ///< surfaces have numbers in the file, not only names
+  bool surface_numbers = true;  ///< surfaces have numbers in the file, in addition to names
 };
 
-/// Rules of formats that can hold any name on a line, and any tag.
+/// Rules of formats that can hold any tag and any name without control characters.
 NameRules printable_names();
 
 /// Materials of the mesh and groups of its interfaces, with names that the format can hold. Default names:
@@ -58,30 +58,31 @@ NameRules printable_names();
 /// two materials, "bone|skin" or "bone|outside".
 MeshParts mesh_parts(const TetMesh& mesh, const NameRules& rules);
 
-/// mesh_parts() without tets and faces, in one pass over them.
+/// mesh_parts() without tets and faces; takes one pass over them.
 MeshParts names_of_parts(const TetMesh& mesh, const NameRules& rules);
 
-/// Converts to a name of ASCII letters, digits and underscores that begins with a letter, of at most
-/// `longest` characters and with room for a suffix; other characters become underscores.
+/// Converts to a name of at most `longest` ASCII letters, digits and underscores that begins with a letter,
+/// leaving room for a suffix; other characters become underscores.
 std::string plain_name(const std::string& name, std::size_t longest = 76);
 
-/// Assigns unique numbers from 1 to `max` to tags of materials or numbers of surfaces: numbers in that range
-/// are kept, others get the smallest free ones, in ascending order.
+/// Assigns unique numbers from 1 to `max` to material tags or surface numbers. Numbers in that range are
+/// kept, others get the smallest free ones, in ascending order.
 std::map<std::int64_t, std::int64_t> positive_numbers(const std::set<std::int64_t>& numbers,
                                                       std::int64_t max);
 
 /// Tags of the materials that have tets.
 std::set<std::int64_t> tags_of(const std::vector<MaterialTag>& materials);
 
-/// For each of the mesh's interface triangles the tet on the side of its `material` and the face. O(n log n).
+/// For each interface triangle of the mesh, the tet on the side of its `material`, and its face there. O(n
+/// log n).
 std::vector<TetFace> faces_of_tets(const TetMesh& mesh);
 
-/// Boundary and interfaces of the mesh as a surface: triangles grouped as in mesh_parts(); points in the
-/// order of the mesh, only those on interfaces.
+/// Boundary and interfaces of the mesh as a surface: triangles grouped as in mesh_parts(), points on
+/// interfaces only, in the order of the mesh.
 TriangleMesh interface_surface(const TetMesh& mesh, const NameRules& rules);
 
 /// Nodes of the faces of a surface, ascending, each once.
-/// \param midside MidsideNodes::of_faces, whose nodes are included and numbered after the points; null:
+/// \param midside MidsideNodes::of_faces; their nodes are included and numbered after the points; null:
 ///   corners only
 std::vector<Index> nodes_of_faces(const TetMesh& mesh, const std::vector<std::size_t>& faces,
                                   const std::vector<std::array<Index, 3>>* midside);

@@ -21,11 +21,11 @@ namespace tetwright {
 
 namespace {
 
-/// Limits on nested and repeated objects, which may contain an object many times: more than any program
-/// writes.
+/// Limits on nested and repeated objects: a file may contain an object any number of times. More than any
+/// program writes.
 constexpr std::size_t max_placed_objects = 100'000, max_depth = 1000;
 
-/// Fragments of name spaces of extensions that do not affect where triangles are.
+/// Parts of name spaces of extensions that do not move triangles.
 constexpr std::array<std::string_view, 4> harmless_3mf_extensions{"/production/", "/material/",
                                                                   "/beamlattice/", "/trianglesets/"};
 
@@ -91,11 +91,11 @@ class XmlPart {
   pugi::xml_document document_;
 };
 
-/// A part of the file with objects.
+/// A part of the file that contains objects.
 struct Model {
   std::string path;
   XmlPart xml;
-  std::map<std::string_view, pugi::xml_node> objects;  ///< by their ids
+  std::map<std::string_view, pugi::xml_node> objects;  ///< by id
 
   Model(const ZipArchive& archive, const std::string& file, const std::string& in_archive)
       : path(in_archive), xml(archive, file, in_archive) {
@@ -105,14 +105,14 @@ struct Model {
   }
 };
 
-/// Short form of a name space: "booleanoperations/2023/07".
+/// Shortens a name space: "booleanoperations/2023/07".
 std::string_view short_name(std::string_view space) {
   constexpr std::string_view common_part = "/3dmanufacturing/";
   const std::size_t at = space.find(common_part);
   return at == std::string_view::npos ? space : space.substr(at + common_part.size());
 }
 
-/// \throws InputError for a model that requires an extension which changes the shape
+/// \throws InputError if the model requires an extension that changes the shape
 void check_extensions(const XmlPart& xml) {
   const pugi::xml_node root = xml.root();
   TextScanner prefixes(root.attribute("requiredextensions").value(), "");
@@ -125,7 +125,7 @@ void check_extensions(const XmlPart& xml) {
   }
 }
 
-/// Reads a transform: four rows of three numbers, multiplied by points as row vectors.
+/// Reads a transform: four rows of three numbers, applied to points as row vectors.
 Eigen::Affine3d transform_of(const XmlPart& xml, pugi::xml_node node) {
   Eigen::Affine3d result = Eigen::Affine3d::Identity();
   const pugi::xml_attribute attribute = node.attribute("transform");
@@ -158,7 +158,7 @@ class Reader3mf {
   }
 
  private:
-  /// An object being placed, and the objects that contain it.
+  /// An object to be placed, with the objects that contain it.
   struct Placing {
     pugi::xml_node object;
     const Placing* within;
@@ -222,7 +222,7 @@ class Reader3mf {
         if (is_called(component, "component")) place(*holder, component, transform, &here);
       return;
     }
-    // The type of an object with components is meaningless.
+    // The type of an object with components has no meaning.
     const std::string_view type = object.attribute("type").value();
     if (type == "support" || type == "solidsupport") {
       surface_.drop("objects that support others");
@@ -234,7 +234,7 @@ class Reader3mf {
     }
   }
 
-  /// Group of an object, named after it or the innermost named object that contains it.
+  /// Group of an object, named after the object or else the innermost named object that contains it.
   std::uint32_t group_of(const Placing& placing) {
     const Placing* named = &placing;
     while (named && !*named->object.attribute("name").value()) named = named->within;
@@ -282,12 +282,12 @@ class Reader3mf {
   ZipArchive archive_;
   SurfaceBuilder surface_;
   std::map<std::string, std::unique_ptr<Model>> models_;
-  std::string unit_;  ///< of all parts
+  std::string unit_;  ///< unit of all parts
   std::size_t placed_ = 0;
   PlacedLimit limit_;
   UniqueNames names_{[](const std::string& name) { return name; }};
   std::vector<SurfaceRegion> groups_;
-  std::map<std::size_t, std::uint32_t> group_numbers_;  ///< by the objects' hashes, which identify them
+  std::map<std::size_t, std::uint32_t> group_numbers_;  ///< by the hash of the objects, which identifies them
 };
 
 }  // namespace

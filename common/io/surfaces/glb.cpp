@@ -25,10 +25,10 @@ namespace {
 
 using nlohmann::json;
 
-/// Deeper than any program's scenes; each level takes stack space.
+/// Deeper than the scenes of any program; each level takes stack space.
 constexpr std::size_t max_node_depth = 1000;
 
-// glTF 2.0, "Binary glTF Layout": 12 bytes of header, and 8 before each chunk.
+// glTF 2.0, "Binary glTF Layout": a header of 12 bytes, and 8 bytes before each chunk.
 constexpr std::size_t glb_header_size = 12, chunk_header_size = 8;
 constexpr std::uint32_t json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
 
@@ -36,7 +36,7 @@ constexpr std::uint32_t json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
 constexpr std::int64_t type_uint8 = 5121, type_uint16 = 5123, type_uint32 = 5125, type_float = 5126;
 constexpr std::int64_t mode_points = 0, mode_triangles = 4, mode_strip = 5, mode_fan = 6;
 
-/// Prefixes of extensions that do not affect where triangles are.
+/// Prefixes of extensions that do not move triangles.
 constexpr std::array<std::string_view, 5> harmless_gltf_extensions{"KHR_materials_", "KHR_texture_",
                                                                    "EXT_texture_", "KHR_lights_", "KHR_xmp"};
 
@@ -68,7 +68,7 @@ class SceneReader {
  private:
   [[noreturn]] void fail(const std::string& message) const { throw InputError(name_, 0, message); }
 
-  /// Finds the chunks of the file.
+  /// Splits the file into its chunks.
   void split(std::string_view bytes) {
     const auto number = [&](std::size_t at) {
       return load<std::uint32_t>(bytes.data() + at, !little_endian_machine);
@@ -85,7 +85,7 @@ class SceneReader {
       if (left < chunk_header_size || number(at) > left - chunk_header_size)
         fail("byte " + std::to_string(at) + ": a chunk goes beyond the end of the file; it is cut short");
       const std::string_view content = bytes.substr(at + chunk_header_size, number(at));
-      // The first chunk of each kind counts; there may be other kinds.
+      // The first chunk of each kind is used; other kinds may follow.
       if (number(at + 4) == json_chunk && !found_text) {
         found_text = true;
         text = content;
@@ -110,7 +110,7 @@ class SceneReader {
     }
   }
 
-  /// A list of the file; empty if it is missing.
+  /// A list in the file; empty if it is missing.
   const json& list(const char* kind) const {
     static const json none = json::array();
     const auto found = scene_.find(kind);
@@ -133,12 +133,12 @@ class SceneReader {
     return std::string(kind) + " " + std::to_string(index);
   }
 
-  /// A whole number; required unless there is a default.
+  /// Reads a whole number; required unless there is a default.
   std::int64_t whole(const json& object, const std::string& what, const char* key,
                      std::optional<std::int64_t> otherwise = {}) const {
     const auto found = object.find(key);
     if (found == object.end() && otherwise) return *otherwise;
-    // Some programs write 3.0; larger doubles are not exact.
+    // Some programs write 3.0. Larger doubles are not exact.
     constexpr double exact = 9007199254740992.0;
     if (found == object.end() || !found->is_number() || std::abs(found->get<double>()) > exact ||
         found->get<double>() != std::floor(found->get<double>()))
@@ -146,7 +146,7 @@ class SceneReader {
     return static_cast<std::int64_t>(found->get<double>());
   }
 
-  /// A count, or an offset within the file.
+  /// Reads a count, or an offset within the file.
   std::size_t size(const json& object, const std::string& what, const char* key,
                    std::optional<std::int64_t> otherwise = {}) const {
     const std::int64_t value = whole(object, what, key, otherwise);
@@ -155,7 +155,7 @@ class SceneReader {
     return static_cast<std::size_t>(value);
   }
 
-  /// A list of numbers; empty if it is missing.
+  /// Reads a list of numbers; empty if it is missing.
   std::vector<double> numbers(const json& object, const std::string& what, const char* key,
                               std::size_t count) const {
     std::vector<double> values;
@@ -187,7 +187,7 @@ class SceneReader {
     for (const json& node : list_of(scene, called("scenes", number), "nodes")) {
       if (!node.is_number_integer()) fail(called("scenes", number) + ": a node is no number");
       const auto index = node.get<std::int64_t>();
-      if (roots_.insert(index).second)  // otherwise another scene shows it, too
+      if (roots_.insert(index).second)  // a root may be in several scenes
         add_node(index, Eigen::Affine3d::Identity(), 0);
     }
   }
@@ -208,7 +208,7 @@ class SceneReader {
   void add_node(std::int64_t number, const Eigen::Affine3d& outer, std::size_t depth) {
     const std::string what = called("nodes", number);
     const json& node = at("nodes", number);
-    // The format's nodes are trees.
+    // The nodes of a glTF file must form trees.
     if (!placed_.insert(number).second)
       fail(what + " is a child of several nodes, of itself, or of one and of the scene; the file is damaged");
     if (depth > max_node_depth)
@@ -279,18 +279,18 @@ class SceneReader {
       const bool turned = mirrored != (strip && i % 2 == 1);
       std::array<std::int64_t, 3> triangle{corners[fan ? 0 : i - 2], corners[i - 1], corners[i]};
       if (turned) std::swap(triangle[1], triangle[2]);
-      // Strips are joined by triangles without an area.
+      // Triangles without area connect the parts of a strip.
       if (strip && (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]))
         continue;
       surface_.add_fan(triangle);
     }
   }
 
-  /// An accessor's items.
+  /// Items of an accessor.
   struct Items {
     const char* begin;
     std::size_t stride, count;
-    std::int64_t component;  ///< its type
+    std::int64_t component;  ///< component type
   };
 
   Items items(std::int64_t number, const char* type, std::size_t components,

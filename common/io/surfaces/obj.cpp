@@ -26,7 +26,7 @@ std::string_view next_word(TextScanner& in) {
   return word;
 }
 
-/// Index of the point in "7", "7/1", "7//3" or "-1/2/3", from 0.
+/// Index, from 0, of the point in "7", "7/1", "7//3" or "-1/2/3".
 std::int64_t point_of(const TextScanner& in, std::string_view word, std::size_t points) {
   std::int64_t index = 0;
   if (!parse_number(word.substr(0, word.find('/')), index))
@@ -38,7 +38,7 @@ std::int64_t point_of(const TextScanner& in, std::string_view word, std::size_t 
           " points have been read (OBJ counts from 1); export the file again");
 }
 
-/// Unread statements and their contents, except those that only concern display.
+/// Statements that are not read, and their contents, except statements that only concern display.
 constexpr std::array<std::pair<std::string_view, const char*>, 8> other_statements{
     {{"l", "lines"},
      {"p", "points drawn as such"},
@@ -59,10 +59,11 @@ void note_statement(std::string_view keyword, SurfaceBuilder& surface) {
   surface.drop("statements " + in_quotes(keyword));
 }
 
-/// Names that faces belong to: an object, a group and a display material.
+/// Names that a face belongs to: an object, a group and a display material.
 class FaceNames {
  public:
-  /// Reads the name after `keyword`; false if the keyword gives no name.
+  /// Reads the name after `keyword`.
+  /// \return false if the keyword is not followed by a name
   bool read(std::string_view keyword, TextScanner& in) {
     const auto kind = std::find(keywords.begin(), keywords.end(), keyword) - keywords.begin();
     if (kind == std::ssize(keywords)) return false;
@@ -82,8 +83,8 @@ class FaceNames {
     return last_;
   }
 
-  /// Groups named by those names that differ between faces.
-  /// \throws InputError if two groups would have one name
+  /// Groups of the faces, named by those names that differ between faces.
+  /// \throws InputError if two groups would have the same name
   std::vector<SurfaceRegion> groups(const std::string& file) const {
     std::vector<SurfaceRegion> groups(all_.size());
     for (std::size_t kind = 0; kind < keywords.size(); ++kind) {
@@ -106,7 +107,7 @@ class FaceNames {
   static constexpr std::array<std::string_view, 3> keywords{"o", "g", "usemtl"};
   using Names = std::array<std::string, 3>;
 
-  /// "o "a", g "b""
+  /// Text for messages: o "a", g "b".
   static std::string text(const Names& names) {
     std::string out;
     for (std::size_t kind = 0; kind < keywords.size(); ++kind)
@@ -116,9 +117,9 @@ class FaceNames {
   }
 
   Names now_;
-  std::vector<Names> all_;  ///< names of faces
+  std::vector<Names> all_;  ///< combinations of names that faces have
   std::map<Names, std::uint32_t> numbers_;
-  std::uint32_t last_ = no_index;  ///< of the last face
+  std::uint32_t last_ = no_index;  ///< index of the last face's names
 };
 
 }  // namespace
@@ -160,11 +161,11 @@ TriangleMesh read_obj(std::string_view bytes, const std::string& name, std::vect
     } else if (!names.read(keyword, in)) {
       note_statement(keyword, surface);
     }
-    // A keyword's last word may be the backslash that continues the line.
+    // The last word of the line may be the backslash that continues it.
     for (std::string_view word; !(word = next_word(in)).empty();) {
     }
   }
-  // A face may precede its points.
+  // A face may precede its points, so indices are checked at the end.
   if (largest >= static_cast<std::int64_t>(surface.point_count()))
     throw InputError(name, largest_line,
                      "a face names point " + std::to_string(largest + 1) + ", but there are " +

@@ -12,7 +12,8 @@ namespace tetwright {
 
 namespace {
 
-/// Reads the keyword, if there is one, and returns the word after it: the number of points.
+/// Reads the optional keyword.
+/// \return the next word: the number of points
 std::string_view read_keyword(TextScanner& in) {
   const std::string_view first = in.word();
   if (first.empty()) in.fail("the file is empty");
@@ -22,7 +23,7 @@ std::string_view read_keyword(TextScanner& in) {
   if (!prefix.ends_with("OFF"))
     in.fail("expected OFF at the beginning, found " + in_quotes(first) + "; is this an OFF file?");
   prefix.remove_suffix(3);
-  // The prefixes have this order; their values follow the coordinates of a point and are skipped.
+  // The prefixes occur in this order. Their values follow the coordinates of a point and are skipped.
   for (std::string_view letter : {"ST", "C", "N"})
     if (prefix.starts_with(letter)) prefix.remove_prefix(letter.size());
   if (!prefix.empty())
@@ -43,7 +44,7 @@ TriangleMesh read_off(std::string_view bytes, const std::string& name, std::vect
     in.fail("expected the number of points, found " + in_quotes(first));
   const std::size_t faces = in.count("number of faces", 2);
   in.skip_line();  // the number of edges is not used
-  // A point takes at least "0 0 0" and a line end.
+  // A point takes at least the six bytes of "0 0 0" and a line end.
   if (static_cast<std::uint64_t>(points) > (in.left() + 1) / 6)
     in.fail("the number of points is " + std::to_string(points) + ", but only " + std::to_string(in.left()) +
             " bytes follow; the file is cut short or its header is wrong");

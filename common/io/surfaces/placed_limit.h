@@ -8,11 +8,11 @@
 
 namespace tetwright {
 
-/// Limits the vertices and triangles of formats that place an object many times: a few lines of such a file
-/// can ask for more than any machine holds.
+/// Limits the number of vertices and triangles in formats that can place an object many times: a few lines of
+/// such a file can request more than any machine can hold.
 class PlacedLimit {
  public:
-  /// \throws InputError beyond the limit
+  /// \throws InputError if the total exceeds the limit
   void add(std::size_t count, const std::string& file) {
     count_ += count;
     if (count_ > max_count)

@@ -55,7 +55,7 @@ enum class Role { skipped, x, y, z, vertices, label };
 
 struct Property {
   std::string name;
-  std::optional<Type> count_type;  ///< of a list
+  std::optional<Type> count_type;  ///< type of the count of a list; none: not a list
   Type type = Type::float32;
   Role role = Role::skipped;
 };
@@ -80,7 +80,7 @@ enum class Encoding { ascii, little, big };
 struct PlyHeader {
   Encoding encoding = Encoding::ascii;
   std::vector<Element> elements;
-  /// Labels of groups by name, which is unique, from the comments of write_ply().
+  /// Labels of groups by their unique names, from the comments of write_ply().
   std::map<std::string, std::int64_t> labels;
 };
 
@@ -116,7 +116,7 @@ void read_property(TextScanner& in, Element& element) {
     return *t;
   };
   Property property;
-  // A list property has the word "list" in place of a type.
+  // A list property has the word "list" before its types.
   const std::string_view first = in.word_on_line();
   const bool list = first == "list";
   if (list) {
@@ -210,7 +210,7 @@ class AsciiBody {
   TextScanner& in_;
 };
 
-/// Numbers of a binary body.
+/// Numbers in a binary body.
 class BinaryBody {
  public:
   BinaryBody(std::string_view bytes, std::size_t offset, std::string name, bool swap)
@@ -266,7 +266,7 @@ class BinaryBody {
   bool swap_;
 };
 
-/// Checks that the promised items fit into the rest of the file.
+/// Checks that the promised number of items fits into the rest of the file.
 template <class Body>
 void check_count(const Body& body, const Element& element) {
   std::size_t min_size = 0;
@@ -282,14 +282,14 @@ struct PlyContent {
   explicit PlyContent(const std::string& name) : surface(name) {}
   SurfaceBuilder surface;
   LabelGroups labels;
-  /// One for each property of element `vertex`, in its order; empty for those that are not wanted.
+  /// Values of each property of element `vertex`, in its order; empty for properties that are not read.
   std::vector<std::vector<double>> point_values;
 };
 
 template <class Body>
 void read_element(Body& body, const Element& element, bool with_fields, PlyContent& content) {
   SurfaceBuilder& surface = content.surface;
-  // Without a property an element takes no bytes, however many there are.
+  // An element without properties takes no bytes, whatever its count.
   if (element.properties.empty()) return;
   check_count(body, element);
   const auto place = [&] { return body.place(); };
@@ -330,7 +330,7 @@ void read_element(Body& body, const Element& element, bool with_fields, PlyConte
   }
 }
 
-/// Counts the contents other than coordinates and polygons.
+/// Counts contents other than coordinates and polygons.
 void note_dropped(const PlyHeader& header, SurfaceBuilder& surface) {
   for (const Element& element : header.elements) {
     if (!element.is_vertex() && !element.is_face()) {
@@ -353,7 +353,7 @@ void take_names(const PlyHeader& header, std::vector<SurfaceRegion>& groups) {
     if (const auto known = names.find(group.number); known != names.end()) group.name = known->second;
 }
 
-/// Reads a surface; fills `point_fields` unless it is null.
+/// Reads the surface, and the point fields unless `point_fields` is null.
 TriangleMesh read_polygons(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped,
                            std::vector<MeshField>* point_fields) {
   TextScanner in(bytes, name);
@@ -381,7 +381,7 @@ TriangleMesh read_polygons(std::string_view bytes, const std::string& name, std:
   const auto read_all = [&](auto body) {
     for (const Element& e : header.elements) {
       read_element(body, e, point_fields != nullptr, content);
-      if (&e == face) break;  // later elements are not needed
+      if (&e == face) break;  // later elements are not read
     }
   };
   if (header.encoding == Encoding::ascii)

@@ -9,8 +9,8 @@
 
 namespace tetwright {
 
-/// Merges points of equal coordinates, for formats in which triangles do not share vertices: open addressing,
-/// at most half full.
+/// Merges points with equal coordinates, for formats in which triangles do not share vertices. A hash table
+/// with open addressing, at most half full.
 class PointMerger {
  public:
   PointMerger(SurfaceBuilder& surface, std::size_t expected)
@@ -21,7 +21,7 @@ class PointMerger {
   template <class Place>
   std::int64_t add(Vec3 p, const Place& place) {
     for (int k = 0; k < 3; ++k)
-      if (p[k] == 0) p[k] = 0;  // -0 equals 0
+      if (p[k] == 0) p[k] = 0;  // equate -0 and 0
     if (points_.size() * 2 >= table_.size()) grow();
     std::size_t slot = hash(p) & (table_.size() - 1);
     for (; table_[slot] != no_index; slot = (slot + 1) & (table_.size() - 1))

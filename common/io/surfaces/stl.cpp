@@ -44,7 +44,8 @@ TriangleMesh read_binary(std::string_view bytes, const std::string& name, std::s
   return surface.finish(dropped);
 }
 
-/// Compares ignoring case; `expected` is in lower case.
+/// Compares without regard to case.
+/// \param expected in lower case
 bool is_word(std::string_view word, std::string_view expected) {
   return std::equal(word.begin(), word.end(), expected.begin(), expected.end(),
                     [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
@@ -56,10 +57,10 @@ void expect(TextScanner& in, std::string_view expected) {
   if (!is_word(word, expected)) in.fail("expected " + in_quotes(expected) + ", found " + in_quotes(word));
 }
 
-/// Names of the solids of a file.
+/// Names of the solids in a file.
 class SolidNames {
  public:
-  /// \param name rest of the line, which may be anything
+  /// \param name rest of the line; may have any content
   void add(std::string_view name, std::size_t line) {
     const std::size_t begin = name.find_first_not_of(" \t\r"), end = name.find_last_not_of(" \t\r");
     names_.emplace_back(begin == std::string_view::npos ? "" : name.substr(begin, end - begin + 1));
@@ -67,8 +68,8 @@ class SolidNames {
   }
   std::uint32_t last() const { return static_cast<std::uint32_t>(names_.size() - 1); }
 
-  /// Groups of the solids. A solid without a name gets its position in the file as a number.
-  /// \throws InputError for two of one name
+  /// Groups of the solids. A solid without a name gets its position in the file as the group number.
+  /// \throws InputError if two solids have the same name
   std::vector<SurfaceRegion> groups(const std::string& file) const {
     std::vector<SurfaceRegion> groups;
     std::map<std::string, std::size_t> lines;
@@ -110,7 +111,7 @@ TriangleMesh read_ascii(std::string_view bytes, const std::string& name, std::ve
         break;
       }
       if (!is_word(word, "facet")) in.fail("expected \"facet\" or \"endsolid\", found " + in_quotes(word));
-      // The normal is not used, and some programs write "nan" there.
+      // The normal is ignored; some programs write "nan".
       expect(in, "normal");
       for (int k = 0; k < 3; ++k) (void)in.word();
       expect(in, "outer");
@@ -141,7 +142,8 @@ TriangleMesh read_stl(std::string_view bytes, const std::string& name, std::vect
   }
   const std::size_t triangles = load<std::uint32_t>(bytes.data() + 80, !little_endian_machine);
   const std::size_t expected = stl_header_size + triangles * record_size;
-  // Both kinds may begin with "solid": a binary file has the size in its header, and text has no zero bytes.
+  // Files of both kinds may begin with "solid". A binary file has its size in the header; a text file has no
+  // zero bytes.
   const bool has_zeros = bytes.find('\0') != std::string_view::npos;
   const bool is_text =
       bytes.size() != expected && (says_solid || bytes.substr(0, 64).find("solid") < 64) && !has_zeros;

@@ -14,7 +14,7 @@ void SurfaceBuilder::reserve(std::size_t points, std::size_t triangles) {
 }
 
 void SurfaceBuilder::add_fan(std::span<const std::int64_t> polygon) {
-  // Most surfaces have one group: indices are stored from the second on.
+  // Most surfaces have one group, so indices are stored only from the second group on.
   if (group_ != 0 && mesh_.triangle_groups.size() < mesh_.triangles.size())
     mesh_.triangle_groups.resize(mesh_.triangles.size(), 0);
   for (std::size_t k = 2; k < polygon.size(); ++k) {
@@ -27,7 +27,7 @@ void SurfaceBuilder::add_fan(std::span<const std::int64_t> polygon) {
 void SurfaceBuilder::take_groups(const std::vector<SurfaceRegion>& groups, std::size_t min_groups) {
   std::vector<std::uint32_t>& of_triangle = mesh_.triangle_groups;
   of_triangle.resize(groups.empty() ? 0 : mesh_.triangles.size(), 0);
-  // In the order of their first triangles.
+  // Number the groups in the order of their first triangles.
   std::map<SurfaceRegion, std::uint32_t> numbers;
   for (std::uint32_t& group : of_triangle) {
     const auto [known, added] =

@@ -20,7 +20,7 @@ bool holds_texts(pugi::xml_node array) {
   return std::string_view(array.attribute("type").as_string()) == "String";
 }
 
-/// Whether an array of CellData says which group each cell belongs to: by name, or by number.
+/// Whether an array of CellData gives the group of each cell, by name or by number.
 bool is_label_array(pugi::xml_node array) {
   if (array.attribute("NumberOfComponents").as_int(1) != 1) return false;
   if (holds_texts(array)) return true;
@@ -28,12 +28,12 @@ bool is_label_array(pugi::xml_node array) {
          !std::string_view(array.attribute("type").as_string()).starts_with("Float");
 }
 
-/// The array of labels, or nothing.
+/// The array of labels, or an empty node.
 pugi::xml_node find_labels(pugi::xml_node cell_data) {
   return cell_data.find_child([](pugi::xml_node node) { return is_label_array(node); });
 }
 
-/// The group of each cell, an index into `groups`.
+/// Group of each cell, as an index into `groups`.
 std::vector<std::uint32_t> read_labels(const VtuData& data, pugi::xml_node array, std::size_t cells,
                                        LabelGroups& groups) {
   std::vector<std::uint32_t> of_cells;
@@ -57,7 +57,7 @@ void note_arrays(pugi::xml_node parent, const std::string& what, pugi::xml_node 
   append_dropped_names(dropped, what, names);
 }
 
-/// Reads the names that write_vtp() writes.
+/// Reads the group names written by write_vtp().
 void read_names(const VtuData& data, pugi::xml_node piece, std::vector<SurfaceRegion>& groups,
                 std::size_t max_size) {
   const pugi::xml_node node =
@@ -70,7 +70,7 @@ void read_names(const VtuData& data, pugi::xml_node piece, std::vector<SurfaceRe
       if (group.number == number) group.name = name;
 }
 
-/// `point_fields` is filled unless it is null.
+/// \param point_fields receives the fields; may be null
 TriangleMesh read_poly_data(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped,
                             std::vector<MeshField>* point_fields) {
   const VtuData data(bytes, name);
@@ -97,7 +97,7 @@ TriangleMesh read_poly_data(std::string_view bytes, const std::string& name, std
     data.expect_size(offsets_node, offsets.size(), polygons);
     const std::vector<std::uint32_t> connectivity =
         data.counts(data.array(cells, "connectivity"), offsets.empty() ? 0 : offsets.back());
-    // Cells are numbered vertices first, then lines, then polygons.
+    // Cells are numbered in the order vertices, lines, polygons.
     std::vector<std::uint32_t> labels;
     if (label_array) labels = read_labels(data, label_array, verts + lines + polygons, groups);
     std::vector<std::int64_t> polygon;

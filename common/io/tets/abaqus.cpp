@@ -12,10 +12,10 @@ namespace tetwright {
 
 namespace {
 
-/// Number of the face opposite each vertex: S1 is 1-2-3, S2 1-4-2, S3 2-4-3, S4 3-4-1.
+/// Number of the face opposite each vertex: S1 has the nodes 1-2-3, S2 1-4-2, S3 2-4-3, S4 3-4-1.
 constexpr std::array<int, 4> face_numbers{3, 4, 2, 1};
 
-/// Maximum width of a number in both programs, and of numbers on a line.
+/// Limits of both programs: the width of a number, and how many numbers a line may have.
 constexpr std::size_t number_width = 20;
 constexpr std::size_t numbers_on_line = 16;
 

@@ -9,34 +9,34 @@
 
 namespace tetwright {
 
-/// Beginning of a comment of write_abaqus() with a material's tag; "TAG: NAME" follows.
+/// Start of a comment of write_abaqus() that gives the tag of a material; "TAG: NAME" follows.
 inline constexpr const char* abaqus_material_comment = "** material ";
 
 /// Constraints on names in write_abaqus().
 NameRules abaqus_names();
 
 /// Reads the mesh of an input file of Abaqus or CalculiX: *NODE, and *ELEMENT of tets with 4 or 10 nodes
-/// (C3D4, C3D10 and their variants, also DC3D4 and such), of the latter the corners. Materials are the
-/// element sets of *SOLID SECTION, or those named by *ELEMENT lines if there is none. They are numbered from
-/// 1 in order of appearance, unless comments of write_abaqus() give their tags. Surfaces of element faces
-/// become groups of faces, see take_triangles(). Other volume elements, several parts or instances, and
-/// *INCLUDE are rejected; other elements, sets and surfaces are counted in ReadTetMesh::dropped, keywords
-/// unrelated to the mesh are skipped.
+/// (C3D4, C3D10 and their variants, also DC3D4 and similar); tets of 10 nodes are reduced to their corners.
+/// Materials are the element sets of *SOLID SECTION, or those named by *ELEMENT lines if there is no section.
+/// They are numbered from 1 in order of appearance, unless comments of write_abaqus() give their tags.
+/// Surfaces of element faces become groups of faces, see take_triangles(). Other volume elements, several
+/// parts or instances, and *INCLUDE are rejected. Other elements, sets and surfaces are counted in
+/// ReadTetMesh::dropped; keywords unrelated to the mesh are skipped.
 ///
-/// Not a library: meshio's reader, the only packaged one, is Python and reads no surfaces.
-/// \param name used in messages
+/// No library is used: the only packaged reader, meshio's, is written in Python and reads no surfaces.
+/// \param name file name for messages
 /// \throws InputError with the line for malformed contents
 ReadTetMesh read_abaqus(std::string_view bytes, const std::string& name,
                         const ReadTetMeshOptions& options = {});
 
-/// Writes an input file of Abaqus or CalculiX, for *INCLUDE: no step and no material, nodes and elements
-/// numbered from 1 without gaps in the order of the mesh. Each material is an element set of C3D4 or C3D10
-/// elements; each surface of a mesh with interfaces is a *SURFACE of element faces (on the side of the
-/// smaller tag) and a node set of the same name. Names are plain_name()s.
+/// Writes an input file of Abaqus or CalculiX for *INCLUDE, without steps and material properties. Nodes and
+/// elements are numbered from 1 without gaps, in the order of the mesh. Each material is an element set of
+/// C3D4 or C3D10 elements. Each surface of a mesh with interfaces is a *SURFACE of element faces (on the side
+/// of the smaller tag) and a node set of the same name. Names are plain_name()s. The format has no fields.
 ///
 /// Both programs read 20 characters of a number: a coordinate that needs more is rounded to what fits, 14
-/// digits in the worst case. The format has no fields.
-/// \throws InputError if a coordinate is out of the range that can be written so
+/// digits in the worst case.
+/// \throws InputError if a coordinate is out of the range that can be written
 void write_abaqus(const MeshToWrite& written, const ByteSink& sink);
 
 }  // namespace tetwright

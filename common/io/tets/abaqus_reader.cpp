@@ -29,9 +29,9 @@ std::string in_capitals(std::string_view text) {
   return out;
 }
 
-/// A keyword line: "*ELEMENT, TYPE=C3D4, ELSET=bone".
+/// A keyword line, such as "*ELEMENT, TYPE=C3D4, ELSET=bone".
 struct Keyword {
-  std::string name;  ///< in capitals, without blanks
+  std::string name;  ///< upper case, without blanks
   std::map<std::string, std::string> parameters;
   std::size_t line;
 
@@ -41,13 +41,13 @@ struct Keyword {
   }
 };
 
-/// Kind of an element, from the beginning of its type.
+/// Kind of an element, as determined by the beginning of its type.
 enum class Kind { tet, quadratic_tet, volume, flat };
 
 Kind kind_of(const std::string& type) {
-  // After a prefix, C3D is a continuum element; AC3D and DC3D are acoustic and thermal ones.
+  // C3D is a continuum element; with a prefix, AC3D is an acoustic and DC3D a thermal one.
   const std::size_t at = type.find("C3D");
-  if (at > 1)  // or not found
+  if (at > 1)  // or npos
     return type.starts_with("SC") || type.starts_with("CSS") ? Kind::volume : Kind::flat;
   std::string nodes;
   for (std::size_t i = at + 3; i < type.size() && type[i] >= '0' && type[i] <= '9'; ++i) nodes += type[i];
@@ -75,13 +75,13 @@ class AbaqusReader {
   }
 
  private:
-  /// Element numbers in a set, and the sets that it refers to.
+  /// Element numbers in a set, and the names of sets that it includes.
   struct Set {
     std::vector<std::int64_t> numbers;
     std::vector<std::string> sets;
   };
   struct Side {
-    std::string what;  ///< an element number or a set
+    std::string what;  ///< an element number or the name of a set
     int side;
     std::size_t line;
   };
@@ -119,7 +119,8 @@ class AbaqusReader {
     }
   }
 
-  /// Reads the next line that is no comment and not empty into line_ and line_number_; false at the end.
+  /// Reads the next line that is neither a comment nor empty into line_ and line_number_.
+  /// \return false at the end
   bool next_line() {
     if (pushed_back_) {
       pushed_back_ = false;
@@ -135,7 +136,8 @@ class AbaqusReader {
     }
     return false;
   }
-  /// Reads the next line of data; false before a keyword and at the end.
+  /// Reads the next data line.
+  /// \return false before a keyword and at the end
   bool next_data() {
     if (!next_line()) return false;
     if (!line_.starts_with('*')) return true;
@@ -147,7 +149,7 @@ class AbaqusReader {
     throw InputError(in_.name(), line, message);
   }
 
-  /// Reads "** material TAG: NAME".
+  /// Reads a comment "** material TAG: NAME".
   void read_comment(std::string_view text) {
     text.remove_prefix(std::string_view(abaqus_material_comment).size());
     const std::size_t colon = text.find(": ");
@@ -156,7 +158,7 @@ class AbaqusReader {
     tags_[in_capitals(text.substr(colon + 2))] = checked_material(tag, in_.name(), line_number_);
   }
 
-  /// Splits a line at its commas.
+  /// Splits a line at commas.
   static std::vector<std::string_view> fields_of(std::string_view line) {
     std::vector<std::string_view> fields;
     for (std::size_t begin = 0;;) {
@@ -216,7 +218,7 @@ class AbaqusReader {
     const std::string* set = keyword.find("ELSET");
     const std::size_t nodes = kind == Kind::tet ? 4 : 10;
     if (kind == Kind::tet || kind == Kind::quadratic_tet) sort_nodes();
-    std::vector<std::int64_t> numbers;  // of an element; all its lines but the last end with a comma
+    std::vector<std::int64_t> numbers;  // of an element; all of its lines but the last end with a comma
     std::size_t count = 0;
     while (next_data()) {
       const bool goes_on = line_.ends_with(',');
@@ -297,7 +299,7 @@ class AbaqusReader {
         }
   }
 
-  /// Reads "first, last, step".
+  /// Reads a data line "first, last, step".
   void generate_numbers(Set& set) const {
     const std::vector<std::string_view> fields = fields_of(line_);
     if (fields.size() < 2)
@@ -306,7 +308,7 @@ class AbaqusReader {
                        last = whole_number(fields[1], "last number"),
                        step = fields.size() > 2 && !fields[2].empty() ? whole_number(fields[2], "step") : 1;
     if (step < 1) fail(line_number_, "a step of " + std::to_string(step) + "; it is 1 or more");
-    // At most as many as there are elements, whatever the file says.
+    // Limit the numbers to as many as there are elements, whatever the file says.
     const auto max_steps = static_cast<std::int64_t>(std::max<std::size_t>(elements_.size(), 1));
     if (last < first || (last - first) / step >= max_steps)
       fail(line_number_, in_quotes(line_) + " are more elements than the " +
@@ -351,10 +353,10 @@ class AbaqusReader {
            "the instance is moved or turned; save the mesh where it is, without a transformation");
   }
 
-  /// Collects the indices of the tets of a set and of the sets that it refers to.
+  /// Collects the indices of the tets in a set and in the sets that it includes.
   void tets_of(const std::string& name, std::size_t line, std::set<std::string>& open,
                std::vector<Index>& tets) const {
-    if (!open.insert(name).second) return;  // it refers to itself
+    if (!open.insert(name).second) return;  // the set includes itself
     const auto block = block_sets_.find(name);
     const auto set = sets_.find(name);
     if (block == block_sets_.end() && set == sets_.end())
@@ -372,7 +374,7 @@ class AbaqusReader {
     if (const std::optional<std::int64_t> twice = elements_.sort())
       in_.fail("element " + std::to_string(*twice) + " appears twice");
     TetMesh& mesh = result_.mesh;
-    // Sections, or the sets of *ELEMENT lines, each with its tets.
+    // Names of the sets in sections, or else in *ELEMENT lines, with their tets.
     std::vector<std::pair<std::string, std::vector<Index>>> materials;
     for (const auto& [set, line] : sections_) {
       std::set<std::string> open;
@@ -413,7 +415,7 @@ class AbaqusReader {
   }
 
   void take_surfaces() {
-    // Corners of each side.
+    // Corners of each face.
     constexpr std::array<std::array<std::size_t, 3>, 4> corners{{{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}};
     triangles_.name_form = [](const std::string& name) { return plain_name(name); };
     std::int64_t number = 0;
@@ -460,17 +462,17 @@ class AbaqusReader {
   TextScanner in_;
   std::string_view line_;
   std::size_t line_number_ = 0;
-  bool pushed_back_ = false;  ///< line_ is to be read again
+  bool pushed_back_ = false;  ///< true: line_ must be read again
   ReadTetMesh result_;
   FileNumbers nodes_, elements_;
   bool sorted_ = false;
-  std::vector<std::uint32_t> block_set_;             ///< of each tet, an index into block_names_
-  std::map<std::string, std::uint32_t> block_sets_;  ///< by name in capitals
-  std::vector<std::string> block_names_;             ///< in capitals; empty for *ELEMENT without ELSET
-  std::map<std::string, Set> sets_;                  ///< by name in capitals
-  std::map<std::string, std::string> set_names_;     ///< spelled as in the file, by name in capitals
-  std::map<std::string, MaterialTag> tags_;          ///< from comments, by name in capitals
-  std::vector<std::pair<std::string, std::size_t>> sections_;  ///< sets in capitals, lines
+  std::vector<std::uint32_t> block_set_;             ///< of each tet, as an index into block_names_
+  std::map<std::string, std::uint32_t> block_sets_;  ///< by name in upper case
+  std::vector<std::string> block_names_;             ///< in upper case; empty for *ELEMENT without ELSET
+  std::map<std::string, Set> sets_;                  ///< by name in upper case
+  std::map<std::string, std::string> set_names_;     ///< as spelled in the file, by name in upper case
+  std::map<std::string, MaterialTag> tags_;          ///< from comments, by name in upper case
+  std::vector<std::pair<std::string, std::size_t>> sections_;  ///< sets in upper case, with lines
   std::map<std::string, std::vector<Side>> surfaces_;
   std::vector<std::string> node_sets_, other_surfaces_;
   FileTriangles triangles_;

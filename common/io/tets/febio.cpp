@@ -12,14 +12,14 @@ namespace tetwright {
 
 namespace {
 
-/// Replaces quotes: FEBio decodes &quot; before it looks for the closing quote of an attribute.
+/// Replaces quotes, since FEBio decodes &quot; before it looks for the closing quote of an attribute.
 std::string name_for_febio(const std::string& name) {
   std::string text = printable_name(name);
   std::replace(text.begin(), text.end(), '"', '\'');
   return text;
 }
 
-/// Writes numbers of nodes, from 1, separated by commas.
+/// Writes node numbers, from 1, separated by commas.
 class NodeList {
  public:
   explicit NodeList(TextWriter& out) : out_(out) {}
@@ -79,7 +79,7 @@ void write_febio(const MeshToWrite& written, const ByteSink& sink) {
   TextWriter out(sink);
   out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<febio_spec version=\"4.0\">\n"
          "<!-- Written by tetwright: materials of the names of the domains are to be added -->\n<Mesh>\n"
-         "<Nodes>\n";  // unnamed: a name would be a node set's, which this file may have
+         "<Nodes>\n";  // no name: it would define a node set, whose name might be taken
   for (std::size_t i = 0; i < written.nodes(); ++i) {
     const Vec3& p = written.node(i);
     out << "<node id=\"" << i + 1 << "\">" << p.x() << ',' << p.y() << ',' << p.z() << "</node>\n";

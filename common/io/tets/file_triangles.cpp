@@ -46,7 +46,7 @@ class TriangleTaker {
   }
 
  private:
-  /// A name as the format holds it.
+  /// Converts a name to the form of the format.
   std::string form(const std::string& name) const {
     return listed_.name_form ? listed_.name_form(name) : msh_name(name);
   }
@@ -82,7 +82,7 @@ class TriangleTaker {
       ++repeated_;
   }
 
-  /// Checks that triangles of a group that are not on the boundary or an interface lie inside a material.
+  /// Checks that triangles of a group that are not on the boundary or an interface are inside a material.
   void check_others() const {
     if (others_.empty()) return;
     const TetMesh& mesh = read_.mesh;
@@ -114,11 +114,12 @@ class TriangleTaker {
     }
   }
 
-  /// Finds the derived groups, which writers make of a pair of materials.
+  /// Finds the derived groups, which writers generate for pairs of materials.
   void find_derived() {
     std::set<std::string> names;
     for (const auto& [number, name] : listed_.names) names.insert(form(name));
-    // Without names and comments a number may be the input's: it decides only if all groups are derived.
+    // A number without a name and a comment may come from the input: it identifies a derived group only if
+    // all groups are derived.
     std::set<std::int64_t> by_number;
     std::int64_t next = 0;
     for (const auto& [pair, faces] : pairs_) {
@@ -137,14 +138,14 @@ class TriangleTaker {
     return groups_.at(number).pairs == std::set{pair};
   }
 
-  /// Group among those within a pair of materials that a name or comment identifies as derived; 0 if there is
-  /// none. Among groups with the pair's name and a suffix it is the one with the largest suffix, one more
-  /// than another's.
+  /// Group of a pair of materials that a name or comment identifies as derived; 0 if there is none. Among
+  /// several groups that have the pair's name with a suffix, the one with the largest suffix, which must
+  /// exceed another group's by one.
   std::int64_t named_like(const MaterialPair& pair, const FacesOfPair& faces,
                           const std::set<std::string>& names) const {
     std::int64_t found = 0, largest = 0;
     const std::map<MaterialTag, std::string>& materials = read_.mesh.material_names;
-    // If a format has not kept the tags, names may be in the order of the original ones.
+    // If a format has not kept the tags, the name may list the materials in the order of the original tags.
     std::vector<std::string> bases = {form(pair_name(pair, materials))};
     if (pair.second) bases.push_back(form(pair_name({*pair.second, pair.first}, materials)));
     for (const std::int64_t number : faces.groups) {
@@ -225,11 +226,11 @@ class TriangleTaker {
   const std::string &group_word_, &file_;
   ReadTetMesh& read_;
   std::vector<InterfaceTriangle> interfaces_;  ///< in ascending order of their sorted ids
-  std::vector<std::int64_t> group_of_;         ///< of each interface triangle; 0: none
+  std::vector<std::int64_t> group_of_;         ///< group of each interface triangle; 0: none
   std::map<std::int64_t, Group> groups_;       ///< groups with faces
   std::map<MaterialPair, FacesOfPair> pairs_;
   std::set<std::int64_t> derived_;   ///< derived groups
-  std::vector<std::size_t> others_;  ///< triangles of a group that are on no interface
+  std::vector<std::size_t> others_;  ///< triangles of a group that are not on an interface
   std::size_t restored_ = 0, without_group_ = 0, repeated_ = 0;
 };
 

@@ -32,8 +32,8 @@ std::int64_t reference(TextScanner& in) {
   return static_cast<std::int64_t>(number);
 }
 
-/// Sections of volume cells other than linear tets, and the kinds of cells. The second spelling of hexahedra
-/// is from old files.
+/// Sections of volume cells other than linear tets, with the kinds of cells. Old files use the second
+/// spelling of hexahedra.
 constexpr std::array<std::pair<std::string_view, const char*>, 12> volume_sections{
     {{"Hexahedra", "hexahedra"},
      {"Hexaedra", "hexahedra"},
@@ -48,7 +48,7 @@ constexpr std::array<std::pair<std::string_view, const char*>, 12> volume_sectio
      {"PyramidsP2", "quadratic pyramids"},
      {"Polyhedra", "polyhedra"}}};
 
-/// Skipped sections and their contents; other sections are reported by their keyword.
+/// Skipped sections and their contents. Other sections are reported by their keyword.
 constexpr std::array<std::pair<std::string_view, const char*>, 10> other_sections{
     {{"Quadrilaterals", "quads"},
      {"Edges", "edges"},
@@ -68,7 +68,7 @@ const char* find_section(const Sections& sections, std::string_view keyword) {
   return nullptr;
 }
 
-/// Converts a name to one word for use in quotes.
+/// Converts a name to one word without quotes, to be written in quotes.
 std::string medit_name(const std::string& name) {
   std::string out;
   for (const char c : valid_utf8(name)) out += static_cast<unsigned char>(c) <= ' ' || c == '"' ? '_' : c;
@@ -135,7 +135,7 @@ class TextReader {
       } else if (word == "End") {
         ended = true;
       } else {
-        // A skipped section, or one of its numbers.
+        // Keyword of a skipped section, or one of its numbers.
         note_section(word);
       }
     }
@@ -166,7 +166,7 @@ class TextReader {
     }
   }
 
-  /// Reads the quads of a surface; in a file with tets they are no faces.
+  /// Reads the quads of a surface; in a file with tets they are not faces.
   void read_quads() {
     const std::size_t n = in_.count("number of quads", 10);
     for (std::size_t i = 0; i < n; ++i) {
@@ -176,7 +176,8 @@ class TextReader {
     }
   }
 
-  /// Index of a point, which a face may precede. An impossible index gives no_index, in a surface an error.
+  /// Reads the index of a point, which may follow the face in the file. An impossible index becomes no_index,
+  /// and is an error in a surface.
   Index read_point_of_face() {
     const std::int64_t index = in_.integer("index of a point");
     const bool possible = index >= 1 && index < no_index;
@@ -195,7 +196,7 @@ class TextReader {
                          " (counted from 1); export the file again");
   }
 
-  /// Reads the comments of write_medit() on references.
+  /// Reads the comments of write_medit() about references.
   void read_comments() {
     for (std::size_t at = 0; (at = bytes_.find(reference_comment, at)) != std::string_view::npos;) {
       const bool begins_line = at == 0 || bytes_[at - 1] == '\n' || bytes_[at - 1] == '\r';
@@ -212,8 +213,8 @@ class TextReader {
     }
   }
 
-  /// Counts the items of a section if `word` is a section keyword: it begins with a capital letter, and the
-  /// number of items follows.
+  /// Counts the items of a section if `word` is a section keyword: it starts with an upper-case letter, and
+  /// the number of items follows.
   void note_section(std::string_view word) {
     if (word[0] < 'A' || word[0] > 'Z') return;
     const std::size_t line = in_.line();
@@ -250,7 +251,7 @@ class TextReader {
     result_.material_field = "medit:ref";
   }
 
-  /// Checks indices at the end, since tets may precede the points.
+  /// Checks the indices at the end, since tets may precede the points.
   void check_indices() const {
     const TetMesh& mesh = result_.mesh;
     check_has_vertices();
@@ -268,20 +269,20 @@ class TextReader {
   ReadTetMesh result_;
   FileTriangles triangles_;
   KindCounts volume_cells_, others_;
-  std::size_t volume_cells_line_ = 0;  ///< of the first section with volume cells
+  std::size_t volume_cells_line_ = 0;  ///< line of the first section with volume cells
   std::size_t point_references_ = 0;
-  std::int64_t largest_ = 0;  ///< maximum point number of the faces, from 1
+  std::int64_t largest_ = 0;  ///< largest point number in the faces, from 1
   std::size_t largest_line_ = 0;
   bool has_vertices_ = false;
-  bool surface_ = false;  ///< a surface is requested, not tets
+  bool surface_ = false;  ///< true: a surface is read, not tets
 };
 
 void append_triangles(std::string& out, const TetMesh& mesh) {
   const std::vector<InterfaceTriangle>& triangles = mesh.interfaces;
   const BoundaryGroups groups(mesh);
   out += '\n';
-  // Some readers do not support comments, and a name could be one of their keywords: write tags of materials,
-  // and one word in quotes for a region of the input.
+  // Some readers do not support comments and could take a name for a keyword. So write material tags, and a
+  // single word in quotes for a region of the input.
   for (const BoundaryGroups::Group& g : groups.all()) {
     out += reference_comment;
     append_number(out, g.number);

@@ -22,7 +22,7 @@ namespace {
 constexpr std::int32_t dimension_keyword = 3, vertices_keyword = 4, triangles_keyword = 6, tets_keyword = 8,
                        end_keyword = 54;
 
-/// Sections of volume cells, and the kinds of cells.
+/// Sections of volume cells, with the kinds of cells.
 const std::map<std::int32_t, const char*> volume_keywords{{9, "prisms"},
                                                           {10, "hexahedra"},
                                                           {30, "quadratic tets"},
@@ -84,7 +84,7 @@ class BinaryReader {
     position_ += sizeof(Number);
     return value;
   }
-  /// Integers have eight bytes in version 4, positions since version 3, and coordinates since version 2.
+  /// Integers have eight bytes in version 4, file positions since version 3, coordinates since version 2.
   std::int64_t integer(const char* what) {
     return version_ >= 4 ? next<std::int64_t>(what) : next<std::int32_t>(what);
   }
@@ -109,7 +109,8 @@ class BinaryReader {
       throw InputError(name_ + ": byte 4: version " + std::to_string(version_) + "; 1 to 4 are known");
   }
 
-  /// Reads a section; false after the last one.
+  /// Reads a section.
+  /// \return false after the last one
   bool read_section() {
     const std::size_t at = position_;
     if (position_ == bytes_.size()) return false;
@@ -161,7 +162,7 @@ class BinaryReader {
     }
   }
 
-  /// An index, which is checked when all points are read.
+  /// Reads an index, which is checked once all points are read.
   Index index(const char* what) {
     const std::int64_t i = integer(what);
     if (i < 1 || i >= no_index) fail("the index of a point is " + std::to_string(i) + "; they begin at 1");
@@ -225,10 +226,10 @@ class BinaryReader {
   std::size_t volume_cells_at_ = 0, point_references_ = 0, largest_ = 0;
 };
 
-/// Writes sections, each of which gives the position of the next one.
+/// Writes sections, each of which contains the position of the next one.
 class Sections {
  public:
-  /// \param wide positions take eight bytes
+  /// \param wide true: positions take eight bytes
   Sections(const ByteSink& sink, bool wide) : sink_(sink), wide_(wide) {}
 
   template <class Number>
@@ -238,7 +239,7 @@ class Sections {
     return *this;
   }
 
-  /// Begins a section whose content takes `size` bytes.
+  /// Starts a section whose content takes `size` bytes.
   void begin(std::int32_t keyword, std::uint64_t size) {
     put(keyword);
     const std::uint64_t next = position_ + bytes_.size() + (wide_ ? 8 : 4) + size;

@@ -64,12 +64,12 @@ std::string write_msh(const MeshToWrite& written) {
     append_point(out, written.node(i));
     out += '\n';
   }
-  // Tets first: their numbers are the same with and without triangles, and simple readers use only the first
-  // block of elements.
+  // Tets come first: their numbers are then the same with and without triangles, and simple readers use only
+  // the first block of elements.
   out += "$EndNodes\n$Elements\n";
   append_number(out, mesh.tets.size() + mesh.interfaces.size());
   out += '\n';
-  // The second tag is the number of the geometrical entity, which must be positive: one for each material.
+  // The second tag is the number of the geometrical entity and must be positive: one for each material.
   std::vector<MaterialTag> tags = mesh.materials;
   std::sort(tags.begin(), tags.end());
   tags.erase(std::unique(tags.begin(), tags.end()), tags.end());

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int surface_dimension = 2, volume_dimension = 3;
 
-/// Writes the numbers of a section, as text or little-endian.
+/// Writes the numbers of a section as text or little-endian.
 class Numbers {
  public:
   Numbers(TextWriter& out, bool binary) : out_(out), binary_(binary) {}
@@ -28,7 +28,7 @@ class Numbers {
   Numbers& integer(std::int64_t value) { return put(static_cast<std::int32_t>(value)); }
   Numbers& size(std::size_t value) { return put(std::uint64_t{value}); }
   Numbers& real(double value) { return put(value); }
-  /// Ends a line of text.
+  /// Ends a line in a text file.
   void end_line() {
     if (!binary_) out_ << '\n';
     begins_line_ = true;
@@ -57,13 +57,13 @@ class Numbers {
   std::string bytes_;
 };
 
-/// A volume or a surface of Gmsh's model, with the physical group of the same number.
+/// A volume or surface of Gmsh's model, with a physical group of the same number.
 struct Entity {
   int dimension;
   std::int64_t number;
   std::vector<std::size_t> elements;  ///< tets or interface triangles
-  std::set<std::int64_t> bounds;  ///< of a volume: its surfaces, negative where their normals point into it
-  std::vector<Index> nodes;       ///< classified on it, ascending
+  std::set<std::int64_t> bounds;      ///< surfaces of a volume, negative if their normals point into it
+  std::vector<Index> nodes;           ///< nodes classified on the entity, ascending
   Vec3 min = Vec3::Constant(std::numeric_limits<double>::infinity());
   Vec3 max = -min;
 };
@@ -128,7 +128,7 @@ class Msh4Writer {
     return volumes.try_emplace(number, Entity{volume_dimension, number, {}, {}, {}}).first->second;
   }
 
-  /// Classifies each node on the first entity with an element at it, surfaces before volumes.
+  /// Classifies each node on the first entity that has an element at it, surfaces before volumes.
   void classify_nodes() {
     std::vector<std::uint8_t> done(written_.nodes(), 0);
     for (Entity& entity : entities_) {
@@ -143,7 +143,7 @@ class Msh4Writer {
         }
       std::sort(entity.nodes.begin(), entity.nodes.end());
     }
-    // Points without a tet.
+    // Nodes without a tet.
     for (std::size_t node = 0; node < done.size(); ++node)
       if (!done[node]) entities_.back().nodes.push_back(static_cast<Index>(node));
   }
@@ -165,7 +165,7 @@ class Msh4Writer {
     return nodes;
   }
 
-  /// Writes comments with the tags that cannot be numbers of physical groups.
+  /// Writes comments with those tags that cannot be numbers of physical groups.
   void write_comments() {
     bool any = false;
     for (const auto& [tag, number] : physical_) {
@@ -225,7 +225,7 @@ class Msh4Writer {
     numbers_.integer(entity.dimension).integer(entity.number).integer(kind).size(items).end_line();
   }
 
-  /// Writes the elements. Tets are numbered from 1, in the order of the mesh, and triangles after them:
+  /// Writes the elements. Tets are numbered from 1 in the order of the mesh, followed by the triangles, since
   /// fields refer to tets by these numbers.
   void write_elements() {
     out_ << "$Elements\n";
@@ -247,7 +247,7 @@ class Msh4Writer {
     numbers_.end("Elements");
   }
 
-  // Orders in which write_nodes() and write_elements() list items.
+  // Orders in which write_nodes() and write_elements() list their items.
   std::vector<std::size_t> order_of_nodes() const {
     std::vector<std::size_t> order;
     for (const Entity& entity : entities_)
@@ -268,7 +268,7 @@ class Msh4Writer {
   TextWriter out_;
   Numbers numbers_;
   bool binary_;
-  std::map<std::int64_t, std::int64_t> physical_;  ///< groups by material
+  std::map<std::int64_t, std::int64_t> physical_;  ///< physical groups by material
   std::vector<Entity> entities_;                   ///< surfaces, then volumes
   std::size_t surfaces_ = 0;
 };

@@ -20,7 +20,7 @@ constexpr std::size_t max_name_bytes = 120;  // see msh_name()
 
 void append_value(std::string& out, double value) {
   if (std::isnan(value))
-    out += "nan";  // without the sign that NaN may have, which other readers reject
+    out += "nan";  // without a sign, which a NaN may have and other readers reject
   else
     append_number(out, value);
 }
@@ -105,7 +105,7 @@ std::vector<MeshField> fields_of_elements(const TetMesh& mesh) {
 void append_msh_data(std::string& out, const std::string& section, const std::vector<MeshField>& fields,
                      std::size_t items, bool binary, const std::vector<std::size_t>& order) {
   const std::vector<std::string> names = field_names_to_write(fields, {}, msh_name);
-  // Appends a section of `used` components of each item, from component `first` on, padded to `written`
+  // Appends a section with `used` components of each item, from component `first` on, padded to `written`
   // components.
   const auto append_view = [&](const MeshField& field, const std::string& name, int first, int used,
                                int written) {

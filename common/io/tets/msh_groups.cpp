@@ -13,7 +13,7 @@ std::map<MaterialTag, std::string> material_names_to_write(const std::map<Materi
   std::map<MaterialTag, std::string> written;
   std::map<std::string, std::string> written_of;
   UniqueNames unique(msh_name);
-  for (const bool unchanged : {true, false})  // unchanged names first, which are kept
+  for (const bool unchanged : {true, false})  // unchanged names first, so that they are kept
     for (const auto& [tag, name] : names) {
       if ((msh_name(name) == name) != unchanged) continue;
       const auto [known, added] = written_of.try_emplace(name);
@@ -23,7 +23,8 @@ std::map<MaterialTag, std::string> material_names_to_write(const std::map<Materi
   return written;
 }
 
-/// Names of the groups. Regions of the input come first, and among them those whose names stay unchanged.
+/// Names of the groups. Regions of the input take precedence, and among them those whose names stay
+/// unchanged.
 std::map<std::int64_t, std::string> group_names_to_write(const BoundaryGroups& groups,
                                                          const std::map<MaterialTag, std::string>& names) {
   std::map<std::int64_t, std::string> written;
@@ -33,7 +34,7 @@ std::map<std::int64_t, std::string> group_names_to_write(const BoundaryGroups& g
       const std::string& name = g.surface_region.name;
       if (!name.empty() && (msh_name(name) == name) == unchanged) written[g.number] = unique.add(name);
     }
-  // Numbers that cannot be kept.
+  // Groups whose numbers cannot be kept.
   for (const BoundaryGroups::Group& g : groups.all())
     if (const SurfaceRegion& of_user = g.surface_region;
         of_user.name.empty() && of_user.number != 0 && of_user.number != g.number)

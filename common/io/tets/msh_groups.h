@@ -16,13 +16,13 @@ struct MshGroups {
   explicit MshGroups(const TetMesh& mesh);
 
   BoundaryGroups faces;
-  /// Names by tag, of the materials that have one. Different names stay different, and equal ones equal.
+  /// Names by tag, for materials that have one. Different names stay different, equal names stay equal.
   std::map<MaterialTag, std::string> material_names;
-  /// Unique names by the groups' numbers, of the groups that have one.
+  /// Unique names by group number, for groups that have one.
   std::map<std::int64_t, std::string> face_names;
 };
 
-/// Groups for name_changes(): tags of materials are kept, by comments if the format cannot hold one.
+/// Groups for name_changes(): tags of materials are kept; comments give those that the format cannot hold.
 MeshParts msh_parts(const TetMesh& mesh);
 
 }  // namespace tetwright

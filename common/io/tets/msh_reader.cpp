@@ -112,7 +112,7 @@ void MshReader::keep_or_skip(std::string_view section) {
     return;
   }
   if (numbers_.binary()) {
-    // Bytes of binary numbers that equal a line feed begin no line.
+    // A byte of a binary number that equals a line feed does not start a line.
     const std::size_t at = bytes_.find(end, in_.offset());
     if (at == std::string_view::npos) in_.fail_cut_short("line " + in_quotes(end));
     (void)in_.take_bytes(at - in_.offset());
@@ -206,7 +206,7 @@ void MshReader::set_materials() {
   if (any_geometrical_ && (asked || (version_4_ && !any_physical_))) {
     mesh.materials = std::move(geometrical_);
     result_.material_field = geometrical_name;
-    // The names belong to physical groups.
+    // The names refer to physical groups.
     mesh.material_names.clear();
   } else if (any_physical_) {
     result_.material_field = "gmsh:physical";

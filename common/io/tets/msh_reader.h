@@ -22,15 +22,15 @@
 
 namespace tetwright {
 
-/// Number of a group of faces, or of lower dimension, without its sign, by which Gmsh marks the opposite
+/// Number of a group of faces or of lower dimension, without the sign by which Gmsh marks the opposite
 /// orientation.
 inline std::int64_t without_sign(std::int64_t number) {
   return number < 0 && number != std::numeric_limits<std::int64_t>::min() ? -number : number;
 }
 
-/// Implements the reading functions of msh.h for one file and one call. msh_reader.cpp has the sections of
-/// the file and the assembly of the result, msh_reader_mesh.cpp the nodes, entities and elements of each
-/// version.
+/// Implements the reading functions of msh.h; an object reads one file once. The sections of the file and the
+/// assembly of the result are in msh_reader.cpp; nodes, entities and elements of each version are in
+/// msh_reader_mesh.cpp.
 class MshReader {
  public:
   MshReader(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options)
@@ -49,10 +49,10 @@ class MshReader {
   void read_sections();
   void read_format();
   void expect(std::string_view end);
-  /// Sections of data are read when all nodes and elements are known: copies of the scanner keep their
-  /// positions.
+  /// Keeps a copy of the scanner at a section of data, or skips the section. Data are read once all nodes and
+  /// elements are known.
   void keep_or_skip(std::string_view section);
-  /// Reads the comments of write_msh41(): tags of materials that cannot be numbers of groups.
+  /// Reads the comments of write_msh41() that give material tags which cannot be group numbers.
   void read_comments(const std::string& end);
   /// Material of a physical group of tets.
   std::int64_t tag_of(std::int64_t group) const;
@@ -63,23 +63,23 @@ class MshReader {
   void set_materials();
   void note_dropped();
 
-  // In msh_reader_mesh.cpp.
+  // Defined in msh_reader_mesh.cpp.
   Vec3 read_point();
   std::size_t begin_nodes(std::size_t n);
   void end_nodes();
   void read_nodes_2();
   void read_nodes_4();
-  /// Reads the minimum and the maximum number of a node or element.
+  /// Reads the minimum and maximum number of a node or element.
   void read_range_of_numbers();
   EntityName read_entity();
   void read_entities();
   void begin_elements();
-  /// Reads the number of a node or element, which is a size in binary files of version 4.1.
+  /// Reads the number of a node or element, which is stored as a size in binary files of version 4.1.
   std::int64_t read_node(const char* what) {
     return version_4_ && !version_40_ ? numbers_.size(what) : numbers_.integer(what);
   }
 
-  /// \param needed a missing node is an error
+  /// \param needed true: a missing node is an error
   template <class Ids>
   Ids read_ids(std::int64_t element, bool needed, const char* what) {
     Ids ids;
@@ -93,18 +93,18 @@ class MshReader {
     return ids;
   }
 
-  /// Reads a face. Quads count only in a surface, not beside tets.
+  /// Reads a face. Quads are read only for a surface, not in a file with tets.
   /// \return false if faces of this type are not read
   bool read_face(std::int64_t type, std::int64_t element, std::int64_t group);
-  /// Reads a tet of four nodes, or of ten with the corners first.
+  /// Reads a tet of four nodes, or of ten nodes with the corners first.
   void read_tet(std::int64_t type, std::int64_t element);
   static bool is_tet(std::int64_t type) {
     return type == element::tet.msh || type == element::quadratic_tet.msh;
   }
 
-  /// Skips the nodes of an element; in text those on the rest of its line.
+  /// Skips the nodes of an element: in a text file the rest of its line.
   void skip_nodes(std::int64_t type);
-  /// Version 2: each element has a line of its own: number, type, tags, nodes. Binary files give type and
+  /// Version 2: each element has its own line: number, type, tags, nodes. Binary files give the type and the
   /// number of tags once for several elements.
   void read_elements_2();
   void read_elements_4();
@@ -127,16 +127,16 @@ class MshReader {
   std::map<std::int64_t, MaterialTag> group_to_tag_;  ///< from comments of write_msh41()
   std::vector<TextScanner> node_data_, element_data_;
   OtherMshElements others_;
-  std::map<std::string, std::int64_t> surface_names_;        ///< physical groups of faces
-  std::set<std::pair<std::int64_t, std::int64_t>> volumes_;  ///< physical and geometrical, of the tets
+  std::map<std::string, std::int64_t> surface_names_;        ///< physical groups of faces by name
+  std::set<std::pair<std::int64_t, std::int64_t>> volumes_;  ///< physical and geometrical groups of the tets
   std::pair<std::int64_t, std::int64_t> last_volume_;
   std::size_t partitioned_ = 0;
   std::vector<std::string> empty_fields_, fields_of_others_, other_sections_;  ///< names of ignored contents
-  bool surface_ = false;  ///< a surface is requested, not tets
+  bool surface_ = false;  ///< true: a surface is read, not tets
   bool version_4_ = false, version_40_ = false;
   bool has_elements_ = false;
   bool any_physical_ = false, any_geometrical_ = false;
-  bool keep_numbers_ = false;  ///< of the tets: fields refer to them, or they are out of order
+  bool keep_numbers_ = false;  ///< keep the numbers of tets: fields refer to them, or they are out of order
 };
 
 }  // namespace tetwright

@@ -7,8 +7,8 @@ namespace tetwright {
 
 namespace {
 
-/// Sorts items and their values by number if the numbers are a permutation of 1 to n: files list items by
-/// entity, and the original order is restored.
+/// Sorts items and their values by number if the numbers are a permutation of 1 to n. Files list items by
+/// entity; this restores the original order.
 template <class... Values>
 void sort_by(std::vector<std::int64_t>& numbers, std::vector<Values>&... values) {
   constexpr std::size_t none = static_cast<std::size_t>(-1);
@@ -16,7 +16,7 @@ void sort_by(std::vector<std::int64_t>& numbers, std::vector<Values>&... values)
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     if (numbers[i] < 1 || numbers[i] > std::ssize(numbers)) return;
     std::size_t& place = order[static_cast<std::size_t>(numbers[i] - 1)];
-    if (place != none) return;  // twice
+    if (place != none) return;  // repeated number
     place = i;
   }
   const auto apply = [&](auto& items) {
@@ -105,7 +105,7 @@ void MshReader::read_range_of_numbers() {
 
 MshReader::EntityName MshReader::read_entity() {
   EntityName entity{};
-  // Version 4.0 has them in reverse order.
+  // Version 4.0 has the two in reverse order.
   for (const bool dimension : {!version_40_, version_40_}) {
     if (!dimension) {
       entity.number = numbers_.integer("number of an entity");
@@ -290,7 +290,7 @@ void MshReader::add_groups(std::int64_t physical, std::int64_t geometrical) {
     volumes_.insert(last_volume_);
   }
   result_.mesh.materials.push_back(checked_material(tag_of(physical), in_.name(), in_.line()));
-  // Version 2 has physical groups wherever it has geometrical ones.
+  // In version 2, elements with a geometrical group also have a physical one.
   if (version_4_ || options_.material_field == geometrical_name)
     geometrical_.push_back(checked_material(geometrical, in_.name(), in_.line()));
 }

@@ -22,8 +22,8 @@ std::string padded(std::string text, std::size_t width) {
   return text;
 }
 
-/// Writes an entry of integers in the small field format, on as many lines as it needs. A field of 0 is
-/// blank.
+/// Writes an entry of integers in the small field format, on as many lines as it needs. A field with 0 is
+/// left blank.
 void write_entry(TextWriter& out, const char* name, const std::vector<std::size_t>& fields) {
   std::string line = padded(name, small_field);
   for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -88,7 +88,7 @@ void write_surfaces(TextWriter& out, const MeshToWrite& written, const MeshParts
 }  // namespace
 
 NameRules nastran_names() {
-  // Names are in comments, which end with the line.
+  // Names are written in comments, which end with the line.
   return {.form = printable_name, .max_number = max_number};
 }
 

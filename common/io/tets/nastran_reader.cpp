@@ -28,9 +28,9 @@ std::string without_blanks(std::string_view text) {
   return out;
 }
 
-/// An entry of the bulk data with all its continuations.
+/// A bulk data entry with all its continuations.
 struct Entry {
-  std::string name;  ///< in capitals, without the asterisk of the large format
+  std::string name;  ///< upper case, without the asterisk of the large format
   std::vector<std::string> fields;
   std::size_t line = 0;
 
@@ -41,7 +41,7 @@ struct Entry {
   }
 };
 
-/// Elements of three dimensions other than tets, and their kinds.
+/// Three-dimensional elements other than tets, with their kinds.
 const std::map<std::string, const char*> volume_entries{
     {"CHEXA", "hexahedra"},  {"CPENTA", "prisms"},     {"CPYRAM", "pyramids"},  {"CPYRA", "pyramids"},
     {"CHEXA8", "hexahedra"}, {"CHEXA20", "hexahedra"}, {"CPENTA6", "prisms"},   {"CPENTA15", "prisms"},
@@ -66,7 +66,7 @@ class NastranReader {
   }
 
  private:
-  /// A tet or a face, with the numbers of the file.
+  /// A tet or a face, with numbers as in the file.
   struct Numbered {
     std::int64_t number = 0, group = 0;  ///< element and property, or element and surface
     std::vector<std::int64_t> nodes;
@@ -77,7 +77,7 @@ class NastranReader {
     throw InputError(in_.name(), line, message);
   }
 
-  /// Reads the bulk data, which is the whole file or follows the line BEGIN BULK.
+  /// Reads the bulk data: the part after the line BEGIN BULK, or else the whole file.
   void read_entries() {
     Entry entry;
     bool bulk = !has_begin_bulk();
@@ -110,7 +110,7 @@ class NastranReader {
     return false;
   }
 
-  /// Reads the comments of write_nastran(): "$ material NUMBER: NAME" and "$ surface NUMBER: NAME".
+  /// Reads comments of write_nastran(): "$ material NUMBER: NAME" and "$ surface NUMBER: NAME".
   void read_comment(std::string_view text, std::size_t line) {
     for (const std::string_view what : {nastran_material_comment, nastran_surface_comment}) {
       if (!text.starts_with(what)) continue;
@@ -126,7 +126,7 @@ class NastranReader {
     }
   }
 
-  /// Reads a line of fields: a new entry, or a continuation of the last.
+  /// Reads a line of fields: a new entry, or a continuation of the last one.
   void read_line(std::string_view text, std::size_t line, Entry& entry) {
     text = text.substr(0, text.find('$'));
     std::vector<std::string> fields;
@@ -141,7 +141,7 @@ class NastranReader {
       }
       large = fields[0].ends_with('*');
     } else {
-      // A tab advances to the next multiple of eight.
+      // A tab advances to the next multiple of eight columns.
       std::string wide;
       for (const char c : text) {
         if (c != '\t') wide += c;
@@ -154,7 +154,7 @@ class NastranReader {
         fields.push_back(without_blanks(wide.substr(begin, width)));
     }
     const bool goes_on = fields[0].empty() || fields[0][0] == '+' || fields[0][0] == '*';
-    // A line has eight fields, or four large ones, and the name of its continuation at the end.
+    // A line has eight fields, or four large ones, followed by the name of its continuation.
     const std::size_t on_line = large ? 4 : 8;
     if (goes_on && entry.name.empty()) fail(line, "a line continues an entry, but there is none before it");
     if (!goes_on) {
@@ -177,7 +177,7 @@ class NastranReader {
     return value;
   }
 
-  /// Reads a number as Nastran writes it: the letter before an exponent may be omitted, or be a D.
+  /// Reads a number in Nastran's notation: the letter before an exponent may be missing or be a D.
   double real(const Entry& entry, std::size_t i) const {
     std::string text = entry.field(i);
     if (text.empty()) return 0;
@@ -226,13 +226,14 @@ class NastranReader {
     std::size_t given = 0;
     for (std::size_t i = 2; i < 12; ++i) given += !entry.field(i).empty();
     const std::size_t nodes = given > 4 ? 10 : 4;
-    // Midside points may be missing one by one.
+    // Some of the midside points may be missing.
     for (std::size_t i = 2; i < 2 + nodes; ++i)
       tet.nodes.push_back(i >= 6 && entry.field(i).empty() ? 0 : whole_number(entry, i, "point of a tet"));
     tets_.push_back(std::move(tet));
   }
 
-  /// Reads a surface of element faces, from the fifth field on: the element and three of its points.
+  /// Reads a surface of element faces. Each face, from the fifth field on, is given by its element and three
+  /// points.
   void read_surface(const Entry& entry) {
     const std::int64_t number = whole_number(entry, 0, "number of a surface");
     for (std::size_t i = 4; i + 3 < entry.fields.size(); i += 4) {
@@ -289,7 +290,7 @@ class NastranReader {
   MidsideNodesRead midside_;
   KindCounts volumes_, others_;
   std::size_t volumes_line_ = 0;
-  std::size_t padding_ = 0;  ///< fields missing on the last line of the entry
+  std::size_t padding_ = 0;  ///< missing fields on the last line of the entry
 };
 
 }  // namespace

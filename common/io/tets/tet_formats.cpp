@@ -33,7 +33,8 @@ ReadTetMesh read_xdmf_files(const std::string& path, const ReadTetMeshOptions& o
   return read_xdmf(read_whole_file(path), path, read_whole_file, options, facets);
 }
 
-/// Reads the .node, .ele and, if there is one, .face file of one name, given that of .node or .ele.
+/// Reads the .node, .ele and, if it exists, .face file with the same name.
+/// \param path path of the .node or .ele file
 ReadTetMesh read_tetgen_files(const std::string& path, const ReadTetMeshOptions& options) {
   const auto name = [&](const char* extension) {
     return extension_of(path) == extension ? path : with_extension(path, extension);

@@ -12,34 +12,34 @@
 
 namespace tetwright {
 
-/// One of the files that a tet mesh is written to.
+/// One of the files in which a tet mesh is written.
 struct WrittenFile {
   const char* extension;
   /// \param first name, without folders, of the first file of the mesh
   void (*write)(const MeshToWrite& mesh, const std::string& first, const ByteSink& sink);
 };
 
-/// A format of tet meshes: its reader, its writer and the contents that it can store.
+/// A tet mesh format: its reader, its writer and the contents that it can store.
 struct TetFormat {
   const char* extension;
   const char* name;
-  /// Readers of a format of one file, and of one of several; both null: only written.
+  /// Reader of a format with one file, or with several. If both are null, the format can only be written.
   ReadTetMesh (*read)(std::string_view bytes, const std::string& name,
                       const ReadTetMeshOptions& options) = nullptr;
   ReadTetMesh (*read_files)(const std::string& path, const ReadTetMeshOptions& options) = nullptr;
-  std::vector<WrittenFile> write;  ///< empty: only read
-  /// Parts of a mesh as the writer names them.
+  std::vector<WrittenFile> write;  ///< empty: the format can only be read
+  /// Parts of a mesh, with the names that the writer gives them.
   MeshParts (*parts)(const TetMesh& mesh) = nullptr;
   /// Cell fields that the writer adds itself; no other field may have their names.
   std::vector<std::string> own_cell_fields = {};
-  /// The `form` of field_names_to_write().
+  /// The argument `form` of field_names_to_write().
   std::string (*field_name)(const std::string& name) = nullptr;
-  bool point_fields = true;  ///< it may have fields of points when it is read
-  // As in TetFormatInfo.
+  bool point_fields = true;  ///< may have point fields when it is read
+  // Meaning as in TetFormatInfo.
   bool names = true, surfaces = true, patch_names = true, fields = true, second_order = false;
 };
 
-/// All formats, in the order in which they are listed; the first of an extension is its default.
+/// All formats in the order in which they are listed. The first one with an extension is its default.
 const std::vector<TetFormat>& tet_formats();
 
 }  // namespace tetwright

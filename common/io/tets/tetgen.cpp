@@ -20,14 +20,15 @@ namespace {
 constexpr std::int64_t max_attributes = 1000;
 constexpr const char* material_attribute = "attribute";
 
-/// A file: a line of counts, then a line for each item; # begins a comment.
+/// Lines of a file: a line of counts, then a line for each item. # begins a comment.
 class Lines {
  public:
   Lines(std::string_view bytes, const std::string& name) : in_(bytes, name, '#') {
     if (in_.at_end()) in_.fail("the file is empty");
   }
 
-  /// Next number of this line; `what` names it in messages.
+  /// Next number on this line.
+  /// \param what names it in messages
   template <class Number>
   Number next(const std::string& what) {
     const std::string_view word = in_.word_on_line();
@@ -36,7 +37,7 @@ class Lines {
     if (!parse_number(word, value)) in_.fail("expected a number (" + what + "), found " + in_quotes(word));
     return value;
   }
-  /// An optional count at the end of the first line; 0 if it is missing.
+  /// Optional count at the end of the first line; 0 if it is missing.
   std::int64_t optional_count(const std::string& what, std::int64_t max) {
     const std::string_view word = in_.word_on_line();
     std::int64_t value = 0;
@@ -52,7 +53,7 @@ class Lines {
   }
   void end_line() { in_.skip_line(); }
 
-  /// \throws InputError if `n` lines of `words` words each exceed the rest of the file
+  /// \throws InputError if `n` lines of `words` words each do not fit into the rest of the file
   std::size_t checked(std::int64_t n, std::size_t words, const std::string& what) {
     if (n < 0) in_.fail("the number of " + what + " is negative: " + std::to_string(n));
     if (static_cast<std::uint64_t>(n) > (in_.left() + 1) / (2 * words))
@@ -67,7 +68,7 @@ class Lines {
   TextScanner in_;
 };
 
-/// Makes a field for each attribute, with room for `n` items.
+/// Makes a field for each attribute and reserves memory for `n` items.
 std::vector<MeshField> attribute_fields(std::int64_t attributes, std::size_t n, const char* first) {
   std::vector<MeshField> fields;
   for (std::int64_t k = 0; k < attributes; ++k)
@@ -76,7 +77,8 @@ std::vector<MeshField> attribute_fields(std::int64_t attributes, std::size_t n, 
   return fields;
 }
 
-/// Reads the points and returns the number of the first one.
+/// Reads the points.
+/// \return the number of the first one
 std::int64_t read_nodes(Lines& in, TetMesh& mesh) {
   const auto promised = in.next<std::int64_t>("number of points");
   if (const auto dimension = in.next<std::int64_t>("dimension"); dimension != 3)
@@ -116,7 +118,8 @@ std::int64_t read_nodes(Lines& in, TetMesh& mesh) {
   return first;
 }
 
-/// Reads the tets and returns the midside nodes, which are still among the points.
+/// Reads the tets.
+/// \return the midside nodes, which are still among the points
 MidsideNodesRead read_tets(Lines& in, std::int64_t first, ReadTetMesh& read) {
   TetMesh& mesh = read.mesh;
   const auto promised = in.next<std::int64_t>("number of tets");
@@ -150,12 +153,12 @@ MidsideNodesRead read_tets(Lines& in, std::int64_t first, ReadTetMesh& read) {
     for (MeshField& field : mesh.cell_fields) field.values[t] = in.next<double>("attribute");
     in.end_line();
   }
-  // Attributes are numbers of regions, which TetGen writes as floating-point numbers.
+  // Attributes are region numbers, which TetGen writes as floating-point numbers.
   for (MeshField& field : mesh.cell_fields) field.integer = all_whole(field);
   return midside;
 }
 
-/// Reads comments at the beginning of this program's files: lines "# material 3: bone".
+/// Reads the comments at the beginning of files that this program wrote: lines "# material 3: bone".
 std::map<std::int64_t, std::string> read_name_comments(std::string_view bytes, std::string_view what) {
   std::map<std::int64_t, std::string> names;
   const std::string begin = "# " + std::string(what) + " ";
@@ -173,8 +176,8 @@ std::map<std::int64_t, std::string> read_name_comments(std::string_view bytes, s
   return names;
 }
 
-/// Reads the faces with a boundary marker other than 0, grouped by it.
-/// \param midside each face has three more nodes, as TetGen writes them beside tets of ten
+/// Reads the faces with a boundary marker other than 0, grouped by marker.
+/// \param midside true: each face has three more nodes, as TetGen writes them with tets of ten nodes
 FileTriangles read_faces(Lines& in, std::int64_t first, std::size_t points, bool midside) {
   FileTriangles listed;
   const auto promised = in.next<std::int64_t>("number of faces");
@@ -197,7 +200,7 @@ FileTriangles read_faces(Lines& in, std::int64_t first, std::size_t points, bool
     for (int k = 0; midside && k < 3; ++k) (void)in.next<std::int64_t>("number of a point");
     const std::int64_t marker = markers ? in.next<std::int64_t>("boundary marker") : 0;
     in.end_line();
-    // On request TetGen lists all faces; those without a marker are in no patch.
+    // TetGen can be asked to list all faces; faces without a marker are in no patch.
     if (marker != 0) listed.add(ids, marker);
   }
   return listed;
@@ -221,7 +224,7 @@ ReadTetMesh read_tetgen(const NamedBytes& node, const NamedBytes& ele, const std
   }
   midside.remove_from(read, listed.triangles);
   take_material(read, options, ele.name);
-  // The names belong to this field's numbers only.
+  // The names refer only to the numbers in this field.
   if (read.material_field == material_attribute)
     for (const auto& [tag, name] : read_name_comments(ele.bytes, "material"))
       read.mesh.material_names[checked_material(tag, ele.name, 0)] = name;

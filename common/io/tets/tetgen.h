@@ -10,23 +10,23 @@
 
 namespace tetwright {
 
-/// Reads the files that TetGen writes: `node` (.node), `ele` (.ele) and optionally `face` (.face). Numbers
-/// begin at 0 or 1. Attributes of points become the fields "attribute1", "attribute2", ..., boundary markers
-/// the integer field "boundary_marker". Attributes of tets become "attribute", "attribute2", ..., the first
-/// of which is the material if its values are whole (see ReadTetMesh). Faces with a boundary marker other
-/// than 0 become patches, see take_triangles(). Names of materials and markers come from the comments of this
-/// writer. Quadratic tets are reduced to their corners; nothing else in the files is dropped; a .edge file
-/// beside them is not read.
+/// Reads files written by TetGen: `node` (.node), `ele` (.ele) and optionally `face` (.face). Numbers start
+/// at 0 or 1. Attributes of points become the fields "attribute1", "attribute2" and so on, boundary markers
+/// the integer field "boundary_marker". Attributes of tets become "attribute", "attribute2" and so on; the
+/// first is the material if its values are whole (see ReadTetMesh). Faces with a boundary marker other than 0
+/// become patches, see take_triangles(). Names of materials and markers come from the comments of the writers
+/// below. Quadratic tets are reduced to their corners. All other contents of these files are kept; an .edge
+/// file with the same name is not read.
 ///
-/// Not a library: TetGen's is under the AGPL, and the format is small.
+/// No library is used: TetGen's is under the AGPL, and the format is small.
 /// \throws InputError with the line for malformed contents
 ReadTetMesh read_tetgen(const NamedBytes& node, const NamedBytes& ele, const std::optional<NamedBytes>& face,
                         const ReadTetMeshOptions& options = {});
 
-/// Write the three files of a mesh: points, tets with the tag of the material as their attribute, and the
-/// faces of the interfaces, if any, with the number of their group (see BoundaryGroups) as boundary marker.
-/// Numbers begin at 1. Comments at the beginning of .ele and .face give the names. Neither fields nor midside
-/// nodes are written.
+/// Write the three files of a mesh: points; tets with the material's tag as their attribute; and the
+/// interface triangles, if any, with the number of their group (see BoundaryGroups) as boundary marker.
+/// Numbers start at 1. Comments at the beginning of .ele and .face give the names. Fields and midside nodes
+/// are not written.
 void write_tetgen_node(const MeshToWrite& written, const ByteSink& sink);
 void write_tetgen_ele(const MeshToWrite& written, const ByteSink& sink);
 void write_tetgen_face(const MeshToWrite& written, const ByteSink& sink);

@@ -68,7 +68,7 @@ class VtkReader final : private VtkSections {
     return types_.size();
   }
 
-  /// Selects the tets at the first data of cells or at the end of the file; has an effect only once.
+  /// Selects the tets at the first cell data or at the end of the file. Further calls have no effect.
   void choose_tets() {
     if (chosen_) return;
     chosen_ = true;
@@ -106,7 +106,8 @@ class VtkReader final : private VtkSections {
     return nodes;
   }
 
-  /// Reads the triangles of this program's files, by the field that numbers their surfaces; it is 0 for tets.
+  /// Reads the triangles of files that this program wrote, by the field that gives the numbers of their
+  /// surfaces; it is 0 for tets.
   void take_surfaces(const std::vector<double>& numbers) {
     for (const std::size_t c : triangle_to_cell_) {
       const std::vector<Index> nodes = nodes_of(c);
@@ -144,7 +145,7 @@ class VtkReader final : private VtkSections {
     return true;
   }
 
-  /// Reads the names that write_vtk() writes.
+  /// Reads the names written by write_vtk().
   void read_names(const std::vector<double>& bytes, const std::string& array) {
     for (auto& [number, name] : parse_vtk_names(vtk_text(bytes), array, in_.name())) {
       if (array == vtk_surface_names)

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t max_vtk_components = 1 << 16;
 
-/// Decodes a name, in which VTK writes spaces and some other characters as %20 and so on.
+/// Decodes a name, in which VTK encodes spaces and some other characters as %20 and so on.
 std::string decoded(std::string_view name) {
   const auto digit = [](char c) {
     return c >= '0' && c <= '9'   ? c - '0'
@@ -140,7 +140,7 @@ VtkSections::Cells VtkSections::read_cells(const std::string& keyword, TextScann
       in_.fail("the first offset is " + std::to_string(cells.offsets_[0]) + ", not 0; the file is damaged");
     return cells;
   }
-  // Each cell is its number of points followed by these points, so that cells must be traversed one by one.
+  // Each cell is its number of points followed by the points, so cells must be traversed in order.
   begin = in_;
   cells.before_each_ = 1;
   cells.points_ = read_vtk_numbers<std::int64_t>(in_, binary_, "int", size, "points of cells");
@@ -248,7 +248,7 @@ bool VtkSections::read_attribute(const std::string& part) {
   return true;
 }
 
-/// Reads the optional number of components on this line and the optional line LOOKUP_TABLE.
+/// Reads the optional number of components on this line, and the optional line LOOKUP_TABLE.
 void VtkSections::read_scalars_head(std::size_t& components) {
   if (const std::string_view word = in_.word_on_line(); !word.empty()) {
     std::int64_t n = 0;
@@ -266,7 +266,8 @@ void VtkSections::skip_colours(std::size_t n, std::size_t components) {
   (void)read_vtk_numbers<double>(in_, binary_, "unsigned_char", n * components, "colours");
 }
 
-/// Reads the arrays of FIELD: of points, of cells, or, before both, of the whole dataset, which are dropped.
+/// Reads the arrays of FIELD: of points, of cells or, before both, of the whole dataset; the latter are
+/// dropped.
 void VtkSections::read_field() {
   (void)name_word();
   const std::size_t arrays = in_.count("number of arrays", 1);

@@ -27,7 +27,7 @@ namespace {
 // VTK's numbers of the flat cells that become triangles.
 constexpr std::int64_t strip_type = 6, polygon_type = 7, pixel_type = 8;
 
-/// Reads POLYDATA, or the faces of an UNSTRUCTURED_GRID without volumes.
+/// Reads POLYDATA, or the faces of an UNSTRUCTURED_GRID without volume cells.
 class VtkSurfaceReader final : private VtkSections {
  public:
   VtkSurfaceReader(std::string_view bytes, const std::string& name)
@@ -68,12 +68,12 @@ class VtkSurfaceReader final : private VtkSections {
   std::size_t tets() const { return tets_; }
 
  private:
-  /// Cells of one keyword; `type` is VTK's number, or 0 if each cell has its own.
+  /// Cells after one keyword. `type` is VTK's number, or 0 if each cell has its own type.
   struct List {
     Cells cells;
     TextScanner begin;
     std::int64_t type;
-    std::size_t order;  ///< among the lists of POLYDATA
+    std::size_t order;  ///< position among the lists of POLYDATA
   };
 
   void check_dataset(std::string_view word) override {
@@ -103,7 +103,7 @@ class VtkSurfaceReader final : private VtkSections {
     for (std::size_t k = 0; k < of_polydata.size(); ++k) {
       const auto& [keyword, type] = of_polydata[k];
       if (grid_ || part != keyword) continue;
-      // Cell data count cells in the order of this table, not of the file.
+      // Cell data list the cells in the order of this table, not of the file.
       const auto place =
           std::find_if(lists_.begin(), lists_.end(), [&](const List& l) { return l.order >= k; });
       if (place != lists_.end() && place->order == k) in_.fail("a second section " + std::string(keyword));
@@ -141,7 +141,7 @@ class VtkSurfaceReader final : private VtkSections {
   }
 
   /// \param first number of cells before the list
-  /// \param count number of all cells
+  /// \param count total number of cells
   void add_cells(const List& list, std::size_t first, std::size_t count) {
     for (std::size_t c = 0; c < list.cells.count(); ++c) {
       corners_.clear();
@@ -153,11 +153,11 @@ class VtkSurfaceReader final : private VtkSections {
     }
   }
 
-  /// Adds the cell of `corners_`.
+  /// Adds the cell whose corners are in `corners_`.
   void add_cell(std::int64_t type, std::size_t number) {
     const auto place = [&] { return "cell " + std::to_string(number) + " (counted from 0)"; };
     if (type == strip_type) {
-      // Each point forms a triangle with the two before it, every other one reversed.
+      // Each point forms a triangle with the two points before it; every second triangle is reversed.
       for (std::size_t k = 2; k < corners_.size(); ++k) {
         const std::size_t turned = k % 2;
         surface_.add_polygon(std::array{corners_[k - 2 + turned], corners_[k - 1 - turned], corners_[k]},

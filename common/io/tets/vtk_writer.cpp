@@ -28,8 +28,8 @@ std::string encoded(const std::string& name) {
   return out;
 }
 
-/// Writes names as an array of bytes, a line "NUMBER<tab>NAME" for each, since few readers know arrays of
-/// text.
+/// Writes names as an array of bytes with a line "NUMBER<tab>NAME" for each, since few readers support text
+/// arrays.
 template <class Parts, class NumberOf>
 void write_names(TextWriter& out, const char* array, const Parts& parts, const NumberOf& number_of) {
   std::string text;
@@ -60,7 +60,7 @@ void write_fields(TextWriter& out, const std::vector<MeshField>& fields, std::ve
       if (whole)
         out << static_cast<std::int64_t>(value);
       else if (std::isnan(value))
-        out << "nan";  // without the sign that NaN may have
+        out << "nan";  // without a sign, which a NaN may have
       else
         out << value;
       out << ((i + 1) % components == 0 ? '\n' : ' ');

@@ -50,7 +50,7 @@ class VtuReader {
 
  private:
   static constexpr std::size_t midside_per_tet = 6;
-  /// VTK's array that marks points and cells shared with another piece.
+  /// VTK's array that marks points and cells that another piece also has.
   static constexpr const char* ghost_marks = "vtkGhostType";
 
   /// Adds the points, tets and fields of a piece.
@@ -73,13 +73,13 @@ class VtuReader {
                first_tet, mesh.tets.size() - first_tet);
   }
 
-  /// Adds the fields of a piece. Fields that some piece lacks are left out; a piece without items, which
-  /// parallel writers make, is ignored.
-  /// \param before number of points or tets of the pieces before
+  /// Adds the fields of a piece. Fields that are missing in some piece are left out. A piece without items,
+  /// as written by parallel programs, is ignored.
+  /// \param before number of points or tets in the previous pieces
   /// \param items number of points or tets of this piece
   void add_fields(std::vector<MeshField>& all, std::vector<MeshField> added, std::size_t before,
                   std::size_t items) {
-    // The marked items have been removed.
+    // The marked items are removed already.
     std::erase_if(added, [](const MeshField& field) { return field.name == ghost_marks; });
     if (items == 0) return;
     if (before == 0) {
@@ -103,14 +103,15 @@ class VtuReader {
     for (const MeshField& field : added) field_names_of_some_pieces_.push_back(field.name);
   }
 
-  /// Marks of vtkGhostType: cells that a neighbouring piece has, too.
+  /// Marks in vtkGhostType: cells that a neighbouring piece also has.
   std::vector<std::int64_t> ghosts(pugi::xml_node piece, std::size_t cells) const {
     const pugi::xml_node node =
         piece.child("CellData").find_child_by_attribute("DataArray", "Name", ghost_marks);
     return node ? data_.integers(node, cells) : std::vector<std::int64_t>();
   }
 
-  /// Reads the cells and returns the indices of the tets.
+  /// Reads the cells.
+  /// \return the cell indices of the tets
   std::vector<std::size_t> read_cells(pugi::xml_node piece, std::size_t points, std::size_t cell_count) {
     constexpr std::int64_t duplicate_cell = 1;
     const pugi::xml_node cells = piece.child("Cells");
@@ -160,9 +161,9 @@ class VtuReader {
     return tet_to_cell;
   }
 
-  /// Merges points where pieces meet: points with equal coordinates become that of the first piece, with its
-  /// values. Duplicates within a piece are intended, and are matched with as many of the others, in their
-  /// order.
+  /// Merges the points at which pieces meet: points with equal coordinates become the point of the first
+  /// piece, with its values. Duplicates within a piece are intended: the k-th of them is merged with the k-th
+  /// of another piece.
   void join_pieces() {
     TetMesh& mesh = result_.mesh;
     const auto coordinates = [&](Index p) {
@@ -178,7 +179,7 @@ class VtuReader {
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
       while (end < order.size() && coordinates(order[end]) == coordinates(order[begin])) ++end;
       slots.clear();
-      std::size_t piece = 0, used = 0;  // pieces are numbered from 1 here
+      std::size_t piece = 0, used = 0;  // here pieces are numbered from 1
       for (std::size_t i = begin; i < end; ++i) {
         const Index p = order[i];
         const auto own = static_cast<std::size_t>(
@@ -192,7 +193,7 @@ class VtuReader {
     renumber(to);
   }
 
-  /// \param to for each point the one it becomes, itself or one with a smaller index
+  /// \param to for each point the point that it becomes: itself or one with a smaller index
   void renumber(std::vector<Index>& to) {
     TetMesh& mesh = result_.mesh;
     Index kept = 0;
@@ -223,20 +224,20 @@ class VtuReader {
         grid.child("FieldData").find_child_by_attribute("DataArray", "Name", vtk_material_names);
     if (!node) return;
     std::string text;
-    // Compressed data may exceed the size of the file, but names hardly do.
+    // Compressed data may be larger than the file, but names hardly are.
     for (std::int64_t c : data_.integers(node, file_size_)) text += static_cast<char>(c);
     for (auto& [tag, name] : parse_vtk_names(text, vtk_material_names, name_))
       result_.mesh.material_names[checked_material(tag, name_, 0)] = name;
   }
 
-  /// Reports arrays of the whole dataset, and arrays of text.
+  /// Counts arrays of the whole dataset and text arrays as dropped.
   void note_dropped_arrays(pugi::xml_node grid, const std::vector<pugi::xml_node>& pieces) {
     const auto is_array = [](pugi::xml_node node) {
       return std::string_view(node.name()) == "DataArray" || std::string_view(node.name()) == "Array";
     };
     const auto name_of = [](pugi::xml_node node) { return field_name(node.attribute("Name").as_string()); };
     std::vector<std::string> of_dataset, text;
-    // Some programs put FieldData beside the grid or into a piece.
+    // Some programs put FieldData next to the grid or into a piece.
     std::vector<pugi::xml_node> parents{data_.root(), grid};
     parents.insert(parents.end(), pieces.begin(), pieces.end());
     for (const pugi::xml_node parent : parents)
@@ -260,11 +261,11 @@ class VtuReader {
   const ReadTetMeshOptions& options_;
   std::size_t file_size_;
   std::size_t cells_ = 0, ghost_cells_ = 0, joined_points_ = 0;
-  std::vector<Index> first_points_;     ///< of the pieces
-  std::vector<Index> midside_of_tets_;  ///< of tets of ten nodes
+  std::vector<Index> first_points_;     ///< of each piece
+  std::vector<Index> midside_of_tets_;  ///< for tets of ten nodes
   std::vector<std::string> field_names_of_some_pieces_;
   OtherVtkCells other_cells_;
-  KindCounts rounded_;  ///< integers of fields
+  KindCounts rounded_;  ///< rounded integers of fields
   MidsideNodesRead midside_;
   ReadTetMesh result_;
 };
@@ -299,7 +300,7 @@ std::string write_vtu(const MeshToWrite& written) {
 MeshParts vtu_parts(const TetMesh& mesh) {
   MeshParts parts;
   UniqueNames names(printable_name);
-  std::map<std::string, std::string> written;  // materials of equal names keep them
+  std::map<std::string, std::string> written;  // names stay equal if they are equal in the mesh
   for (const auto& [tag, name] : mesh.material_names) {
     const auto [known, added] = written.try_emplace(name);
     if (added) known->second = names.add(name);

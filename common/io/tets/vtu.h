@@ -9,25 +9,26 @@
 
 namespace tetwright {
 
-/// Reads the tets (type 10, or 24 of ten nodes, by their corners) of a VTK XML unstructured grid: data inline
-/// or appended, ASCII, base64 or raw, compressed by zlib or not, in either byte order. Numeric arrays in
-/// PointData and CellData become fields; integers beyond 2^53 lose digits. ReadTetMesh describes which of
-/// them is the material. Names of materials come from the array that write_vtu() writes. Other volume cells
-/// are rejected; vertices, lines, faces, arrays of text and arrays of the whole dataset are counted in
-/// ReadTetMesh::dropped.
+/// Reads the tets (type 10, or type 24 with ten nodes, reduced to their corners) of a VTK XML unstructured
+/// grid: data inline or appended, ASCII, base64 or raw, uncompressed or compressed by zlib, LZ4 or LZMA, in
+/// either byte order. Numeric arrays in PointData and CellData become fields; integers beyond 2^53 are
+/// rounded. ReadTetMesh describes which of them is the material. Names of materials come from the array
+/// written by write_vtu(). Other volume cells are rejected; vertices, lines, faces, text arrays and arrays of
+/// the whole dataset are counted in ReadTetMesh::dropped.
 ///
-/// Not VTK itself: libvtk9.1 takes 105 MB, without its dependencies. Uses pugixml.
-/// \param name used in messages
+/// VTK itself is not used: libvtk9.1 takes 105 MB, without its dependencies. Uses pugixml.
+/// \param name file name for messages
 /// \throws InputError with the byte offset for malformed contents
 ReadTetMesh read_vtu(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options = {});
 
-/// Content of a file, compressed by zlib: points as Float64, materials as the integer cell field "material",
-/// their names as the FieldData array "material_names" of UTF-8 lines "tag<TAB>name", in which a control
-/// character becomes an underscore. Fields have the names of field_names_to_write() and are Float64, or Int32
-/// or Int64 if they are integers. Cells are tets only, since many readers would treat interface triangles as
+/// Content of a file, compressed by zlib: points as Float64; materials as the integer cell field "material";
+/// their names as the FieldData array "material_names" of UTF-8 lines "tag<TAB>name", in which underscores
+/// replace control characters. Fields have the names of field_names_to_write() and are Float64, or Int32 or
+/// Int64 if they are integers. Cells are tets only, since many readers would take interface triangles for
 /// elements of the solver.
 std::string write_vtu(const MeshToWrite& written);
-/// Writes a file in pieces: needs memory for a few MB and for the compressed numbers of one array at a time.
+/// Writes a file piece by piece: needs memory for a few MB and for the compressed numbers of one array at a
+/// time.
 void write_vtu(const MeshToWrite& written, const ByteSink& sink);
 
 /// Names of the materials in this format, which has no surfaces.

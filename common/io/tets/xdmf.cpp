@@ -95,7 +95,7 @@ class XdmfReader {
     return chosen;
   }
 
-  /// Reads the numbers of a DataItem, at most `max_count`.
+  /// Reads the numbers of a DataItem; fails if there are more than `max_count`.
   std::vector<double> numbers(pugi::xml_node parent, std::size_t max_count) {
     const pugi::xml_node item = parent.child("DataItem");
     if (!item) fail(parent, "there is no DataItem in it");
@@ -132,7 +132,7 @@ class XdmfReader {
     return *reader;
   }
 
-  /// Row count in an attribute ("Dimensions" is "17 3"), or 0.
+  /// Number of rows in an attribute ("Dimensions" is "17 3"), or 0.
   static std::size_t rows_of(pugi::xml_node parent) {
     const std::string dimensions = parent.child("DataItem").attribute("Dimensions").as_string();
     TextScanner words(dimensions, "");
@@ -140,7 +140,7 @@ class XdmfReader {
     return parse_number(words.word(), rows) && rows > 0 ? static_cast<std::size_t>(rows) : 0;
   }
 
-  /// Checks a row count against the capacity of the file, which may be compressed HDF5.
+  /// Checks a number of rows against the size of the file, which may be compressed HDF5.
   std::size_t checked_rows(pugi::xml_node parent, const char* what) const {
     const std::size_t rows = rows_of(parent);
     if (rows == 0) fail(parent, std::string("there are no ") + what + ", or no Dimensions of them");
@@ -213,7 +213,7 @@ class XdmfReader {
     (of_cells ? mesh.cell_fields : mesh.point_fields).push_back(std::move(field));
   }
 
-  /// "<main><map key=NAME dim=3>NUMBER</map></main>" in text: names of this dimension.
+  /// Names in text of the form "<main><map key=NAME dim=3>NUMBER</map></main>", for one dimension.
   static std::map<std::int64_t, std::string> names_of(pugi::xml_node grid, std::string_view dimension) {
     std::map<std::int64_t, std::string> found;
     for (const pugi::xml_node information : grid.children("Information")) {
@@ -229,8 +229,8 @@ class XdmfReader {
     return found;
   }
 
-  /// Reads the file of write_xdmf_facets(). A file of this name with other contents may be of another
-  /// program, and for other points.
+  /// Reads the file of write_xdmf_facets(). A file with this name but other contents may come from another
+  /// program and belong to other points.
   void read_facets(const NamedBytes& file, FileTriangles& listed) {
     XdmfReader reader(file.bytes, file.name, read_file_);
     if (!reader.list_facets(result_.mesh.points.size(), listed))
@@ -240,7 +240,7 @@ class XdmfReader {
   }
 
   /// Lists the triangles of this file by their tags.
-  /// \return false if they are not for a mesh of this many points
+  /// \return false if the file does not belong to a mesh of `points` points
   bool list_facets(std::size_t points, FileTriangles& listed) {
     const pugi::xml_node grid = document_.select_node("//Grid[Topology]").node();
     const pugi::xml_node topology = grid.child("Topology"),
@@ -274,13 +274,13 @@ class XdmfReader {
   std::map<std::string, std::unique_ptr<Hdf5Reader>> hdf5_;
   ReadTetMesh result_;
   MidsideNodesRead midside_;
-  KindCounts rounded_;  ///< integers of fields
+  KindCounts rounded_;  ///< rounded integers of fields
 };
 
-/// Writes an element with its numbers in the HDF5 file.
+/// Writes an element that refers to numbers in the HDF5 file.
 void write_item(TextWriter& out, const std::string& hdf5, const std::string& dataset, std::size_t rows,
                 std::size_t columns, bool integer, int bytes) {
-  // Leading blanks are not part of a name.
+  // Readers strip leading blanks from a name.
   const char* folder = hdf5.starts_with(' ') ? "./" : "";
   out << "<DataItem Dimensions=\"" << rows << ' ' << columns << "\" NumberType=\""
       << (integer ? "Int" : "Float") << "\" Precision=\"" << bytes << "\" Format=\"HDF\">" << folder
@@ -292,8 +292,8 @@ void begin_grid(TextWriter& out, const char* name) {
       << "\" GridType=\"Uniform\">\n";
 }
 
-/// Name of the HDF5 file of facets beside that of the mesh. dolfinx opens the one with the name of the XDMF
-/// file, whatever that refers to.
+/// Name of the HDF5 file of facets, next to that of the mesh. dolfinx opens the file with the name of the
+/// XDMF file, regardless of which one it refers to.
 std::string facet_file(const std::string& hdf5) {
   const std::size_t stem = hdf5.rfind('.');
   return hdf5.substr(0, stem) + (hdf5.ends_with(".H5") ? "_FACETS" : "_facets") + hdf5.substr(stem);
@@ -314,7 +314,7 @@ void write_names(TextWriter& out, const Parts& parts, int dimension, const Numbe
   out << "<Information Name=\"names\">" << xml_text(text + "</main>") << "</Information>\n";
 }
 
-/// Dataset of a field, whose own name may be invalid in HDF5.
+/// Name of a field's dataset; the field's own name may be invalid in HDF5.
 std::string dataset_of(const char* of, std::size_t i) { return of + std::to_string(i); }
 
 void write_fields(TextWriter& out, const std::vector<MeshField>& fields, const char* of, const char* center,
@@ -406,7 +406,7 @@ void write_xdmf_mesh(const MeshToWrite& written, const std::string& hdf5, const 
   out << "</Topology>\n";
   write_geometry(out, written, hdf5);
   write_names(out, mesh_parts(mesh, printable_names()).materials, 3, [](const auto& m) { return m.tag; });
-  // First, since dolfinx uses the first attribute as the tags of a grid.
+  // Must come first, since dolfinx uses the first attribute as the tags of a grid.
   out << "<Attribute Name=\"" << xdmf_material << "\" AttributeType=\"Scalar\" Center=\"Cell\">\n";
   write_item(out, hdf5, xdmf_material, mesh.tets.size(), 1, true, 4);
   out << "</Attribute>\n";

@@ -12,8 +12,8 @@ namespace tetwright {
 
 namespace {
 
-/// Shortens a number without changing its value: no "+", no leading zeros in the exponent; adds a decimal
-/// point.
+/// Shortens a number without changing its value: removes "+" and leading zeros of the exponent; adds a
+/// decimal point.
 std::string tidied(std::string text, bool bare_exponent) {
   std::string exponent;
   if (const std::size_t e = text.find('e'); e != std::string::npos) {
@@ -49,7 +49,7 @@ std::string fixed_width_number(double value, std::size_t width, bool bare_expone
       const std::string text = text_of(format, digits);
       if (text.size() > width) continue;
       double read = 0;
-      // The largest doubles overflow when rounded up.
+      // The largest doubles overflow when they are rounded up.
       if (std::from_chars(buffer, end, read).ec == std::errc::result_out_of_range && std::fabs(value) > 1)
         return fixed_width_number(value * (1 - std::pow(10.0, -digits)), width, bare_exponent);
       const double error = std::fabs(read - value);

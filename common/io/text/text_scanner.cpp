@@ -16,7 +16,7 @@ namespace {
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f'; }
 
-/// Removes a leading plus, which from_chars rejects; a second sign is not a number.
+/// Removes a leading plus, which from_chars rejects; a second sign is an error.
 std::string_view without_plus(std::string_view token) {
   if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
   return token;
@@ -29,7 +29,7 @@ bool parse_number(std::string_view token, double& value) {
   const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
   if (end != token.data() + token.size() || token.empty()) return false;
   if (error == std::errc::result_out_of_range) {
-    // from_chars does not distinguish overflow and underflow; strtod gives 0, a subnormal or infinity.
+    // from_chars does not distinguish overflow from underflow; strtod returns 0, a subnormal or infinity.
     value = std::strtod(std::string(token).c_str(), nullptr);
     return true;
   }

@@ -10,7 +10,7 @@
 
 namespace tetwright {
 
-/// Buffers text for a file and passes it on in pieces of about a megabyte.
+/// Buffers text for a file and passes it to a sink in pieces of about a megabyte.
 class TextWriter {
  public:
   /// `sink` must outlive this object.
@@ -31,7 +31,7 @@ class TextWriter {
     return *this;
   }
 
-  /// Passes on the rest; call it at the end.
+  /// Passes the rest to the sink; call it at the end.
   void flush() {
     sink_(text_);
     text_.clear();

@@ -6,7 +6,7 @@
 
 namespace tetwright {
 
-/// Escapes a text without control characters for XML attributes and elements.
+/// Escapes text without control characters for XML attributes and elements.
 inline std::string xml_text(std::string_view text) {
   std::string out;
   for (const char c : text) {

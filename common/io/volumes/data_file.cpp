@@ -17,7 +17,7 @@ DataFile read_data_file(const HeaderFields& header, const std::string& field, co
   if (lower_case(words[0]) == "list" || (words.size() > 2 && words[0].find('%') != std::string_view::npos))
     header.fail(field, "voxels in several files (" + in_quotes(named) +
                            ") are not supported; save the volume as one file");
-  // A header may come from anywhere, and the message is one line of text.
+  // The name may contain anything, but the message must be one line of text.
   for (const char c : named)
     if (static_cast<unsigned char>(c) < ' ') header.fail(field, in_quotes(named) + " is no name of a file");
   DataFile data;

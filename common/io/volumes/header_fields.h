@@ -10,8 +10,8 @@
 
 namespace tetwright {
 
-/// Fields of a volume's text header, found by their names in lower case. Functions that read a value throw an
-/// InputError that names file, line, field and value if it is missing or malformed.
+/// Fields of a volume's text header, by their names in lower case. Functions that read a value throw an
+/// InputError that names file, line, field and value if the value is missing or malformed.
 class HeaderFields {
  public:
   explicit HeaderFields(std::string file) : file_(std::move(file)) {}
@@ -22,7 +22,7 @@ class HeaderFields {
   void add(std::string_view field, std::string_view value, std::size_t line);
 
   bool has(const std::string& field) const { return fields_.contains(field); }
-  /// First of several names of one field that the header has; if it has none, the first name.
+  /// First of several synonymous names that the header has; the first name if it has none.
   std::string any_of(std::initializer_list<const char*> names) const;
 
   std::string_view text(const std::string& field) const;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view inr_magic = "#INRIMAGE-4#{";
 constexpr std::string_view header_end = "##}";
-/// Header sizes are a multiple of this.
+/// The size of a header is a multiple of this, bytes.
 constexpr std::size_t block_size = 256;
 constexpr std::size_t max_header_size = 256 * block_size;
 

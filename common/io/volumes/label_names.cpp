@@ -18,8 +18,8 @@ constexpr std::size_t max_label_name_size = 120;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 
-/// Removes a comment: from a # or // on, outside of double quotes, that begins the line or follows white
-/// space.
+/// Removes a comment: everything from a # or // on that is outside double quotes and starts the line or
+/// follows white space.
 std::string_view without_comment(std::string_view line) {
   bool quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -30,7 +30,7 @@ std::string_view without_comment(std::string_view line) {
   return line;
 }
 
-/// Removes and returns the first word, up to white space or, if `comma`, a comma.
+/// Removes and returns the first word, up to white space or, if `comma` is true, a comma.
 std::string_view take_word(std::string_view& text, bool comma) {
   std::size_t end = 0;
   while (end < text.size() && !is_blank(text[end]) && !(comma && text[end] == ',')) ++end;
@@ -63,14 +63,14 @@ struct Line {
   std::string_view tag, rest;
 };
 
-/// "NAME R G B A" -> "NAME". The name may be missing: a faulty colour table.
+/// "NAME R G B A" -> "NAME". The name may be missing in an incorrect colour table.
 bool drop_colour_behind(std::string_view& text) {
   for (int i = 0; i < 4; ++i)
     if (!is_colour(take_last_word(text))) return false;
   return true;
 }
 
-/// "R G B A VISIBLE MESH "NAME"" -> ""NAME"". Alpha is from 0 to 1.
+/// "R G B A VISIBLE MESH "NAME"" -> ""NAME"". Alpha is between 0 and 1.
 bool drop_colour_before(std::string_view& text) {
   for (int i = 0; i < 6; ++i) {
     const std::string_view word = take_word(text, false);
@@ -115,7 +115,7 @@ std::map<MaterialTag, std::string> parse_label_names(std::string_view bytes, con
                                                      std::map<MaterialTag, std::size_t>* line_numbers) {
   std::vector<Line> lines = split_lines(bytes, file);
   if (lines.empty()) throw InputError(file, 0, "names no label; expected lines such as: 1 liver");
-  // A single line may resemble another form by chance ("3 rib 1 2 3 4"), but not all lines.
+  // A single line may match another form by chance ("3 rib 1 2 3 4"), but not all lines do.
   for (bool (*const drop_colour)(std::string_view&) : {drop_colour_behind, drop_colour_before}) {
     std::vector<Line> bare = lines;
     if (!std::all_of(bare.begin(), bare.end(), [&](Line& line) { return drop_colour(line.rest); })) continue;

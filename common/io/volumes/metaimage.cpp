@@ -15,7 +15,7 @@ namespace tetwright {
 namespace {
 
 VoxelType metaimage_voxel_type(const HeaderFields& header) {
-  // A long has 4 bytes in these files, whatever machine wrote them.
+  // A long has 4 bytes in these files, whichever machine wrote them.
   constexpr std::array<std::pair<std::string_view, VoxelType>, 12> names{
       {{"met_char", VoxelType::int8},
        {"met_uchar", VoxelType::uint8},
@@ -38,7 +38,7 @@ VoxelType metaimage_voxel_type(const HeaderFields& header) {
                   "MET_INT");
 }
 
-/// Reads the header, up to and including the line that locates the voxels.
+/// Reads the header, including the line that locates the voxels.
 HeaderFields read_metaimage_header(TextScanner& in) {
   if (in.left() == 0) in.fail("the file is empty");
   HeaderFields header(in.name());
@@ -84,17 +84,17 @@ LabelVolume read_geometry(const HeaderFields& header) {
   }
   if (const std::string field = header.any_of({"transformmatrix", "rotation", "orientation"});
       header.has(field)) {
-    // The direction of each axis in turn.
+    // The directions of the axes, one after the other.
     const std::vector<double> matrix = header.numbers(field, 9);
     volume.directions = Eigen::Map<const Eigen::Matrix3d>(matrix.data());
   }
-  // Voxel size equals spacing unless there are gaps, which the spacing then includes.
+  // Voxel size equals spacing unless there are gaps between voxels; the spacing includes them.
   if (const std::string field = header.any_of({"elementspacing", "elementsize"}); header.has(field)) {
     const std::vector<double> spacing = header.numbers(field, 3);
     for (int axis = 0; axis < 3; ++axis)
       volume.directions.col(axis) *= spacing[static_cast<std::size_t>(axis)];
   }
-  // Coordinates follow ITK if the header gives the patient's orientation.
+  // Coordinates follow ITK's convention if the header gives the patient's orientation.
   if (header.has("anatomicalorientation") && header.text("anatomicalorientation") != "???")
     volume.space = "left-posterior-superior";
   check_geometry(volume, header.file());
@@ -126,7 +126,7 @@ LabelVolume read_metaimage(std::string_view bytes, const std::string& name, cons
     for (const int n : volume.size) needed *= static_cast<std::uint64_t>(n);
     if (needed < data.size()) data.remove_prefix(data.size() - static_cast<std::size_t>(needed));
   } else if (skip != 0) {
-    // Counted from the beginning of either file.
+    // Counted from the beginning of the file, which may be the header's or a separate one.
     if (skip < 0 || static_cast<std::uint64_t>(skip) > whole.size())
       header.fail("headersize",
                   std::to_string(skip) + " bytes to be skipped of " + std::to_string(whole.size()));

@@ -10,12 +10,12 @@
 
 namespace tetwright {
 
-/// Reads a MetaImage volume of ITK. The voxels are binary, compressed or text, and follow the header (.mha)
-/// or are in another file (.mhd).
+/// Reads an ITK MetaImage volume. The voxels are binary, compressed or text, and follow the header (.mha) or
+/// are in a separate file (.mhd).
 ///
-/// Not a library: MetaIO is only packaged as part of ITK, which takes 150 MB and more.
-/// \param name used in messages
-/// \param read reads that other file
+/// No library is used: MetaIO is packaged only as part of ITK, which takes 150 MB or more.
+/// \param name file name for messages
+/// \param read reads the separate file
 /// \throws InputError with the line of the header for malformed contents
 LabelVolume read_metaimage(std::string_view bytes, const std::string& name,
                            const FileReader& read = read_whole_file);

@@ -13,14 +13,14 @@ namespace tetwright {
 
 namespace {
 
-/// Offsets and types of a version's header fields.
+/// Offsets and types of the header fields of a version.
 struct Layout {
   int header_size;
   std::size_t magic;
   std::size_t dim, dim_bytes;      ///< integers of 2 or 8 bytes
   std::size_t type;                ///< int16
-  std::size_t pixdim, real_bytes;  ///< floats, of 4 or 8 bytes like all following ones
-  std::size_t offset;              ///< a float, or an integer of 8 bytes
+  std::size_t pixdim, real_bytes;  ///< floats of 4 or 8 bytes, as all following ones
+  std::size_t offset;              ///< a float, or an 8-byte integer
   std::size_t slope, intercept;
   std::size_t qform, sform, code_bytes;  ///< integers of 2 or 4 bytes
   std::size_t quaternion, qoffset, srow;
@@ -54,7 +54,7 @@ class NiftiHeader {
   }
 
   std::size_t header_size() const { return static_cast<std::size_t>(layout_->header_size); }
-  /// Whether the voxels are in a separate file, .img.
+  /// Whether the voxels are in a separate .img file.
   bool detached() const { return detached_; }
   bool swap() const { return swap_; }
 
@@ -89,11 +89,11 @@ class NiftiHeader {
     return format;
   }
 
-  /// Offset of the first voxel in its file.
+  /// Offset of the first voxel in its file, bytes.
   std::size_t offset() const {
     const double offset = layout_ == &version_2 ? static_cast<double>(number<std::int64_t>(layout_->offset))
                                                 : real(layout_->offset);
-    // The header is followed by four bytes that announce extensions.
+    // Four bytes after the header announce extensions.
     const std::size_t min_offset = detached_ ? 0 : header_size() + 4;
     if (offset == 0) return min_offset;
     if (!(offset >= static_cast<double>(min_offset) && offset < 0x1p31 && offset == std::floor(offset)))
@@ -103,7 +103,7 @@ class NiftiHeader {
   }
 
   void read_geometry(LabelVolume& volume) const {
-    // By NIfTI's definition: x to the right, y to the front, z up.
+    // NIfTI's convention: x points right, y to the front, z up.
     volume.space = "right-anterior-superior";
     if (code(layout_->sform) > 0) {
       for (std::size_t row = 0; row < 3; ++row) {
@@ -136,7 +136,7 @@ class NiftiHeader {
   Number number(std::size_t offset) const {
     return load<Number>(bytes_.data() + offset, swap_);
   }
-  /// The i-th real number from `offset` on.
+  /// The i-th real number at `offset`.
   double real(std::size_t offset, std::size_t i = 0) const {
     return layout_->real_bytes == 8 ? number<double>(offset + 8 * i)
                                     : static_cast<double>(number<float>(offset + 4 * i));
@@ -197,14 +197,14 @@ class NiftiHeader {
     }
   }
 
-  /// Rotation matrix of the quaternion (a, b, c, d), of which the header has the last three; a >= 0 makes it
-  /// a unit one.
+  /// Rotation matrix of the unit quaternion (a, b, c, d). The header stores b, c, d; a >= 0 follows from
+  /// them.
   Eigen::Matrix3d rotation() const {
     double b = real(layout_->quaternion), c = real(layout_->quaternion, 1), d = real(layout_->quaternion, 2);
     const double rest = 1 - (b * b + c * c + d * d);
     if (!std::isfinite(rest)) fail("the quaternion of the qform is not finite; repair the header");
     double a = 0;
-    // Rounding may have lengthened a half turn's quaternion.
+    // Rounding may have made the quaternion of a half turn longer than 1.
     if (rest < tolerance::unit_quaternion) {
       const double length = std::sqrt(b * b + c * c + d * d);
       b /= length;
@@ -234,7 +234,7 @@ class NiftiHeader {
   bool swap_ = false, detached_ = false;
 };
 
-/// Voxel file of a header: "a.img" for "a.hdr", in capitals if that is.
+/// Voxel file of a header: "a.img" for "a.hdr", in upper case if the extension is.
 std::string image_of(const std::string& name) {
   if (name.ends_with(".HDR")) return name.substr(0, name.size() - 4) + ".IMG";
   return (name.ends_with(".hdr") ? name.substr(0, name.size() - 4) : name) + ".img";
@@ -249,7 +249,7 @@ ByteSource source_of(std::string_view bytes, const std::string& name) {
 
 LabelVolume read_nifti(std::string_view bytes, const std::string& name, const FileReader& read_file) {
   ByteSource source = source_of(bytes, name);
-  // The header begins with its size.
+  // The header begins with its own size.
   std::string header_bytes(source.take(static_cast<std::size_t>(version_1.header_size)));
   if (header_bytes.size() >= 4 && (load<std::int32_t>(header_bytes.data(), false) == version_2.header_size ||
                                    load<std::int32_t>(header_bytes.data(), true) == version_2.header_size))

@@ -61,7 +61,7 @@ VoxelType nrrd_voxel_type(const HeaderFields& header) {
     type += (type.empty() ? "" : " ") + lower_case(word);
   for (const auto& [name, value] : names)
     if (name == type) return value;
-  // "long long" in all spellings of C.
+  // "long long" in all its spellings in C.
   if (type.find("long long") != std::string::npos || type == "longlong" || type == "ulonglong")
     return type[0] == 'u' ? VoxelType::uint64 : VoxelType::int64;
   header.fail("type", "type " + in_quotes(type) +
@@ -122,8 +122,8 @@ bool is_list(std::string_view value) {
   return text == "list" || text.starts_with("list ");
 }
 
-/// Fields of 3D Slicer on the segments of a .seg.nrrd: "Segment3_Name:=liver", "Segment3_LabelValue:=4",
-/// "Segment3_Color:=0.87 0.51 0.4".
+/// Fields of 3D Slicer that describe the segments of a .seg.nrrd: "Segment3_Name:=liver",
+/// "Segment3_LabelValue:=4", "Segment3_Color:=0.87 0.51 0.4".
 class Segments {
  public:
   void add(std::string_view key, std::string_view value) {
@@ -144,7 +144,7 @@ class Segments {
     else if (what == "Layer" && parse_number(trimmed(value), segment.layer))
       layers_ = std::max(layers_, segment.layer + 1);
   }
-  /// Number of layers; overlapping segments are in several.
+  /// Number of layers; overlapping segments are stored in several layers.
   std::int64_t layers() const { return layers_; }
   void give_names_and_colours(LabelVolume& volume) const {
     for (const auto& [number, segment] : segments_) {
@@ -159,7 +159,7 @@ class Segments {
 
  private:
   using Colour = std::array<double, 3>;
-  /// \return std::nullopt for a malformed colour, which is no reason to reject a volume
+  /// \return std::nullopt for a malformed colour, since the volume need not be rejected for it
   static std::optional<Colour> parse_colour(std::string_view value) {
     Colour colour;
     for (double& part : colour) {
@@ -181,7 +181,7 @@ class Segments {
   std::int64_t layers_ = 1;
 };
 
-/// Reads the header, up to and including the empty line; a detached header may end without one.
+/// Reads the header, including the empty line after it; a detached header may end without one.
 HeaderFields read_nrrd_header(TextScanner& in, Segments& segments) {
   if (in.left() == 0) in.fail("the file is empty");
   HeaderFields header(in.name());
@@ -200,7 +200,7 @@ HeaderFields read_nrrd_header(TextScanner& in, Segments& segments) {
       throw InputError(in.name(), line,
                        "expected \"field: value\", found " + in_quotes(text) +
                            "; the header is damaged or lacks the empty line at its end");
-    if (text.substr(colon).starts_with(":=")) {  // a key/value pair, free for any use
+    if (text.substr(colon).starts_with(":=")) {  // a key/value pair with user-defined meaning
       segments.add(text.substr(0, colon), text.substr(colon + 2));
       continue;
     }
@@ -214,7 +214,7 @@ HeaderFields read_nrrd_header(TextScanner& in, Segments& segments) {
   return header;
 }
 
-/// Reads vectors "(1,0,0) (0, 1, 0) none"; "none" and vectors of NaN are empty.
+/// Reads vectors "(1,0,0) (0, 1, 0) none". "none" and vectors of NaN become std::nullopt.
 std::vector<std::optional<Vec3>> vectors(const HeaderFields& header, const std::string& field) {
   std::vector<std::optional<Vec3>> out;
   std::string_view rest = header.text(field);
@@ -252,7 +252,7 @@ std::vector<std::optional<Vec3>> vectors(const HeaderFields& header, const std::
   return out;
 }
 
-/// Interprets the header.
+/// Interprets the fields of a header.
 class NrrdHeader {
  public:
   explicit NrrdHeader(const HeaderFields& fields) : fields_(fields) {
@@ -275,7 +275,7 @@ class NrrdHeader {
     read_geometry();
   }
 
-  /// The volume without its labels.
+  /// The volume without labels.
   LabelVolume volume() const { return volume_; }
 
  private:
@@ -291,7 +291,7 @@ class NrrdHeader {
     return kind == "domain" || kind == "space" || kind == "???" || kind == "none";
   }
 
-  /// Chooses three axes: others of size 1 are dropped, first those that are no axes of space.
+  /// Chooses three axes. Other axes must have size 1 and are dropped, first those that are not spatial.
   void choose_axes() {
     for (std::size_t a = 0; a < axes_; ++a) chosen_.push_back(a);
     for (const bool only_others : {true, false})
@@ -350,8 +350,8 @@ class NrrdHeader {
                               "left-posterior-superior, scanner-xyz, 3D-right-handed and 3D-left-handed");
   }
 
-  /// Whether samples along an axis are half a step inside the range of `axis mins` and `axis maxs`, not at
-  /// its ends.
+  /// Whether the samples along an axis lie half a step inside the range of `axis mins` and `axis maxs`,
+  /// rather than at its ends.
   bool in_cells(std::size_t axis) const {
     const std::string field = fields_.any_of({"centerings", "centers"});
     if (!fields_.has(field)) return false;
@@ -396,7 +396,7 @@ std::int64_t optional_integer(const HeaderFields& header, const std::string& fie
   return header.has(field) ? header.integer(field) : 0;
 }
 
-/// Offset of the body after the lines to be skipped.
+/// Offset of the body after the lines that the header tells to skip.
 std::size_t skip_lines(const HeaderFields& header, TextScanner& body) {
   const std::string field = header.any_of({"line skip", "lineskip"});
   const std::int64_t lines = optional_integer(header, field);
@@ -445,7 +445,7 @@ LabelVolume read_nrrd(std::string_view bytes, const std::string& name, const Fil
   const bool detached = header.has(data_field);
   if (detached) file = read_data_file(header, data_field, read);
   TextScanner body = detached ? TextScanner(file.bytes, file.path) : in;
-  // Voxels may begin with the bytes of a byte order mark, which the scanner skips.
+  // Voxels may begin with the bytes of a byte order mark, which the scanner would skip.
   const std::size_t begin = detached ? 0 : body.offset();
   const std::size_t behind_lines = skip_lines(header, body);
   const bool has_lines = optional_integer(header, header.any_of({"line skip", "lineskip"})) > 0;

@@ -10,14 +10,14 @@
 
 namespace tetwright {
 
-/// Reads an NRRD volume: raw, gzip or text, attached to its header or in another file. Of more than three
-/// axes those of size 1 are dropped. Labels get the names of 3D Slicer's segments (.seg.nrrd); segments in
-/// several layers are rejected with advice.
+/// Reads an NRRD volume: raw, gzip or text, attached to its header or in a separate file. If there are more
+/// than three axes, those of size 1 are dropped. Labels get the names of 3D Slicer's segments (.seg.nrrd);
+/// segments in several layers are rejected with advice.
 ///
-/// Not a library: libteem, the format's origin, has had no release since 2012, reads through a FILE and
-/// allocates what the header promises.
-/// \param name used in messages
-/// \param read reads the other file
+/// No library is used: libteem, which defines the format, has had no release since 2012, reads through a FILE
+/// and allocates as much memory as the header promises.
+/// \param name file name for messages
+/// \param read reads the separate file
 /// \throws InputError with the line of the header for malformed contents
 LabelVolume read_nrrd(std::string_view bytes, const std::string& name,
                       const FileReader& read = read_whole_file);

@@ -15,14 +15,14 @@ namespace tetwright {
 
 namespace {
 
-/// Labels converted at a time.
+/// Number of labels converted at a time.
 constexpr std::size_t block_labels = std::size_t{1} << 18;
 
-/// Appends a gzip file to `out`, of one member, since some readers stop after the first.
+/// Appends a gzip file of one member to `out`; some readers stop after the first member.
 class GzipWriter {
  public:
   explicit GzipWriter(std::string& out) : out_(out) {
-    // 15: the largest window; 16: gzip.
+    // 15: maximum window; 16: gzip format.
     if (deflateInit2(&stream_, Z_DEFAULT_COMPRESSION, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK)
       throw std::bad_alloc();
   }

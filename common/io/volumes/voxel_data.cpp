@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::int64_t max_voxels = std::int64_t{1} << 31;
 
-/// Bytes of compressed voxels that are inflated and converted at a time.
+/// Number of bytes of compressed voxels that are inflated and converted at a time.
 constexpr std::size_t block_bytes = std::size_t{1} << 22;
 
 constexpr std::size_t voxel_grain = std::size_t{1} << 17;
@@ -56,8 +56,8 @@ bool to_label(const char* from, const VoxelFormat& format, bool scaled, Material
   }
 }
 
-/// Converts `n` numbers.
-/// \return the index of the first that is not a label, or `n`
+/// Converts `n` numbers to labels.
+/// \return the index of the first number that is not a label, or `n`
 template <class Stored>
 std::size_t convert(const char* from, std::size_t n, const VoxelFormat& format, MaterialTag* labels) {
   const bool scaled = format.slope != 1 || format.intercept != 0;
@@ -74,7 +74,7 @@ std::size_t convert(const char* from, std::size_t n, const VoxelFormat& format, 
   return first_bad;
 }
 
-/// Calls `call` with a zero of the C++ type of `type`.
+/// Calls `call` with a zero of the C++ type that corresponds to `type`.
 template <class Call>
 auto with_type(VoxelType type, const Call& call) {
   switch (type) {
@@ -101,7 +101,7 @@ auto with_type(VoxelType type, const Call& call) {
   }
 }
 
-/// Message "voxel (1, 2, 3) has the value 0.5, ...", with the reason why it is not a label.
+/// Message "voxel (1, 2, 3) has the value 0.5, ..." with the reason why the value is not a label.
 std::string bad_voxel(std::size_t voxel, const std::array<int, 3>& size, const std::string& value,
                       bool whole) {
   const auto nx = static_cast<std::size_t>(size[0]), ny = static_cast<std::size_t>(size[1]);
@@ -155,7 +155,7 @@ std::vector<MaterialTag> read_voxels(ByteSource& body, const VoxelFormat& format
                                 " follow the header; the file is cut short or its header is wrong"));
   const std::uint64_t before = body.taken();
   std::vector<MaterialTag> labels;
-  // Reserved pages use no memory before voxels are written to them.
+  // Reserved pages use no memory until voxels are written to them.
   labels.reserve(n);
   while (labels.size() < n) {
     const std::size_t done = labels.size();

@@ -22,15 +22,17 @@ namespace tetwright {
 
 namespace {
 
-/// Peak memory of the process: its libraries, and per tet the mesh with its topology. A knot of 116,000 tets
-/// takes 20 MB.
+/// Peak memory of the process, bytes: its libraries, and for each tet the mesh with its topology. A knot of
+/// 116,000 tets takes 20 MB.
 constexpr double program_bytes = 40e6;
 constexpr double bytes_per_tet = 180;
 
-/// Reads a mesh to check or compare with. Sets `field_found` if the mesh has --material-field.
+/// Reads a mesh to check or to compare with.
+/// \param field_found set to true if the mesh has the field of --material-field
 TetMesh read_checked(Input input, CommandRun& run, bool& field_found) {
   const std::string& file = input.name;
-  // With --before, one of the meshes may lack the field: a mesh made from the other calls it `material`.
+  // With --before one of the meshes may lack the field: a mesh made from the other one has the field
+  // `material`.
   double waited = 0;
   ReadTetMesh read =
       take_tet_mesh(input, {run.line.options.material_field, run.line.check.before.empty()}, waited);
@@ -40,7 +42,7 @@ TetMesh read_checked(Input input, CommandRun& run, bool& field_found) {
   return std::move(read.mesh);
 }
 
-/// Checks and measures the mesh; only checks it if its arrays are unsound.
+/// Checks and measures the mesh. Only checks it if indices or coordinates are invalid.
 CheckReport examine(TetMesh& mesh, CommandRun& run) {
   CheckReport check;
   check.findings = check_mesh(mesh);
@@ -53,7 +55,7 @@ CheckReport examine(TetMesh& mesh, CommandRun& run) {
   return check;
 }
 
-/// The surfaces of --surface, by file.
+/// Reads the surfaces of --surface, with their names.
 void read_surfaces(CommandRun& run, std::vector<TriangleMesh>& surfaces, std::vector<std::string>& names) {
   for (const std::string& file : run.line.check.surfaces) {
     Input input = input_named(file, run.line, run.in_memory);
@@ -113,7 +115,7 @@ void print_check(const CheckReport& check, const CommandRun& run) {
   std::printf("%s\n", verdict(check));
 }
 
-/// Prints errors and shortfalls to stderr, the only output with --quiet.
+/// Prints errors and shortfalls to stderr; this is the only output with --quiet.
 void print_shortfalls(const CheckReport& check) {
   for (const MeshFinding& f : check.findings)
     if (kind_of(f.code).severity == Severity::error) print_line(mesh_finding_line(f));
@@ -130,7 +132,8 @@ CheckReport make_check(CommandRun& run) {
   bool field_found = false;
   run.progress.begin_stage("read");
   Input input = input_named(line.inputs.front(), line, run.in_memory);
-  // Read again for the reader's error, which lists the fields. Streams and values cannot be read twice.
+  // Read the input again for the reader's error, which lists its fields. Streams and values can be read only
+  // once.
   const bool read_once = !std::holds_alternative<InputFile>(input.value);
   TetMesh mesh = read_checked(std::move(input), run, field_found);
   require_memory(program_bytes + bytes_per_tet * static_cast<double>(mesh.tets.size()),

@@ -17,11 +17,11 @@
 
 namespace tetwright {
 
-/// State and outcome of a running command.
+/// State and outcome of a command.
 struct CommandRun {
-  /// Starts the limit of --memory-limit, which holds for the constructing thread until destruction.
+  /// Sets the limit of --memory-limit, which applies to the constructing thread until destruction.
   ///
-  /// \param in_memory may be null; inputs are moved out of it when read
+  /// \param in_memory may be null; inputs are moved out of it when they are read
   /// \pre All arguments outlive the run.
   CommandRun(const CommandLine& line, Progress& progress, NamedInputs* in_memory = nullptr);
 
@@ -32,14 +32,14 @@ struct CommandRun {
   NamedInputs* in_memory;
   PrepareReport report;
   ExitStatus status = ExitStatus::done;
-  std::string error, stage;                   ///< of a failed run: its message, and its stage
-  std::optional<SurfaceDistances> distances;  ///< of the result; with --report and a surface
+  std::string error, stage;                   ///< message and stage of a run that failed
+  std::optional<SurfaceDistances> distances;  ///< distances of the result; only with --report and a surface
 };
 
 /// Adds the statistics to the files, unless --stats is missing or standard output.
 void write_stats(const CommandRun& run, OutputFiles& files);
 
-/// The names of the inputs: the positional ones, then those of --material. Empty for `sample`.
+/// Names of the inputs: the positional ones, then those of --material. Empty for `sample`.
 std::vector<std::string> input_files(const CommandLine& line);
 
 }  // namespace tetwright

@@ -21,7 +21,7 @@ namespace tetwright {
 
 namespace {
 
-/// More than any machine has; in bytes it fits into 64 bits.
+/// More memory than any machine has; as a number of bytes it fits into 64 bits.
 constexpr double max_gigabytes = 1e9;
 
 void run_meshing(CommandRun& run) {
@@ -31,9 +31,9 @@ void run_meshing(CommandRun& run) {
   print_result(run);
 }
 
-/// Makes allocations fail at the memory limit, for memory that the estimates miss.
+/// Makes allocations fail at the memory limit, in case the estimates are too low.
 void limit_process_memory(const CommandLine& line) {
-  // The system also counts reserved memory: the stacks of threads and the room for their heaps.
+  // The system also counts reserved memory: thread stacks and space for the heaps of threads.
   constexpr double reserved = 64 << 20, reserved_by_thread = 16 << 20;
   rlimit limit;
   if (!line.options.limits.memory || getrlimit(RLIMIT_DATA, &limit) != 0) return;
@@ -52,7 +52,7 @@ Prepared make_result(CommandRun& run) {
   if (run.in_memory) take_sizes(*run.in_memory, options.sizes);
   options.keep.reference = !line.outputs.report.empty();
   options.keep.field = !line.outputs.distances.empty();
-  // Measured: the text of a file is in memory beside the mesh.
+  // Measured: the text of the file is in memory in addition to the mesh.
   constexpr double text_bytes = 130;
   if (!line.outputs.mesh.ends_with(".vtu")) options.limits.later_bytes_per_tet = text_bytes;
   PrepareRun preparing(task_of(line.command), options, run.progress, run.report);
@@ -61,7 +61,7 @@ Prepared make_result(CommandRun& run) {
   decide_severities(options.acceptance, run.report);
   run.status = run.report.falls_short() ? ExitStatus::short_of_request : ExitStatus::done;
   if (result.reference) measure_distances(result.mesh, *result.reference, result.reference_name, run);
-  result.reference.reset();  // memory that writing the mesh needs
+  result.reference.reset();  // frees memory for writing the mesh
   return result;
 }
 

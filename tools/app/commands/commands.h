@@ -11,28 +11,28 @@
 
 namespace tetwright {
 
-/// Runs the command of `line`; writes and prints its result.
+/// Runs the command of `line`, and writes and prints its result.
 ///
-/// \throws Error if the command ends early
+/// \throws Error if the command fails
 ExitStatus run_command(const CommandLine& line);
 
-/// Runs prepare, mesh, simplify or improve without writing or printing. The report of the result is in
-/// `run.report`.
+/// Runs prepare, mesh, simplify or improve without writing or printing. `run.report` becomes the report of
+/// the result.
 ///
-/// \throws Error as run_command()
+/// \throws Error in the cases of run_command()
 Prepared make_result(CommandRun& run);
 
-/// Records the error of a failed run and writes its statistics. Does not throw: if they cannot be written
-/// either, a line says so.
+/// Records the error of a failed run and writes its statistics. Does not throw: if the statistics cannot be
+/// written either, it prints a line.
 void report_failure(const std::exception& error, CommandRun& run);
 
-/// Runs `check` without printing; writes the files of `run.line`.
+/// Runs `check` without printing, and writes the files of `run.line`.
 ///
-/// \throws Error as run_command()
+/// \throws Error in the cases of run_command()
 CheckReport make_check(CommandRun& run);
 
 void run_check(CommandRun& run);
-/// Runs the jobs of a batch and prints a line when one ends.
+/// Runs the jobs of a batch, and prints a line whenever one ends.
 void run_batch(CommandRun& run);
 void run_sample(CommandRun& run);
 

@@ -13,28 +13,28 @@
 
 namespace tetwright {
 
-/// Edge lengths at the points of a tet mesh or surface, finite and above 0 at points that an element uses.
+/// Edge lengths at the points of a tet mesh or surface; finite and above 0 at points that an element uses.
 struct SizesObject {
   std::variant<TetMesh, TriangleMesh> elements;
   std::vector<double> lengths;  ///< input units
 };
 
-/// Inputs in memory of a host program, by the names that stand for them in a CommandLine. A name appears
-/// whole in messages and as a material's name. Names that are not listed are files.
+/// Inputs in the memory of a host program, by the names that refer to them in a CommandLine. Messages show a
+/// name in full, and it may become a material's name. A name that is not listed is a file.
 struct NamedInputs {
   std::map<std::string, Input::Value> values;
-  std::map<std::string, SizesObject> sizes;  ///< of --size-field
+  std::map<std::string, SizesObject> sizes;  ///< sources for --size-field
 };
 
-/// The input for a name on the command line: standard input, a file, or a value moved out of `in_memory`.
+/// Input for a name on the command line: standard input, a file, or a value moved out of `in_memory`.
 ///
 /// \param in_memory may be null
 Input input_named(const std::string& name, const CommandLine& line, NamedInputs* in_memory);
 
-/// The positional inputs, then those of --material.
+/// Positional inputs, followed by those of --material.
 std::vector<Input> inputs_of(const CommandLine& line, NamedInputs* in_memory);
 
-/// Makes a size field in memory the source of the sizes in `options`.
+/// Makes a size field in memory the source of sizes in `options`.
 void take_sizes(NamedInputs& in_memory, SizeOptions& options);
 
 }  // namespace tetwright

@@ -15,7 +15,7 @@ namespace tetwright {
 
 namespace {
 
-/// Whether both names lead to the same file, which need not exist.
+/// Whether both names refer to the same file, which need not exist.
 bool same_file(const std::string& a, const std::string& b) {
   if (a.empty() || b.empty()) return false;
   std::error_code not_there;
@@ -31,7 +31,7 @@ std::vector<std::string> files_read(const CommandLine& line) {
   return files;
 }
 
-/// A file that the call writes, and the option that asks for it.
+/// A file that the call writes, and the option that requests it.
 struct Written {
   std::string option, file;
 };
@@ -54,20 +54,20 @@ std::vector<Written> files_written(const CommandLine& line) {
   return files;
 }
 
-/// The number of --stats and --log-file among the written files; they come last.
+/// Number of report files (--stats and --log-file) among the written files; they are last in the list.
 std::size_t report_count(const CommandLine& line) {
   return static_cast<std::size_t>(!line.outputs.stats.empty() && line.outputs.stats != "-") +
          static_cast<std::size_t>(!line.console.log_file.empty());
 }
 
-/// Selects the reports of the run or all written files.
+/// Selects only the reports of the run, or all written files.
 enum class Which { reports, all };
 
 void check_files_are_different(const CommandLine& line, Which which) {
-  // These commands may replace their input.
+  // These commands may overwrite their input.
   const bool in_place = line.command == Command::simplify || line.command == Command::improve;
   const std::vector<Written> written = files_written(line);
-  // Reports of the run come last, so that each is compared with all other files.
+  // Reports of the run are last, so that each is compared with all other files.
   const std::size_t first =
       which == Which::all || line.command == Command::batch ? 0 : written.size() - report_count(line);
   for (std::size_t i = first; i < written.size(); ++i) {

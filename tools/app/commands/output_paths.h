@@ -8,27 +8,28 @@
 
 namespace tetwright {
 
-/// Checks the output files of a command before any work: -o, --boundary, --write-sdf and --report have a
-/// known extension, can be written, and replace neither an input nor each other, not even through a link.
-/// Only `simplify` and `improve` may replace their input, by -o. `check` writes no mesh.
+/// Checks the output files of a command before any work. The files of -o, --boundary, --write-sdf and
+/// --report must have a known extension and be writable, and must not replace an input or each other, not
+/// even through a link. Only `simplify` and `improve` may replace their input, by -o. `check` writes no mesh.
 ///
-/// \throws UsageError for a wrong name
+/// \throws UsageError for an invalid name
 /// \throws OutputError if a file cannot be written
 void check_output_paths(const CommandLine& line);
 
-/// Checks that a tet mesh on standard output is of a single file.
+/// Checks that a tet mesh for standard output is in a format with a single file.
 ///
 /// \throws UsageError if its format has several files
 void check_tet_stream(const CommandLine& line);
 
-/// All files that the call writes or reads; the files read include those that a named one refers to.
+/// All files that the call writes or reads. The files read include those to which a named file refers.
 std::vector<std::string> written_files(const CommandLine& line);
 std::vector<std::string> read_files(const CommandLine& line);
 
-/// The file of a batch's results.
+/// Path of the file with the results of a batch.
 std::string results_file_of(const CommandLine& line);
 
-/// Checks --stats and --log-file likewise, so that they can report later errors, and opens the log.
+/// Checks the files of --stats and --log-file in the same way and opens the log, so that later errors can be
+/// reported there.
 void check_stats_path(const CommandLine& line);
 
 }  // namespace tetwright

@@ -13,9 +13,10 @@ namespace tetwright {
 
 // The page of --report. These functions do nothing without --report.
 
-/// Measures the distance of the result's boundary and interfaces from `surface`, unless that is empty.
+/// Measures the distance of the result's boundary and interfaces from `surface`. Does nothing if that is
+/// empty.
 ///
-/// \param from names `surface` on the page
+/// \param from name of `surface` on the page
 void measure_distances(const TetMesh& result, const TriangleMesh& surface, std::string from, CommandRun& run);
 
 /// Adds the page to the files.

@@ -14,7 +14,7 @@ namespace tetwright {
 
 namespace {
 
-/// The mesh without the triangles of its interfaces.
+/// Copies the mesh without its interface triangles.
 TetMesh without_triangles(TetMesh mesh) {
   mesh.interfaces.clear();
   mesh.patch_groups.clear();
@@ -34,7 +34,7 @@ void write_result(Prepared& result, CommandRun& run) {
   run.progress.begin_stage("write");
   OutputFiles files(&run.progress);
   if (!line.outputs.distances.empty()) write_fields(*result.field, line.outputs.distances, &files);
-  result.field.reset();  // memory that writing the mesh needs
+  result.field.reset();  // frees memory for writing the mesh
   if (line.outputs.no_boundary)
     write_mesh(without_triangles(result.mesh), result, line.outputs, files);
   else

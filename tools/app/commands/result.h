@@ -12,7 +12,7 @@ namespace tetwright {
 /// \throws Interrupted if the run was cancelled
 void write_result(Prepared& result, CommandRun& run);
 
-/// Prints the report to stdout, notes and shortfalls to stderr.
+/// Prints the report to stdout; notes and shortfalls to stderr.
 void print_result(const CommandRun& run);
 
 }  // namespace tetwright

@@ -14,7 +14,7 @@ namespace {
 /// Name of an output file in notes.
 std::string shown(const std::string& file) { return file == "-" ? "standard output" : file; }
 
-/// Adds a note on numbers and names that `file` replaces by others.
+/// Adds a note about numbers and names that are changed in `file`.
 void note_changes(const std::string& file, const std::string& extension, const char* what,
                   const std::vector<NameChange>& changed, PrepareReport& report) {
   if (changed.empty()) return;
@@ -58,7 +58,7 @@ std::size_t named_patches(const PrepareReport& report) {
                     [](const PatchComparison& p) { return !p.group.name.empty(); }));
 }
 
-/// Notes the patches that neither the mesh nor the --boundary file can hold.
+/// Adds a note about patches that neither the mesh file nor the --boundary file can hold.
 void find_unwritten_patches(const CommandLine& line, const TetFormatInfo& format, PrepareReport& report) {
   const bool boundary_lacks =
       !line.outputs.boundary.empty() &&

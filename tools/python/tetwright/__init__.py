@@ -6,20 +6,21 @@
     mesh.points, mesh.tets, mesh.materials      # numpy arrays
     mesh.write("scan.vtu")
 
-The functions are the commands of the program `tetwright`, their keyword arguments its options: `--target-tets 9000` is
-`target_tets=9000`, a flag is True, a length in percent of the diagonal is the string "0.2%". With the same inputs and
-options both give the same bytes.
+The functions are the commands of the program `tetwright`, and their keyword arguments are its options: `--target-tets
+9000` is `target_tets=9000`, a flag is True, a length in percent of the diagonal is the string "0.2%". Both give the
+same bytes for the same inputs and options.
 
 Inputs are file names; `(points, triangles)` and `(points, tets)` arrays; label arrays of three axes with `spacing`,
-`origin` or `affine`; meshes of meshio, pyvista or trimesh and images of nibabel, or what looks like them; a `TetMesh`.
-Several surfaces are a list, or a dict from the names of their materials. Cells of meshes are read as those of files
-are: polygons become triangles, curved cells are taken by their corners, numbers of points and tets are fields of which
-one may be the material, other volumes than tets are refused, and what is left out is in `TetMesh.notes`.
+`origin` or `affine`; meshes of meshio, pyvista or trimesh, images of nibabel, or objects like these; or a `TetMesh`.
+Several surfaces are given as a list, or as a dict from the names of their materials. Cells of meshes are read as in
+files: polygons become triangles, curved cells are reduced to their corners, data of points and tets become fields,
+one of which may be the material, volume cells other than tets are rejected, and `TetMesh.notes` lists the contents
+that are left out.
 
-What ends a call early is an exception, a subclass of `tetwright.Error` with the program's message. What falls short of
-what was asked is a `ShortfallWarning` and in `TetMesh.shortfall`; `TetMesh.diagnostics` has the codes of all notes and
-shortfalls, and `diagnostic_kinds()` their causes and remedies. Calls release the interpreter's lock, and Ctrl-C cancels them. Several may run at a time, each with its own
-`threads`.
+A call that fails raises a subclass of `tetwright.Error` with the program's message. A request that is not met causes
+a `ShortfallWarning` and is listed in `TetMesh.shortfall`; `TetMesh.diagnostics` has the codes of all notes and
+shortfalls, `diagnostic_kinds()` their causes and remedies. Calls release the interpreter's lock, and Ctrl-C cancels
+them. Several calls may run at the same time, each with its own `threads`.
 """
 from ._commands import check, improve, mesh, prepare, read, simplify
 from ._core import (Error, InputError, InternalError, NothingToMeshError, OutputError, UsageError,

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Turns a caller's numbers into arrays of the types that the compiled part reads; refuses what these would lose."""
+"""Converts a caller's numbers to arrays of the types that the compiled module reads; rejects values these cannot
+hold."""
 from __future__ import annotations
 
 from typing import Any
@@ -8,13 +9,13 @@ import numpy as np
 
 from . import _core
 
-# Doubles represent every whole number up to this one.
+# Doubles represent every whole number up to this one exactly.
 MAX_EXACT_WHOLE = 2**53
 
 
 def numbers(values: Any, name: str, what: str, kinds: str = "iuf") -> np.ndarray:
-    """An array of real numbers, of numpy's `kinds` of types; `name` is the input and `what` the part of it that
-    messages name."""
+    """Returns an array of real numbers whose type is one of numpy's `kinds`. Messages name the input, `name`, and the
+    part of it, `what`."""
     if values is None:
         raise _core.InputError(f"{name}: it has no {what}")
     if np.ma.is_masked(values):
@@ -29,7 +30,7 @@ def numbers(values: Any, name: str, what: str, kinds: str = "iuf") -> np.ndarray
 
 
 def indices(values: Any, name: str, what: str) -> np.ndarray:
-    """As int64, if they are whole."""
+    """Returns the values as int64; they must be whole."""
     array = numbers(values, name, what)
     if array.dtype.kind == "i":
         return array.astype(np.int64, copy=False)
@@ -43,7 +44,7 @@ def indices(values: Any, name: str, what: str) -> np.ndarray:
 
 
 def whole_numbers(values: Any, name: str, what: str) -> np.ndarray:
-    """As int32, if they are whole and that small."""
+    """Returns the values as int32; they must be whole and within its range."""
     array = numbers(values, name, what, "biuf")
     if array.dtype == bool:
         return array.astype(np.int32)
@@ -57,7 +58,7 @@ def whole_numbers(values: Any, name: str, what: str) -> np.ndarray:
 
 
 def check_range(cells: np.ndarray, points: int, name: str, what: str) -> None:
-    """Refuses cells that name a point which is not there."""
+    """Rejects cells that refer to a point which does not exist."""
     bad = (cells < 0) | (cells >= points)
     _refuse(bad, cells, name, what, f"but there are {points} points, numbered from 0")
 

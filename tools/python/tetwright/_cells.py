@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Takes meshes of other libraries apart, by their attributes: as the program reads files with the same cells."""
+"""Converts meshes of other libraries, recognised by their attributes, as the program reads files with the same
+cells."""
 from __future__ import annotations
 
 import dataclasses
@@ -14,27 +15,27 @@ from ._faces import (FACE_GROUPS, GMSH_GROUPS, VTK_GROUPS, Block, Names, are_fac
                      sets_of_faces, surface_groups, whole_labels)
 from ._text import plain_text
 
-# VTK's numbers of cell types, by the names of meshio.
+# meshio's names of cell types, by VTK's numbers.
 VTK_NAMES = {1: "vertex", 2: "vertex", 3: "line", 4: "line", 5: "triangle", 7: "polygon", 8: "pixel", 9: "quad",
              10: "tetra", 11: "voxel", 12: "hexahedron", 13: "wedge", 14: "pyramid", 21: "line3", 22: "triangle6",
              23: "quad8", 24: "tetra10", 25: "hexahedron20", 26: "wedge15", 27: "pyramid13", 28: "quad9",
              29: "hexahedron27", 34: "triangle7", 36: "polygon", 42: "polyhedron"}
-# Corners of faces by the kind, without the number of its nodes; of polygons all points are corners.
+# Number of corners of a face, by its kind without the number of nodes; None: all points are corners.
 FACE_CORNERS = {"triangle": 3, "quad": 4, "pixel": 4, "polygon": None, "VTK_LAGRANGE_TRIANGLE": 3,
                 "VTK_LAGRANGE_QUADRILATERAL": 4}
 FLAT_KINDS = {"vertex", "line", "VTK_LAGRANGE_CURVE"}
 PLURALS = {"vertex": "vertex cells", "hexahedron": "hexahedra", "polyhedron": "polyhedra", "tetra": "tets"}
 TET_KINDS = ("tetra", "tetra10")
-# What TetMesh.to_meshio() tells of its triangles, which follow from the tets.
+# Field that TetMesh.to_meshio() adds to its triangles, which follow from the tets.
 OTHER_MATERIAL = "other_material"
 
 
 @dataclasses.dataclass
 class Cells:
-    """A surface, or a tet mesh where there are tets."""
+    """A surface, or a tet mesh if there are tets."""
     points: Any
     triangles: Any = None
-    groups: Any = None  # of each triangle, 0: none
+    groups: Any = None  # number of each triangle's group, 0: none
     group_names: dict[int, bytes] = dataclasses.field(default_factory=dict)
     tets: Any = None
     materials: Any = None
@@ -44,30 +45,30 @@ class Cells:
     dropped: list[tuple[bytes, int, bool]] = dataclasses.field(default_factory=list)
 
     def drop(self, what: str, count: int, restored: bool = False) -> None:
-        """Notes what the object has and this has not: `what` is a plural."""
+        """Records contents of the object that are not kept; `what` is a plural."""
         if count > 0:
             self.dropped.append((what.encode(errors="replace"), count, restored))
 
     def grouped_triangles(self) -> tuple[Any, Any, dict[int, bytes]]:
-        """As the compiled part takes them."""
+        """Returns the triangles, their groups and the names of groups, as the compiled module expects them."""
         triangles = np.empty((0, 3), np.int64) if self.triangles is None else self.triangles
         groups = np.zeros(triangles.shape[:1], np.int64) if self.groups is None else self.groups
         return triangles, groups, self.group_names
 
     def drop_names(self, what: str, names: Iterable[Any]) -> None:
-        """The same, by their names."""
+        """Records contents that are not kept, by their names."""
         shown = [f'"{n}"' for n in names]
         more = f" and {len(shown) - 6} more" if len(shown) > 6 else ""
         self.drop(f"{what} ({', '.join(shown[:6])}{more})", len(shown))
 
 
 def cells_of(value: Any, name: str) -> Cells:
-    """Of arrays, or of a mesh of meshio, pyvista or trimesh or what looks like one; messages call it `name`."""
+    """Converts arrays, or a mesh of meshio, pyvista, trimesh or a similar class; messages refer to it by `name`."""
     try:
         return _cells_of(value, name)
     except _core.Error:
         raise
-    # What looks like such a mesh may hold anything.
+    # An object that looks like such a mesh may have attributes of any kind.
     except (ArithmeticError, AttributeError, IndexError, LookupError, TypeError, ValueError) as error:
         raise _core.InputError(f"{name}: a {type(value).__name__} that cannot be read as a mesh of meshio, pyvista or "
                                f"trimesh ({type(error).__name__}: {error})") from error
@@ -119,8 +120,8 @@ def _of_poly_data(value: Any, name: str) -> Cells:
 
 
 def _triangles_of_faces(faces: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Of VTK's list: each face's number of points, then these. Polygons become fans, as from files. The triangles, and
-    the number of each one's face."""
+    """Converts VTK's list, each face's number of points followed by the points. Polygons become fans, as in files.
+    Returns the triangles, and the number of each triangle's face."""
     if faces.ndim == 2:
         return faces, np.arange(len(faces))
     if faces.size % 4 == 0 and (faces[::4] == 3).all():
@@ -150,7 +151,7 @@ def _blocks(value: Any, name: str) -> list[Block]:
                 for i, b in enumerate(blocks)]
     try:
         by_kind = dict(value.cells_dict)
-    except Exception as error:  # of the other library, such as for cells of different sizes
+    except Exception as error:  # raised by the other library, for example for cells of different sizes
         raise _core.InputError(f"{name}: its cells cannot be told apart ({error}); give triangles or tets") from None
     by_type = getattr(value, "cell_data_dict", None)
     of_all = getattr(value, "cell_data", None) or {}
@@ -198,16 +199,16 @@ def _of_blocks(value: Any, name: str) -> Cells:
     names = Names(value)
     if tets:
         midside = _take_tets(made, tets, name)
-        # An int32 is what a material can be.
+        # A material is an int32.
         made.names = names.take(3, [n for d, n in names.of_groups if d == 3 and abs(n) < 2**31])
     label = label_field(faces, tets)
     _take_faces(made, faces, label, names, name)
     if tets:
         if any(OTHER_MATERIAL in b.data for b in faces) and not np.any(made.cell_fields.get(OTHER_MATERIAL, 1)):
-            made.cell_fields.pop(OTHER_MATERIAL)  # of to_meshio(), whose groups of tets are their materials
+            made.cell_fields.pop(OTHER_MATERIAL)  # from to_meshio(), whose groups of tets are the materials
             made.cell_fields.pop(GMSH_GROUPS, None)
         if label == VTK_GROUPS and not np.any(made.cell_fields.get(VTK_GROUPS, 0)):
-            made.cell_fields.pop(VTK_GROUPS, None)  # of tets it says nothing
+            made.cell_fields.pop(VTK_GROUPS, None)  # has no meaning for tets
         made.drop_names("groups of faces", [f for f in FACE_GROUPS if f != label and any(
             np.any(np.asarray(b.data.get(f, 0)) != 0) for b in faces)])
         _remove_midside_nodes(made, midside, name)
@@ -226,7 +227,7 @@ def _of_blocks(value: Any, name: str) -> Cells:
 
 
 def _take_tets(made: Cells, blocks: list[Block], name: str) -> list[np.ndarray]:
-    """Returns their midside nodes."""
+    """Adds the tets and their fields; returns the midside nodes."""
     nodes = []
     for block in blocks:
         array = indices(block.cells, name, "tets")
@@ -266,12 +267,12 @@ def _remove_midside_nodes(made: Cells, midside: list[np.ndarray], name: str) -> 
 
 
 def _take_faces(made: Cells, blocks: list[Block], label: Optional[str], names: Names, name: str) -> None:
-    """Those that `label` leaves out of its groups may be in sets with names."""
+    """Adds the faces with their groups. Faces that are in no group of the field `label` may be in named sets."""
     fans = [_fans(made, block, name) for block in blocks]
     labels = [np.zeros(len(b.cells), np.int64) if label is None else whole_labels(b.data[label], len(b.cells))
               for b in blocks]
     made.group_names = names.take(2, set().union(*(np.unique(of_block).tolist() for of_block in labels)) - {0})
-    # The sets of Gmsh's physical groups say the same as their numbers.
+    # Sets of Gmsh's physical groups repeat the information in their numbers.
     known = set(made.group_names.values())
     for block in blocks:
         block.sets = {s: v for s, v in block.sets.items() if str(s).encode(errors="replace") not in known}
@@ -292,7 +293,7 @@ def _take_faces(made: Cells, blocks: list[Block], label: Optional[str], names: N
 
 
 def _fans(made: Cells, block: Block, name: str) -> np.ndarray:
-    """The triangles of each face: (faces, triangles, 3). Polygons become fans, as from files."""
+    """Returns the triangles of each face: (faces, triangles, 3). Polygons become fans, as in files."""
     kind, array = block.kind, indices(block.cells, name, _plural(_base(block.kind)))
     corners = FACE_CORNERS[_base(kind)] or (array.shape[1] if array.ndim == 2 else 3)
     if array.ndim != 2 or array.shape[1] < corners:
@@ -307,7 +308,7 @@ def _fans(made: Cells, block: Block, name: str) -> np.ndarray:
 
 
 def _drop_shells(made: Cells, of_sets: np.ndarray, name: str) -> None:
-    """Triangles of sets that are no faces of tets: shells beside the solid."""
+    """Drops triangles of sets that are not faces of tets: shells outside the solid."""
     for cells, what in (made.triangles, "triangles"), (made.tets, "tets"):
         check_range(cells, len(made.points), name, what)
     shells = of_sets.copy()
@@ -317,7 +318,7 @@ def _drop_shells(made: Cells, of_sets: np.ndarray, name: str) -> None:
 
 
 def _fields(data: Any, rows: int) -> tuple[dict[str, np.ndarray], list[str]]:
-    """Those with real numbers, as (rows, components), and the names of the others."""
+    """Returns the fields of real numbers, as (rows, components), and the names of the others."""
     fields, left = {}, []
     for field in data.keys():
         array = None if data[field] is None or np.ma.is_masked(data[field]) else np.asarray(data[field])
@@ -325,7 +326,7 @@ def _fields(data: Any, rows: int) -> tuple[dict[str, np.ndarray], list[str]]:
             left.append(field)
         else:
             name = str(field)
-            if name in fields:  # 1 and "1"
+            if name in fields:  # names such as 1 and "1"
                 left.append(field)
             else:
                 fields[name] = array.reshape(rows, -1)
@@ -333,13 +334,13 @@ def _fields(data: Any, rows: int) -> tuple[dict[str, np.ndarray], list[str]]:
 
 
 def field_items(fields: dict[str, np.ndarray]) -> list[tuple[bytes, bool, np.ndarray]]:
-    """As the compiled part takes them: name, whether it holds whole numbers, numbers."""
+    """Returns fields as the compiled module expects them: name, whether the numbers are whole, numbers."""
     return [(f.encode(errors="replace"), v.dtype.kind in "biu" and not _large(v).any(), v.astype(np.float64))
             for f, v in fields.items()]
 
 
 def _large(values: np.ndarray) -> np.ndarray:
-    """Where integers may be others as doubles."""
+    """Flags integers that a double may not represent exactly."""
     return np.abs(values.astype(np.float64)) >= MAX_EXACT_WHOLE
 
 
@@ -351,6 +352,6 @@ def note_large_integers(cells: Cells) -> None:
 
 
 def size_field(cells: Cells, names: Iterable[str]) -> Optional[np.ndarray]:
-    """The first of these point fields that has one number for each point."""
+    """Returns the first of these point fields that has one number for each point."""
     found = next((f for f in names if f in cells.point_fields and cells.point_fields[f].shape[1] == 1), None)
     return None if found is None else cells.point_fields[found][:, 0]

@@ -20,22 +20,23 @@ Progress = Union[bool, Callable[[str, float], None], None]
 def prepare(scan: Any, *, target_tets: Optional[int] = None, tolerance: Union[float, str, None] = None,
             spacing: Any = None, origin: Any = None, affine: Any = None, progress: Progress = None,
             **options: Any) -> TetMesh:
-    """Turns scans or a segmented volume into a simulation mesh, in one go.
+    """Turns scans or a segmented volume into a simulation mesh.
 
-    scan -- a surface, a list of them or a dict from names of materials, which stay whole (later ones carve earlier
-        ones), or one array of labels of shape (nx, ny, nz), whole numbers of which 0 is outside
-    target_tets -- the number of tets to reach; without it `tolerance` or `size_field` is needed
-    size_field -- edge lengths by place: a file, arrays (points (n, 3), tets (m, 4) or triangles (m, 3), lengths (n,)), or
-        a mesh of meshio or pyvista whose points have them as "size"
-    tolerance -- how far the surfaces of mesh and scan may be from each other, input units or "0.2%" of the diagonal
-    spacing, origin -- of an array of labels: input units from voxel to voxel (one number or three), and the centre of
-        voxel (0, 0, 0); or affine, a (4, 4) matrix from indices to positions
-    progress -- a function of (stage, fraction from 0 to 1), called from this thread; True shows a bar, by tqdm if that
-        is installed
+    scan -- a surface, a list of surfaces, or a dict from names of materials to surfaces (names are kept unchanged;
+        later surfaces carve earlier ones); or one array of labels of shape (nx, ny, nz), whole numbers, where 0 is
+        outside
+    target_tets -- target number of tets; without it `tolerance` or `size_field` is required
+    size_field -- edge lengths by location: a file, arrays (points (n, 3), tets (m, 4) or triangles (m, 3), lengths
+        (n,)), or a mesh of meshio or pyvista whose points have them as "size"
+    tolerance -- maximum distance between the surfaces of mesh and scan, in input units or "0.2%" of the diagonal
+    spacing, origin -- for an array of labels: distance between voxels, in input units (one number or three), and the
+        centre of voxel (0, 0, 0); alternatively affine, a (4, 4) matrix that maps indices to positions
+    progress -- a function of (stage, fraction from 0 to 1), called from this thread; True shows a bar, using tqdm if
+        it is installed
     options -- those of `tetwright prepare --help`: threads=2, seed=7, min_solid_angle=0.1, material={"bone": surface},
-        layer={"skin": 2.0}, keep_outside=True, order=2, labels=[1, (5, 9)]; output="file.vtu" writes it, too
+        layer={"skin": 2.0}, keep_outside=True, order=2, labels=[1, (5, 9)]; output="file.vtu" also writes the mesh
 
-    Raises a subclass of Error; warns with ShortfallWarning where the result is short of what was asked.
+    Raises a subclass of Error; issues a ShortfallWarning for each request that was not met.
     """
     inputs = Inputs(spacing, origin, affine)
     options.update(target_tets=target_tets, tolerance=tolerance)
@@ -44,8 +45,8 @@ def prepare(scan: Any, *, target_tets: Optional[int] = None, tolerance: Union[fl
 
 def mesh(scan: Any, *, tolerance: Union[float, str, None] = None, spacing: Any = None, origin: Any = None,
          affine: Any = None, progress: Progress = None, **options: Any) -> TetMesh:
-    """Turns scans or a segmented volume into a dense mesh, as `prepare` does before it simplifies; arguments as there,
-    options those of `tetwright mesh --help`: resolution=128, voxel_size=0.5."""
+    """Turns scans or a segmented volume into a dense mesh, as `prepare` does before it simplifies. Arguments are
+    those of `prepare`, options those of `tetwright mesh --help`: resolution=128, voxel_size=0.5."""
     inputs = Inputs(spacing, origin, affine)
     options.update(tolerance=tolerance)
     return _run("mesh", inputs, _scans(scan, inputs, options), options, progress)
@@ -53,30 +54,31 @@ def mesh(scan: Any, *, tolerance: Union[float, str, None] = None, spacing: Any =
 
 def simplify(tets: Any, *, target_tets: Optional[int] = None, tolerance: Union[float, str, None] = None,
              progress: Progress = None, **options: Any) -> TetMesh:
-    """Turns a tet mesh into one of fewer tets: a TetMesh, a file, (points, tets) or (points, tets, materials) arrays of
-    shapes (n, 3), (m, 4) and (m,), or a mesh of meshio or pyvista. Options of `tetwright simplify --help`."""
+    """Simplifies a tet mesh to fewer tets. The mesh is a TetMesh, a file, (points, tets) or (points, tets, materials)
+    arrays of shapes (n, 3), (m, 4) and (m,), or a mesh of meshio or pyvista. Options are those of `tetwright simplify
+    --help`."""
     inputs = Inputs()
     options.update(target_tets=target_tets, tolerance=tolerance)
     return _run("simplify", inputs, [inputs.add(tets, "mesh")], options, progress)
 
 
 def improve(tets: Any, *, progress: Progress = None, **options: Any) -> TetMesh:
-    """Improves the shapes of a tet mesh and keeps about its count; the mesh as of `simplify`, options of
-    `tetwright improve --help`: only_below=0.1, free_count=True."""
+    """Improves the shapes of a tet mesh at about the same number of tets. The mesh is as for `simplify`; options are
+    those of `tetwright improve --help`: only_below=0.1, free_count=True."""
     inputs = Inputs()
     return _run("improve", inputs, [inputs.add(tets, "mesh")], options, progress)
 
 
 def check(tets: Any, *, surface: Any = None, before: Any = None, tolerance: Union[float, str, None] = None,
           progress: Progress = None, **options: Any) -> CheckResult:
-    """Validity, topology and quality of a tet mesh, and how far it is from surfaces.
+    """Checks validity, topology and quality of a tet mesh, and measures its distance from surfaces.
 
-    surface -- a surface or several (list, or dict), which the mesh is compared with: the largest distances both ways,
-        proven
-    before -- another mesh, whose topology it must have
-    tolerance -- the result is true only if mesh and surfaces are proven to be within it of each other
+    surface -- one or several surfaces (list or dict) with which the mesh is compared: proven bounds of the largest
+        distances in both directions
+    before -- another mesh, which must have the same topology
+    tolerance -- the result is true only if the distance between mesh and surfaces is proven to be at most this
 
-    The result is what `tetwright check --json` prints; bool(result) is its verdict.
+    The result has the contents of `tetwright check --json`; bool(result) tells whether the mesh passed.
     """
     inputs = Inputs()
     if isinstance(surface, dict):
@@ -94,7 +96,7 @@ def check(tets: Any, *, surface: Any = None, before: Any = None, tolerance: Unio
 
 
 def read(path: Union[str, os.PathLike], *, material_field: str = "") -> TetMesh:
-    """Reads a tet mesh from a file of any format that the program reads."""
+    """Reads a tet mesh from a file in any format that the program can read."""
     return TetMesh(_core.read(file_name(path, "path"), plain_text(material_field, "material_field")))
 
 
@@ -109,7 +111,7 @@ def _run(command: str, inputs: Inputs, names: list[bytes], options: dict[str, An
 
 
 def _several(value: Any, inputs: Inputs) -> list[bytes]:
-    """The names of one or several surfaces; two arrays in a tuple are one."""
+    """Returns the names of one or several surfaces; a tuple of two arrays is one surface."""
     if isinstance(value, dict):
         return [inputs.add(v, str(k), made_up=False) for k, v in value.items()]
     if isinstance(value, list):
@@ -119,7 +121,7 @@ def _several(value: Any, inputs: Inputs) -> list[bytes]:
 
 
 def _scans(value: Any, inputs: Inputs, options: dict[str, Any]) -> list[bytes]:
-    """The positional inputs; files that a dict names become materials of that name."""
+    """Returns the positional inputs; files in a dict become materials with the names of their keys."""
     materials = materials_of(options.pop("material", None))
     layers = options.get("layer")
     named = [name for name, _ in materials] + [str(k) for k in (layers if isinstance(layers, dict) else ())]
@@ -134,7 +136,7 @@ def _scans(value: Any, inputs: Inputs, options: dict[str, Any]) -> list[bytes]:
 
 
 class _shown:
-    """The callback of a call: the caller's, a bar's or none."""
+    """The progress callback of a call: the caller's, that of a bar, or none."""
 
     def __init__(self, progress: Progress):
         self._bar = None

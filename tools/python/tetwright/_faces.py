@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Groups of the faces of other libraries' meshes: by the numbers of a field, as in files, or by sets with names."""
+"""Groups of faces in meshes of other libraries: given by the numbers in a field, as in files, or by named sets."""
 from __future__ import annotations
 
 import dataclasses
@@ -10,7 +10,7 @@ import numpy as np
 from . import _core
 from ._text import plain_text
 
-# Fields of faces whose numbers are groups beside tets; of a surface many more are.
+# Fields of faces that give groups in a tet mesh; in a surface many more names do.
 GMSH_GROUPS = "gmsh:physical"
 VTK_GROUPS = "surface"
 FACE_GROUPS = (GMSH_GROUPS, "medit:ref", VTK_GROUPS)
@@ -21,12 +21,12 @@ class Block:
     """Cells of one kind."""
     kind: str
     cells: Any
-    data: dict[str, Any]  # numbers of the cells, by name
-    sets: dict[str, Any] = dataclasses.field(default_factory=dict)  # those of them that are in sets with names
+    data: dict[str, Any]  # fields of the cells, by name
+    sets: dict[str, Any] = dataclasses.field(default_factory=dict)  # members of named sets
 
 
 def whole_labels(values: Any, count: int) -> Optional[np.ndarray]:
-    """As int64; None where they are not one whole number for each cell."""
+    """Returns the values as int64, or None unless they are one whole number for each cell."""
     if values is None or np.ma.is_masked(values):
         return None
     try:
@@ -41,12 +41,12 @@ def whole_labels(values: Any, count: int) -> Optional[np.ndarray]:
 
 
 def text_labels(values: Any, count: int) -> Optional[np.ndarray]:
-    """The values as str, or None unless they are one text for each cell."""
+    """Returns the values as str, or None unless they are one text for each cell."""
     if values is None or np.ma.is_masked(values):
         return None
     try:
         array = np.asarray(values)
-    except ValueError:  # rows of several lengths
+    except ValueError:  # rows of different lengths
         return None
     if array.shape != (count,):
         return None
@@ -58,8 +58,8 @@ def text_labels(values: Any, count: int) -> Optional[np.ndarray]:
 
 
 def surface_groups(block: Block) -> tuple[Optional[str], Optional[np.ndarray], dict[int, bytes]]:
-    """The first field of a surface that says which groups its faces are in, the number of each face's group, 0 for
-    none, and the names of groups."""
+    """Returns the first field of a surface that gives the groups of its faces, the group number of each face (0:
+    none), and the names of the groups."""
     count = len(block.cells)
     by_number = label_field([block], [])
     label = next((f for f, values in block.data.items() if f == by_number or text_labels(values, count) is not None),
@@ -76,7 +76,8 @@ def surface_groups(block: Block) -> tuple[Optional[str], Optional[np.ndarray], d
 
 
 def label_field(faces: list[Block], tets: list[Block]) -> Optional[str]:
-    """The field that says which groups the faces are in: whole numbers, 0 for none, of tets too where they have it."""
+    """Returns the field that gives the groups of the faces: whole numbers, 0 for none; whole also in tets that have
+    it."""
     def is_label(field: Any) -> bool:
         if field not in FACE_GROUPS and (tets or not _core.is_face_label(str(field).encode(errors="replace"))):
             return False
@@ -87,7 +88,7 @@ def label_field(faces: list[Block], tets: list[Block]) -> Optional[str]:
 
 
 class Names:
-    """Names of Gmsh's physical groups in meshio, by dimension and number; what else its `field_data` holds."""
+    """Names of Gmsh's physical groups in meshio, by dimension and number, and other contents of its `field_data`."""
 
     def __init__(self, value: Any):
         self.of_groups: dict[tuple[int, int], Any] = {}
@@ -98,25 +99,26 @@ class Names:
             array = np.asarray(data)
             if of_gmsh and array.dtype.kind in "iu" and array.size == 2:
                 key = int(array.flat[1]), int(array.flat[0])
-                if key in self.of_groups:  # two names of one group
+                if key in self.of_groups:  # a second name of a group
                     self.repeated.append(self.of_groups[key])
                 self.of_groups[key] = name
             else:
                 self.others.append(name)
 
     def take(self, dimension: int, numbers: Iterable[int]) -> dict[int, bytes]:
-        """Those of these groups, which are removed here."""
+        """Removes the names of these groups and returns them by number."""
         found = {n: self.of_groups.pop((dimension, n)) for n in numbers if (dimension, n) in self.of_groups}
         return {n: plain_text(str(name), "the name of a physical group") for n, name in found.items()}
 
 
 def sets_of_cells(value: Any) -> dict[Any, Any]:
-    """Of meshio: members for each block. Those of Gmsh itself only say what bounds what."""
+    """Returns meshio's sets of cells with their members in each block. Sets that Gmsh adds only describe boundaries
+    and are left out."""
     return {s: v for s, v in (getattr(value, "cell_sets", None) or {}).items() if not str(s).startswith("gmsh:")}
 
 
 def members_of(block: Block, group: Any, name: str) -> np.ndarray:
-    """The numbers of the block's cells that are in the set."""
+    """Returns the numbers of the block's cells that are in the set."""
     values = np.asarray(block.sets[group])
     if values.dtype == bool and values.shape == (len(block.cells),):
         return np.flatnonzero(values)
@@ -132,8 +134,8 @@ def members_of(block: Block, group: Any, name: str) -> np.ndarray:
 
 def sets_of_faces(faces: list[Block], labels: list[np.ndarray], names: dict[int, bytes], name: str) \
         -> Iterator[tuple[int, str, list[np.ndarray]]]:
-    """A free number, the name and the members in each block of the sets of faces, smaller sets first, so that a set of
-    all leaves others what is theirs."""
+    """Yields a free number, the name and the members in each block for each set of faces. Smaller sets come first, so
+    that a set of all faces does not take the faces of others."""
     members = {s: [members_of(b, s, name) if s in b.sets else np.empty(0, np.int64) for b in faces]
                for s in dict.fromkeys(s for b in faces for s in b.sets)}
     used = set(names).union(*(np.unique(of_block).tolist() for of_block in labels))
@@ -146,7 +148,7 @@ def sets_of_faces(faces: list[Block], labels: list[np.ndarray], names: dict[int,
 
 
 def are_faces(triangles: np.ndarray, tets: np.ndarray, points: int) -> np.ndarray:
-    """Whether each triangle is a face of a tet; all are in range."""
+    """Returns whether each triangle is a face of a tet. All indices must be in range."""
     marked = np.zeros(points, bool)
     marked[triangles] = True
     near = tets[marked[tets].sum(axis=1) >= 3]

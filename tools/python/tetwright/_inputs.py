@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Turns what a caller has into what the compiled part reads: arrays by name, or names of files."""
+"""Converts a caller's inputs to those that the compiled module reads: arrays with names, or names of files."""
 from __future__ import annotations
 
 import os
@@ -13,17 +13,17 @@ from ._cells import Cells, cells_of, field_items, note_large_integers, size_fiel
 from ._mesh import TetMesh
 from ._text import file_name, plain_text
 
-# Point data that tell edge lengths.
+# Names of point data that give edge lengths.
 SIZE_FIELDS = ("size", "sizing", "edge_length", "h")
 
 
 def is_file(value: Any) -> bool:
-    """Whether it is the name of a file."""
+    """Returns whether the value is the name of a file."""
     return isinstance(value, (str, bytes, os.PathLike))
 
 
 class Inputs:
-    """Collects the inputs of one call. Each gets a name, that of a file or one of its own."""
+    """Collects the inputs of one call. Each has a unique name: that of its file, or a generated or given one."""
 
     def __init__(self, spacing: Any = None, origin: Any = None, affine: Any = None):
         self.core = _core.Inputs()
@@ -34,12 +34,12 @@ class Inputs:
         self._files: set[bytes] = set()
 
     def reserve(self, names: Iterable[str]) -> None:
-        """Keeps names that the caller gives from being made up for something else."""
+        """Prevents names given by the caller from being generated for other inputs."""
         self._taken.update(n.encode(errors="replace") for n in names)
 
     def add(self, value: Any, name: str, made_up: bool = True) -> bytes:
-        """The name that stands for `value` in the call: a file's own, else `name` or, if that is made up and taken, one
-        like it."""
+        """Adds an input and returns its name in the call: the name of a file, or else `name`. If that is generated
+        and taken, it gets a suffix."""
         if is_file(value):
             file = file_name(value, name)
             self._files.add(file)
@@ -57,8 +57,8 @@ class Inputs:
         return key
 
     def add_sizes(self, value: Any) -> bytes:
-        """The name of edge lengths by place: a file, (points, tets, lengths) or (points, triangles, lengths), or a mesh
-        of meshio or pyvista whose points have them."""
+        """Adds edge lengths by location and returns their name: a file, (points, tets, lengths) or (points, triangles,
+        lengths), or a mesh of meshio or pyvista whose points have lengths."""
         name = "size_field"
         if is_file(value):
             return file_name(value, name)
@@ -79,7 +79,7 @@ class Inputs:
         return name.encode()
 
     def finish(self) -> None:
-        """Refuses what says where voxels are if there are none, and files that would be taken for arrays."""
+        """Rejects positions of voxels if there are no voxels, and files that have the name of an array."""
         if any(p is not None for p in self._placement) and not self._placement_used:
             raise _core.UsageError("spacing, origin and affine are for arrays of labels, and no input is one")
         for name in sorted(self._files & self._objects):
@@ -94,7 +94,7 @@ class Inputs:
 
     def _given(self, name: str) -> bytes:
         key = plain_text(name, "the name of an input")
-        # The parser takes - for a stream, and [a,b] for two arguments.
+        # The parser interprets - as a stream, and [a,b] as two arguments.
         if key in (b"", b"-") or (key.startswith(b"[") and key.endswith(b"]")):
             raise _core.UsageError(f"an input cannot be called '{name}'; give it another name")
         if key in self._objects:

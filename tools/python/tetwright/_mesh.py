@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the commands return."""
+"""Results of the commands."""
 from __future__ import annotations
 
 import json
@@ -13,16 +13,16 @@ from ._text import file_name, plain_text
 
 
 class ShortfallWarning(UserWarning):
-    """The result is there, but short of what was asked; the program's status would be 1."""
+    """There is a result, but a request was not met; the program's exit status would be 1."""
 
 
 class Diagnostic(NamedTuple):
-    """Something to know about an input or a result; diagnostic_kinds() has causes and remedies by code."""
-    code: str  # stays the same from version to version
+    """Information about an input or a result; diagnostic_kinds() has causes and remedies by code."""
+    code: str  # the same in all versions
     severity: str  # "note" or "shortfall"
     message: str
-    places: list[tuple[float, float, float]]  # the first ones
-    file: Optional[str]  # that it is about; None: the result
+    places: list[tuple[float, float, float]]  # only the first few
+    file: Optional[str]  # file concerned; None: the result
     asked: Optional[float]
     reached: Optional[float]
     limited_by: Optional[str]
@@ -65,7 +65,7 @@ class Interfaces:
 
     @property
     def patch(self) -> np.ndarray:
-        """(n,) uint16, a view: the part of its interface, between creases and named patches."""
+        """(n,) uint16, a view: the patch of its interface; creases and named patches separate patches."""
         return self._core.interface_patches
 
     @property
@@ -75,14 +75,14 @@ class Interfaces:
 
     @property
     def group(self) -> np.ndarray:
-        """(n,) int64, a copy: the number of the surface that .msh and .vtk files list the triangle in, see
-        `group_names`. A patch of the input keeps its own number where it has one that is free."""
+        """(n,) int64, a copy: the number of the surface in which .msh and .vtk files list the triangle, see
+        `group_names`. A patch of the input keeps its number if it has one and it is free."""
         return self._core.interface_groups()[0]
 
     @property
     def group_names(self) -> dict[int, str]:
-        """The names of these surfaces, a copy: patches of the input, and "bone|skin" or "bone|outside" for what is in
-        none."""
+        """Names of these surfaces, a copy: those of patches of the input, and "bone|skin" or "bone|outside" for
+        triangles in no patch."""
         return self._core.interface_groups()[1]
 
     @property
@@ -92,12 +92,12 @@ class Interfaces:
 
     @property
     def on_boundary(self) -> np.ndarray:
-        """(n,) bool, a copy: True where there is nothing on the other side."""
+        """(n,) bool, a copy: True if the other side is outside."""
         return self._core.interface_others()[1]
 
 
 class TetMesh:
-    """A tetrahedral mesh. Its arrays are read-only views without copies, which keep it alive."""
+    """A tetrahedral mesh. Its arrays are read-only views, which keep the mesh alive; nothing is copied."""
 
     def __init__(self, core: _core.Mesh):
         self._core = core
@@ -124,33 +124,33 @@ class TetMesh:
 
     @property
     def material_names(self) -> dict[int, str]:
-        """The names of the tags that have one."""
+        """Names of the materials that have one, by tag."""
         return self._core.material_names
 
     @property
     def interfaces(self) -> Interfaces:
-        """The faces between materials and of the boundary."""
+        """The faces between materials and on the boundary."""
         return Interfaces(self._core)
 
     @property
     def point_fields(self) -> dict[str, np.ndarray]:
-        """Numbers of the points, by name: (n,) or (n, components) float64."""
+        """Fields of the points, by name: (n,) or (n, components) float64."""
         return self._core.point_fields()
 
     @property
     def fields(self) -> dict[str, np.ndarray]:
-        """Numbers of the tets, by name: (m,) or (m, components) float64."""
+        """Fields of the tets, by name: (m,) or (m, components) float64."""
         return self._core.cell_fields()
 
     @property
     def midside_points(self) -> Optional[np.ndarray]:
-        """(k, 3) float64, the nodes in the middle of edges, with order=2; else None."""
+        """(k, 3) float64, the midside nodes of the edges, with order=2; else None."""
         return self._core.midside_points
 
     @property
     def tets10(self) -> Optional[np.ndarray]:
-        """(m, 10) int64, a copy: ten-node tets in VTK's order, with order=2; else None. Numbers from len(points) on
-        are those of midside_points."""
+        """(m, 10) int64, a copy: ten-node tets in VTK's order, with order=2; else None. Indices from len(points) on
+        refer to midside_points."""
         midside = self._core.midside_of_tets
         if midside is None:
             return None
@@ -158,42 +158,43 @@ class TetMesh:
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
-        """All that was found in the inputs and falls short, by code; empty for a mesh that was only read."""
+        """All findings in the inputs and all shortfalls, with their codes; empty for a mesh that was only read."""
         return [Diagnostic(d["code"], d["severity"], d["message"], [tuple(p) for p in d["places"]],
                            *(d.get(key) for key in ("file", "asked", "reached", "limited_by")))
                 for d in self.stats.get("diagnostics", [])]
 
     @property
     def stats(self) -> dict[str, Any]:
-        """What --stats writes (data/stats.schema.json); empty for a mesh that was only read."""
+        """Contents of --stats (data/stats.schema.json); empty for a mesh that was only read."""
         if self._stats is None:
             self._stats = json.loads(self._core.stats) if self._core.stats else {}
         return self._stats
 
     @property
     def notes(self) -> list[str]:
-        """What was found in the input and what was done about it."""
+        """Findings in the input, and the changes made because of them."""
         return self._core.notes
 
     @property
     def shortfall(self) -> list[str]:
-        """What was asked and not reached; empty if all was."""
+        """Requests that were not met; empty if all were met."""
         return self._core.shortfall
 
     def write(self, path: str | os.PathLike, *, output_format: str = "", boundary: str | os.PathLike = "",
               no_boundary: bool = False) -> None:
-        """Writes the mesh, whole or not at all, as the program does: the extension or `output_format` names the
-        format; `boundary` is a file for the boundary and interfaces as a surface; `no_boundary` leaves triangles out
-        of the mesh. With order=2 tets have ten nodes, which a format must hold. What the format has no place for or
-        changes is added to `notes`."""
+        """Writes the mesh as the program does, completely or not at all. The extension or `output_format` determines
+        the format; `boundary` is a file for the boundary and interfaces as a surface; `no_boundary` leaves triangles
+        out of the mesh. With order=2 tets have ten nodes, which the format must support. Data that the format cannot
+        hold or changes are listed in `notes`."""
         self._core.write(file_name(path, "path"), plain_text(output_format, "output_format"),
                          file_name(boundary, "boundary"), no_boundary)
 
     def to_meshio(self):
-        """A meshio.Mesh: tets (ten-node ones with order=2) with the cell data `material`, and triangles with those of
-        the materials on their sides, 0 for outside. They have the fields of the tets beside them. `gmsh:physical` has the materials and the numbers of the input's
-        patches, 0 for triangles in none, and `field_data` their names (a name that a material has, too, gets a suffix),
-        so that meshio writes both as physical groups."""
+        """Converts to a meshio.Mesh: tets (ten-node ones with order=2) with the cell data `material`, and triangles
+        with `material` and `other_material`, those on their two sides (0: outside). A triangle has the fields of the
+        tet on the side of `material`. `gmsh:physical` holds the materials of tets and the numbers of the input's
+        patches, 0 for triangles in no patch; `field_data` holds their names (a patch with the name of a material gets
+        a suffix), so that meshio writes both as physical groups."""
         import meshio
         tets10 = self.tets10
         points = self.points if tets10 is None else np.vstack([self.points, self.midside_points])
@@ -216,7 +217,7 @@ class TetMesh:
         return meshio.Mesh(points, cells, point_data=self._core.node_fields(), cell_data=data, field_data=names)
 
     def to_pyvista(self):
-        """A pyvista.UnstructuredGrid of the tets, with the cell data `material` and all fields."""
+        """Converts to a pyvista.UnstructuredGrid of the tets, with the cell data `material` and all fields."""
         import pyvista
         grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: self.tets.astype(np.int64)}, np.array(self.points))
         grid.cell_data["material"] = self.materials
@@ -228,8 +229,8 @@ class TetMesh:
 
 
 class CheckResult(Mapping[str, Any]):
-    """What `check --json` prints, as a mapping; true if the mesh passed: valid, of the topology of `before`, and
-    within the tolerance, where these were asked for."""
+    """Contents of `check --json` as a mapping. True if the mesh passed: it is valid and, if requested, has the
+    topology of `before` and is within the tolerance."""
 
     def __init__(self, json_text: str, notes: list[str], passed: bool):
         self._data = json.loads(json_text)

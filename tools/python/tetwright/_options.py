@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Turns keyword arguments into what the program's parser reads."""
+"""Converts keyword arguments to arguments for the program's parser."""
 from __future__ import annotations
 
 import numbers
@@ -13,7 +13,8 @@ from ._text import file_name, plain_text
 
 
 def arguments_of(command: str, names: list[bytes], options: dict[str, Any], inputs: Inputs) -> list[bytes]:
-    """The call of a command on these positional inputs; inputs among the options are added to `inputs`."""
+    """Returns the arguments of a command with these positional inputs. Inputs among the options are added to
+    `inputs`."""
     types = _core.option_types(command)
     arguments = [command.encode()]
     for key, value in options.items():
@@ -22,7 +23,7 @@ def arguments_of(command: str, names: list[bytes], options: dict[str, Any], inpu
         option = plain_text("--" + key.replace("_", "-"), "an option")
         kind = types.get(option.decode())
         if kind is None:
-            arguments.append(option)  # the parser says which is the nearest
+            arguments.append(option)  # the parser suggests the nearest option
         elif kind == "" and value is not None:
             arguments += [option] if _flag(key, value) else []
         elif value is not None:
@@ -31,7 +32,7 @@ def arguments_of(command: str, names: list[bytes], options: dict[str, Any], inpu
 
 
 def materials_of(value: Any) -> list[tuple[str, Any]]:
-    """Names and inputs of the option `material`: a dict, pairs of them, or lines NAME=FILE."""
+    """Returns names and inputs of the option `material`, given as a dict, a list of pairs, or strings NAME=FILE."""
     if value is None:
         return []
     if isinstance(value, list) and all(isinstance(v, tuple) and len(v) == 2 and isinstance(v[0], str) for v in value):
@@ -52,7 +53,7 @@ def _flag(key: str, value: Any) -> bool:
 
 
 def _texts(key: str, kind: str, value: Any, inputs: Inputs) -> Iterable[bytes]:
-    """The values of an option: several of those that may be given more than once."""
+    """Returns the values of an option; there may be several if the option can be repeated."""
     if key == "size_field":
         return [inputs.add_sizes(value)]
     if key == "material":
@@ -69,7 +70,7 @@ def _texts(key: str, kind: str, value: Any, inputs: Inputs) -> Iterable[bytes]:
 
 
 def _text(key: str, kind: str, value: Any) -> bytes:
-    """Of one value of the kind that the program's help names."""
+    """Formats a value of a kind, as the program's help names it."""
     if kind == "FILE":
         return file_name(value, key)
     if isinstance(value, str):
@@ -88,7 +89,7 @@ def _name(key: str, name: str) -> bytes:
 
 
 def _real(key: str, value: Any, what: str) -> Any:
-    """A number that Python knows, of what may be numpy's."""
+    """Converts a number, which may be numpy's, to a Python number."""
     if isinstance(value, (np.generic, np.ndarray)) and np.ndim(value) == 0:
         value = value.item()
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
@@ -101,7 +102,7 @@ def _real(key: str, value: Any, what: str) -> Any:
 
 
 def _whole_number(key: str, value: Any) -> bytes:
-    """Floats that are whole are whole numbers, too; of others the parser says what is allowed."""
+    """Formats a whole number, which may be a float. For other numbers the parser reports the allowed values."""
     real = _real(key, value, "a whole number")
     whole = isinstance(real, numbers.Integral) or float(real).is_integer()
     return (str(int(real)) if whole else repr(float(real))).encode()

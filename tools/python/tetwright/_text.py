@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text that the compiled part takes: bytes without NUL, since that would end them there."""
+"""Text for the compiled module: bytes without NUL, which would end the text there."""
 from __future__ import annotations
 
 import os
@@ -9,7 +9,7 @@ from . import _core
 
 
 def file_name(value: Any, what: str) -> bytes:
-    """As the system knows it, which may not be UTF-8; `what` is what messages call it."""
+    """Returns a file name in the system's encoding, which may not be UTF-8. Messages refer to it as `what`."""
     if not isinstance(value, (str, bytes, os.PathLike)):
         raise _core.UsageError(f"{what} is a {type(value).__name__}; give the name of a file")
     name = os.fspath(value)
@@ -20,7 +20,7 @@ def file_name(value: Any, what: str) -> bytes:
 
 
 def plain_text(value: Any, what: str) -> bytes:
-    """Of a name that is not a file's, or of a word."""
+    """Encodes a word, or a name other than a file's."""
     if not isinstance(value, str):
         raise _core.UsageError(f"{what} is a {type(value).__name__}; give text")
     try:

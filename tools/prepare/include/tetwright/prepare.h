@@ -29,38 +29,38 @@
 
 namespace tetwright {
 
-/// A file, read by its extension.
+/// A file, whose format is given by its extension.
 struct InputFile {};
 
-/// The bytes of a file, from a callback.
+/// The bytes of a file, provided by a callback.
 struct InputStream {
-  std::string extension;              ///< decides the format: ".ply"
+  std::string extension;              ///< determines the format, such as ".ply"
   std::function<std::string()> read;  ///< called once, when the input is read
 };
 
 struct InputSurface {
   TriangleMesh surface;
-  std::vector<Dropped> dropped = {};  ///< items of the host's object that are not kept
+  std::vector<Dropped> dropped = {};  ///< parts of the host's object that are not kept
 };
 
-/// A tet mesh before the choice of its material field, as readers of files make it.
+/// A tet mesh as returned by file readers, before its material field is chosen.
 struct InputMesh {
   ReadTetMesh read;
-  FileTriangles triangles = {};  ///< listed by the host beside the tets
+  FileTriangles triangles = {};  ///< triangles that the host lists in addition to the tets
 };
 
 /// An input: a file, or a value in memory.
 struct Input {
   using Value = std::variant<InputFile, InputStream, InputSurface, InputMesh, LabelVolume>;
 
-  // Implicit, for prepare({"scan.ply"}) and prepare({{"body", surface}}).
+  // Implicit, to allow prepare({"scan.ply"}) and prepare({{"body", surface}}).
   Input(const char* file) : name(file) {}             // NOLINT(google-explicit-constructor)
   Input(std::string file) : name(std::move(file)) {}  // NOLINT(google-explicit-constructor)
   Input(std::string of, Value in_memory) : name(std::move(of)), value(std::move(in_memory)) {}
   Input(std::string of, TriangleMesh surface) : Input(std::move(of), InputSurface{std::move(surface)}) {}
   Input(std::string of, TetMesh mesh) : Input(std::move(of), InputMesh{{std::move(mesh), "material"}}) {}
 
-  /// Names the material; later materials carve earlier ones. For surfaces and level sets.
+  /// Sets the name of the material. For surfaces and level sets; later materials carve earlier ones.
   Input as(std::string material_name) && {
     material = std::move(material_name);
     return std::move(*this);
@@ -69,26 +69,26 @@ struct Input {
   bool is_value() const {
     return !std::holds_alternative<InputFile>(value) && !std::holds_alternative<InputStream>(value);
   }
-  /// The kind of a value, or of a file by its extension.
+  /// Kind of the value, or of the file by its extension.
   FileKind kind() const;
-  /// The name; for a stream with its extension.
+  /// Name of the input; for a stream with its extension.
   std::string typed_name() const;
-  /// Whether it is a level set or segmented volume in OpenVDB's format, .vdb.
+  /// Whether the input is a level set or segmented volume in OpenVDB's format, .vdb.
   bool is_vdb_file() const;
-  /// The default name of the material: a value's name, or a file's without folders and extension.
+  /// Default name of the material: a value's name, or a file's name without folders and extension.
   std::string material_name() const;
 
-  std::string name;  ///< names the input in messages; for a file its path
+  std::string name;  ///< name of the input in messages; the path of a file
   Value value = InputFile{};
-  std::string material;  ///< empty: named after the input
+  std::string material;  ///< empty: the name of the input
 };
 
-/// Read or move out the value of an input; files are read as by the readers of io.h.
+/// Reads or moves out the value of an input; files are read by the readers of io.h.
 ///
-/// \param dropped may be null; receives the items that were not kept
-/// \param waited time spent waiting for a stream, seconds, is added to it
-/// \throws UsageError if the extension is of another kind of file
-/// \throws InputError as the readers
+/// \param dropped receives the contents that were not kept; may be null
+/// \param waited time spent waiting for a stream, seconds; added to the previous value
+/// \throws UsageError if the extension belongs to another kind of file
+/// \throws InputError in the cases of the readers
 TriangleMesh take_surface(Input& input, std::vector<Dropped>* dropped, double& waited);
 ReadTetMesh take_tet_mesh(Input& input, const ReadTetMeshOptions& options, double& waited);
 LabelVolume take_label_volume(Input& input, double& waited);
@@ -104,25 +104,26 @@ struct Length {
   double in_input_units(double diagonal) const { return percent ? value / 100 * diagonal : value; }
 };
 
-/// The length in input units; 0 for std::nullopt.
+/// Length in input units; 0 for std::nullopt.
 inline double in_input_units(const std::optional<Length>& length, double diagonal) {
   return length ? length->in_input_units(diagonal) : 0;
 }
 
-/// Cells of the dense mesh; for scans.
+/// Cells of the dense mesh. For scans.
 struct CellOptions {
-  /// Number of finest cells along the longest side, 4 to 4096. Without it and `size`, the target, tolerance
-  /// or sizes decide; without any of these, 128, or one cell per voxel for segmented volumes.
+  /// Number of finest cells along the longest side, 4 to 4096. Without this and `size`, the target, tolerance
+  /// or sizes determine the cells; without any of these there are 128, or one cell per voxel for segmented
+  /// volumes.
   std::optional<int> resolution;
-  std::optional<double> size;  ///< edge of a finest cell, input units; excludes `resolution`
-  bool uniform = false;        ///< finest cells everywhere instead of an octree
-  double adaptivity = 0.05;    ///< max error of a coarser cell at a surface, in finest cells
-  /// Max number of times cells are halved at thin walls and gaps of a surface, 0 to 8. std::nullopt: 3, or
-  /// more where that takes few cells.
+  std::optional<double> size;  ///< edge of a finest cell, input units; cannot be combined with `resolution`
+  bool uniform = false;        ///< true: finest cells everywhere instead of an octree
+  double adaptivity = 0.05;    ///< maximum error of a coarser cell at a surface, in finest cells
+  /// Maximum number of times cells are halved at thin walls and gaps of a surface, 0 to 8. std::nullopt: 3,
+  /// or more if that takes few cells.
   std::optional<int> max_refinement;
-  std::optional<Length> min_gap;        ///< closes narrower gaps of a surface
-  std::optional<Length> min_thickness;  ///< leaves out thinner walls of a surface
-  bool keep_outside = false;            ///< meshes a box around the bodies, as the material `outside`, tag 0
+  std::optional<Length> min_gap;        ///< narrower gaps of a surface are closed
+  std::optional<Length> min_thickness;  ///< thinner walls of a surface are left out
+  bool keep_outside = false;            ///< true: mesh a box around the bodies as material `outside`, tag 0
 };
 
 /// A layer of material under the surface of the first body.
@@ -131,38 +132,40 @@ struct Layer {
   double thickness = 0;  ///< above 0, input units
 };
 
-/// The bodies that surfaces enclose.
+/// Bodies enclosed by surfaces.
 struct BodyOptions {
-  std::vector<Layer> layers;  ///< of the first surface, outermost first
+  std::vector<Layer> layers;  ///< layers of the first surface, outermost first
   NestedRule nested = NestedRule::automatic;
-  /// Makes each solid, group or label of a surface's triangles a material of that name instead of a patch.
+  /// True: each solid, group or label of a surface's triangles becomes a material of that name instead of a
+  /// patch.
   bool split_solids = false;
 };
 
 /// Default of LabelOptions::min_voxels.
 inline constexpr std::size_t default_min_voxels = 8;
 
-/// The labels of a segmented volume.
+/// Labels of a segmented volume.
 struct LabelOptions {
-  /// Inclusive ranges of the labels that become materials; empty: all but the outside label.
+  /// Inclusive ranges of the labels that become materials; empty: all except the outside label.
   std::vector<std::pair<MaterialTag, MaterialTag>> meshed;
-  std::string names_file;              ///< file with names of labels; empty: names of the volume
+  std::string names_file;              ///< file with names of labels; empty: names in the volume
   std::optional<MaterialTag> outside;  ///< label of the outside; std::nullopt: 0
-  /// Min island size; smaller islands join the label they touch most. std::nullopt: default_min_voxels.
+  /// Minimum size of an island, in voxels. Smaller islands join the label that they touch most.
+  /// std::nullopt: default_min_voxels.
   std::optional<std::size_t> min_voxels;
 };
 
 /// Targets of simplification.
 struct TargetOptions {
-  std::optional<std::size_t> tets;  ///< std::nullopt: as few as the tolerance or sizes allow
-  /// Max distance between the surfaces of mesh and input, both ways (Hausdorff distance).
+  std::optional<std::size_t> tets;  ///< target number; std::nullopt: as few as the tolerance or sizes allow
+  /// Maximum distance between the surfaces of mesh and input in both directions (Hausdorff distance).
   std::optional<Length> tolerance;
 };
 
-/// Target edge lengths, from a file or a source in memory.
+/// Target edge lengths from a file, or from a source in memory.
 struct SizeFieldInput {
-  std::string name;                                    ///< path of the file; names the source in messages
-  std::shared_ptr<const SizeSource> source = nullptr;  ///< null: the file is read
+  std::string name;                                    ///< path of the file; name of the source in messages
+  std::shared_ptr<const SizeSource> source = nullptr;  ///< null: read the file
 };
 
 /// Target and bounds of edge lengths.
@@ -175,47 +178,47 @@ struct SizeOptions {
 /// Default of ShapeOptions::min_solid_angle, steradians.
 inline constexpr double default_min_solid_angle = 0.1;
 
-/// The shapes of tets.
+/// Shapes of tets.
 struct ShapeOptions {
-  /// Steradians. std::nullopt: default_min_solid_angle, and smaller angles are no shortfall.
+  /// Steradians. std::nullopt: default_min_solid_angle, and smaller angles are not a shortfall.
   std::optional<double> min_solid_angle;
   ShapeObjective objective = ShapeObjective::both;
-  int max_iterations = 100;          ///< of the block loop; improving: max rounds
-  bool fix_boundary = false;         ///< keeps points and faces of boundary and interfaces
-  std::optional<double> only_below;  ///< improving: works only on tets with a smaller solid angle, steradians
-  bool free_count = false;           ///< improving: shapes decide the number of tets
+  int max_iterations = 100;          ///< of the block loop; improving: maximum number of rounds
+  bool fix_boundary = false;         ///< true: keep points and faces of boundary and interfaces
+  std::optional<double> only_below;  ///< improving: only tets with a smaller solid angle, steradians
+  bool free_count = false;           ///< improving: the number of tets may change
 
   double bound() const { return min_solid_angle.value_or(default_min_solid_angle); }
 };
 
-/// The order of the simplifier's operations.
+/// Order of the simplifier's operations.
 struct ScheduleOptions {
   Schedule kind = Schedule::tuned;
-  double beta = 5;    ///< max edge, in ideal edges, that quality does not penalise
+  double beta = 5;    ///< maximum edge length, in ideal edges, that quality does not penalise
   double gamma = 10;  ///< weight of the surface error
 };
 
-/// The unit of limits on memory, bytes.
+/// Unit of memory limits, bytes.
 inline constexpr double gigabyte = 1 << 30;
 
 /// Limits on a run.
 struct LimitOptions {
-  unsigned threads = 0;            ///< 0: all of the machine
-  std::optional<double> seconds;   ///< returns the best mesh so far; results depend on the machine
-  std::optional<double> memory;    ///< 2^30 bytes; enlarges cells to fit unless they are set
-  double later_bytes_per_tet = 0;  ///< caller's memory per tet of the result, bytes
+  unsigned threads = 0;            ///< 0: all hardware threads
+  std::optional<double> seconds;   ///< time limit for the best mesh so far; the result depends on the machine
+  std::optional<double> memory;    ///< 2^30 bytes; cells are enlarged to fit unless their size is set
+  double later_bytes_per_tet = 0;  ///< memory that the caller needs for each tet of the result, bytes
 };
 
 /// Severities of diagnostics, see Diagnostic.
 struct AcceptanceOptions {
-  bool accept_changes = false;  ///< changes of the solid are notes, not shortfalls
-  bool strict = false;          ///< notes are a shortfall
+  bool accept_changes = false;  ///< true: changes of the solid are notes, not shortfalls
+  bool strict = false;          ///< true: notes are a shortfall
 };
 
-/// Data kept beside the mesh in a result.
+/// Data kept in addition to the mesh in a result.
 struct KeepOptions {
-  bool reference = true;  ///< Prepared::reference
-  bool field = true;      ///< Prepared::field
+  bool reference = true;  ///< keep Prepared::reference
+  bool field = true;      ///< keep Prepared::field
 };
 
 /// Options of prepare(), mesh_scans(), simplify_mesh() and improve_mesh(). prepare() uses all of them;
@@ -225,20 +228,20 @@ struct PrepareOptions {
   CellOptions cells;
   BodyOptions bodies;
   LabelOptions labels;
-  FeatureAngle feature_angle;  ///< decides which edges stay sharp
+  FeatureAngle feature_angle;  ///< determines which edges stay sharp
   TargetOptions target;
   SizeOptions sizes;
   ShapeOptions shapes;
   ScheduleOptions schedule;
-  int order = 1;               ///< of the elements, 1 or 2; 2 adds midside nodes
-  std::string material_field;  ///< cell field of a tet mesh with its materials; empty: default
+  int order = 1;               ///< order of the elements, 1 or 2; 2 adds midside nodes
+  std::string material_field;  ///< cell field of a tet mesh that gives its materials; empty: default
   std::uint64_t seed = 1;      ///< equal seeds give equal bytes
   LimitOptions limits;
   AcceptanceOptions acceptance;
   KeepOptions keep;
 };
 
-/// A segmented volume: LabelInput without its voxels.
+/// Description of a segmented volume: LabelInput without its voxels.
 struct VolumeReport {
   explicit VolumeReport(const LabelInput& from)
       : size(from.size),
@@ -250,7 +253,7 @@ struct VolumeReport {
         outside_parts(from.outside_parts),
         merged_islands(from.merged_islands),
         merged_voxels(from.merged_voxels) {}
-  /// The distance between voxels along each axis, input units.
+  /// Distance between voxels along each axis, input units.
   Vec3 spacing() const { return directions.colwise().norm(); }
 
   std::array<int, 3> size;
@@ -278,49 +281,49 @@ struct CoarserCells {
   double bytes;        ///< estimated memory for cells of size `asked`
 };
 
-/// Report of a run. Members of steps that it does not do stay empty.
+/// Report of a run. Members that belong to steps which are not run stay empty.
 struct PrepareReport {
   std::vector<std::string> inputs;
   std::size_t input_triangles = 0, input_points = 0;
-  std::string material_field;           ///< cell field of a tet mesh with its materials
+  std::string material_field;           ///< cell field of a tet mesh that gives its materials
   std::optional<VolumeReport> volume;   ///< if the input is a segmented volume
   std::vector<Diagnostic> diagnostics;  ///< findings and shortfalls
   std::optional<MesherReport> mesher;
   std::optional<CoarserCells> coarser;
   std::optional<MeshStatistics> dense, result;
-  std::vector<FeatureReport> features;  ///< one for each surface, or for the tet mesh
-  CreaseCurves creases;                 ///< of all inputs
+  std::vector<FeatureReport> features;  ///< one for each surface, or one for the tet mesh
+  CreaseCurves creases;                 ///< creases of all inputs
   std::optional<CreaseComparison> crease_comparison;
   std::optional<CurvingReport> second_order;  ///< with --order 2
   std::vector<PatchComparison> patches;       ///< named or numbered patches of the input
-  std::size_t input_limited = 0;  ///< tets of the result below the bound, see input_limited_tets()
+  std::size_t input_limited = 0;  ///< tets below the bound because of the input, see input_limited_tets()
   std::vector<SolidComparison> solids;
   std::map<MaterialTag, std::string> material_names;
   /// Red, green and blue, 0 to 1, of the labels of a segmented volume whose file has colours.
   std::map<MaterialTag, std::array<double, 3>> material_colours;
   std::optional<SimplifyReport> simplify;
   double tolerance = 0;                      ///< input units; 0: none
-  std::optional<DeviationReport> deviation;  ///< of the result, with a tolerance
-  /// Area of the input's surface that the mesh lacks, input units squared. 0 without a tolerance, and if
-  /// surfaces may hide each other: some are open, intersect or meet others, or carve them.
+  std::optional<DeviationReport> deviation;  ///< deviation of the result, if there is a tolerance
+  /// Area of the input's surface that is missing in the mesh, input units squared. 0 without a tolerance, and
+  /// if surfaces may hide each other: some are open, intersect or meet others, or carve them.
   double lost_area() const;
-  /// Whether a request was not met. The mesh is valid nonetheless; diagnostics name the request.
+  /// Whether a request was not met. The mesh is valid in any case; diagnostics name the request.
   bool falls_short() const;
   RequestedSizes sizes;
   std::optional<EdgeLengthReport> edge_lengths;  ///< if sizes are requested
   double seconds_read = 0, seconds_mesh = 0, seconds_write = 0, seconds_total = 0;
 };
 
-/// A mesh with its report and the data it was made from.
+/// A mesh with its report and the data from which it was made.
 struct Prepared {
   TetMesh mesh;                         ///< input units, with its interfaces
   std::optional<MidsideNodes> midside;  ///< with order 2
   PrepareReport report;                 ///< findings, measures and shortfalls
-  /// Surface to compare the mesh with: the input surface, the boundary and interfaces of a segmented volume's
-  /// dense mesh, or those of the input tet mesh. Null unless KeepOptions::reference.
+  /// Surface with which to compare the mesh: the input surface, the boundary and interfaces of a segmented
+  /// volume's dense mesh, or those of the input tet mesh. Null unless KeepOptions::reference.
   std::shared_ptr<const TriangleMesh> reference;
   std::string reference_name;  ///< "the input", "the dense mesh" or "the mesh before"
-  /// The signed distances that were meshed, for write_fields(). Null for tet meshes, and unless
+  /// Signed distances that were meshed, for write_fields(). Null for tet meshes, and unless
   /// KeepOptions::field.
   std::shared_ptr<const MaterialField> field;
 
@@ -330,17 +333,18 @@ struct Prepared {
 };
 
 /// Turns scans (surfaces, level sets, or one segmented volume) into a mesh for simulation: chooses the cells,
-/// meshes, simplifies to the target, improves the shapes, and compares the result with the input. Equals the
-/// program's command `prepare`, byte for byte with equal options.
+/// meshes, simplifies to the target, improves the shapes, and compares the result with the input. Gives the
+/// same bytes as the program's command `prepare` with the same options.
 ///
-/// Writes to no stream or file. Uses `options.limits.threads` threads and leaves the limits of oneTBB as they
-/// are. Concurrent calls are safe and give the same results as sequential ones.
+/// Writes to no stream or file. Uses `options.limits.threads` threads and does not change the limits of
+/// oneTBB. Concurrent calls are safe and give the same results as sequential ones.
 ///
-/// \param scans at least one; later surfaces and level sets carve earlier ones; a segmented volume is alone
-/// \param options needs a target: a number of tets, a tolerance or a size field
+/// \param scans at least one; later surfaces and level sets carve earlier ones; a segmented volume must be
+///   the only input
+/// \param options must have a target: a number of tets, a tolerance or a size field
 /// \param progress may be null; cancelling it ends the call within a second
 /// \return a valid mesh; Prepared::falls_short() tells whether a request was not met
-/// \throws UsageError if options are invalid, or do not go together or with the inputs
+/// \throws UsageError if options are invalid, or cannot be combined with each other or the inputs
 /// \throws InputError if an input cannot be read or used
 /// \throws NothingToMeshError if the inputs enclose nothing to mesh
 /// \throws OutputError if the mesh would not fit in memory
@@ -348,14 +352,15 @@ struct Prepared {
 /// \throws Interrupted if `progress` was cancelled
 Prepared prepare(std::vector<Input> scans, const PrepareOptions& options = {}, Progress* progress = nullptr);
 
-/// Makes the dense mesh of scans, without simplification. Needs no target; otherwise as prepare().
+/// Makes the dense mesh of scans, without simplification. Needs no target; otherwise like prepare().
 Prepared mesh_scans(std::vector<Input> scans, const PrepareOptions& options = {},
                     Progress* progress = nullptr);
 
-/// Simplifies a tet mesh to the target; otherwise as prepare().
+/// Simplifies a tet mesh to the target; otherwise like prepare().
 Prepared simplify_mesh(Input mesh, const PrepareOptions& options = {}, Progress* progress = nullptr);
 
-/// Improves the shapes of a tet mesh at about the same count. Needs no target; otherwise as prepare().
+/// Improves the shapes of a tet mesh at about the same number of tets. Needs no target; otherwise like
+/// prepare().
 Prepared improve_mesh(Input mesh, const PrepareOptions& options = {}, Progress* progress = nullptr);
 
 }  // namespace tetwright
