@@ -84,8 +84,7 @@ class ProgressiveMesh {
   bool eager_;
   VolumeLedger ledger_;  // without bounds, as in the paper
   Workspace task_;
-  std::vector<std::uint32_t>
-      versions_;  ///< by point; incremented when the weights of its half-edges are recomputed
+  std::vector<std::uint32_t> versions_;  ///< by point; incremented when its half-edges get new weights
   std::vector<Queued> heap_, fresh_;
   std::size_t drop_outdated_at_ = 0;
   std::vector<WeighedCollapse> weighed_;

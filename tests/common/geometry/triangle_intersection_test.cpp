@@ -36,10 +36,11 @@ bool intersect_in_any_order(const MeshTriangle& f, const MeshTriangle& g) {
   return first;
 }
 
-// ------------------------------------------------------------------------------------------ brute force An
-// independent check for small integer coordinates: two convex hulls of points are disjoint if and only if a
-// plane separates them, and if one does, then also one whose normal is a cross product of two differences of
-// the points (or, in degenerate cases, a difference or the cross product of a difference and such a normal).
+// ------------------------------------------------------------------------------------------ brute force
+// An independent check for small integer coordinates: two convex hulls of points are disjoint if and only if
+// a plane separates them. There is then a separating plane whose normal is a cross product of two differences
+// of the points (or, in degenerate cases, a difference, or the cross product of a difference and such a
+// normal).
 using IntVec = std::array<std::int64_t, 3>;
 IntVec minus(const IntVec& a, const IntVec& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 IntVec cross(const IntVec& a, const IntVec& b) {
