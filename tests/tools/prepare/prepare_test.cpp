@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The library does the program's whole job: the same bytes as the program and the Python package, for files
-// and values in memory; and it is a good guest: silent, with oneTBB's limits as they were, soon cancelled,
-// and callable from several threads at a time. This program links nothing of the program's own.
+// Tests that the library gives the same bytes as the program and the Python package, for files and for values
+// in memory; that it prints nothing, leaves oneTBB's limits unchanged, is cancelled promptly, and can be
+// called from several threads at the same time. This test links none of the program's own sources.
 #include "tetwright/prepare.h"
 
 #include <fcntl.h>
